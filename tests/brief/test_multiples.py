@@ -21,6 +21,7 @@ SAID = [
     ("left, right; radius 40 m everywhere but at the last, which gets half of that", [40, 20], "metres"),
     ("two lefts, the first with a radius of 60 m, the second with half the radius", [60, 30], "metres"),
     ("left on 35 m, right on double that radius", [35, 70], "metres"),
+    ("30 m straight, a left (radius around 15 m), a right with twice that radius", [30, 15, 30], "metres"),
     ("deux courbes, la première de 30 m de rayon, la seconde de rayon double", [30, 60], "metres"),
     ("une courbe de 30 m de rayon, puis une de rayon deux fois plus grand", [30, 60], "metres"),
     ("eine Kurve mit 30 m Radius, dann eine mit dem doppelten Radius", [30, 60], "metres"),

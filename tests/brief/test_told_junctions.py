@@ -20,7 +20,10 @@ from roadgpt.brief.readers.model.told_junctions import (
     [
         ("a crossroads where I have priority and the crossing road has stop signs", {"crossroads": 1}),
         ("two roads meet at a crossroads; you reach the crossroads uphill", {"crossroads": 2}),
-        ("eine Kreuzung, dann ein Kreisverkehr, dritte Ausfahrt", {}),
+        ("eine Kreuzung, dann ein Kreisverkehr, dritte Ausfahrt", {"crossroads": 1, "roundabout": 1}),
+        ("a roundabout with five arms; the car leaves it at the third exit", {"roundabout": 1}),
+        ("a roundabout, third exit, then a second one", {}),
+        ("a roundabout that is 50 m across, third exit, then one that is smaller", {}),
         ("une fourche, puis un giratoire", {"y_junction": 1, "roundabout": 1}),
         ("a roundabout, then another", {}),
         ("two roundabouts and a crossroads", {}),

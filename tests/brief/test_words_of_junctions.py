@@ -233,6 +233,7 @@ ONE_CHANGE = "lane_change left // crossroads left"
     ("asked", "words", "line"),
     [
         (f"| lanes=2 // {CHANGES}", "start in the right lane, change left", f"| lanes=2 // {ONE_CHANGE}"),
+        (CHANGES, "two lanes: I start off in the right one and move over to the left", ONE_CHANGE),
         (CHANGES, "wir beginnen auf dem rechten Fahrstreifen und wechseln nach links", ONE_CHANGE),
         (
             "| lanes=2 // lane_change right // | len=200 // lane_change left",

@@ -150,3 +150,9 @@ def test_a_part_that_is_not_installed_is_answered_with_those_that_are() -> None:
         assert result.exit_code == 2, result.output
         assert "called 'gtp'; there are: " in result.stderr
         assert known in result.stderr
+
+
+def test_one_network_that_is_replaced_is_given_alone() -> None:
+    result = invoke("learn", "export", "run", "out", "--only", "routes", "--second", "another")
+    assert result.exit_code != 0
+    assert "--only takes CHECKPOINT alone; leave out --second and --routes" in result.stderr

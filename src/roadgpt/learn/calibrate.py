@@ -59,13 +59,14 @@ def calibrated(reader: ModelReader, pairs: Sequence[Pair]) -> Calibration:
         roads.refuse_from,
         roads.confidence,
         _weights([(looks, looks.plan == right) for looks, right in asked if looks]),
-        None if reader.routes is None else calibrated_routes(reader, reader.routes, words),
+        None if reader.routes is None else calibrated_routes(reader, reader.routes, honest),
     )
 
 
 def calibrated_routes(reader: ModelReader, routes: Ensemble, pairs: Sequence[Pair]) -> EnsembleCalibration:
-    """Returns the calibration of the ensemble for routes, fitted to the pairs that describe routes."""
-    return calibrated_ensemble(reader, routes, list(filter(_is_route, pairs)), CAUTION)
+    """Returns the calibration of the ensemble for routes, fitted to the valid pairs that describe routes."""
+    of_routes = [pair for pair in pairs if _is_route(pair) and not pair.plan.startswith("!")]
+    return calibrated_ensemble(reader, routes, of_routes, CAUTION)
 
 
 def calibrated_ensemble(

@@ -1,19 +1,20 @@
 """Exports the trained network as two ONNX graphs in int8: the encoder, and one step of the decoder."""
 
 import json
+import shutil
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from hashlib import sha256
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import torch
 from torch import Tensor, nn
 
 from roadgpt.brief.readers.model import MEANINGS, ROUTES, ModelReader
 from roadgpt.errors import LearnError
-from roadgpt.learn.calibrate import calibrated
+from roadgpt.learn.calibrate import calibrated, calibrated_routes
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.growing import decoder_layers
 from roadgpt.learn.network import NetworkSizes, ReaderNetwork
@@ -123,6 +124,7 @@ def export_checkpoints(
     held_back: Sequence[Pair],
     fillers: Sequence[str],
     meanings: Mapping[str, Sequence[str]],
+    kept: Path | None = None,
 ) -> None:
     """Writes all files that the reader needs, from the checkpoints of up to three training runs.
 
@@ -133,10 +135,14 @@ def export_checkpoints(
         held_back: pairs that the networks were not trained on, for the calibration of the confidence.
         fillers: words that mean nothing in a plan; see ``word_meanings.filler_words``.
         meanings: for each word, the plan tokens for which it stands; see ``word_meanings.word_meanings``.
+        kept: the folder of an exported reader, whose networks and calibration stay where no checkpoint
+            replaces them; None: all networks are in ``checkpoints``.
 
     Raises:
         LearnError: there is no checkpoint, or the embeddings of the networks differ.
     """
+    if kept and kept.resolve() != folder.resolve():
+        shutil.copytree(kept, folder, dirs_exist_ok=True)
     for name, checkpoint in checkpoints.items():
         if not (checkpoint / "checkpoint.pt").exists():
             raise LearnError(f"there is no checkpoint.pt in {checkpoint}; train first")
@@ -151,11 +157,26 @@ def export_checkpoints(
     (folder / "words.txt").write_text("\n".join(fillers), encoding="utf-8")
     rows = [" ".join([word, *tokens]) for word, tokens in meanings.items()]
     (folder / MEANINGS).write_text("\n".join(rows), encoding="utf-8")
-    share_embedding([folder / f"encoder{name}.onnx" for name in checkpoints])
-    settings = calibrated(ModelReader(folder), held_back)
-    (folder / "settings.json").write_text(json.dumps(asdict(settings), indent=2) + "\n", encoding="utf-8")
+    share_embedding(sorted(folder.glob("encoder*.onnx")))
+    settings = _settings(folder, checkpoints, held_back, kept)
+    (folder / "settings.json").write_text(json.dumps(settings, indent=2) + "\n", encoding="utf-8")
     (folder / "NOTICE").write_text(NOTICE, encoding="utf-8")
     write_sums(folder)
+
+
+def _settings(
+    folder: Path, trained: Iterable[str], held_back: Sequence[Pair], kept: Path | None
+) -> dict[str, Any]:
+    """Returns the calibration of the reader in ``folder``; what was not trained keeps its calibration."""
+    reader = ModelReader(folder)
+    if kept is None:
+        return asdict(calibrated(reader, held_back))
+    before: dict[str, Any] = json.loads((kept / "settings.json").read_text(encoding="utf-8"))
+    if ROUTES in trained and reader.routes is not None:
+        before["routes"] = asdict(calibrated_routes(reader, reader.routes, held_back))
+    if set(trained) - {ROUTES}:
+        before |= {**asdict(calibrated(reader, held_back)), "routes": before["routes"]}
+    return before
 
 
 def share_embedding(encoders: Sequence[Path]) -> None:

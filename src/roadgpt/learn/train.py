@@ -26,6 +26,8 @@ from roadgpt.learn.onnx_weights import exported_weights
 
 POOL = 24  # number of batches whose examples are sorted by length together
 SMOOTHING = 0.03
+SLOW_IN_BFLOAT16 = ("DEFAULT", "NO AVX", "AVX2")
+"""Kinds of processors that multiply numbers of 16 bits some 70 times as slowly as numbers of 32 bits."""
 FROZEN = ("pieces", "places", "kind", "norm")
 """Names of the encoder's embeddings, which are not trained if the encoder is pretrained, so that words that
 occur in no pair keep their meaning."""
@@ -49,6 +51,8 @@ class TrainingSettings:
     """Fraction of all steps (0 to 1), at the end of training, during which the learning rate falls to
     zero.
     """
+    frozen_layers: int = 0
+    """Number of encoder layers, from the lowest, that are not trained."""
     decoder_layers: int | None = None
     """Number of decoder layers; if training starts from the installed reader, a multiple of its number. None
     keeps that number, or takes 3 for a new network.
@@ -147,7 +151,8 @@ def _optimiser(reader: nn.Module, plan: TrainingSettings) -> torch.optim.Optimiz
     groups: dict[bool, list[nn.Parameter]] = {True: [], False: []}
     for name, parameter in reader.named_parameters():
         room = name.split(".")[0]
-        parameter.requires_grad_(not (plan.is_pretrained and room in FROZEN))
+        is_frozen = name.startswith(tuple(f"layers.{index}." for index in range(plan.frozen_layers)))
+        parameter.requires_grad_(not (is_frozen or (plan.is_pretrained and room in FROZEN)))
         groups[room in own].append(parameter)
     return torch.optim.AdamW(
         [
@@ -178,7 +183,7 @@ def _step(
     for group in optimiser.param_groups:
         group["lr"] = group["top"] * rate
     pieces, tokens = (torch.from_numpy(part).to(device) for part in batch)
-    with torch.autocast(device.type, torch.bfloat16):
+    with torch.autocast(device.type, torch.bfloat16, enabled=_is_fast_in_bfloat16(device)):
         scores = reader(pieces, tokens[:, :-1])
     loss = functional.cross_entropy(
         scores.float().flatten(0, 1), tokens[:, 1:].flatten(), ignore_index=0, label_smoothing=SMOOTHING
@@ -188,6 +193,10 @@ def _step(
     nn.utils.clip_grad_norm_(reader.parameters(), 1.0)
     optimiser.step()
     return float(loss.detach())
+
+
+def _is_fast_in_bfloat16(device: torch.device) -> bool:
+    return device.type != "cpu" or torch.backends.cpu.get_cpu_capability() not in SLOW_IN_BFLOAT16
 
 
 def _note(

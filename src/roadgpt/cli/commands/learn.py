@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from roadgpt.learn.generator import Pair
 
 SPLITS = ("train", "validation", "test", "exam")
+NETWORKS_OF_READER = ("first", "second", "routes")
 COUNT = whole(1, 10_000_000, "a number")
 TRAINED_ON = ("train", "contrasts", "free")
 HELD_BACK = ("validation", "contrasts_validation", "free_validation")
@@ -60,6 +61,10 @@ OF_TRAIN = (
     Option("--routes", "Train the neural network for routes and maps, not one for single roads.", bool),
     Option("--decoder-layers", "Number of decoder layers; with --installed, a multiple of the number that "
            "the installed reader has.", whole(1, 24, "layers")),
+    Option("--frozen-layers", "Number of encoder layers, from the lowest, that are not trained.",
+           whole(0, 6, "layers"), 0),
+    Option("--cool-down", "Share of the steps, at the end, in which the learning rates fall to zero.",
+           measure(0, 1), 0.3),
     Option("--encoder-rate", "Highest learning rate of the encoder.", measure(0, 1, above=True), 1.5e-4),
     Option("--decoder-rate", "Highest learning rate of the decoder.", measure(0, 1, above=True), 7e-4),
     Option("--workers", "Number of training processes; use one per core.", whole(1, 64, "processes"), 2),
@@ -72,6 +77,8 @@ OF_EXPORT = (
            "for single roads.", folder),
     Option("--routes", "Folder of a training run with --routes; its neural network reads routes and maps.",
            folder),
+    Option("--only", "The network of the installed reader that CHECKPOINT replaces; the others stay as "
+           "they are.", click.Choice(NETWORKS_OF_READER)),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
     options.seed("Seed of the chats.", 1),
 )
@@ -183,15 +190,18 @@ def export(
     networks: Path,
     second: Path | None,
     routes: Path | None,
+    only: str | None,
     chats: int | None,
     seed: int,
 ) -> None:
     """Write the reader saved in the folder CHECKPOINT into the folder OUT, quantised to int8."""
+    if only and (second or routes):
+        raise LearnError("--only takes CHECKPOINT alone; leave out --second and --routes")
     try:
         from roadgpt.learn.export import export_checkpoints
     except ImportError as error:
         raise LearnError(EXTRA) from error
-    from roadgpt.brief.readers.model import ROUTES, SECOND
+    from roadgpt.brief.readers.model import ROUTES, SECOND, WEIGHTS
     from roadgpt.learn.data import is_for_roads_only
     from roadgpt.learn.word_meanings import filler_words, word_meanings
 
@@ -201,8 +211,10 @@ def export(
     held_back += _pairs_of(changes / "validation", is_change=True)
     trained_on = _trained_on(hand, changes, networks)
     words = filler_words(trained_on), word_meanings(trained_on)
-    found = {"": checkpoint, SECOND: second, ROUTES: routes}
-    export_checkpoints({name: run for name, run in found.items() if run}, out, held_back, *words)
+    endings = dict(zip(NETWORKS_OF_READER, ("", SECOND, ROUTES), strict=True))
+    found = {endings[only or "first"]: checkpoint, **({} if only else {SECOND: second, ROUTES: routes})}
+    checkpoints = {name: run for name, run in found.items() if run}
+    export_checkpoints(checkpoints, out, held_back, *words, WEIGHTS if only else None)
     click.echo(f"{sum(file.stat().st_size for file in out.iterdir()) / 1e6:.1f} MB in {out}")
     if chats:
         _write_chats(out, chats, seed)

@@ -19,10 +19,12 @@ import numpy as np
 from roadgpt.brief.model import Brief, at_least
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan
+from roadgpt.brief.readers.model.change_rules import lost_numbers, read_by_rules
 from roadgpt.brief.readers.model.closed_loops import asks_for_a_closed_loop
 from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
+from roadgpt.brief.readers.model.denied_words import without_denials
 from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
-from roadgpt.brief.readers.model.height_words import height_wish, is_doubtful_climb, with_sign
+from roadgpt.brief.readers.model.height_words import is_doubtful_climb, with_sign
 from roadgpt.brief.readers.model.map_signs import has_unlimited_signs
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.negative_numbers import negative_number
@@ -34,7 +36,6 @@ from roadgpt.brief.readers.model.reverse_words import asks_to_reverse
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
-from roadgpt.brief.readers.model.swap_words import exchanged_values, turns_to_swap
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.total_turning import total_turning
 from roadgpt.brief.readers.model.vocabulary import plan_of
@@ -149,15 +150,15 @@ class ModelReader:
         if not found:
             raise BriefError("this could not be read as changes; use shorter sentences")
         line = found[0].line
-        known = _climb(text, line) or _swap(text, line) or exchanged_values(line, text)
+        known = read_by_rules(line, text)
         if known is not None:
             return ChangeReading(known, CERTAIN, ())
         near = (draft for draft in found if draft.score >= found[0].score - ALMOST)
-        draft = next((draft for draft in near if not _lost_numbers(draft, text)), found[0])
+        draft = next((draft for draft in near if not lost_numbers(draft, text)), found[0])
         found_in = features(self.roads.networks, draft, text)
         if draft.is_refusal:
             return ChangeReading(draft.line, confidence(self._settings["changes"], found_in, (), text), ())
-        lost = _lost_numbers(draft, text)
+        lost = lost_numbers(draft, text)
         unused = self.roads.unused(text, draft.tokens)
         sure = confidence(self._settings["changes"], found_in, (*lost, *unused), text)
         sure = min(sure, DOUBT) if is_denial(words) or is_doubtful_climb(draft.line, text) else sure
@@ -235,34 +236,33 @@ class ModelReader:
         return scored_by(self.roads, self.routes, words, refuse_from)
 
     def _brief(self, words: str, text: SlottedText, draft: ScoredPlan, ensemble: Ensemble) -> Brief:
-        if draft.is_refusal:
-            raise self._refusal(words, text, draft.line, ensemble)
-        return self._as_brief(words, text, draft, ensemble)
-
-    def _refusal(self, words: str, text: SlottedText, why: str, ensemble: Ensemble) -> BriefError:
-        """Returns the error for a refusal.
-
-        It contains a Brief if only the size of the map may be the reason, or if a plan that does not
-        contradict itself could be meant.
-        """
-        if why.startswith("!impossible"):
-            brief = self._for_the_usual_map(words, text, ensemble)
-            return TooMuchError(TOO_MUCH, brief) if brief else refused(why)
+        if not draft.is_refusal:
+            return self._as_brief(words, text, draft, ensemble)
+        why = draft.line
         if why.startswith("!contradiction"):
-            brief = self._without_refusal(words, text, ensemble)
-            if brief:
-                return ContradictionError(f"{refused(why)}; or is this meant", plan(brief), brief)
-        return refused(why)
+            return self._brief_in_spite_of(why, words, text, ensemble)
+        brief = self._for_the_usual_map(words, text, ensemble) if why.startswith("!impossible") else None
+        raise TooMuchError(TOO_MUCH, brief) if brief else refused(why)
 
-    def _without_refusal(self, words: str, text: SlottedText, ensemble: Ensemble) -> Brief | None:
-        """Returns the Brief of the likeliest plan that is no refusal; None if it contradicts itself."""
+    def _brief_in_spite_of(self, why: str, words: str, text: SlottedText, ensemble: Ensemble) -> Brief:
+        """Returns the Brief of the likeliest plan that is no refusal, if only a denial that fits this plan
+        was taken for a contradiction.
+
+        Raises:
+            ContradictionError: the description contradicts itself; the error has the Brief.
+            BriefError: the same, but no plan without a contradiction is likely.
+        """
         found = ensemble.scored(words, NEVER)
         if not found or not can_be_kept(found[0].line):
-            return None
+            raise refused(why)
         try:
-            return self._as_brief(words, text, found[0], ensemble)
+            brief = self._as_brief(words, text, found[0], ensemble)
         except BriefError:
-            return None
+            raise refused(why) from None
+        rest = without_denials(text, why, found[0].tokens, self._meanings)
+        if rest is None or ensemble.refuses(rest):
+            raise ContradictionError(f"{refused(why)}; or is this meant", plan(brief), brief)
+        return brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
 
     def _for_the_usual_map(self, words: str, text: SlottedText, ensemble: Ensemble) -> Brief | None:
         """Returns the Brief that the network reads if large numbers are replaced by ordinary ones first.
@@ -331,44 +331,13 @@ class ModelReader:
         return frozenset(read_text(self.folder / "words.txt").split("\n"))
 
     @cached_property
-    def _meanings(self) -> dict[str, frozenset[str]]:
+    def _meanings(self) -> dict[str, tuple[str, ...]]:
         return read_meanings(self.folder / MEANINGS)
 
     @cached_property
     def _settings(self) -> dict[str, Any]:
         settings: dict[str, Any] = read_json(self.folder / "settings.json")
         return settings
-
-
-def _climb(text: SlottedText, line: str) -> str | None:
-    """Returns the plan of a change request that asks for a climb in metres; None for other requests.
-
-    The place is the one in ``line``, the plan that the network wrote, or the road if no part is named.
-    """
-    wish = height_wish(text)
-    if wish is None:
-        return None
-    is_one = not line.startswith(("!", "add ")) and ";" not in line
-    if ";" in line or (wish.names_a_part and not is_one):
-        return None
-    return f"{line.partition(':')[0].strip() if wish.names_a_part else 'road'}: climb {wish.value}"
-
-
-def _swap(text: SlottedText, line: str) -> str | None:
-    """Returns the plan of a change request that asks two turns to change places; None for other requests."""
-    place = turns_to_swap(text) if "swap" not in line else None
-    return f"{place}: swap" if place else None
-
-
-def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
-    """Returns the small numbers of a change request (positions and counts) that its plan lacks."""
-    if draft.is_refusal:
-        return ()
-    return tuple(
-        word.written
-        for word in text.words
-        if word.written and word.text.isdecimal() and word.text not in (*draft.tokens, "1")
-    )
 
 
 def _other(found: Sequence[ScoredPlan], brief: Brief) -> str:

@@ -27,8 +27,8 @@ class Ensemble:
     """The weights of the confidence model, and its bias."""
     fillers: frozenset[str]
     """Words that are never reported as unused."""
-    meanings: Mapping[str, frozenset[str]]
-    """The tokens that words usually ask for."""
+    meanings: Mapping[str, Sequence[str]]
+    """The tokens that words usually ask for, the most usual one first."""
 
     @property
     def first(self) -> NeuralNetwork:
@@ -48,6 +48,11 @@ class Ensemble:
     def knows(self, tokens: Sequence[str]) -> bool:
         """Returns whether all networks were trained with all these tokens."""
         return all(network.knows(tokens) for network in self.networks)
+
+    def refuses(self, text: SlottedText) -> bool:
+        """Returns whether the networks take a text for no description of a road that can be built."""
+        chances = [network.refusal(text) for network in self.networks]
+        return sum(chances) / len(chances) >= self.refuse_from
 
     def unused(self, text: SlottedText, tokens: Sequence[str]) -> tuple[str, ...]:
         """Returns the words that a plan does not depend on, each once, in the order of the text."""

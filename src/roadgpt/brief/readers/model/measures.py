@@ -6,6 +6,7 @@ from itertools import pairwise
 
 from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
 from roadgpt.brief.readers.model.units import JOINTS, TIMES, UNITS, Unit
+from roadgpt.brief.readers.model.word_set import word_set
 
 LARGEST_SEEN = 20
 """The largest number without a unit that remains as digits in the text for the model. Larger ones become
@@ -16,7 +17,10 @@ RADIUS = frozenset(
     ["radius", "radii", "rad", "halbmesser", "radien", "rayon", "rayons", "ray", "radio", "radios", "raggio"]
     + ["raggi"]
 )
-LEADING_TO = frozenset(["=", ":", ".", "of", "is", "about", "von", "de", "di"])
+LEADING_TO = word_set(
+    "= : . of is about around roughly approximately approx ca circa von etwa rund ungefahr de environ unos",
+    "aproximadamente di",
+)
 """What can stand between a word for a radius and its number."""
 
 

@@ -9,7 +9,7 @@ from roadgpt.brief.readers.model.numerals import plain
 
 BEGINS = re.compile(
     r"\b(?:start|begin|set off|setting off|starting|beginning)\w*(?: out| off)? (?:in|on) the (left|right)"
-    r"(?:most|-hand| hand)? lane\b|"
+    r"(?:most|-hand| hand)? (?:lane|one)\b|"
     r"\b(?:beginn|start)\w*(?: wir| man)? (?:auf|in) de[rm] (linken|rechten) (?:fahr)?(?:spur|streifen)\b|"
     r"\b(?:commenc|demarr|part)\w* (?:sur|dans) la (?:voie|file) de (gauche|droite)\b|"
     r"\b(?:empez|empiez|sal)\w* (?:en|por) el carril (?:de la )?(izquierd[ao]|derech[ao])\b|"

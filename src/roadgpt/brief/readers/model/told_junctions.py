@@ -24,7 +24,8 @@ SIDE_ROAD = re.compile(
 )
 ANY_PLURAL = re.compile(rf"\b{PLURAL}\b")
 MORE = re.compile(
-    r"\b(?:another|again|second|next|twice|same|each|both|more|further|every|third|last|other|"
+    r"\b(?:one (?:that|beyond|behind|after)|"
+    r"another|again|second|next|twice|same|each|both|more|further|every|third|last|other|"
     r"zweite[nrms]?|nachste[nrms]?|wieder|noch|weitere[nrms]?|beide[nr]?|jede[nrms]?|andere[nrms]?|dritte[nrms]?|"
     r"letzte[nrms]?|autre|encore|deuxieme|seconde?|prochain|suivant|chaque|memes?|troisieme|dernier|"
     r"otr[oa]|segund[oa]|siguiente|cada|mism[oa]|tercer[oa]?|ultim[oa]|altr[oa]|second[oa]|prossim[oa]|ogni|"
@@ -32,6 +33,12 @@ MORE = re.compile(
     r"crois|gira|rond|rot|glor|cruc|incr|fork|gabel|bif|four|biv|star|junction)"
 )
 """Words that may stand for a further junction that has no noun of its own."""
+EXIT = re.compile(
+    r"\b(?:second|third|last|next|zweite[nrms]?|nachste[nrms]?|dritte[nrms]?|letzte[nrms]?|deuxieme|seconde|"
+    r"prochaine|troisieme|derniere|segunda|siguiente|tercera|ultima|seconda|prossima|terza) "
+    r"(?:exit|ausfahrt|abfahrt|ausgang|sortie|salida|uscita)\b"
+)
+"""An exit with its number, which is no further junction."""
 CROSSINGS: tuple[JunctionKind, ...] = ("crossroads", "junction", "t_junction", "y_junction")
 LETTERED: Mapping[str, JunctionKind] = {"t": "t_junction", "y": "y_junction"}
 LETTER = re.compile(
@@ -68,7 +75,7 @@ def most_of_kinds(text: SlottedText) -> dict[JunctionKind, int]:
     A kind is counted if its noun is in the text, in the singular, and no word speaks of further junctions.
     """
     said = text.text
-    if ANY_PLURAL.search(_without_crossroads(said)) or MORE.search(said):
+    if ANY_PLURAL.search(_without_crossroads(said)) or MORE.search(EXIT.sub("", said)):
         return {}
     found = {kind: len(noun.findall(said)) for kind, noun in KINDS_IN_SINGULAR.items()}
     return {kind: number for kind, number in found.items() if number}

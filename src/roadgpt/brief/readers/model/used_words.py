@@ -34,7 +34,7 @@ def unused_words(
     text: SlottedText,
     tokens: Sequence[str],
     fillers: frozenset[str],
-    meanings: Mapping[str, frozenset[str]],
+    meanings: Mapping[str, Collection[str]],
 ) -> tuple[str, ...]:
     """Returns the words that the plan does not depend on, and the numbers that the plan lacks.
 

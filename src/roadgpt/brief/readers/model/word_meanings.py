@@ -37,20 +37,21 @@ def with_groups(tokens: Iterable[str]) -> Counter[str]:
     return found
 
 
-def read_meanings(path: Path) -> dict[str, frozenset[str]]:
-    """Returns the tokens that words usually ask for, from a file with a word and its tokens in each line.
+def read_meanings(path: Path) -> dict[str, tuple[str, ...]]:
+    """Returns the tokens that words usually ask for, the most usual one first, from a file with a word and
+    its tokens in each line.
 
     The result is empty if the file is missing, as in readers that were exported before such files existed.
     """
     rows = [line.split() for line in read_text(path).split("\n")] if path.is_file() else []
-    return {word: frozenset(tokens) for word, *tokens in rows}
+    return {word: tuple(tokens) for word, *tokens in rows}
 
 
 def understood(
     text: SlottedText,
     tokens: Sequence[str],
     places: Collection[int],
-    meanings: Mapping[str, frozenset[str]],
+    meanings: Mapping[str, Collection[str]],
     negators: Collection[str],
 ) -> frozenset[int]:
     """Returns the places (indices) of the words in ``places`` that the plan takes into account after all.

@@ -1,0 +1,55 @@
+"""Recognises a refusal that is due to a denial alone: in "15 m higher, and never going down", the denied word
+says the same as the rest, and nothing is contradicted.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from roadgpt.brief.readers.model.slots import SlottedText
+from roadgpt.brief.readers.model.used_words import NEGATORS
+
+DENIABLE = frozenset(["left", "right", "up", "down"])
+"""Tokens of plans for what cannot both be denied and asked for."""
+CAUSES = frozenset(["sides", "slope", "climb"])
+"""The causes of a contradiction that such a denial may have been taken for."""
+ENDS = frozenset([*".,;:!?()", "but", "aber", "sondern", "dafur", "mais", "pero", "sino", "ma"])
+"""What ends the words that a negation reaches."""
+REACH = 6  # words after a negation that it can deny
+
+
+def without_denials(
+    text: SlottedText, why: str, offered: Sequence[str], meanings: Mapping[str, Sequence[str]]
+) -> SlottedText | None:
+    """Returns the text of a refused description without its denials, if the plan that is offered has nothing
+    of what they deny; None if it has, if nothing is denied, or if something else is the cause of the refusal.
+
+    Args:
+        text: the description.
+        why: the refusal with its causes, such as "!contradiction sides".
+        offered: the tokens of the likeliest plan that is no refusal.
+        meanings: the tokens that words usually ask for, the most usual one first.
+    """
+    causes = why.split()[1:]
+    words = [word.text for word in text.words]
+    if not causes or not CAUSES.issuperset(causes) or DENIABLE.isdisjoint(offered):
+        return None
+    dropped = set[int]()
+    for at in (n for n, word in enumerate(words) if word in NEGATORS and n not in dropped):
+        reached = _reached(words, at)
+        denied = [token for n in reached for token in _denied(meanings.get(words[n], ()))]
+        if not denied or not set(denied).isdisjoint(offered):
+            return None
+        dropped |= {at, *reached}
+    if not dropped:
+        return None
+    return SlottedText(tuple(word for n, word in enumerate(text.words) if n not in dropped), text.slots)
+
+
+def _reached(words: Sequence[str], at: int) -> range:
+    """Returns the places of the words that a negation reaches."""
+    last = min(at + 1 + REACH, len(words))
+    return range(at + 1, next((n for n in range(at + 1, last) if words[n] in ENDS), last))
+
+
+def _denied(asked: Sequence[str]) -> Sequence[str]:
+    """Returns what a denied word excludes: what it asks for most, if that can be excluded."""
+    return [token for token in asked if token in DENIABLE][:1]
