@@ -56,6 +56,26 @@ def test_a_route_has_no_more_junctions_of_a_kind_than_are_told() -> None:
             "roundabout // junction // junction",
         ),
         (
+            "a route with five junctions, one of them a roundabout; at the last one, a T, left",
+            "roundabout // junction // junction // junction // junction // t_junction left",
+            "roundabout // junction // junction // junction // t_junction left",
+        ),
+        (
+            "Strecke mit drei Knotenpunkten, darunter ein Kreisverkehr",
+            "roundabout // junction",
+            "roundabout // junction // junction",
+        ),
+        (
+            "a route with three junctions and a roundabout",
+            "junction // junction // junction // roundabout",
+            "junction // junction // junction // roundabout",
+        ),
+        (
+            "seven junctions would be too many, so three: roundabout, roundabout, crossroads",
+            "roundabout // roundabout // crossroads",
+            "roundabout // roundabout // crossroads",
+        ),
+        (
             "two crossroads in total, left, then right",
             "crossroads left // crossroads right // crossroads straight",
             "crossroads left // crossroads right // crossroads straight",

@@ -46,14 +46,22 @@ LETTER = re.compile(
     r" (?:en|a|in(?: the)?)(?: forme? de| forma d[ei]| form eines| shape of an?)? ([ty])\b"
 )
 """A junction that is named by the shape of a letter: "cruce en Y", "incrocio a T"."""
+ROUTE = (
+    r"route|drive|trip|journey|ride|fahrt|strecke|tour|trajet|parcours|itineraire|ruta|trayecto|recorrido|"
+    r"percorso|tragitto"
+)
+MORE_BEHIND = r"(?:and|plus|then|followed|und|dann|et|puis|y|luego|e|poi)"
 TOTAL = re.compile(
     rf"\b(\d+) (?:\w+ )?(?:{PLURAL}|{ANY_KIND}) "
     r"(?:in all|in total|all told|altogether|overall|insgesamt|en tout|au total|en total|in tutto|"
     r"in totale|in (?:any|whatever) order|in beliebiger reihenfolge|"
     r"dans n ' importe quel ordre|en cualquier orden|in qualsiasi ordine)\b|"
-    rf"\binsgesamt (\d+) (?:\w+ )?(?:{PLURAL}|{ANY_KIND})\b"
+    rf"\binsgesamt (\d+) (?:\w+ )?(?:{PLURAL}|{ANY_KIND})\b|"
+    rf"^\W*(?:(?:\w+ ){{0,6}}?(?:{ROUTE}) (?:\w+ ){{0,3}}?)?(\d+) (?:{ANY_KIND})\b"
+    rf"(?! (?:, )?{MORE_BEHIND}\b)"
 )
-"""The number of all junctions of a route."""
+"""The number of all junctions of a route: said to be all of them, or that of the route with which a text
+begins."""
 
 
 LISTED = re.compile(rf"^\W*(?:\w+ )?(\d+) (?:{PLURAL}|{ANY_KIND}) (?:in all |in total )?:")
@@ -120,7 +128,7 @@ def with_told_total(brief: Brief, text: SlottedText) -> Brief:
     "Four junctions in all; the first is a roundabout and the last a T-junction" has two between them, and
     "four junctions in any order, two with lights" has two more.
     """
-    found = TOTAL.search(text.text)
+    found = None if TAKEN_BACK.search(text.text) else TOTAL.search(text.text)
     number = int(next(filter(None, found.groups()))) if found else 0
     counted = [n for n, each in enumerate(brief.junctions) if each.kind not in (*RAMPS, *LANE_KINDS)]
     bare = [n for n in counted if _is_bare(brief, n)]
