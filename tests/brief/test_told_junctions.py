@@ -103,6 +103,11 @@ def test_a_route_has_no_more_junctions_of_a_kind_than_are_told() -> None:
         (
             "four junctions, one of them a fork",
             "y_junction // junction // junction // junction // junction",
+            "y_junction // junction // junction // junction",
+        ),
+        (
+            "after a bend four junctions, one of them a fork",
+            "y_junction // junction // junction // junction // junction",
             None,
         ),
     ],
