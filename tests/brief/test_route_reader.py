@@ -29,6 +29,10 @@ PAIRS = Path(__file__).parents[2] / "data" / "networks" / "train"
         ("all'incrocio con semaforo gira a sinistra", "crossroads left lights"),
         ("two lanes each way, three turns", "turn x3 | lanes=2 against=2"),
         ("a grid of three by two blocks", "map columns=3 rows=2"),
+        (
+            "a loop road around one block of houses, with four cul-de-sacs, each from its own T-junction",
+            "map t_junction x4 blocks=1 dead_ends=4",
+        ),
     ],
 )
 def test_routes_are_read_in_five_languages(words: str, line: str) -> None:

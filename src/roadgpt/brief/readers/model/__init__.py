@@ -303,7 +303,9 @@ class ModelReader:
         found = {"words": words, "unused": unused, "confidence": sure}
         # brief.read decides by the words whether a road without junctions is a motorway
         found["motorway"] = False
-        found["beside"] = tuple(dict.fromkeys(brief.beside))
+        # the roads of a map may be closed loops
+        kept = (name for name in brief.beside if name != "loop" or brief.map is None)
+        found["beside"] = tuple(dict.fromkeys(kept))
         return with_diameters(brief, draft.tokens, text).model_copy(update=found)
 
     @cached_property

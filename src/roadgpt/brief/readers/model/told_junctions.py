@@ -22,6 +22,12 @@ SIDE_ROAD = re.compile(
     r"\b(?:side (?:road|street)|t - junction|(?:neben|seiten)stra(?:ss|ß)e|einmundung|rue laterale|"
     r"calle lateral|strada laterale)\b"
 )
+RAMP_LANE = re.compile(
+    r"\b(?:(?:acceleration|deceleration) lane|(?:beschleunigungs|verzogerungs)(?:streifen|spur)|"
+    r"voie d ' (?:acceleration|deceleration|insertion)|carril de (?:aceleracion|deceleracion)|"
+    r"corsia di (?:accelerazione|decelerazione))\b"
+)
+"""A lane that only merges and exits have."""
 ANY_PLURAL = re.compile(rf"\b{PLURAL}\b")
 MORE = re.compile(
     r"\b(?:one (?:that|beyond|behind|after)|"
@@ -95,9 +101,15 @@ def _without_crossroads(said: str) -> str:
 
 
 def names_a_junction(text: SlottedText) -> bool:
-    """Returns whether a noun of the text can only mean a junction."""
+    """Returns whether a noun of the text can only mean a junction, a merge or an exit."""
     said = text.text
-    nouns = (KINDS_IN_SINGULAR["crossroads"], KINDS_IN_SINGULAR["roundabout"], SIDE_ROAD, ANY_PLURAL)
+    nouns = (
+        KINDS_IN_SINGULAR["crossroads"],
+        KINDS_IN_SINGULAR["roundabout"],
+        SIDE_ROAD,
+        RAMP_LANE,
+        ANY_PLURAL,
+    )
     return any(noun.search(said) for noun in nouns)
 
 
