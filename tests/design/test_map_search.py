@@ -128,6 +128,16 @@ def test_a_grid_of_three_by_two_blocks_fits_on_the_usual_map_and_longer_blocks_g
     assert world_for(read_plan("map columns=3 rows=2"), given).site.map_size == 120
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_roundabouts_have_three_arms_where_only_few_roads_may_end(seed: int) -> None:
+    line = "map roundabout x4 blocks=1 dead_ends=4"
+    design = drafted(line, seed, USUAL)
+    ends = [node for node in design.nodes if node.kind == "end"]
+    arms = [sum(number in road for road in design.roads) for number, _ in enumerate(design.nodes, 1)]
+    assert len(ends) == 4
+    assert [arms[n] for n, node in enumerate(design.nodes) if node.kind == "roundabout"] == [3, 3, 3, 3]
+
+
 def test_what_finds_no_place_is_refused_with_what_to_do() -> None:
     small = World(site=Site(map_size=120))
     with pytest.raises(DesignError, match=r"no place on a map of 120 m; ask for fewer or shorter blocks, or"):

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations, pairwise
 from math import pi, radians
 
-from roadgpt.brief.amount import span
+from roadgpt.brief.amount import exactly, span
 from roadgpt.brief.junction_check import MOST_OF_KIND
 from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.map_clause import JunctionCount, MapClause
@@ -64,7 +64,8 @@ def draft_village(
         haste: from 0 to 1; the larger it is, the smaller the map.
     """
     counts = [each for each in asked.junctions for _ in range(drawn_count(each.count, rng, MOST_OF_KIND))]
-    junctions = next((drawn for _ in range(DRAWN) if (drawn := _junctions(counts, asked, rng, haste))), None)
+    sets = (_junctions(counts, asked, rng, haste, n >= DRAWN // 2) for n in range(DRAWN))
+    junctions = next(filter(None, sets), None)
     if junctions is None:
         return None
     village = _Village(asked, world, least_radius, rng, haste)
@@ -80,16 +81,18 @@ def draft_village(
 
 
 def _junctions(
-    kinds: Sequence[JunctionCount], asked: MapClause, rng: Rng, haste: float
+    kinds: Sequence[JunctionCount], asked: MapClause, rng: Rng, haste: float, has_few_arms: bool
 ) -> list[JunctionDesign] | None:
-    """Returns one junction for each of ``kinds``, in random order.
+    """Returns one junction for each of ``kinds``, in random order; roundabouts with three arms each if
+    ``has_few_arms`` is true.
 
     Returns None if one of them was not found. Also returns None if the required number of dead ends is
     impossible: there are too few arms, or joining arms in pairs always leaves another number.
     """
     found = []
     for n in rng.permutation(len(kinds)):
-        junction = drawn_junction(JunctionClause(kind=kinds[n].kind), 1, rng, haste)
+        arms = exactly(3) if has_few_arms and kinds[n].kind == "roundabout" else None
+        junction = drawn_junction(JunctionClause(kind=kinds[n].kind, arms=arms), 1, rng, haste)
         if junction is None:
             return None
         control = asked.control_of(kinds[n]) or "none"
