@@ -35,6 +35,7 @@ from roadgpt.brief.readers.model.told_junctions import (
     with_told_letter,
     with_told_total,
 )
+from roadgpt.brief.readers.model.told_takes import with_told_takes
 from roadgpt.brief.readers.model.whole_drive import with_whole_drive
 from roadgpt.brief.readers.model.word_set import word_set
 from roadgpt.brief.words import Range
@@ -107,7 +108,7 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
 def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, corrected by rules where the words of the description are clear."""
     brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line)), text), text)
-    brief = with_told_total(with_checked_counts(brief, text), text)
+    brief = with_told_takes(with_told_total(with_checked_counts(brief, text), text), text)
     brief = with_ramp_lengths(with_distances_to_exits(with_counted_junctions(brief, text), text), text)
     brief = with_whole_length(with_counted_signs(with_counted_map(brief, text), text), text)
     brief = _with_listed_hills(with_each_lane(brief))
