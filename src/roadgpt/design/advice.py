@@ -185,13 +185,12 @@ def larger_map(brief: Brief, world: World, fits: Fits, likely: float) -> float |
     """
     if likely > 2 * LARGEST_MAP or world.site.map_size == LARGEST_MAP:
         return None
-    size = min(ceil(max(likely, world.site.map_size + ROUND_MAP) / ROUND_MAP) * ROUND_MAP, LARGEST_MAP)
+    if not fits(brief, world.changed(map_size=LARGEST_MAP)):  # then no smaller one needs to be tried
+        return None
+    size = ceil(max(likely, world.site.map_size + ROUND_MAP) / ROUND_MAP) * ROUND_MAP
     while size < LARGEST_MAP and not fits(brief, world.changed(map_size=size)):
         size = ceil(LARGER * size / ROUND_MAP) * ROUND_MAP
-    size = min(size, LARGEST_MAP)
-    if size == LARGEST_MAP and not fits(brief, world.changed(map_size=size)):
-        return None
-    return size
+    return min(size, LARGEST_MAP)
 
 
 def _round(metres: float) -> float:

@@ -60,6 +60,7 @@ EASES_OF_BUMPS = (0.12, 0.08, 0.0)  # shares of comfort that are also tried wher
 STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of a road
 
 
+@lru_cache(maxsize=64)  # the advice for a road that did not fit asks again
 def fits(brief: Brief, world: World) -> bool:
     """Returns whether each of four searches, with different seeds and up to 110 drafts each, finds a road."""
     try:

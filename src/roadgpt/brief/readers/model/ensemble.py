@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from roadgpt.brief.readers.model.confidence import confidence, features
+from roadgpt.brief.readers.model.map_words import asks_for_map
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES, may_tell_a_route
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
@@ -81,7 +82,8 @@ def scored_by(
 
     - Its plan has words that ``roads`` does not know, and a confidence of at least ``GUESS``. The confidence
       of ``roads`` is then ignored, because ``roads`` may be sure that "crossroads, sharp left" is a bend.
-    - Its plan has words that ``roads`` does not know, and a noun of the text can only mean a junction.
+    - Its plan has words that ``roads`` does not know, and the text asks for a map, or has a noun that can
+      only mean a junction.
     - Its plan has words that ``roads`` does not know, and ``roads`` has no plan of higher confidence.
     - It refuses the description, and the confidence of ``roads`` in a plan is less than ``SURE``.
     - ``roads`` names a junction or the like beside the road, or as the cause of a refusal. ``routes`` then
@@ -100,7 +102,8 @@ def scored_by(
     read = routes.scored(words, refuse_from) if routes and may_tell_a_route(words) else ()
     is_route = bool(read) and not roads.knows(_without_motorway(read[0].tokens))
     sure = _confidence(routes, read, text) if routes and is_route else 0.0
-    if routes and is_route and (sure >= GUESS or (not read[0].is_refusal and names_a_junction(text))):
+    is_said = names_a_junction(text) or asks_for_map(text)
+    if routes and is_route and (sure >= GUESS or (is_said and not read[0].is_refusal)):
         return routes, read
     found = roads.scored(words, refuse_from)
     if routes and found and not TOLD_ON_ROUTES.isdisjoint(found[0].tokens):
