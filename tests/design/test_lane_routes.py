@@ -297,6 +297,7 @@ def test_a_road_behind_a_junction_has_the_lanes_of_the_road_before() -> None:
     assert counts("| divided lanes=2 against=2 // crossroads straight lights //") == [wide, wide]
     assert counts("| lanes=2 against=1 // t_junction straight ways=left+straight //") == [((2, 1), False)] * 2
     assert counts("| oneway // crossroads straight //") == [((1, 0), False)] * 2
+    assert counts("| lanes=2 oneway // crossroads straight // | oneway") == [((2, 0), False)] * 2
     assert counts("| lanes=2 against=2 // crossroads straight // | lanes=1 against=1")[1] == ((1, 1), False)
     assert counts("| lanes=2 against=2 // crossroads left //")[1] == ((2, 2), False)
     assert counts("| lanes=2 // crossroads left //")[1] == ((1, 1), False)

@@ -252,8 +252,11 @@ def _keeps_lanes(place: JunctionClause, road: Brief) -> bool:
 
 def _with_same_lanes(known: Brief, road: Brief) -> Brief:
     """Returns the requirements for a road. If it requires no lanes, it gets the lanes and the median of
-    ``known``, unless it requires a centre line and ``known`` has none.
+    ``known``, unless it requires a centre line and ``known`` has none. A one-way road gets the lanes of a
+    one-way road.
     """
+    if road.against is not None and road.against == known.against and road.lanes is None:
+        return road.model_copy(update={"lanes": known.lanes})
     has_lanes = road.lanes is not None or road.against is not None or road.divided or road.motorway
     has_no_centre = known.divided or (known.against is not None and span(known.against).hi == 0)
     if has_lanes or (road.centre is not None and has_no_centre):
