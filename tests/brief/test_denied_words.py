@@ -38,6 +38,10 @@ def test_a_denial_of_what_is_not_asked_for_is_left_out(
     ("words", "why", "offered"),
     [
         ("three left, no left", SIDES, ["turn", "left"]),  # what is denied is asked for
+        ("a slalom that never goes left", SIDES, ["slalom"]),  # it goes to both sides
+        ("gently up, never up", CLIMB, ["gently_up"]),
+        ("hilly, never down", CLIMB, ["|", "hills=", "2"]),
+        ("higher by 10 m, never up", CLIMB, ["|", "climb=", "[1]"]),
         ("left and right", SIDES, ["turn", "left"]),  # nothing is denied
         ("left without a wall", SIDES, ["turn", "left"]),  # nothing is denied that a plan could ask for
         ("left, no right", "!contradiction turns", ["turn", "left"]),  # another cause

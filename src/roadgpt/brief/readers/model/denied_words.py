@@ -9,6 +9,8 @@ from roadgpt.brief.readers.model.used_words import NEGATORS
 
 DENIABLE = frozenset(["left", "right", "up", "down"])
 """Tokens of plans for what cannot both be denied and asked for."""
+TO_BOTH_SIDES = frozenset(["s_bend", "chicane", "slalom", "serpentine", "zigzag", "winding", "alternating"])
+"""Tokens of turns to both sides."""
 CAUSES = frozenset(["sides", "slope", "climb"])
 """The causes of a contradiction that such a denial may have been taken for."""
 ENDS = frozenset([*".,;:!?()", "but", "aber", "sondern", "dafur", "mais", "pero", "sino", "ma"])
@@ -30,18 +32,29 @@ def without_denials(
     """
     causes = why.split()[1:]
     words = [word.text for word in text.words]
-    if not causes or not CAUSES.issuperset(causes) or DENIABLE.isdisjoint(offered):
+    implied = _implied(offered)
+    if not causes or not CAUSES.issuperset(causes) or not implied:
         return None
     dropped = set[int]()
     for at in (n for n, word in enumerate(words) if word in NEGATORS and n not in dropped):
         reached = _reached(words, at)
         denied = [token for n in reached for token in _denied(meanings.get(words[n], ()))]
-        if not denied or not set(denied).isdisjoint(offered):
+        if not denied or not implied.isdisjoint(denied):
             return None
         dropped |= {at, *reached}
     if not dropped:
         return None
     return SlottedText(tuple(word for n, word in enumerate(text.words) if n not in dropped), text.slots)
+
+
+def _implied(offered: Sequence[str]) -> set[str]:
+    """Returns what a plan asks for of all that can be denied; a required climb implies "up"."""
+    found = {token.rpartition("_")[2] for token in offered} & DENIABLE
+    if not TO_BOTH_SIDES.isdisjoint(offered):
+        found |= {"left", "right"}
+    if "hills=" in offered:
+        found |= {"up", "down"}
+    return found | {"up"} if "climb=" in offered else found
 
 
 def _reached(words: Sequence[str], at: int) -> range:
