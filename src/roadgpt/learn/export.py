@@ -12,7 +12,8 @@ from typing import Any, Literal
 import torch
 from torch import Tensor, nn
 
-from roadgpt.brief.readers.model import MEANINGS, ROUTES, ModelReader
+from roadgpt.brief.readers.model import MEANINGS, ROUTES, SECOND, ModelReader
+from roadgpt.brief.readers.model.vocabulary import OF_ROADS
 from roadgpt.errors import LearnError
 from roadgpt.learn.calibrate import calibrated, calibrated_routes
 from roadgpt.learn.generator import Pair
@@ -139,29 +140,48 @@ def export_checkpoints(
             replaces them; None: all networks are in ``checkpoints``.
 
     Raises:
-        LearnError: there is no checkpoint, or the embeddings of the networks differ.
+        LearnError: there is no checkpoint, one is of the other kind of network, or the embeddings of the
+            networks differ.
     """
+    readers = {name: _trained(checkpoint, name) for name, checkpoint in checkpoints.items()}
     if kept and kept.resolve() != folder.resolve():
         shutil.copytree(kept, folder, dirs_exist_ok=True)
-    for name, checkpoint in checkpoints.items():
-        if not (checkpoint / "checkpoint.pt").exists():
-            raise LearnError(f"there is no checkpoint.pt in {checkpoint}; train first")
-        pieces = read_vocabulary(checkpoint / "pieces.txt")
-        state = torch.load(checkpoint / "checkpoint.pt", map_location="cpu", weights_only=True)
-        layers = decoder_layers(state["reader"])
-        tokens = state["reader"]["bias"].shape[0]
-        reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=tokens, decoder_layers=layers))
-        reader.load_state_dict(state["reader"])
+    for name, reader in readers.items():
         export(reader, folder, name, 7 if name == ROUTES else 8)
+        pieces = read_vocabulary(checkpoints[name] / "pieces.txt")
         (folder / "pieces.txt").write_text("\n".join(pieces), encoding="utf-8")
     (folder / "words.txt").write_text("\n".join(fillers), encoding="utf-8")
     rows = [" ".join([word, *tokens]) for word, tokens in meanings.items()]
     (folder / MEANINGS).write_text("\n".join(rows), encoding="utf-8")
-    share_embedding(sorted(folder.glob("encoder*.onnx")))
+    names = [name for name in ("", SECOND, ROUTES) if name in checkpoints or kept]
+    share_embedding([folder / f"encoder{name}.onnx" for name in names])
     settings = _settings(folder, checkpoints, held_back, kept)
     (folder / "settings.json").write_text(json.dumps(settings, indent=2) + "\n", encoding="utf-8")
     (folder / "NOTICE").write_text(NOTICE, encoding="utf-8")
     write_sums(folder)
+
+
+def _trained(checkpoint: Path, name: str) -> ReaderNetwork:
+    """Returns the network that a training run saved; ``name`` tells which one it is to be, as in
+    ``export_checkpoints``.
+    """
+    if not (checkpoint / "checkpoint.pt").exists():
+        raise LearnError(f"there is no checkpoint.pt in {checkpoint}; train first")
+    pieces = read_vocabulary(checkpoint / "pieces.txt")
+    weights = torch.load(checkpoint / "checkpoint.pt", map_location="cpu", weights_only=True)["reader"]
+    tokens = weights["bias"].shape[0]
+    is_of_routes = tokens > len(OF_ROADS)
+    if is_of_routes != (name == ROUTES):
+        what, todo = (
+            ("routes", "give it with --routes, or with --only routes")
+            if is_of_routes
+            else ("single roads", "one for routes is trained with: roadgpt learn train --routes")
+        )
+        raise LearnError(f"the network in {checkpoint} reads {what}; {todo}")
+    sizes = NetworkSizes(pieces=len(pieces), tokens=tokens, decoder_layers=decoder_layers(weights))
+    reader = ReaderNetwork(sizes)
+    reader.load_state_dict(weights)
+    return reader
 
 
 def _settings(

@@ -1,11 +1,28 @@
 """Finds out whether a phrase of a description is denied, in five languages."""
 
 import re
+from collections.abc import Sequence
 
 DENIED = re.compile(
     r"(?:\b(?:no|not|without|never|cannot|neither|nor|nicht|nie|kein\w*|ohne|pas|ni|aucune?|sans|jamais|sin|"
     r"ningun[ao]?|tampoco|non|nessun[ao]?|ne|senza)|n['’]t)\b[^.,;:!?]*$"
 )
+
+ENDS = frozenset([*".,;:!?()", "but", "aber", "sondern", "dafur", "mais", "pero", "sino", "ma"])
+"""What ends the words that a negation reaches."""
+
+
+def places_reached(words: Sequence[str], at: int, most: int) -> range:
+    """Returns the places of the words that a negation can deny: those up to the end of its part of the
+    sentence, and at most ``most`` of them.
+
+    Args:
+        words: the words of a text, in lower case and without accents.
+        at: the place of the negation.
+        most: the largest number of words that it can deny.
+    """
+    last = min(at + 1 + most, len(words))
+    return range(at + 1, next((n for n in range(at + 1, last) if words[n] in ENDS), last))
 
 
 def is_denied(before: str) -> bool:

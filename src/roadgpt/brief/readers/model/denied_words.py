@@ -1,9 +1,10 @@
-"""Recognises a refusal that is due to a denial alone: in "15 m higher, and never going down", the denied word
-says the same as the rest, and nothing is contradicted.
+"""Recognises a refusal that is due to a denial alone: in "15 m higher, and never going down", the denial says
+nothing against the rest, so nothing is contradicted.
 """
 
 from collections.abc import Mapping, Sequence
 
+from roadgpt.brief.readers.model.denial import places_reached
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.used_words import NEGATORS
 
@@ -13,8 +14,6 @@ TO_BOTH_SIDES = frozenset(["s_bend", "chicane", "slalom", "serpentine", "zigzag"
 """Tokens of turns to both sides."""
 CAUSES = frozenset(["sides", "slope", "climb"])
 """The causes of a contradiction that such a denial may have been taken for."""
-ENDS = frozenset([*".,;:!?()", "but", "aber", "sondern", "dafur", "mais", "pero", "sino", "ma"])
-"""What ends the words that a negation reaches."""
 REACH = 6  # words after a negation that it can deny
 
 
@@ -37,7 +36,7 @@ def without_denials(
         return None
     dropped = set[int]()
     for at in (n for n, word in enumerate(words) if word in NEGATORS and n not in dropped):
-        reached = _reached(words, at)
+        reached = places_reached(words, at, REACH)
         denied = [token for n in reached for token in _denied(meanings.get(words[n], ()))]
         if not denied or not implied.isdisjoint(denied):
             return None
@@ -55,12 +54,6 @@ def _implied(offered: Sequence[str]) -> set[str]:
     if "hills=" in offered:
         found |= {"up", "down"}
     return found | {"up"} if "climb=" in offered else found
-
-
-def _reached(words: Sequence[str], at: int) -> range:
-    """Returns the places of the words that a negation reaches."""
-    last = min(at + 1 + REACH, len(words))
-    return range(at + 1, next((n for n in range(at + 1, last) if words[n] in ENDS), last))
 
 
 def _denied(asked: Sequence[str]) -> Sequence[str]:

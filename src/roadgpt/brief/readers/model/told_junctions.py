@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.alike_junctions import NOUN as PLURAL
+from roadgpt.brief.readers.model.exit_words import EXIT
 from roadgpt.brief.readers.model.map_words import (
     ALL_KINDS,
     ANY_KIND,
@@ -15,18 +16,14 @@ from roadgpt.brief.readers.model.map_words import (
     TAKEN_BACK,
     one_number,
 )
-from roadgpt.brief.readers.model.ramp_lengths import INEXACT
+from roadgpt.brief.readers.model.ramp_lengths import INEXACT, LANE
 from roadgpt.brief.readers.model.slots import SlottedText
 
 SIDE_ROAD = re.compile(
     r"\b(?:side (?:road|street)|t - junction|(?:neben|seiten)stra(?:ss|ß)e|einmundung|rue laterale|"
     r"calle lateral|strada laterale)\b"
 )
-RAMP_LANE = re.compile(
-    r"\b(?:(?:acceleration|deceleration) lane|(?:beschleunigungs|verzogerungs)(?:streifen|spur)|"
-    r"voie d ' (?:acceleration|deceleration|insertion)|carril de (?:aceleracion|deceleracion)|"
-    r"corsia di (?:accelerazione|decelerazione))\b"
-)
+RAMP_LANE = re.compile(rf"\b{LANE}\b")
 """A lane that only merges and exits have."""
 ANY_PLURAL = re.compile(rf"\b{PLURAL}\b")
 MORE = re.compile(
@@ -39,10 +36,10 @@ MORE = re.compile(
     r"crois|gira|rond|rot|glor|cruc|incr|fork|gabel|bif|four|biv|star|junction)"
 )
 """Words that may stand for a further junction that has no noun of its own."""
-EXIT = re.compile(
+NUMBERED_EXIT = re.compile(
     r"\b(?:second|third|last|next|zweite[nrms]?|nachste[nrms]?|dritte[nrms]?|letzte[nrms]?|deuxieme|seconde|"
     r"prochaine|troisieme|derniere|segunda|siguiente|tercera|ultima|seconda|prossima|terza) "
-    r"(?:exit|ausfahrt|abfahrt|ausgang|sortie|salida|uscita)\b"
+    rf"{EXIT}\b"
 )
 """An exit with its number, which is no further junction."""
 CROSSINGS: tuple[JunctionKind, ...] = ("crossroads", "junction", "t_junction", "y_junction")
@@ -52,7 +49,7 @@ LETTER = re.compile(
     r" (?:en|a|in(?: the)?)(?: forme? de| forma d[ei]| form eines| shape of an?)? ([ty])\b"
 )
 """A junction that is named by the shape of a letter: "cruce en Y", "incrocio a T"."""
-ROUTE = (
+DRIVE = (
     r"route|drive|trip|journey|ride|fahrt|strecke|tour|trajet|parcours|itineraire|ruta|trayecto|recorrido|"
     r"percorso|tragitto"
 )
@@ -63,7 +60,7 @@ TOTAL = re.compile(
     r"in totale|in (?:any|whatever) order|in beliebiger reihenfolge|"
     r"dans n ' importe quel ordre|en cualquier orden|in qualsiasi ordine)\b|"
     rf"\binsgesamt (\d+) (?:\w+ )?(?:{PLURAL}|{ANY_KIND})\b|"
-    rf"^\W*(?:(?:\w+ ){{0,6}}?(?:{ROUTE}) (?:\w+ ){{0,3}}?)?(\d+) (?:{ANY_KIND})\b"
+    rf"^\W*(?:(?:\w+ ){{0,6}}?(?:{DRIVE}) (?:\w+ ){{0,3}}?)?(\d+) (?:{ANY_KIND})\b"
     rf"(?! (?:, )?{MORE_BEHIND}\b)"
 )
 """The number of all junctions of a route: said to be all of them, or that of the route with which a text
@@ -89,7 +86,7 @@ def most_of_kinds(text: SlottedText) -> dict[JunctionKind, int]:
     A kind is counted if its noun is in the text, in the singular, and no word speaks of further junctions.
     """
     said = text.text
-    if ANY_PLURAL.search(_without_crossroads(said)) or MORE.search(EXIT.sub("", said)):
+    if ANY_PLURAL.search(_without_crossroads(said)) or MORE.search(NUMBERED_EXIT.sub("", said)):
         return {}
     found = {kind: len(noun.findall(said)) for kind, noun in KINDS_IN_SINGULAR.items()}
     return {kind: number for kind, number in found.items() if number}

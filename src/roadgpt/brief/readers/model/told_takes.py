@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from roadgpt.brief.junctions import JunctionClause, Take
 from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.exit_words import COUNTS
 from roadgpt.brief.readers.model.map_words import TAKEN_BACK
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.told_junctions import CROSSINGS
@@ -17,8 +18,9 @@ WAYS: Mapping[Take, str] = {
     "straight": "straight(?: on| ahead| over| across)?|geradeaus|tout droit|recto|dritto",
 }
 ONCE = {"once": 1, "einmal": 1, "twice": 2, "zweimal": 2, "thrice": 3, "dreimal": 3, "viermal": 4}
-ARTICLES = {"une": 1, "una": 1, "dos": 2, "due": 2, "tres": 3, "tre": 3}
-TIMES = rf"{'|'.join(ONCE)}|(?:\d+|{'|'.join(ARTICLES)}) (?:times|mal|fois|veces|vez|volte|volta)"
+"""Adverbs that count; other numbers of times are written with a number."""
+NUMBERS = {**COUNTS, "une": 1, "una": 1}
+TIMES = rf"{'|'.join(ONCE)}|(?:\d+|{'|'.join(NUMBERS)}) (?:times|mal|fois|veces|vez|volte|volta)"
 EXACTLY = "(?:exactly |only |just |genau |nur |exactement |exactamente |esattamente )?"
 TO = "(?:a la |a |nach )?"
 NEVER = "never|nie|niemals|jamais|nunca|mai"
@@ -93,4 +95,4 @@ def told_takes(text: SlottedText) -> dict[Take, int]:
 
 def _number(said: str) -> int:
     word = said.split()[0]
-    return int(word) if word.isdecimal() else ONCE.get(word) or ARTICLES[word]
+    return int(word) if word.isdecimal() else ONCE.get(word) or NUMBERS[word]

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 
+from roadgpt.brief.readers.model.denial import places_reached
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.reading import read_text
 
@@ -72,8 +73,7 @@ def understood(
     said = Counter(words)
     found, denied = set[int](), set[int]()
     for at in (n for n, word in enumerate(words) if word in negators):
-        reached = range(at + 1, min(at + 1 + REACH, len(words)))
-        nouns = [n for n in reached if words[n] in meanings]
+        nouns = [n for n in places_reached(words, at, REACH) if words[n] in meanings]
         denied.update(nouns)
         if nouns and all(_is_absent(meanings[words[n]], there) for n in nouns):
             found |= {at, *nouns}
