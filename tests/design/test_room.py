@@ -12,7 +12,6 @@ from design.short_searches import short_searches
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.cli import app
-from roadgpt.cli.commands.run import command
 from roadgpt.design import draft
 from roadgpt.design.room import map_remark, world_for
 from roadgpt.errors import RoadGPTError
@@ -104,15 +103,15 @@ def test_a_campaign_and_read_say_it_too(tmp_path: Path) -> None:
 
 def test_the_command_says_how_large_the_map_is_and_resumes(tmp_path: Path) -> None:
     words = ["turn right gentle | len=700", "--plan", "--no-drive", "--no-plot", "--seed", "3"]
-    first = CliRunner().invoke(command, [*words, "-n", "1", "--out", str(tmp_path / "a")])
+    first = CliRunner().invoke(app, ["run", *words, "-n", "1", "--out", str(tmp_path / "a")])
     assert first.exit_code == 0, first.output
     said = re.search(r"so the map is (\d+) m wide; --map-size sets it", first.output)
     assert said is not None
     size = int(said[1])
-    again = CliRunner().invoke(command, [*words, "-n", "2", "--out", str(tmp_path / "a")])
+    again = CliRunner().invoke(app, ["run", *words, "-n", "2", "--out", str(tmp_path / "a")])
     assert "1 roads were finished before; continuing" in again.output
     told = CliRunner().invoke(
-        command, [*words, "-n", "1", "--out", str(tmp_path / "b"), "--map-size", str(size)]
+        app, ["run", *words, "-n", "1", "--out", str(tmp_path / "b"), "--map-size", str(size)]
     )
     assert "so the map is" not in told.output
     roads = [next((tmp_path / name).glob("test.0001.json")).read_bytes() for name in "ab"]

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from roadgpt.cli.commands.learn import command
+from roadgpt.cli import app
 from roadgpt.learn import labels
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.labels import read_pairs
@@ -62,7 +62,7 @@ def test_the_command_checks_and_generates(tmp_path: Path) -> None:
     for split, name in (("train", "v_de.de"), ("validation", "v_it.it"), ("test", "test_tutti.it")):
         (hand / split).mkdir(parents=True)
         shutil.copy(next(HAND.glob(f"*/{name}.jsonl")), hand / split)
-    done = CliRunner().invoke(command, ["data", str(tmp_path / "made"), "--hand", str(hand), "-n", "60"])
+    done = CliRunner().invoke(app, ["learn", "data", str(tmp_path / "made"), "--hand", str(hand), "-n", "60"])
     assert done.exit_code == 0, done.output
     for split in ("train", "validation", "test"):
         number = sum(len(path.read_text("utf-8").splitlines()) for path in (hand / split).iterdir())
@@ -76,13 +76,14 @@ def test_a_reader_gets_its_row(tmp_path: Path) -> None:
     pairs = [("three turns", "turn x3"), ("a left bend", "turn right"), ("what a lovely day", "!nonsense")]
     lines = [json.dumps({"text": text, "plan": plan, "family": "f", "lang": "en"}) for text, plan in pairs]
     (tmp_path / "test" / "f.jsonl").write_text("\n".join(lines), encoding="utf-8")
-    asked = ["evaluate", "--hand", str(tmp_path), "--split", "test", "--misses", "5"]
-    done = CliRunner().invoke(command, asked)
+    asked = ["learn", "evaluate", "--hand", str(tmp_path), "--split", "test", "--misses", "5"]
+    done = CliRunner().invoke(app, asked)
     assert done.exit_code == 0, done.output
     assert "| model | 3 | 66.7 |" in done.output
     assert "'a left bend'" in done.output
 
 
 def test_a_folder_without_pairs_is_told(tmp_path: Path) -> None:
-    done = CliRunner().invoke(command, ["evaluate", "--hand", str(tmp_path)])
-    assert "there are no pairs" in str(done.exception)
+    done = CliRunner().invoke(app, ["learn", "evaluate", "--hand", str(tmp_path)])
+    assert done.exit_code == 2
+    assert "there are no pairs" in done.stderr
