@@ -118,6 +118,30 @@ def test_lights_are_where_the_words_count_them(words: str, written: str, right: 
 
 
 @pytest.mark.parametrize(
+    ("words", "written", "right"),
+    [
+        ("two by two blocks, traffic lights at the middle crossroads only",
+         "map columns=2 rows=2; crossroads x2 lights", "map columns=2 rows=2; crossroads lights"),
+        ("a 3 by 3 grid, lights at the inner junctions only", "map columns=3 rows=3 lights",
+         "map columns=3 rows=3; crossroads x4 lights"),
+        ("ein Gitter aus 3 mal 2 Blöcken, nur die inneren Kreuzungen haben Stoppschilder",
+         "map columns=3 rows=2 stop", "map columns=3 rows=2; crossroads x2 stop"),
+        ("una trama de 2 por 2 con semáforo solo en el cruce del centro", "map columns=2 rows=2 lights",
+         "map columns=2 rows=2; crossroads lights"),
+        ("a 3 by 3 grid with lights at the junction in the middle",
+         "map columns=3 rows=3; junction lights", None),
+        ("a 2 by 2 grid in the middle of the town, all with lights", "map columns=2 rows=2 lights", None),
+        ("a 3 by 1 grid, lights in the middle", "map columns=3 rows=1 lights", None),
+    ],
+)  # fmt: skip
+def test_signs_within_a_grid_stand_at_its_inner_crossroads(
+    words: str, written: str, right: str | None
+) -> None:
+    found = with_counted_signs(read_plan(written), slotted(words))
+    assert plan(found) == plan(read_plan(right or written))
+
+
+@pytest.mark.parametrize(
     ("words", "written"),
     [
         ("five crossroads, all five with lights", "map crossroads x5 lights"),

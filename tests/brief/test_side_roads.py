@@ -38,6 +38,22 @@ def test_a_side_road_that_is_passed_lies_on_the_side_that_is_named(
 
 
 @pytest.mark.parametrize(
+    ("line", "last"),
+    [
+        ("junction straight ways=right+straight // junction right", "junction right ways=right+straight"),
+        ("junction straight ways=left+straight // junction straight ways=left+straight // junction left",
+         "junction left ways=left+straight"),
+        ("junction straight ways=left+straight // junction right", "junction right"),
+        ("junction straight // junction right", "junction right"),
+        ("junction straight ways=right+straight // crossroads right", "crossroads right"),
+        ("t_junction straight ways=right+straight // junction right", "junction right"),
+    ],
+)  # fmt: skip
+def test_the_street_that_is_taken_leaves_the_road_as_those_do_that_were_passed(line: str, last: str) -> None:
+    assert corrected(line, "drive past some streets and take the next").split(" // ")[-1] == last
+
+
+@pytest.mark.parametrize(
     ("words", "line", "expected"),
     [
         ("turn right off the main road", "t_junction right", "t_junction right ways=right+straight"),

@@ -26,12 +26,15 @@ from roadgpt.brief.readers.model.told_junctions import (
         ("a roundabout that is 50 m across, third exit, then one that is smaller", {}),
         ("une fourche, puis un giratoire", {"y_junction": 1, "roundabout": 1}),
         ("a roundabout, then another", {}),
-        ("two roundabouts and a crossroads", {}),
-        ("straight over 2 crossroads", {}),
+        ("two roundabouts and a crossroads", {"crossroads": 1, "roundabout": 2}),
+        ("no left turns: three crossroads, two rights and one straight", {"crossroads": 3}),
+        ("two roundabouts, then another", {}),
+        ("two roundabouts and a few junctions", {}),
+        ("straight over 2 crossroads", {"crossroads": 2}),
         ("an uphill road", {}),
     ],
 )
-def test_singular_nouns_are_counted_unless_more_may_be_meant(words: str, most: dict[str, int]) -> None:
+def test_junctions_are_counted_unless_more_may_be_meant(words: str, most: dict[str, int]) -> None:
     assert most_of_kinds(slotted(words)) == most
 
 

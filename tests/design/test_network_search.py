@@ -191,6 +191,16 @@ def test_routes_of_one_plan_differ_in_their_junctions() -> None:
     assert ways == {(-1, 1), (0, 1), (-1, 0)}
 
 
+def test_a_junction_of_any_kind_is_of_none_that_the_plan_counts() -> None:
+    """ "Five junctions, two of them forks": there is no third fork."""
+    brief = read_plan("y_junction // y_junction // junction // junction")
+    designs = [Planner().draft(brief, USUAL, (), (), seed) for seed in range(12)]
+    kinds = [[each.kind for each in design.junctions] for design in designs if hasattr(design, "junctions")]
+    assert all(each[:2] == ["y_junction", "y_junction"] for each in kinds)
+    assert {"t_junction", "crossroads"} <= {kind for each in kinds for kind in each[2:]}
+    assert "y_junction" not in {kind for each in kinds for kind in each[2:]}
+
+
 def test_a_design_from_a_plan_is_read_back_as_it_was_written() -> None:
     design = draft(read_plan("// crossroads left stop // // roundabout back //"), USUAL, seed=3)
     assert isinstance(design, NetworkDesign)
@@ -217,6 +227,8 @@ def test_what_no_junction_can_be_is_refused_before_anything_is_drawn(line: str, 
     [
         "| len=120 // t_junction right // | down || len=850",
         "turn x2 // crossroads right // turn left || len=500",
+        "| motorway lanes=3 against=3 // merge main len=180 // diverge ramp len=120 || len=1500",
+        "merge ramp len=200 // | motorway lanes=2 // diverge main // | motorway // diverge ramp || len=1600",
     ],
 )
 def test_roads_without_a_length_of_their_own_make_up_the_length_of_the_whole(line: str) -> None:

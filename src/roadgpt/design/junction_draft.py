@@ -1,6 +1,6 @@
 """Draws junctions at random, within the requirements for each."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import pairwise
 from math import ceil, pi
 from typing import Literal, cast
@@ -15,6 +15,7 @@ from roadgpt.brief.junctions import (
     SIDE,
     SIZES,
     JunctionClause,
+    JunctionKind,
     PlainKind,
     bends_as,
     is_about,
@@ -50,7 +51,9 @@ ISLANDS = (12.0, 20.0)  # m, radius of the central island where no size is requi
 ROUNDS = 200  # draws of the arms of one junction
 
 
-def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) -> JunctionDesign | None:
+def drawn_junction(
+    asked: JunctionClause, after: int, rng: Rng, haste: float, others: Collection[JunctionKind] = ()
+) -> JunctionDesign | None:
     """Returns a random junction that meets its requirements; None if 200 draws found none.
 
     Args:
@@ -58,9 +61,10 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
         after: number of segments of the route after which the junction follows.
         rng: random number generator.
         haste: from 0 to 1; the larger it is, the smaller the junction.
+        others: kinds that a junction of any kind does not get, if it can be a T-junction or crossroads then.
     """
     for _ in range(ROUNDS):
-        kind = _kind(asked, rng)
+        kind = _kind(asked, rng, others)
         clause = asked.model_copy(update={"kind": kind})
         angles = [round(angle, 1) for angle in _angles(clause, rng)]
         taken = _taken(clause, angles, rng) if _has_ways(clause, angles) else None
@@ -110,7 +114,7 @@ def _with_stops(junction: JunctionDesign) -> JunctionDesign:
     return junction.model_copy(update={"arms": arms})
 
 
-def _kind(asked: JunctionClause, rng: Rng) -> PlainKind:
+def _kind(asked: JunctionClause, rng: Rng, others: Collection[JunctionKind]) -> PlainKind:
     """Returns the kind of a junction; where the description names none, one of those that have its arms."""
     if asked.kind != "junction":
         return cast(PlainKind, asked.kind)
@@ -118,6 +122,8 @@ def _kind(asked: JunctionClause, rng: Rng) -> PlainKind:
     is_bent = asked.take in ("sharp_left", "sharp_right", "slight_left", "slight_right")
     fit = [kind for kind in ANY if not is_bent or kind in ("y_junction", "star")]
     kinds = [kind for kind in fit if arms.lo <= ARMS[kind].hi and arms.hi >= ARMS[kind].lo]
+    new = [kind for kind in kinds if kind not in others]
+    kinds = new if {"t_junction", "crossroads"} & {*new} else kinds
     return kinds[int(rng.integers(len(kinds)))]
 
 

@@ -151,6 +151,8 @@ class NetworkSearch:
     def _places(self, haste: float) -> list[PlaceDesign] | None:
         """Returns what the route passes; None if a junction cannot be drawn."""
         found: list[PlaceDesign] = []
+        # "five junctions, two of them forks" has no third fork
+        named = {clause.kind for clause in self.brief.junctions}
         for number, clause in enumerate(self.brief.junctions):
             lanes = None if self._has_usual_lanes else self.lanes[number + 1]
             if clause.kind in LANE_KINDS:
@@ -162,7 +164,7 @@ class NetworkSearch:
                 found.append(drawn_ramp(clause, room).model_copy(update={"lanes": lanes}))
                 continue
             clause = self._at_end_of_ramp(number) or self._with_ring_lanes(number)
-            junction = drawn_junction(clause, 1, self.rng, haste)
+            junction = drawn_junction(clause, 1, self.rng, haste, named)
             if junction is None:
                 is_small = clause.kind == "roundabout" and not (clause.take and clause.exit)
                 why = "such an island is too small for so many arms" if is_small else "it has no such ways on"
@@ -264,7 +266,10 @@ class NetworkSearch:
         if length is not None:
             if length < SHORTEST:
                 return None
-            wanted = brief.model_copy(update={"length": between(0.97 * length, 1.03 * length)})
+            is_straight = brief.motorway and not brief.clauses and brief.turns is None
+            turns = exactly(0) if is_straight else brief.turns
+            long = between(0.97 * length, 1.03 * length)
+            wanted = brief.model_copy(update={"length": long, "turns": turns})
         elif brief.has_free_shape:
             wanted = self._open(haste, shortest, is_straight=brief.motorway)
         elif brief.length is None and not brief.clauses and brief.turns is None:

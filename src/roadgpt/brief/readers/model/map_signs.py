@@ -16,11 +16,13 @@ from roadgpt.brief.readers.model.map_words import (
     ALL_KINDS,
     KINDS_IN_PLURAL,
     KINDS_IN_SINGULAR,
+    TAKEN_BACK,
     is_counted,
     one_number,
     said_of,
 )
 from roadgpt.brief.readers.model.sign_words import (
+    EVERYWHERE,
     SIGN_WORDS,
     CountedSigns,
     SignsInWords,
@@ -32,6 +34,10 @@ from roadgpt.brief.readers.model.slots import SlottedText
 CROSSING = re.compile(r"cross|inters|kreuz|croisement|carrefour|cruce|incroc")
 """Nouns of junctions that may mean crossroads, or junctions of any kind."""
 SIDE_ROAD = re.compile(r"t - junction|einmundung")
+CENTRE = r"(?:middle|cent(?:re|er|ral)|mitte|mittlere[nrms]?|milieu|centrale?|centro|mezzo)"
+"""Words for the one crossroads in the middle of a grid."""
+INNER = r"(?:inner|interior(?:es)?|innere[nrms]?|interieure?s?|intern[oi]|interne)"
+"""Words for the crossroads within a grid, which has (columns - 1) (rows - 1) of them."""
 OF_ANY_KIND: tuple[MapJunctionKind, ...] = ("crossroads", "junction")
 
 
@@ -42,6 +48,8 @@ def with_counted_signs(brief: Brief, text: SlottedText) -> Brief:
     the words do not say which junctions have which sign.
     """
     asked = brief.map
+    if asked is not None and (inside := _inside_grid(asked, said_of(text))) is not None:
+        return brief.model_copy(update={"map": asked.model_copy(update=inside)})
     if asked is None or asked.signed or any(each.control for each in asked.junctions):
         return brief
     said = said_of(text)
@@ -83,6 +91,23 @@ def _in_grid(asked: MapClause, said: str, signs: SignsInWords) -> dict[str, obje
     if left:
         kinds.append(_of("junction", exactly(left), signs.others or "none"))
     return {"signed": tuple(kinds), "control": signs.all_but.control}
+
+
+def _inside_grid(asked: MapClause, said: str) -> dict[str, object] | None:
+    """Returns the signs of a grid, if the words limit one to the crossroads within it."""
+    if asked.junctions or not (asked.columns and asked.rows and asked.columns.exact and asked.rows.exact):
+        return None
+    number = int((asked.columns.lo or 0) - 1) * int((asked.rows.lo or 0) - 1)
+    where = INNER if number > 1 else rf"(?:{INNER}|{CENTRE})"
+    named = [
+        control
+        for control, sign in SIGN_WORDS.items()
+        if re.search(rf"\b{sign} [^.;:]{{0,25}}\b{where}\b|\b{where}\b[^.;:]{{0,25}} {sign}\b", said)
+    ]
+    if number < 1 or len(named) != 1 or TAKEN_BACK.search(said) or EVERYWHERE.search(said):
+        return None
+    within = _of("crossroads", exactly(number), named[0])
+    return {"signed": (within,), "control": signs_in_words(said).others}
 
 
 def _kind_in_grid(signs: CountedSigns) -> MapJunctionKind:

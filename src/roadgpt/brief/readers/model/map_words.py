@@ -174,7 +174,8 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
     elif asked.dead_ends is None or asked.dead_ends.exact:
         dead_ends = one_number(found) if found else _around_blocks(asked, said)
         is_vague = any(re.fullmatch(ONE, each) for each in found)  # "not a single one", "eine"
-        if dead_ends is not None and not is_vague:
+        is_tree = asked.blocks == exactly(0) and has_fixed_arms(asked)  # its arms say how many ends it has
+        if dead_ends is not None and not is_vague and not is_tree:
             update["dead_ends"] = exactly(dead_ends)
             update |= {} if found else {"blocks": None}  # the dead ends follow from the blocks in the words
     asked = asked.model_copy(update=update)

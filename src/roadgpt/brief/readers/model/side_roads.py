@@ -1,6 +1,8 @@
 """Adds the side of a side road to a T-junction where the neural network left it out."""
 
 import re
+from collections.abc import Sequence
+from itertools import pairwise
 
 from roadgpt.brief.junctions import JunctionClause, Side
 from roadgpt.brief.model import Brief
@@ -10,6 +12,7 @@ from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.slots import SlottedText
 
+SIDES: tuple[Side, ...] = ("left", "right")
 ENGLISH = frozenset(["left", "right"])
 BEFORE_SIDE = frozenset(["the", "my", "our", "your", "its"])
 """Words before "left" or "right" where these are sides: "on the right", but not "right after the bend"."""
@@ -29,10 +32,14 @@ OFF_A_ROAD = re.compile(
 def with_sides_of_side_roads(brief: Brief, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a route with the ways on at its T-junctions as far as the words tell them.
 
+    A street that is taken behind others on its side, which the route passes, leaves a road that goes straight
+    on, as theirs does.
+
     A T-junction that the route passes gets its side road on the side that is named, if the words name as many
     sides as there are such T-junctions and the plan uses no side. At the only T-junction, where the route
     turns "off the main road", that road goes straight on.
     """
+    brief = _with_ways(brief, _taken_behind_others(brief.junctions))
     passed = [n for n, each in enumerate(brief.junctions) if _is_open(each) and each.take == "straight"]
     sides = _sides(text)
     if passed and not brief.left_hand and len(passed) == len(sides) and not _uses_sides(brief):
@@ -43,6 +50,17 @@ def with_sides_of_side_roads(brief: Brief, text: SlottedText, words: str) -> Bri
         if side in ("left", "right"):
             return _with_ways(brief, {turned[0]: side})
     return brief
+
+
+def _taken_behind_others(junctions: Sequence[JunctionClause]) -> dict[int, Side]:
+    """Returns the junctions at which the route takes the next street on a side where it has passed some."""
+    return {
+        n: side
+        for n, (before, junction) in enumerate(pairwise(junctions), 1)
+        for side in SIDES
+        if junction == JunctionClause(kind="junction", take=side)
+        if before.kind == "junction" and {*before.ways} == {side, "straight"}
+    }
 
 
 def _is_open(junction: JunctionClause) -> bool:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import reduce
 
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind
 from roadgpt.brief.model import Brief
@@ -83,12 +84,17 @@ def number_of_listed(text: SlottedText) -> int | None:
 def most_of_kinds(text: SlottedText) -> dict[JunctionKind, int]:
     """Returns for each kind the largest number of junctions that the words can mean, as far as they say it.
 
-    A kind is counted if its noun is in the text, in the singular, and no word speaks of further junctions.
+    A kind is counted if its noun is in the text, in the singular or behind a number, and no word speaks of
+    further junctions.
     """
-    said = text.text
+    counted = {kind: noun.findall(text.text) for kind, noun in KINDS_IN_PLURAL.items()}
+    said = reduce(lambda rest, noun: noun.sub("", rest), KINDS_IN_PLURAL.values(), text.text)
     if ANY_PLURAL.search(_without_crossroads(said)) or MORE.search(NUMBERED_EXIT.sub("", said)):
         return {}
     found = {kind: len(noun.findall(said)) for kind, noun in KINDS_IN_SINGULAR.items()}
+    for kind, numbers in counted.items():
+        if all(map(str.isdecimal, numbers)):
+            found[kind] = found.get(kind, 0) + sum(map(int, numbers))
     return {kind: number for kind, number in found.items() if number}
 
 
