@@ -27,6 +27,11 @@ def corrected(words: str, written: str) -> str:
             "map junction x4 lights; roundabout x2; junction x6",
         ),
         (
+            "a star, three T-junctions and a fork, and stop signs at two of the junctions, not more",
+            "map star; t_junction x3; y_junction stop",
+            "map star stop; t_junction stop; t_junction x2; y_junction",
+        ),
+        (
             "six junctions, two of them with lights",
             "map junction x6 lights",
             "map junction x2 lights; junction x4",

@@ -201,6 +201,16 @@ def test_a_junction_of_any_kind_is_of_none_that_the_plan_counts() -> None:
     assert "y_junction" not in {kind for each in kinds for kind in each[2:]}
 
 
+def test_a_street_beside_the_road_makes_no_crossroads() -> None:
+    """It would have a one-way street on the other side, of which the words say nothing."""
+    brief = read_plan("junction straight ways=right+straight // junction right ways=right+straight")
+    designs = [Planner().draft(brief, USUAL, (), (), seed) for seed in range(8)]
+    assert all(isinstance(design, NetworkDesign) for design in designs)
+    arms = [arm for design in designs for each in design.junctions for arm in each.arms]  # type: ignore[union-attr]
+    assert {len(each.arms) for design in designs for each in design.junctions} == {2}  # type: ignore[union-attr]
+    assert {arm.one_way for arm in arms} == {None}
+
+
 def test_a_design_from_a_plan_is_read_back_as_it_was_written() -> None:
     design = draft(read_plan("// crossroads left stop // // roundabout back //"), USUAL, seed=3)
     assert isinstance(design, NetworkDesign)

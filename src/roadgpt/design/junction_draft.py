@@ -122,6 +122,9 @@ def _kind(asked: JunctionClause, rng: Rng, others: Collection[JunctionKind]) -> 
     is_bent = asked.take in ("sharp_left", "sharp_right", "slight_left", "slight_right")
     fit = [kind for kind in ANY if not is_bent or kind in ("y_junction", "star")]
     kinds = [kind for kind in fit if arms.lo <= ARMS[kind].hi and arms.hi >= ARMS[kind].lo]
+    if asked.ways:  # at crossroads, the roads that are not named would be one-way
+        number = 1 + len({*asked.ways, *asked.only_in, *asked.only_out})
+        kinds = [kind for kind in kinds if ARMS[kind].lo <= number <= ARMS[kind].hi] or kinds
     new = [kind for kind in kinds if kind not in others]
     kinds = new if {"t_junction", "crossroads"} & {*new} else kinds
     return kinds[int(rng.integers(len(kinds)))]

@@ -14,6 +14,7 @@ from roadgpt.brief.map_clause import JunctionCount, MapClause
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.map_words import (
     ALL_KINDS,
+    ANY_KIND,
     KINDS_IN_PLURAL,
     KINDS_IN_SINGULAR,
     TAKEN_BACK,
@@ -184,7 +185,8 @@ def _split(
         return _apart({only: total}, {only: signs.number}, signs.control)
     named = [each for one, number in counts.items() if is_counted(each := _of(one, exactly(number)), said)]
     rest = total - signs.number - int(sum(each.count.lo or 0 for each in named))
-    if rest < 0 and total == counts.total():
+    is_any = re.search(rf"\b{ANY_KIND}\b", signs.nouns) is not None
+    if (rest < 0 or is_any) and total == counts.total():
         return _apart(counts, _first(counts, signs.number), signs.control)
     if rest < 0 or {*counts} - {each.kind for each in named} - {*OF_ANY_KIND}:
         return None

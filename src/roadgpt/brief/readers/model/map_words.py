@@ -115,8 +115,8 @@ KINDS_IN_SINGULAR: Mapping[MapJunctionKind, re.Pattern[str]] = {
 }
 """The singular nouns for junctions of each kind, in a text without accents."""
 TAKEN_BACK = re.compile(
-    r"\bno ,|\bnein ,|\bnot\b|\brather\b|\binstead\b|\bsondern\b|\bmake that\b|\btoo many\b|"
-    r"\? (?:no|non|nein)\b"
+    r"\bno ,|\bnein ,|\bnot\b(?! more\b(?! than))|\brather\b|\binstead\b|\bsondern\b|\bmake that\b|"
+    r"\btoo many\b|\? (?:no|non|nein)\b"
 )
 """Words with which a number may be taken back."""
 SIDE_STREETS = re.compile(
