@@ -136,6 +136,8 @@ def test_lights_are_where_the_words_count_them(words: str, written: str, right: 
         ("a 3 by 3 grid with lights at the junction in the middle",
          "map columns=3 rows=3; junction lights", None),
         ("a 2 by 2 grid in the middle of the town, all with lights", "map columns=2 rows=2 lights", None),
+        ("a two by two grid in the town centre with traffic lights", "map columns=2 rows=2 lights", None),
+        ("a 2 by 2 grid, traffic lights as in the city centre", "map columns=2 rows=2 lights", None),
         ("a 3 by 1 grid, lights in the middle", "map columns=3 rows=1 lights", None),
     ],
 )  # fmt: skip

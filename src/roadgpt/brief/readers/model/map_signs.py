@@ -24,7 +24,9 @@ from roadgpt.brief.readers.model.map_words import (
 )
 from roadgpt.brief.readers.model.sign_words import (
     EVERYWHERE,
+    PLURALS,
     SIGN_WORDS,
+    SINGULARS,
     CountedSigns,
     SignsInWords,
     limited_signs,
@@ -99,11 +101,12 @@ def _inside_grid(asked: MapClause, said: str) -> dict[str, object] | None:
     if asked.junctions or not (asked.columns and asked.rows and asked.columns.exact and asked.rows.exact):
         return None
     number = int((asked.columns.lo or 0) - 1) * int((asked.rows.lo or 0) - 1)
-    where = INNER if number > 1 else rf"(?:{INNER}|{CENTRE})"
+    where = INNER if number > 1 else rf"(?<!town )(?<!city )(?<!village )(?:{INNER}|{CENTRE})"
+    nouns = rf"(?:{SINGULARS}|{PLURALS}|ones?)\b"
     named = [
         control
         for control, sign in SIGN_WORDS.items()
-        if re.search(rf"\b{sign} [^.;:]{{0,25}}\b{where}\b|\b{where}\b[^.;:]{{0,25}} {sign}\b", said)
+        if re.search(rf"\b{sign} [^.;:]{{0,25}}\b{where}\b|\b{where} {nouns}[^.;:]{{0,15}} {sign}\b", said)
     ]
     if number < 1 or len(named) != 1 or TAKEN_BACK.search(said) or EVERYWHERE.search(said):
         return None
