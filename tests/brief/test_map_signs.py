@@ -32,6 +32,16 @@ def corrected(words: str, written: str) -> str:
             "map star stop; t_junction stop; t_junction x2; y_junction",
         ),
         (
+            "drei T-Einmündungen und eine Kreuzung mit Ampel. Alle Straßen sollen zusammenhängen",
+            "map t_junction x3; crossroads lights",
+            "map crossroads lights; t_junction x3",
+        ),
+        (
+            "every street is 80 m long; two forks and a crossroads with a stop sign",
+            "map y_junction x2; crossroads stop",
+            "map crossroads stop; y_junction x2",
+        ),
+        (
             "six junctions, two of them with lights",
             "map junction x6 lights",
             "map junction x2 lights; junction x4",
@@ -152,6 +162,10 @@ def test_signs_within_a_grid_stand_at_its_inner_crossroads(
     ("words", "written"),
     [
         ("five crossroads, all five with lights", "map crossroads x5 lights"),
+        (
+            "two forks and a crossroads, all with lights; all roads are level",
+            "map y_junction x2; crossroads lights",
+        ),
         ("a small town of six crossroads with traffic lights", "map crossroads x6 lights"),
         ("four crossroads with lights, no, two with lights", "map crossroads x4 lights"),
         ("a grid of three by two blocks with lights", "map columns=3 rows=2 lights"),

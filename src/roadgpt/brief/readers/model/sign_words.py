@@ -68,6 +68,11 @@ ALL = (
     r"en todas partes|tutt[ie]|ogni|dappertutto|ovunque)"
 )
 EVERYWHERE = re.compile(rf"\b(?:{ALL}|each|throughout|both|beide\w*|chaque|chacune?|cada|ciascun\w*)\b")
+EVERY_STREET = re.compile(
+    rf"\b{ALL} (?:the |of the |die |les |las |los |le )?(?:roads?|streets?|stra(?:ss|ß)en?|wege?|routes?|"
+    r"rues?|calles?|carreteras?|strad[ae]|vie)\b"
+)
+"""Words for all streets, which say nothing of the signs at all junctions."""
 BUT = (
     r"(?:but(?: for)?|except(?: for)?|bis auf|au(?:ss|ß)er|sauf|excepte|a l ' exception d(?:e|')|salvo|menos|"
     r"excepto|tranne|eccetto|meno)"
@@ -230,7 +235,7 @@ def _forms(control: Control) -> tuple[tuple[re.Pattern[str], ...], ...]:
 
 def _counted(control: Control, said: str) -> CountedSigns | None:
     """Returns the number of junctions with a sign; None if the words give no number, or several."""
-    of_all = EVERYWHERE.search(said)
+    of_all = EVERYWHERE.search(EVERY_STREET.sub("", said))
     for forms in _forms(control):
         found: dict[int, re.Match[str]] = {}
         for match in (each for form in forms for each in form.finditer(said)):
