@@ -137,6 +137,8 @@ def test_lights_are_where_the_words_count_them(words: str, written: str, right: 
     [
         ("two by two blocks, traffic lights at the middle crossroads only",
          "map columns=2 rows=2; crossroads x2 lights", "map columns=2 rows=2; crossroads lights"),
+        ("a grid of 2 by 2 blocks, lights only at the junction in the middle",
+         "map columns=2 rows=2; junction x2 lights", "map columns=2 rows=2; crossroads lights"),
         ("a 3 by 3 grid, lights at the inner junctions only", "map columns=3 rows=3 lights",
          "map columns=3 rows=3; crossroads x4 lights"),
         ("ein Gitter aus 3 mal 2 Blöcken, nur die inneren Kreuzungen haben Stoppschilder",

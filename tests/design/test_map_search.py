@@ -167,6 +167,17 @@ def test_signs_that_the_junctions_of_a_grid_cannot_have_are_refused() -> None:
             check(read_plan(line), map_size=None, min_radius=0.0)
 
 
+def test_crossroads_with_signs_stand_within_a_grid() -> None:
+    """In a grid of two by two blocks that is the one in the middle: four of its nine nodes lie beside it."""
+    for seed in range(8):
+        design = draft(read_plan("map columns=2 rows=2; crossroads lights"), World(), seed=seed)
+        assert isinstance(design, MapDesign)
+        (signed,) = [node for node in design.nodes if node.control == "lights"]
+        places = np.array([node.at[:2] for node in design.nodes])
+        low, high = places.min(axis=0), places.max(axis=0)
+        assert (np.abs(np.array(signed.at[:2]) - (low + high) / 2) < 0.3 * (high - low)).all()
+
+
 def test_the_check_measures_the_length_of_all_roads() -> None:
     world = world_for(read_plan("map crossroads x2 || len=800"), USUAL)
     route = route_of("map crossroads x2 || len=800", 3, world)

@@ -60,7 +60,8 @@ def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, has
         way = cmath.rect(1.0, cmath.phase(complex(*side)) + rng.uniform(-LEANING, LEANING) * pi / 180)
         node = draft.nodes[numbers[cell]]
         draft.add(DraftNode(node.z + way * (CONTACT + drawn_stub(rng, haste)), "end"), numbers[cell])
-    return draft if _finished(draft, least_radius, rng) and _signed(draft, asked.signed, rng) else None
+    inner = [draft.nodes[n] for (i, j), n in numbers.items() if 0 < i < size[0] and 0 < j < size[1]]
+    return draft if _finished(draft, least_radius, rng) and _signed(draft, asked.signed, inner, rng) else None
 
 
 def drawn_count(asked: Amount | None, rng: Rng, most: int = 8, least: int = 1) -> int:
@@ -121,15 +122,24 @@ def _streets(count: int, asked: Amount | None, room: float, rng: Rng, haste: flo
     return [usual * (1 + float(rng.uniform(-ASKED, ASKED))) for _ in range(count)]
 
 
-def _signed(draft: MapDraft, asked: Sequence[JunctionCount], rng: Rng) -> bool:
-    """Gives random junctions of a draft the signs that are asked for; returns whether there are enough."""
+def _signed(draft: MapDraft, asked: Sequence[JunctionCount], inner: Sequence[DraftNode], rng: Rng) -> bool:
+    """Gives random junctions of a draft the signs that are asked for; returns whether there are enough.
+
+    Signs at crossroads stand within the grid first, where every junction has four arms.
+    """
     free = [node for node in draft.nodes if node.is_junction]
     for each in sorted(asked, key=lambda each: each.kind == "junction"):
         fitting = [node for node in free if each.kind in ("junction", node.kind)]
         if span(each.count).lo > len(fitting):
             return False
         count = drawn_count(each.count, rng, len(fitting), least=0)
-        for n in rng.permutation(len(fitting))[:count]:
+        outer = {
+            n
+            for n, node in enumerate(fitting)
+            if each.kind == "crossroads" and not any(node is one for one in inner)
+        }
+        order = sorted(rng.permutation(len(fitting)), key=lambda n, outer=outer: n in outer)  # type: ignore[misc]
+        for n in order[:count]:
             fitting[n].control = each.control or "none"
             free.remove(fitting[n])
     return True

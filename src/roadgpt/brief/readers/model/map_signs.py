@@ -106,7 +106,7 @@ def _inside_grid(asked: MapClause, said: str) -> dict[str, object] | None:
     named = [
         control
         for control, sign in SIGN_WORDS.items()
-        if re.search(rf"\b{sign} [^.;:]{{0,25}}\b{where}\b|\b{where} {nouns}[^.;:]{{0,15}} {sign}\b", said)
+        if re.search(rf"\b{sign} [^.;:]{{0,32}}\b{where}\b|\b{where} {nouns}[^.;:]{{0,15}} {sign}\b", said)
     ]
     if number < 1 or len(named) != 1 or TAKEN_BACK.search(said) or EVERYWHERE.search(said):
         return None
