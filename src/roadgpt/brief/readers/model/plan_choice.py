@@ -17,10 +17,13 @@ from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.exit_words import with_motorway_behind_ramp, with_stay_on_motorway
 from roadgpt.brief.readers.model.from_start import with_distances_from_start
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
+from roadgpt.brief.readers.model.listed_values import with_listed_values
 from roadgpt.brief.readers.model.map_lengths import with_whole_length
 from roadgpt.brief.readers.model.map_signs import with_counted_signs
 from roadgpt.brief.readers.model.map_words import asks_for_grid, with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
+from roadgpt.brief.readers.model.numbered_junctions import with_numbered_junctions
+from roadgpt.brief.readers.model.numbered_sides import with_numbered_sides
 from roadgpt.brief.readers.model.other_roads import with_other_roads
 from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lane
 from roadgpt.brief.readers.model.ramp_lengths import with_distances_to_exits, with_ramp_lengths
@@ -108,13 +111,14 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
 def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, corrected by rules where the words of the description are clear."""
     brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line)), text), text)
-    brief = with_told_takes(with_told_total(with_checked_counts(brief, text), text), text)
+    brief = with_numbered_sides(with_listed_values(with_checked_counts(brief, text), text), text)
+    brief = with_told_takes(with_told_total(brief, text), text)
     brief = with_ramp_lengths(with_distances_to_exits(with_counted_junctions(brief, text), text), text)
     brief = with_whole_length(with_counted_signs(with_counted_map(brief, text), text), text)
     brief = _with_listed_hills(with_each_lane(brief))
     brief = _with_turns_by_degrees(with_sharp_side(with_told_arms(brief, text), words))
     brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)
-    brief = with_motorway_behind_ramp(brief, words)
+    brief = with_numbered_junctions(with_motorway_behind_ramp(brief, words), text)
     brief = with_distances_from_start(brief, words)
     brief = with_sides_of_side_roads(brief, text, words)
     return with_other_roads(with_whole_drive(brief, words), words)

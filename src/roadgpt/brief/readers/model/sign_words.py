@@ -12,6 +12,7 @@ from roadgpt.brief.amount import Amount, exactly
 from roadgpt.brief.junctions import Control
 from roadgpt.brief.readers.model.alike_junctions import NOUN
 from roadgpt.brief.readers.model.map_words import ANY_KIND, TAKEN_BACK
+from roadgpt.brief.readers.model.ordinals import EXCEPT, REST
 
 SIGN_WORDS: Mapping[Control, str] = {
     "lights": (
@@ -73,26 +74,18 @@ EVERY_STREET = re.compile(
     r"rues?|calles?|carreteras?|strad[ae]|vie)\b"
 )
 """Words for all streets, which say nothing of the signs at all junctions."""
-BUT = (
-    r"(?:but(?: for)?|except(?: for)?|bis auf|au(?:ss|ß)er|sauf|excepte|a l ' exception d(?:e|')|salvo|menos|"
-    r"excepto|tranne|eccetto|meno)"
-)
-REST = (
-    r"(?:others?|rest|remaining|ubrigen?|anderen?|restlichen?|autres?|reste|demas|otr[ao]s?|resto|"
-    r"altr[ieo]|restanti)"
-)
 NONE = r"(?:no|none|not|without|kein\w*|ohne|sans|pas|aucun\w*|sin|ningun\w*|non|senza|nessun\w*)"
 LEAST = re.compile(r"\b(?:at least|mindestens|au moins|al menos|por lo menos|almeno)$")
 MOST = re.compile(
     r"\b(?:at most|no more than|up to|hochstens|maximal|bis zu|au plus|como mucho|a lo sumo|al massimo)$"
 )
-NO_NUMBER = re.compile(rf"(?<!, )\b(?:{BUT}(?: (?:{AT}|the))?|x|by|mal|sur|por|per)$")
+NO_NUMBER = re.compile(rf"(?<!, )\b(?:{EXCEPT}(?: (?:{AT}|the))?|x|by|mal|sur|por|per)$")
 """Words before a number with which it does not count the junctions that have a sign."""
 OTHERS_HAVE_NONE = re.compile(rf"\b{REST}\b(?: \w+){{0,3}} {NONE}\b[^.;]*")
 
 LIMITED = (
     rf"(?:only|just|nur|lediglich|seulement|uniquement|solo|solamente|soltanto|"
-    rf"{BUT} (?:{AT}|\d+|{ONE}|the|in|der|dem|den|le|la|el|il|alla|nella)|half|halfte|moitie|mitad|"
+    rf"{EXCEPT} (?:{AT}|\d+|{ONE}|the|in|der|dem|den|le|la|el|il|alla|nella)|half|halfte|moitie|mitad|"
     r"meta|some|einige\w*|manche\w*|certains?|certaines|quelques|algun[ao]s|alcun[ie]|qualche|most|meisten|"
     r"plupart|mayoria|maggior parte|middle|mitte|mittleren?|milieu|centro|mezzo|davon|dont)"
 )
@@ -154,7 +147,7 @@ def limited_signs(said: str) -> frozenset[Control]:
     """Returns the signs that some words seem to limit to a part of the junctions: "only the roundabout has
     lights", "stop signs at half of them".
     """
-    if EVERYWHERE.search(said) and re.search(rf"\b{BUT}\b", said) is None:
+    if EVERYWHERE.search(said) and re.search(rf"\b{EXCEPT}\b", said) is None:
         return frozenset()
     return frozenset(
         control
@@ -166,7 +159,7 @@ def limited_signs(said: str) -> frozenset[Control]:
 def _without_double_denial(said: str) -> str:
     """Returns "lights at two of them" for "no lights except at two of them"."""
     for sign in SIGN_WORDS.values():
-        denied = rf"\b{NONE} (?:\w+ )?({sign}) ?,? {BUT} (?={AT} )"
+        denied = rf"\b{NONE} (?:\w+ )?({sign}) ?,? {EXCEPT} (?={AT} )"
         said = re.sub(denied, r"\1 ", said)
     return said
 
@@ -183,7 +176,7 @@ def _others(control: Control) -> re.Pattern[str]:
 @cache
 def _is_of_all(control: Control) -> re.Pattern[str]:
     sign = SIGN_WORDS[control]
-    but = rf"{BUT} (?:{AT} )?(?:the )?(\d+|{ONE})\b{BETWEEN}"
+    but = rf"{EXCEPT} (?:{AT} )?(?:the )?(\d+|{ONE})\b{BETWEEN}"
     return re.compile(
         rf"\b{ALL}\b[^.;:,]{{0,40}}? {but} ?,? {HAVE} {ARTICLE}{sign}\b|"
         rf"\b{sign}\b[^.;:,]{{0,25}}? {ALL}\b[^.;:,]{{0,40}}? {but}|"

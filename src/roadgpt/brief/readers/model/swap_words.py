@@ -4,25 +4,14 @@ parts to exchange a value.
 
 import re
 
+from roadgpt.brief.readers.model.ordinals import PLACE, place_of
 from roadgpt.brief.readers.model.slots import SlottedText
 
 TURNS = (
     r"(?:turns?|bends?|curves?|corners?|kurven?|kehren?|bogen|virages?|courbes?|curvas?|curve?|tornanti|"
     r"giros?)"
 )
-ORDINALS = {
-    word: number
-    for number, words in {
-        1: "first erste ersten premier premiere primera primero prima primo",
-        2: "second zweite zweiten deuxieme second seconde segunda segundo seconda secondo",
-        3: "third dritte dritten troisieme tercera tercero terza terzo",
-        4: "fourth vierte vierten quatrieme cuarta cuarto quarta quarto",
-        5: "fifth funfte funften cinquieme quinta quinto",
-        -1: "last letzte letzten dernier derniere ultima ultimo",
-    }.items()
-    for word in words.split()
-}
-NUMBER = rf"(?:(?:the|die|der|le|la|les|las|el|il) )?(\d|{'|'.join(ORDINALS)})(?:st|nd|rd|th| \.|e|eme|a)?"
+NUMBER = rf"(?:(?:the|die|der|le|la|les|las|el|il) )?(\d|{PLACE})(?:st|nd|rd|th| \.|e|eme|a)?"
 AND = r"(?:and|with|und|mit|et|avec|y|con|e)"
 TWO = re.compile(
     rf"\b{TURNS} (?:no |nr |number )?{NUMBER} {AND} (?:{TURNS} )?{NUMBER}\b|"
@@ -58,7 +47,7 @@ def turns_to_swap(text: SlottedText) -> str | None:
         return None
     found = TWO.findall(said)
     if len(found) == 1:
-        one, other = (ORDINALS.get(word) or int(word) for word in found[0] if word)
+        one, other = (place_of(word) or int(word) for word in found[0] if word)
         return f"turn {one},{other}"
     return "turn all" if BOTH.search(said) else None
 

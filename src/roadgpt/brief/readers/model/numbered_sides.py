@@ -1,0 +1,139 @@
+"""Gives the turns of a road the sides that words tell by places: "five bends, the second and the last to the
+right, the others left", "no bend to the left but the third". The network loses count of them.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from roadgpt.brief.model import OTHER_SIDE, Brief, Clause, Side
+from roadgpt.brief.normal import STRAIGHT
+from roadgpt.brief.readers.model.denial import is_denied
+from roadgpt.brief.readers.model.nouns import COUNTED, LEFT, ONE_TURN, RIGHT
+from roadgpt.brief.readers.model.numbered_junctions import CORRECTED
+from roadgpt.brief.readers.model.ordinals import DETERMINER, EXCEPT, ORDINAL, OTHERS, WHICH, places_in
+from roadgpt.brief.readers.model.sign_words import ALL, OF_THEM, ONLY
+from roadgpt.brief.readers.model.slots import SlottedText
+from roadgpt.brief.readers.model.turn_list import joined, one_by_one
+
+SIDE = rf"({'|'.join(sorted({*LEFT, *RIGHT} - {'l', 'r'}, key=len, reverse=True))})\b"
+NOUN = rf"(?:{'|'.join(sorted({*COUNTED, *ONE_TURN}, key=len, reverse=True))})"
+COUNT = re.compile(
+    rf"(?<!\w )\b(\d+) (?:\w+ )?(?:{NOUN})\b|\b(?:with|mit|avec|con|of|has|have) (\d+) {NOUN}\b"
+)
+TO = (
+    r"(?:(?:to|the|go|goes|going|bend|bends|turn|turns|is|are|curve|curves|be|should|must|nach|fuhrt|fuhren|geht|"
+    r"gehen|ist|sind|eine|vont|va|van|tourne|tournent|est|sont|a|la|hacia|gira|giran|son|es|e|sono|vanno|piega|"
+    r"piegano|verso|al?l?e?|einzige|only|one) )*"
+)
+NONE = r"(?:none|no|not|never|nothing|kein\w*|nicht|nie|aucune?|pas|ningun\w*|no|nessun\w*|non|nada)"
+SAID = re.compile(rf"\b({WHICH}|{OTHERS})(?: {NOUN}| ones?)? ,? ?{TO}{SIDE}")
+"""Turns, and the side to which they lead."""
+LISTED = re.compile(
+    rf"(?<!\w )\b(\d+) (?:{OF_THEM} |\w+ ){{0,2}}?{TO}{SIDE} ?[:(,-] ?({WHICH})"
+    rf"(?!(?: {NOUN}| ones?)? ,? ?{TO}{SIDE})|"
+    rf"\b(?:dont|of which|davon|de l[oa]s cuales|di cui) (\d+) (?:\w+ )??{TO}{SIDE} ?[:(,-] ?({WHICH})"
+)
+"""A number of turns to one side, and their places: "two to the right: the second and the last"."""
+BUT = re.compile(
+    rf"\b(?:({NONE})|{ALL})\b(?: \w+){{0,6}}? {SIDE} ,? ?{EXCEPT} (?:{DETERMINER} )*({WHICH})|"
+    rf"\b{EXCEPT} ({WHICH})(?: ,)? (?:({NONE})|{ALL})\b(?: \w+){{0,5}}? {SIDE}"
+)
+"""A side that no turns have but some, or all but some."""
+
+
+NOT_THIS = re.compile(
+    rf"\b(?:not|nicht|pas|no|non)\b(?: \w+){{0,4}}? {SIDE} ,? ?(?:but|sondern|mais|sino|ma|bensi)\b"
+)
+"""A side that is denied and replaced by the other."""
+
+
+class Sided(NamedTuple):
+    """The turns to one side."""
+
+    where: str
+    """Their places in words; empty for all turns that are not named."""
+    side: Side
+
+
+def with_numbered_sides(brief: Brief, text: SlottedText) -> Brief:
+    """Returns the Brief of a single road whose turns lead to the sides that the words tell by ordinals.
+
+    The Brief is returned unchanged if the words do not give the sides of all turns, or if they are not clear.
+    A list of turns that differ in nothing but their sides becomes as long as the words say.
+    """
+    said = text.text
+    is_road = not brief.junctions and brief.map is None and not brief.alternating
+    each = one_by_one(brief.clauses)
+    here = sum(clause.kind not in STRAIGHT for clause in each)
+    if not is_road or not here or CORRECTED.search(said) or NOT_THIS.search(said):
+        return brief
+    each = _as_long(each, _told(said) or here) or each
+    sides = _sides(said, sum(clause.kind not in STRAIGHT for clause in each))
+    if sides is None:
+        return brief
+    turns = iter(sides)
+    each = [one if one.kind in STRAIGHT else one.model_copy(update={"side": next(turns)}) for one in each]
+    return brief.model_copy(update={"clauses": joined(each), "left": None, "right": None, "turns": None})
+
+
+def _as_long(clauses: Sequence[Clause], number: int) -> list[Clause]:
+    """Returns the clauses with so many turns; empty if the turns differ, or if straights part them."""
+    turning = [n for n, clause in enumerate(clauses) if clause.kind not in STRAIGHT]
+    first, last = turning[0], turning[-1]
+    inner = [clause.model_copy(update={"side": None}) for clause in clauses[first : last + 1]]
+    if any(clause != inner[0] for clause in inner):
+        return []
+    return [*clauses[:first], *inner[:1] * number, *clauses[last + 1 :]]
+
+
+def _told(said: str) -> int | None:
+    """Returns the number of turns in the words; None if there is none or several."""
+    found = {int(first or second) for first, second in COUNT.findall(said)}
+    return found.pop() if len(found) == 1 else None
+
+
+def _sides(said: str, number: int) -> list[Side] | None:
+    """Returns the side of each turn; None if the words do not give them all."""
+    out: dict[int, Side] = {}
+    rest: set[Side] = set()
+    for each in _told_sides(said, number):
+        places = places_in(each.where, number) if each.where else None
+        if each.where and (places is None or any(out.get(n, each.side) != each.side for n in places)):
+            return None
+        out |= dict.fromkeys(places or (), each.side)
+        rest |= set() if each.where else {each.side}
+    if not out or len(rest) > 1 or (len(out) < number and not rest):
+        return None
+    other = next(iter(rest), None)
+    sides = [out.get(n, other) for n in range(number)]
+    return [side for side in sides if side is not None]
+
+
+def _told_sides(said: str, number: int) -> Iterator[Sided]:
+    """Yields the turns to which words give a side by their places."""
+    for match in BUT.finditer(said):
+        none, side, where = (match[1], match[2], match[3]) if match[3] else (match[5], match[6], match[4])
+        its = _side(side)
+        yield Sided(where, its if none else OTHER_SIDE[its])
+        yield Sided("", OTHER_SIDE[its] if none else its)
+    said = BUT.sub(" ", said)
+    for match in LISTED.finditer(said):
+        several, side, where = filter(None, match.groups())
+        if int(several) != len(places_in(where, number) or ()):
+            continue
+        yield Sided(where, _side(side))
+        yield Sided("", OTHER_SIDE[_side(side)])
+    said = LISTED.sub(" ", said)
+    for match in SAID.finditer(said):
+        before = said[: match.start()]
+        if is_denied(before) or re.search(rf"\b{EXCEPT} (?:\w+ )?$", before):
+            continue
+        is_rest = re.search(rf"\b{ORDINAL}\b", match[1]) is None
+        yield Sided("" if is_rest else match[1], _side(match[2]))
+        if re.search(rf"\b(?:{ONLY})(?:\w+ )?$", before) or match[0].find(" only ") > 0:
+            yield Sided("", OTHER_SIDE[_side(match[2])])
+
+
+def _side(word: str) -> Side:
+    return "left" if word in LEFT else "right"
