@@ -19,6 +19,7 @@ from roadgpt.brief import beside, motorway
 from roadgpt.brief.feasible import check, is_possible
 from roadgpt.brief.left_hand import with_driving_side
 from roadgpt.brief.map_fit import LARGEST_MAP, ROAD_WIDTH
+from roadgpt.brief.map_size import said_map_size
 from roadgpt.brief.model import (
     Amount,
     Brief,
@@ -151,17 +152,18 @@ def read(
         ChatError: the language model could not be asked.
     """
     words = words.encode("utf-8", "replace").decode()  # lone surrogates cannot be written to a file
-    limits = (map_size if is_map_fixed else LARGEST_MAP, min_radius, max_grade, road_width)
+    sized = None if reader == PLAN else said_map_size(words)
     try:
-        brief = reader_of(reader, chat).read(words)
+        brief, too_much = reader_of(reader, chat).read(sized.rest if sized else words), None
     except TooMuchError as refusal:
-        brief = refusal.brief
-        check(brief, *limits)
-        is_usual = map_size is not None and map_size <= USUAL_MAP and min_radius >= LEAST_RADIUS
-        if is_map_fixed and is_usual:
-            raise
-    else:
-        check(brief, *limits)
+        brief, too_much = refusal.brief, refusal
+    brief = brief.model_copy(update={"words": words, "map_size": sized.metres}) if sized else brief
+    if brief.map_size is not None and not is_map_fixed:
+        map_size, is_map_fixed = brief.map_size, True
+    check(brief, map_size if is_map_fixed else LARGEST_MAP, min_radius, max_grade, road_width)
+    is_usual = map_size is not None and map_size <= USUAL_MAP and min_radius >= LEAST_RADIUS
+    if too_much is not None and is_map_fixed and is_usual:
+        raise too_much
     if reader != PLAN and (missing := beside.networks_in(brief.beside)):
         rest = brief.model_copy(update={"beside": tuple(n for n in brief.beside if n not in beside.NETWORKS)})
         raise NotBuiltError(f"{missing}; the road without it", plan(rest), rest)
@@ -206,11 +208,12 @@ def alternatives(
     if not isinstance(part, ReaderWithAlternatives):
         return (first,)
     try:
-        others = part.alternatives(first.words, number, temperature, seed)[1:]
+        sized = said_map_size(first.words)
+        others = part.alternatives(sized.rest if sized else first.words, number, temperature, seed)[1:]
     except TooMuchError:  # such a description has only one reading
         return (first,)
-    if first.motorway:
-        others = tuple(brief.model_copy(update={"motorway": True}) for brief in others)
+    same = {"words": first.words, "map_size": first.map_size} | ({"motorway": True} if first.motorway else {})
+    others = tuple(brief.model_copy(update=same) for brief in others)
     return (first, *(brief for brief in others if is_possible(brief, map_size, min_radius, max_grade)))
 
 

@@ -36,8 +36,8 @@ __all__ = [
 
 OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
 CentreLine = Literal["solid", "broken", "double", "none"]
-OF_THE_WORDS = ("words", "beside", "unused", "confidence", "other")
-"""The fields of a Brief that say how it was read, and require nothing of a road."""
+OF_THE_WORDS = ("words", "beside", "unused", "confidence", "other", "map_size")
+"""The fields of a Brief that require nothing of the shape of a road."""
 
 
 def _known(name: str) -> str:
@@ -142,6 +142,8 @@ class Brief(Frozen):
     """The line between the directions: "solid" forbids overtaking."""
     left_hand: bool = False
     """Whether traffic drives on the left."""
+    map_size: Annotated[float, Field(ge=50, le=10_000)] | None = None
+    """The side of the square map in metres; None if the description does not give it."""
     map: MapClause | None = None
     """The map of roads that is required instead of one road; then no other requirement is given."""
     other: str = ""
@@ -161,6 +163,8 @@ class Brief(Frozen):
             raise ValueError("a map is no part of a route; ask for one of them")
         if any(stretch.left_hand for stretch in self.stretches):
             raise ValueError("traffic drives on one side on the whole route; write left_hand after ||")
+        if any(stretch.map_size for stretch in self.stretches):
+            raise ValueError("a route lies on one map; write map_size= after ||")
         return self
 
     @property

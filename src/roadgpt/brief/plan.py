@@ -35,6 +35,7 @@ FLAGS = ("alternating", "alike", "hard", "motorway", "divided", "left_hand")
 ONE_WAY = "oneway"
 NO_LANE = exactly(0)
 CENTRE = "centre="
+MAP_SIZE = "map_size="
 KEYS = {"deg": "degrees", "r": "radius", "len": "length", "pct": "incline"}
 ROAD_KEYS = {
     "turns": "turns",
@@ -48,6 +49,8 @@ ROAD_KEYS = {
     "against": "against",
     **KEYS,
 }
+OF_WHOLE = ("length", "left_hand", "map_size", "beside")
+"""The fields of a Brief that can be asked of a whole route or map."""
 PLACES = ("starts", "ends")
 INNER = "(starts|ends|beside)"
 ALIKE = "alike"
@@ -80,6 +83,8 @@ def _wishes(brief: Brief) -> list[str]:
         wishes.append(f"beside({', '.join(brief.beside)})")
     if brief.centre is not None:
         wishes.append(f"{CENTRE}{brief.centre}")
+    if brief.map_size is not None:
+        wishes.append(f"{MAP_SIZE}{brief.map_size:g}")
     return wishes
 
 
@@ -162,7 +167,7 @@ def _read_network(line: str) -> Brief:
     fields: dict[str, object] = {
         "junctions": tuple(map(read_junction, junctions)),
         "stretches": tuple(map(read_plan, roads)),
-        **_read_whole(whole, ("length", "left_hand", "beside")),
+        **_read_whole(whole),
     }
     return _made(Brief, fields, line)
 
@@ -170,19 +175,17 @@ def _read_network(line: str) -> Brief:
 def _read_map(line: str) -> Brief:
     """Returns the Brief of a plan that asks for a map."""
     roads, _, whole = line.partition(WHOLE)
-    return _made(
-        Brief, {"map": read_map(roads), **_read_whole(whole, ("length", "left_hand", "beside"))}, line
-    )
+    return _made(Brief, {"map": read_map(roads), **_read_whole(whole)}, line)
 
 
-def _read_whole(text: str, names: tuple[str, ...]) -> dict[str, object]:
-    """Returns the fields of a Brief that are asked of a whole route or map; only those with these names."""
+def _read_whole(text: str) -> dict[str, object]:
+    """Returns the fields of a Brief that are asked of a whole route or map."""
     asked = read_plan(f"| {text}") if text.strip() else Brief()
     if asked.alike:  # which of several roads are alike is not said
         asked = asked.model_copy(update={"alike": False, "beside": (*asked.beside, ALIKE)})
-    fields = {name: getattr(asked, name) for name in names}
+    fields = {name: getattr(asked, name) for name in OF_WHOLE}
     if asked != Brief.model_validate(fields):
-        known = " and ".join("len" if name == "length" else name for name in names)
+        known = " and ".join("len" if name == "length" else name for name in OF_WHOLE)
         raise BriefError(
             f"after {WHOLE}, only {known} can be asked; what holds for one road stands with it, after |"
         )
@@ -221,6 +224,11 @@ def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> Non
             known = ", ".join(get_args(CentreLine))
             raise BriefError(f"a plan has no centre line '{value[:40]}'; there are {known}")
         _set(fields, "centre", value)
+    elif word.startswith(MAP_SIZE) and keys is ROAD_KEYS:
+        amount = read_amount(value)
+        if not amount.exact:
+            raise BriefError(f"a map has one size, not '{value[:40]}'; write for example {MAP_SIZE}500")
+        _set(fields, "map_size", amount.lo)
     elif word in WORDS:
         _set(fields, WORDS[word], word)
     else:

@@ -98,6 +98,7 @@ def _wishes(brief: Brief) -> list[str]:
         f"it ends with {clause_text(brief.ends)}" if brief.ends else "",
         "hard for a lane keeper" if brief.hard else "",
         *_lanes(brief),
+        f"on a map of {brief.map_size:g} metres" if brief.map_size else "",
         *(surface.said for name, surface in SURFACES.items() if name in brief.beside),
     ]
     return [wish for wish in out if wish]

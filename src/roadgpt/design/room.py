@@ -16,12 +16,15 @@ def world_for(brief: Brief | None, world: World) -> World:
     """Returns the World for the roads of a Brief.
 
     The surface that the Brief names, such as a wet road, sets the friction. For a single road, the Brief also
-    sets the lanes and the centre line. If roads of this Brief do not fit on the usual map, a larger map is
-    set. A value that was given to the World is kept. Without a Brief, the World is returned unchanged.
+    sets the lanes and the centre line. The map gets the size that the Brief gives; if it gives none and roads
+    of this Brief do not fit on the usual map, a larger map is set. A value that was given to the World is
+    kept. Without a Brief, the World is returned unchanged.
     """
     found = world.on_surface_of(brief).with_lanes_of(brief)
     if brief is None or "map_size" in world.site.model_fields_set:
         return found
+    if brief.map_size is not None:
+        return found.changed(map_size=brief.map_size)
     if brief.map is not None:
         size = room_for_map(brief, found)
     else:
@@ -38,7 +41,7 @@ def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
         found: the World for the roads, as ``world_for`` returns it.
     """
     surface = surface_remark(brief.beside, found.site.friction)
-    said = (surface, *lane_remarks(brief, found), map_remark(usual, found))
+    said = (surface, *lane_remarks(brief, found), map_remark(brief, usual, found))
     return tuple(remark for remark in said if remark)
 
 
@@ -63,14 +66,18 @@ def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
         yield f"the words ask for a {centre} centre line, but another one is set and used"
 
 
-def map_remark(usual: World, found: World) -> str:
-    """Returns a sentence that gives the new size of the map; empty if the size has not changed.
+def map_remark(brief: Brief, usual: World, found: World) -> str:
+    """Returns a sentence on the size of the map, if the words ask for one or the usual map is too small.
 
     Args:
+        brief: the requirements.
         usual: the World that was given.
         found: the World for the roads, as ``world_for`` returns it.
     """
-    before, now = usual.site.map_size, found.site.map_size
+    before, now, asked = usual.site.map_size, found.site.map_size, brief.map_size
+    if asked is not None:
+        other = f"but one of {now:g} m is set and used" if now != asked else "--map-size gives another"
+        return f"the words ask for a map of {asked:g} m; {other}"
     if now == before:
         return ""
     return f"this does not fit on a map of {before:g} m, so the map is {now:g} m wide; --map-size sets it"
