@@ -104,7 +104,7 @@ def test_the_roads_of_a_route_are_plans_of_their_own() -> None:
         ("map crossroads x3 // t_junction", "a map is no part of a route; ask for one of them"),
         ("| left_hand // t_junction", "write left_hand after ||"),
         ("| centre=dotted", "there are solid, broken, double, none"),
-        ("// t_junction // || up", "only len and left_hand and beside can be asked"),
+        ("// t_junction // || up", "only len, left_hand, map_size and beside can be asked"),
         ("// t_junction // || hurry", "no word 'hurry'"),
         ("// t_junction // straigt", "no clause 'straigt'"),
     ],

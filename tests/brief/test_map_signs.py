@@ -42,6 +42,17 @@ def corrected(words: str, written: str) -> str:
             "map crossroads stop; y_junction x2",
         ),
         (
+            "two roundabouts, four T-junctions and one crossroads. Traffic lights at the crossroads only, stop signs"
+            " at exactly two of the T-junctions and nowhere else.",
+            "map roundabout x2 stop; t_junction x4; crossroads",
+            "map t_junction x2 stop; crossroads lights; roundabout x2; t_junction x2",
+        ),
+        (
+            "two roundabouts and four T-junctions, lights at the roundabouts only",
+            "map roundabout x2; t_junction x4 lights",
+            "map roundabout x2 lights; t_junction x4",
+        ),
+        (
             "six junctions, two of them with lights",
             "map junction x6 lights",
             "map junction x2 lights; junction x4",

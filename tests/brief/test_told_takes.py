@@ -17,6 +17,8 @@ from roadgpt.brief.readers.model.told_takes import told_takes, with_told_takes
         ("deux fois à gauche, jamais à droite", {"left": 2, "right": 0}),
         ("dos veces a la izquierda y una vez a la derecha", {"left": 2, "right": 1}),
         ("due volte a sinistra, mai a destra", {"left": 2, "right": 0}),
+        ("Five junctions: two lefts, the rest straight on, the last a T.", {"left": 2}),
+        ("two lefts, then a crossroads", {}),
         ("the road bends right twice, then left at the crossroads", {}),  # bends of the road
         ("left twice, no, make that left once, right once", {}),
         ("left at 150 m, right at 200 m", {}),

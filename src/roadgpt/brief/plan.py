@@ -185,7 +185,8 @@ def _read_whole(text: str) -> dict[str, object]:
         asked = asked.model_copy(update={"alike": False, "beside": (*asked.beside, ALIKE)})
     fields = {name: getattr(asked, name) for name in OF_WHOLE}
     if asked != Brief.model_validate(fields):
-        known = " and ".join("len" if name == "length" else name for name in OF_WHOLE)
+        *names, last = ("len" if name == "length" else name for name in OF_WHOLE)
+        known = f"{', '.join(names)} and {last}"
         raise BriefError(
             f"after {WHOLE}, only {known} can be asked; what holds for one road stands with it, after |"
         )

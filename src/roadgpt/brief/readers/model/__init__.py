@@ -37,6 +37,7 @@ from roadgpt.brief.readers.model.ring_sizes import with_diameters
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
+from roadgpt.brief.readers.model.told_junctions import names_a_junction
 from roadgpt.brief.readers.model.total_turning import total_turning
 from roadgpt.brief.readers.model.vocabulary import plan_of
 from roadgpt.brief.readers.model.word_meanings import read_meanings
@@ -60,6 +61,12 @@ SECOND = "_2"
 ROUTES = "_routes"
 """The same for the network that reads routes and maps."""
 TOO_MUCH = "no more than 12 turns and 1500 m are sure to fit on a map of 250 m; ask for less or a larger map"
+
+TOO_MANY_TURNS = "!impossible turns"
+MANY_JUNCTIONS = (
+    "no more than 8 junctions are read from words; a plan can list more, such as "
+    "--plan 'crossroads left // crossroads right // ...'"
+)
 
 
 class ChangeReading(NamedTuple):
@@ -241,6 +248,8 @@ class ModelReader:
         why = draft.line
         if why.startswith("!contradiction"):
             return self._brief_in_spite_of(why, words, text, ensemble)
+        if why == TOO_MANY_TURNS and names_a_junction(text):
+            raise BriefError(MANY_JUNCTIONS)
         brief = self._for_the_usual_map(words, text, ensemble) if why.startswith("!impossible") else None
         raise TooMuchError(TOO_MUCH, brief) if brief else refused(why)
 

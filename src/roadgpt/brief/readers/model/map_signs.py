@@ -6,7 +6,7 @@ number before "with lights" says that only two of them have lights.
 
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from roadgpt.brief.amount import Amount, exactly
 from roadgpt.brief.junctions import Control, MapJunctionKind
@@ -53,11 +53,16 @@ def with_counted_signs(brief: Brief, text: SlottedText) -> Brief:
     asked = brief.map
     if asked is not None and (inside := _inside_grid(asked, said_of(text))) is not None:
         return brief.model_copy(update={"map": asked.model_copy(update=inside)})
-    if asked is None or asked.signed or any(each.control for each in asked.junctions):
+    if asked is None or asked.signed:
         return brief
     said = said_of(text)
     signs = signs_in_words(said)
-    if not signs.counted and signs.all_but is None:
+    if any(each.control for each in asked.junctions):
+        asked = _without_signs(asked)
+        named = [*(each.nouns for each in signs.counted), *(noun for _, noun in signs.of_kinds)]
+        if not signs.of_kinds or not all(_kinds_of(noun) for noun in named):
+            return brief
+    if not signs.counted and signs.all_but is None and not signs.of_kinds:
         return brief
     found = _in_village(asked, said, signs) if asked.junctions else _in_grid(asked, said, signs)
     return brief if found is None else brief.model_copy(update={"map": asked.model_copy(update=found)})
@@ -78,9 +83,9 @@ def _others(asked: MapClause, said: str, signs: SignsInWords) -> Control | None:
     That of the map holds for them only if the words name it.
     """
     sign = None if asked.control is None else SIGN_WORDS.get(asked.control)
-    is_counted = asked.control in {each.control for each in signs.counted}
+    counted = {*(each.control for each in signs.counted), *(control for control, _ in signs.of_kinds)}
     is_unsaid = sign is not None and re.search(rf"\b{sign}\b", said) is None
-    return signs.others or (None if is_counted or is_unsaid else asked.control)
+    return signs.others or (None if asked.control in counted or is_unsaid else asked.control)
 
 
 def _in_grid(asked: MapClause, said: str, signs: SignsInWords) -> dict[str, object] | None:
@@ -127,7 +132,7 @@ def _in_village(asked: MapClause, said: str, signs: SignsInWords) -> dict[str, o
     for each in asked.junctions:
         counts[each.kind] += int(each.count.lo or 0)
     total = one_number(ALL_KINDS.findall(said)) or counts.total()
-    counted, others = signs.counted, _others(asked, said, signs)
+    counted, others = (*signs.counted, *_all_of_kinds(signs, counts)), _others(asked, said, signs)
     if len(counted) > 1:  # "six junctions with stop signs, but one of them has lights"
         others = next((each.control for each in counted if each.number == total), others)
         counted = tuple(each for each in counted if each.number < total)
@@ -151,6 +156,33 @@ def _in_village(asked: MapClause, said: str, signs: SignsInWords) -> dict[str, o
             "control": kinds[-1].control,
         }
     return {"junctions": kinds, "control": others}
+
+
+def _without_signs(asked: MapClause) -> MapClause:
+    """Returns the map with junctions without signs, those of a kind together."""
+    counts = dict[MapJunctionKind, Amount]()
+    for each in asked.junctions:
+        more = counts.get(each.kind, exactly(0))
+        is_exact = more.exact and each.count.exact
+        counts[each.kind] = exactly((more.lo or 0) + (each.count.lo or 0)) if is_exact else each.count
+    kinds = tuple(_of(kind, count) for kind, count in counts.items())
+    return asked.model_copy(update={"junctions": kinds, "control": None})
+
+
+def _all_of_kinds(signs: SignsInWords, counts: Mapping[MapJunctionKind, int]) -> Iterator[CountedSigns]:
+    """Yields the signs that stand at all junctions of a kind."""
+    for control, noun in signs.of_kinds:
+        kinds = [kind for kind in _kinds_of(noun) if kind in counts]
+        if len(kinds) == 1:
+            number = counts[kinds[0]]
+            yield CountedSigns(control, number, exactly(number), f" {noun}")
+
+
+def _kinds_of(nouns: str) -> list[MapJunctionKind]:
+    """Returns the kinds that some nouns name."""
+    found = [kind for kind, noun in KINDS_IN_PLURAL.items() if noun.search(f"2 {nouns.strip()}")]
+    found += [kind for kind, noun in KINDS_IN_SINGULAR.items() if noun.search(nouns)]
+    return list(dict.fromkeys(found)) or (["t_junction"] if SIDE_ROAD.search(nouns) else [])
 
 
 def _names_another_kind(signs: CountedSigns, counts: Mapping[MapJunctionKind, int]) -> bool:
@@ -209,8 +241,7 @@ def _first(counts: Mapping[MapJunctionKind, int], number: int) -> dict[MapJuncti
 def _kind(signs: CountedSigns, counts: Mapping[MapJunctionKind, int]) -> MapJunctionKind | None:
     """Returns the kind of the junctions with a sign, if the words behind their number name it."""
     number = signs.number
-    kinds = [kind for kind, noun in KINDS_IN_PLURAL.items() if noun.search(f"{number}{signs.nouns}")]
-    kinds = kinds or [kind for kind, noun in KINDS_IN_SINGULAR.items() if noun.search(signs.nouns)]
+    kinds = _kinds_of(signs.nouns)
     if (not kinds or counts.get(kinds[0], 0) < number) and CROSSING.search(signs.nouns):
         kinds = [kind for kind in OF_ANY_KIND if counts.get(kind, 0) >= number]
     return kinds[0] if kinds and counts.get(kinds[0], 0) >= number else None

@@ -113,6 +113,8 @@ class SignsInWords:
     """A number of junctions without the sign that all others have."""
     others: Control | None = None
     """The sign of all other junctions."""
+    of_kinds: tuple[tuple[Control, str], ...] = ()
+    """Signs of all junctions of a kind, with the noun of the kind: "lights at the crossroads only"."""
 
 
 def signs_in_words(said: str) -> SignsInWords:
@@ -136,10 +138,18 @@ def signs_in_words(said: str) -> SignsInWords:
         if (each := _counted(control, said)) is not None
     ]
     others = [control for control in SIGN_WORDS if _others(control).search(said)]
+    placed = named | {each.control for each in counted} | {*others}
+    of_kinds = [
+        (control, match[1])
+        for control in SIGN_WORDS
+        if control not in placed and not _is_denied(control, said)
+        for match in _at_kinds(control).finditer(said)
+    ]
     return SignsInWords(
         tuple(counted),
         all_but[0] if len(all_but) == 1 else None,
         others[0] if len(others) == 1 and not named & {*others} else None,
+        tuple(of_kinds),
     )
 
 
@@ -171,6 +181,13 @@ def _others(control: Control) -> re.Pattern[str]:
         rf"(?:\b{REST}{nouns}{{0,3}},? (?:all )?{HAVE} {ARTICLE}{SIGN_WORDS[control]}|"
         rf"\b{SIGN_WORDS[control]} {AT} (?:\w+ )?{REST})\b"
     )
+
+
+@cache
+def _at_kinds(control: Control) -> re.Pattern[str]:
+    the = r"(?:the|der|die|den|dem|am|aux?|le|la|les|el|al|los|las|il|alla|gli|i|alle|agli|ai)"
+    noun, alone = rf"({SINGULARS}|{PLURALS})", "only|alone|nur|seulement|solamente|solo|soltanto"
+    return re.compile(rf"\b{SIGN_WORDS[control]} {ONLY}?(?:{AT} )?{the} {noun}(?= (?:{alone}|[.,;])|$)")
 
 
 @cache

@@ -9,6 +9,7 @@ from roadgpt.brief.junctions import JunctionClause, Take
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.exit_words import COUNTS
 from roadgpt.brief.readers.model.map_words import TAKEN_BACK
+from roadgpt.brief.readers.model.ordinals import OTHERS
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.told_junctions import CROSSINGS
 
@@ -23,6 +24,10 @@ NUMBERS = {**COUNTS, "une": 1, "una": 1}
 TIMES = rf"{'|'.join(ONCE)}|(?:\d+|{'|'.join(NUMBERS)}) (?:times|mal|fois|veces|vez|volte|volta)"
 EXACTLY = "(?:exactly |only |just |genau |nur |exactement |exactamente |esattamente )?"
 TO = "(?:a la |a |nach )?"
+PLURALS: Mapping[Take, str] = {"left": "lefts|left turns", "right": "rights|right turns"}
+"""Nouns that a number counts, in English only."""
+REST_STRAIGHT = re.compile(rf"\b{OTHERS} (?:of them |all )?(?:go |fahr\w* )?{TO}(?:{WAYS['straight']})\b")
+"""Words with which the route crosses all other junctions."""
 NEVER = "never|nie|niemals|jamais|nunca|mai"
 
 
@@ -81,6 +86,7 @@ def told_takes(text: SlottedText) -> dict[Take, int]:
             rf"\b({TIMES}) {EXACTLY}{TO}(?:{way})\b",
             rf"\b(?:{way}) at {EXACTLY}(\d+) of (?:them|these|those)\b",
             rf"\b(?:{way}) at the other (\d+)\b",
+            *([rf"\b(\d+) (?:{PLURALS[take]})\b"] if take in PLURALS else []),
         )
         numbers = {_number(each) for pattern in patterns for each in re.findall(pattern, said)}
         if re.search(rf"\b(?:{NEVER}) (?:turn |go )?{TO}(?:{way})\b", said):
@@ -90,7 +96,8 @@ def told_takes(text: SlottedText) -> dict[Take, int]:
         if numbers:
             found[take] = numbers.pop()
     # a single number may be that of the bends of a road
-    return found if len(found) > 1 and any(found.values()) else {}
+    is_clear = len(found) > 1 or REST_STRAIGHT.search(said) is not None
+    return found if is_clear and any(found.values()) else {}
 
 
 def _number(said: str) -> int:
