@@ -24,6 +24,10 @@ class EditError(UsageError):
     """A change request cannot be understood, names something that is not on the road, or cannot be met."""
 
 
+class IdleEditError(EditError):
+    """A change request, as it was read, would change nothing on the road."""
+
+
 class DesignError(RoadGPTError):
     """No road could be designed on this map that meets every requirement of the Brief."""
 

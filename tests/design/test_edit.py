@@ -1,6 +1,7 @@
 """Edits of a Design: what is asked for is measured afterwards, and nothing else is touched."""
 
 from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -128,6 +129,7 @@ def test_turns_to_one_hand_do_not_run_into_each_other() -> None:
         ("h01", "turn 1: side left", "is so already"),
         ("h12", "road: remove", "no road would be left"),
         ("h07", "road: slope flat", "is so already"),
+        ("h07", "road: slope less", "is so already"),
         ("h01", "straight 1: length =900", "leaves the map"),
         ("h01", "road: length =5", "too short"),
         ("h01", "turn middle: angle more", "none is in the middle"),
@@ -401,3 +403,14 @@ def test_only_the_part_that_climbs_becomes_steeper() -> None:
     ):
         after = edited(design, plan).design
         assert [segment.incline for segment in after.segments] == pytest.approx(wanted, abs=0.3), plan
+
+
+def test_what_changes_nothing_gives_way_to_a_reading_of_the_same_sort_that_does() -> None:
+    before = len(seen(ROADS["r01"]).turns)
+    idle = replace(read_change_plan(f"turn: x..{before + 2}"), words="two more", other=f"turn: x{before + 2}")
+    made = edit(ROADS["r01"], idle, WORLD)
+    assert len(seen(made.design).turns) == before + 2
+    assert made.confidence == 0.5
+    for other in ("", "turn 1: remove"):
+        with pytest.raises(EditError, match="is so already"):
+            edit(ROADS["r01"], replace(idle, other=other), WORLD)

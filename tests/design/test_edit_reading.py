@@ -255,6 +255,8 @@ PARTS = [
 """How many turns there are, distances from an end, moves, steepness, crests."""
 
 BY_RULES = [
+    ("swap the first turn and the last turn, the straights stay where they are", "turn 1,-1: swap"),
+    ("tausche die zweite und die dritte Kurve, der Rest bleibt, wie er ist", "turn 2,3: swap"),
     ("reverse the road", "road: reverse"),
     ("Please drive it the other way round.", "road: reverse"),
     ("Kehre die Fahrtrichtung um", "road: reverse"),

@@ -11,6 +11,7 @@ from roadgpt.brief.change.clashes import refuse_clashes
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import EditRequest
 from roadgpt.brief.readers.model import ModelReader
+from roadgpt.brief.readers.model.confidence import DOUBT
 from roadgpt.brief.refusal import MOST_CHARACTERS, causes_of
 from roadgpt.errors import BriefError, EditError
 
@@ -49,9 +50,27 @@ def read_request(words: str) -> EditRequest:
     except BriefError as error:
         raise EditError(str(error)) from error
     if reading.plan.startswith("!"):
-        raise _refusal(words, reading.plan)
+        raise _refusal(words, reading.plan, reading.other)
     request = read_change_plan(reading.plan)
-    return replace(request, words=words, unused=reading.unused, confidence=reading.confidence)
+    return replace(
+        request, words=words, unused=reading.unused, confidence=reading.confidence, other=reading.other
+    )
+
+
+def second_reading(request: EditRequest) -> EditRequest | None:
+    """Returns the second likeliest reading of a change request, with a doubt; None if none is likely, or if
+    it asks for changes of another sort.
+
+    Raises:
+        EditError: two of its changes need separate requests.
+    """
+    if not request.other:
+        return None
+    other = read_change_plan(request.other)
+    if {each.what for each in other.changes} != {each.what for each in request.changes}:
+        return None
+    refuse_clashes(other.changes)
+    return replace(other, words=request.words, confidence=min(request.confidence, DOUBT))
 
 
 @cache
@@ -63,7 +82,8 @@ def _normal_form(line: str) -> str:
     return change_plan(read_change_plan(line))
 
 
-def _refusal(words: str, plan: str) -> EditError:
+def _refusal(words: str, plan: str, other: str) -> EditError:
+    """Returns the error for a request that is refused; if it is only unclear, the error offers a plan."""
     shown = " ".join(words.split())
     shown = shown if len(shown) <= SHOWN else f"{shown[: SHOWN - 3].rstrip()}..."
     kind, causes = causes_of(plan)
@@ -76,9 +96,10 @@ def _refusal(words: str, plan: str) -> EditError:
                 f"'{shown}' cannot be done: {causes or 'no road can be like that'}; leave that out"
             )
         case "!unclear":
-            return EditError(f"'{shown}' does not say what is to change where; {ADVICE}")
+            advice = f'or is this meant: --plan "{other}"' if other else ADVICE
+            return EditError(f"'{shown}' does not say what is to change where; {advice}")
         case _:
             return EditError(f"'{shown}' is no change of a road that I know; {ADVICE}")
 
 
-__all__ = ["EditRequest", "checked_request", "read_request"]
+__all__ = ["EditRequest", "checked_request", "read_request", "second_reading"]

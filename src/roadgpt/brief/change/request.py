@@ -202,3 +202,5 @@ class EditRequest:
     """Words of the request that were not understood."""
     confidence: float = 1.0
     """Estimated probability that the request was read correctly."""
+    other: str = ""
+    """The plan of the second likeliest reading; empty if no other is likely."""

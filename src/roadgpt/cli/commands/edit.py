@@ -115,7 +115,7 @@ def edit_road(
     row = row_of(run, str(folder / test_name(1)), test_name(1))
     if screen.as_json:
         told = {"request": words, "of": before.path, "changes": made.changes, "unused": made.unused}
-        sure = {"confidence": made.confidence, "is_sure": made.confidence >= SURE}
+        sure = {"confidence": made.confidence, "is_sure": made.confidence >= SURE, "other": made.other}
         print(json.dumps({**told, **sure, **json.loads(row.to_json())}, ensure_ascii=False))
         return place
     _print_edit(screen, made, row, place, pictures)
@@ -133,6 +133,8 @@ def _print_edit(
     if made.confidence < SURE:
         sure = f"{100 * made.confidence:.0f} % sure"
         screen.say(f"perhaps not understood as meant ({sure}), so check it or say it in other words")
+        if made.other:
+            screen.say(f'it could also mean: --plan "{made.other}"')
     if made.unused:
         screen.say("not understood: " + ", ".join(f"'{word}'" for word in made.unused))
     with screen:

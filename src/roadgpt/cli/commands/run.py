@@ -204,7 +204,9 @@ def all_remarks(brief: "Brief", world: "World | None", given: "World | None") ->
     if world is None:
         return remarks(brief, inf)
     found = remarks(brief, world.site.map_size, world.site.friction)
-    return tuple(filter(None, (*found, *lane_remarks(brief, world), map_remark(brief, given or world, world))))
+    return tuple(
+        filter(None, (*found, *lane_remarks(brief, world), map_remark(brief, given or world, world)))
+    )
 
 
 def other_reading(brief: "Brief") -> str:

@@ -12,16 +12,17 @@ may be shifted or rotated, so that it stays inside the map.
 from typing import NamedTuple
 
 from roadgpt import plugins
-from roadgpt.brief.change import EditRequest, checked_request, read_request
+from roadgpt.brief.change import EditRequest, checked_request, read_request, second_reading
 from roadgpt.brief.change.request import OF_SLOPE
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
+from roadgpt.check.measures import Measures
 from roadgpt.design.differences import grades_changed, sentences
 from roadgpt.design.edit.candidates import candidates_of
 from roadgpt.design.edit.chatting import edited_by_chat
 from roadgpt.design.edit.placing import placed
 from roadgpt.design.edit.search import made
 from roadgpt.design.road_elements import RoadElements, elements_on_road
-from roadgpt.errors import EditError
+from roadgpt.errors import EditError, IdleEditError
 from roadgpt.road import Design, Geometry, World
 
 MOST_CHANGES = 12
@@ -36,6 +37,8 @@ class Edited(NamedTuple):
     """Words of the request that were not understood."""
     confidence: float = 1.0
     """Estimated probability that the request was read correctly."""
+    other: str = ""
+    """The plan of another reading that is likely; empty if there is none."""
 
 
 def edit(
@@ -72,6 +75,24 @@ def edit(
         )
         return Edited(road.design, sentences(design, elements, found, road, road.design))
     request = checked_request(words)
+    try:
+        return _edited(design, request, elements, found, world, geometry)
+    except IdleEditError:
+        other = second_reading(request)
+        if other is None:
+            raise
+        return _edited(design, other, elements, found, world, geometry)
+
+
+def _edited(
+    design: Design,
+    request: EditRequest,
+    elements: RoadElements,
+    found: Measures,
+    world: World,
+    geometry: Geometry,
+) -> Edited:
+    """Returns the Design with the changes of a request that was read."""
     changes = placed(request.changes, elements)
     if len(changes) > MOST_CHANGES:
         raise EditError(f"{len(changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer")
@@ -85,7 +106,7 @@ def edit(
         *sentences(design, elements, found, road, draft),
         *(f"'{each.change.words}' was so already" for each in proposed if not each.ways),
     ]
-    return Edited(road.design, tuple(told), request.unused, request.confidence)
+    return Edited(road.design, tuple(told), request.unused, request.confidence, request.other)
 
 
 def _allowed(words: str | EditRequest, elements: RoadElements) -> set[int] | None:

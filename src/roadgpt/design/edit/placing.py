@@ -10,7 +10,7 @@ from roadgpt.design.edit.likeness import with_value_of
 from roadgpt.design.edit.pointing import among, around_middle, named, pointed, turns
 from roadgpt.design.edit.stretches import RoadStretch, stretch_of
 from roadgpt.design.road_elements import RoadElement, RoadElements
-from roadgpt.errors import EditError
+from roadgpt.errors import EditError, IdleEditError
 
 LEAST_FOR_HILL = 40.0  # m: the shortest straight for a crest or a dip
 
@@ -126,7 +126,7 @@ def _like_its_model(asked: Change, changes: Sequence[Change], elements: RoadElem
         raise EditError(f"'{asked.words}' has to compare with one turn or one straight; name it")
     own = tuple(each for each in pointed(asked.target, elements, asked.what) if each is not models[0])
     if not own:
-        raise EditError(f"'{asked.words}' compares a place with itself; name another one")
+        raise IdleEditError(f"'{asked.words}' compares a place with itself; name another one")
     others = []
     for other in changes:
         if other is asked or other.target is None or other.what in ("add", "count", "move", "swap"):

@@ -30,7 +30,7 @@ from roadgpt.design.edit.steps import (
 )
 from roadgpt.design.fit import Look, Requirements, fit
 from roadgpt.design.road_elements import RoadElements, elements_on_road, joined, numbered
-from roadgpt.errors import EditError, UsageError
+from roadgpt.errors import EditError, IdleEditError, UsageError
 from roadgpt.road import Design, Geometry, World
 from roadgpt.road.design import MAX_SEGMENTS
 
@@ -71,7 +71,7 @@ def made(
     needed = [each for each in changes if each.ways]
     idle = [each for each in changes if not each.ways]
     if not needed:
-        raise EditError(f"nothing is to be changed: '{idle[0].change.words}' is so already")
+        raise IdleEditError(f"nothing is to be changed: '{idle[0].change.words}' is so already")
     road, objection, draft = _fitted(design, elements, [each.ways for each in needed], world, geometry)
     if road is None:
         said = " and ".join(dict.fromkeys(f"'{each.change.words}'" for each in needed))
@@ -80,7 +80,7 @@ def made(
         _refuse_broken_limits(idle, needed, road, geometry)
     is_of_road = any(each.change.what in ("mirror", "reverse") for each in needed)
     if road.design.segments == design.segments and not is_of_road:
-        raise EditError(f"nothing is to be changed: '{needed[0].change.words}' is so already")
+        raise IdleEditError(f"nothing is to be changed: '{needed[0].change.words}' is so already")
     return Made(road, draft)
 
 

@@ -189,6 +189,8 @@ def road_slope_candidates(
             return ()
         slopes = [SlopeOfAll(names, least=low, most=aim_at.most, sign=sign) for low in aim_at.least]
     elif change.more < 0:
+        if all(abs(incline) < LEVEL for incline in inclines):
+            return ()
         slopes = [SlopeOfAll(names, times=times) for times in (FLATTER, 0.75)]
     elif all(abs(incline) < LEVEL for incline in inclines):
         slopes = [SlopeOfAll(names, least=STEEP_FROM, most=limit, sign=sign or 1)]

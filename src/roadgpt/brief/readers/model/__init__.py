@@ -77,6 +77,8 @@ class ChangeReading(NamedTuple):
     confidence: float
     unused: tuple[str, ...]
     """Words that the plan does not depend on."""
+    other: str = ""
+    """The second likeliest plan that is no refusal; empty if none is likely."""
 
 
 class UncalibratedReading(NamedTuple):
@@ -160,16 +162,20 @@ class ModelReader:
         known = read_by_rules(line, text)
         if known is not None:
             return ChangeReading(known, CERTAIN, ())
-        near = (draft for draft in found if draft.score >= found[0].score - ALMOST)
+        near = [draft for draft in found if draft.score >= found[0].score - ALMOST]
         draft = next((draft for draft in near if not lost_numbers(draft, text)), found[0])
+        others = (with_sign(each.line, text) for each in near if each is not draft and not each.is_refusal)
+        other = next(others, "")
         found_in = features(self.roads.networks, draft, text)
         if draft.is_refusal:
-            return ChangeReading(draft.line, confidence(self._settings["changes"], found_in, (), text), ())
+            sure = confidence(self._settings["changes"], found_in, (), text)
+            return ChangeReading(draft.line, sure, (), other)
         lost = lost_numbers(draft, text)
         unused = self.roads.unused(text, draft.tokens)
         sure = confidence(self._settings["changes"], found_in, (*lost, *unused), text)
         sure = min(sure, DOUBT) if is_denial(words) or is_doubtful_climb(draft.line, text) else sure
-        return ChangeReading(with_sign(draft.line, text), sure, tuple(dict.fromkeys([*lost, *unused])))
+        unused = tuple(dict.fromkeys([*lost, *unused]))
+        return ChangeReading(with_sign(draft.line, text), sure, unused, other)
 
     def uncalibrated(self, words: str, refuse_from: float) -> UncalibratedReading | None:
         """Returns the likeliest plan of a description as an UncalibratedReading; None if no plan could be

@@ -32,6 +32,12 @@ MORE = re.compile(
     r"radi\w+|raggi\w*|rayon\w*|angle\w*|winkel\w*|angul\w*|angol\w*|slope\w*|grade\w*|not|nicht|pas|no|non)\b"
 )
 """Words with which something other than the places of two turns is exchanged, or nothing."""
+STAYS = re.compile(
+    r" [,;.] (?:and |but |und |aber |et |mais |y |pero |e |ma )?[^,;.]*\b(?:stays?|keep|kept|remains?|"
+    r"unchanged|untouched|bleib\w*|unverandert|reste(?:nt)?|inchange\w*|qued\w+|igual|sin cambi\w+|"
+    r"rest(?:a|ano)|invariat\w)\b[^,;.]*(?: , wie [^,;.]*)?(?: \.)?$"
+)
+"""What stays as it is, said at the end."""
 COPIED = re.compile(r"(turn|straight) (-?\d),(-?\d): (angle|radius|length|slope) =(turn|straight) (-?\d)")
 """A plan that gives one of two parts the value of the other."""
 WORDS = 12  # words of a request at most
@@ -42,7 +48,7 @@ def turns_to_swap(text: SlottedText) -> str | None:
 
     The turns are named as in plans of changes: "turn 1,3", or "turn all" for "the two turns".
     """
-    said = " ".join(word.text for word in text.words if word.written)
+    said = STAYS.sub("", " ".join(word.text for word in text.words if word.written))
     if not SWAP.search(said) or MORE.search(said) or len(said.split()) > WORDS:
         return None
     found = TWO.findall(said)
