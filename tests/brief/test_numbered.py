@@ -133,7 +133,7 @@ def test_turns_get_the_values_of_a_list(words: str, read: str, meant: str | None
         (
             "five crossroads, stop signs at the first and the last and lights at the other three",
             " // ".join(["crossroads stop"] * 5),
-            "crossroads stop // crossroads lights // crossroads lights // crossroads lights // crossroads stop",
+            " // ".join(["crossroads stop", *["crossroads lights"] * 3, "crossroads stop"]),
         ),
         (
             "Drei Kreuzungen: Stoppschild an der ersten und letzten, Ampel an der zweiten",
