@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from design.short_searches import short_searches
+from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.cli import app
@@ -39,7 +40,7 @@ def test_the_map_grows_until_any_seed_finds_room(line: str) -> None:
     for seed in range(20, 26):
         points = build(draft(brief, world, seed=seed)).sample().points
         assert np.all((points[:, :2] > 0) & (points[:, :2] < world.site.map_size))
-    assert f"the map is {world.site.map_size:g} m wide" in map_remark(World(), world)
+    assert f"the map is {world.site.map_size:g} m wide" in map_remark(Brief(), World(), world)
 
 
 LONG_ROUTES = (
@@ -72,7 +73,7 @@ def test_it_stays_where_there_is_room_for_a_route() -> None:
 )
 def test_it_stays_where_there_is_room(line: str) -> None:
     assert world_for(read_plan(line), World()) == World()
-    assert map_remark(World(), World()) == ""
+    assert map_remark(Brief(), World(), World()) == ""
 
 
 def test_it_takes_the_surface_as_well() -> None:

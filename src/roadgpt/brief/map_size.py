@@ -46,6 +46,7 @@ FORMS = tuple(
         rf"(?P<on>\b{ON} )?(?P<rest>\b(?:{ARTICLE} )?){METRES}[ -]{SQUARE} (?P<noun>{MAP}|{GROUND})",
         rf"(?P<on>\b{ON} )(?P<rest>(?:{ARTICLE} )?{MAP}) {OF}{METRES}(?! (?:of|de|von|di)\b)",
         rf"(?P<on>\b{ON} )(?P<rest>(?:{ARTICLE} )?){METRES}[ -](?P<noun>{MAP})",
+        rf"(?P<on>(?:^|(?<=[.;] ))(?:{ARTICLE} )?)(?P<rest>){METRES}[ -]{MAP}(?=[,.;:])",
         rf"(?P<on>\b{SIZE}(?: of| von| de| di|:| =| is)? )(?P<rest>){TWO}",
         rf"(?P<on>\b{SIZE}(?: of| von| de| di|:| =| is)? )(?P<rest>){METRES}",
     )

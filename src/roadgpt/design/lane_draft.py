@@ -200,8 +200,8 @@ def _continued(brief: Brief) -> list[Brief]:
         if is_one_road(place):
             roads[n] = _of_same_road(roads[n + 1], roads[n], place)
     for n, place in enumerate(places):
-        following = places[n + 1].kind if n + 1 < len(places) else None
-        if _keeps_lanes(place, roads[n]) and following not in (*RAMPS, "roundabout"):
+        leads_to = places[n + 1] if n + 1 < len(places) else None
+        if _keeps_lanes(place, roads[n]) and (leads_to is None or _can_take(leads_to, roads[n])):
             roads[n + 1] = _with_same_lanes(roads[n], roads[n + 1])
     for n, place in enumerate(places):
         if _leads_on(place) and (n + 1 == len(places) or places[n + 1].kind != "roundabout"):
@@ -248,6 +248,16 @@ def _keeps_lanes(place: JunctionClause, road: Brief) -> bool:
     is_said = road.lanes is not None and road.against is not None and span(road.against).hi > 0
     turns = place.take in ("left", "right") and place.kind in ("t_junction", "crossroads", "junction")
     return leads_straight_on(place) or (turns and is_said)
+
+
+def _can_take(place: JunctionClause, road: Brief) -> bool:
+    """Returns whether a road with the lanes of ``road`` may lead to a junction; a ramp is a road of its own,
+    and a roundabout needs as many lanes.
+    """
+    if place.kind != "roundabout":
+        return place.kind not in RAMPS
+    is_open = place.lanes is None and place.radius is None and place.outer is None and place.size != "mini"
+    return is_open and span(road.lanes).lo <= MOST_RING_LANES
 
 
 def _with_same_lanes(known: Brief, road: Brief) -> Brief:

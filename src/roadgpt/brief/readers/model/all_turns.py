@@ -9,13 +9,14 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, exactly
+from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, exactly, span
 from roadgpt.brief.normal import STRAIGHT, total
 from roadgpt.brief.readers.model.bounds import SENTENCE_STOPS, STOPS
 from roadgpt.brief.readers.model.count_correction import measured_values
 from roadgpt.brief.readers.model.nouns import COUNTED, LEFT, ONE_TURN, RIGHT
 from roadgpt.brief.readers.model.slots import SlottedText, slot_name
 from roadgpt.brief.readers.model.word_set import word_set
+from roadgpt.brief.words import KINDS
 
 FEWEST = 3
 """The smallest number of turns in a list that is made as long as the words say."""
@@ -53,6 +54,7 @@ def with_words_of_all_turns(brief: Brief, text: SlottedText) -> Brief:
     if brief.junctions or brief.map is not None:
         return brief
     brief = _with_limit_of_all(_with_whole_alternation(brief, text), text)
+    brief = _with_limit_of_others(brief, text)
     brief = _with_measure_of_all(brief, text)
     return _with_unlike_parts(_with_other_exception(brief, text), text)
 
@@ -119,6 +121,28 @@ def _with_limit_of_all(brief: Brief, text: SlottedText) -> Brief:
             clauses = tuple(_without(clause, name) for clause in brief.clauses)
             return brief.model_copy(update={"clauses": clauses, name: limit})
     return brief
+
+
+def _with_limit_of_others(brief: Brief, text: SlottedText) -> Brief:
+    """Gives the limit of all angles only to turns that can keep it, if the words make an exception: "but for
+    the last, a hairpin, no turn exceeds 40 degrees".
+    """
+    words = {word.text for word in text.words}
+    limit, most = brief.degrees, span(brief.degrees).hi
+    is_excepted = [least_of(clause) > most for clause in brief.clauses]
+    if limit is None or words.isdisjoint(EXCEPT) or not any(is_excepted) or all(is_excepted):
+        return brief
+    clauses = tuple(
+        each if each.kind in STRAIGHT or each.degrees or above else each.model_copy(update={"degrees": limit})
+        for each, above in zip(brief.clauses, is_excepted, strict=True)
+    )
+    return brief.model_copy(update={"clauses": clauses, "degrees": None})
+
+
+def least_of(clause: Clause) -> float:
+    """Returns the least angle in degrees of the turns of a clause."""
+    own = KINDS[clause.kind].degrees
+    return max(span(clause.degrees).lo, own.lo if own and clause.kind not in STRAIGHT else 0.0)
 
 
 def _with_measure_of_all(brief: Brief, text: SlottedText) -> Brief:

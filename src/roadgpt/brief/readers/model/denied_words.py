@@ -3,6 +3,7 @@ nothing against the rest, so nothing is contradicted.
 """
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 from roadgpt.brief.readers.model.denial import places_reached
 from roadgpt.brief.readers.model.slots import SlottedText
@@ -47,13 +48,18 @@ def without_denials(
 
 
 def _implied(offered: Sequence[str]) -> set[str]:
-    """Returns what a plan asks for of all that can be denied; a required climb implies "up"."""
+    """Returns what a plan asks for of all that can be denied; a required climb implies "up", or "down" if it
+    is negative, and "flat" excludes both.
+    """
     found = {token.rpartition("_")[2] for token in offered} & DENIABLE
     if not TO_BOTH_SIDES.isdisjoint(offered):
         found |= {"left", "right"}
     if "hills=" in offered:
         found |= {"up", "down"}
-    return found | {"up"} if "climb=" in offered else found
+    if "flat" in offered:
+        found |= {"flat"}
+    climbs = [after for key, after in pairwise([*offered, ""]) if key == "climb="]
+    return found | {"down" if after == "-" else "up" for after in climbs}
 
 
 def _denied(asked: Sequence[str]) -> Sequence[str]:

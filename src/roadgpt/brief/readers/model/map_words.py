@@ -83,6 +83,8 @@ ALL_KINDS = re.compile(
     rf"(?:{CROSSINGS})(?: ,)? (?:(?:{IN_ALL})\b|(?:\d+ )?{OF_THESE}\b))"
 )
 """A number before a word for junctions of any kind."""
+ARMED = re.compile(r"\b(\d+) (?:- )?(?:arm\w*|leg\w*|branch\w*|brazos|bracci|way)\b")
+"""A number of arms."""
 EITHER = re.compile(r"\b(?:crossings|intersections|kreuzungen|carrefours|croisements|cruces|incroci)\b")
 """Nouns that mean crossroads, or junctions of any kind."""
 NUMBER = rf"\b(\d+) (?:{OF_THESE}(?: (?:are|being|sind|son|sean|sont|sono|siano))? )?"
@@ -220,8 +222,10 @@ def _counted_kinds(asked: MapClause, said: str) -> tuple[JunctionCount, ...]:
         return asked.junctions
     out, kinds = [], [each.kind for each in asked.junctions]
     for each in asked.junctions:
-        noun = KINDS_IN_PLURAL.get(each.kind)
+        noun, single = KINDS_IN_PLURAL.get(each.kind), KINDS_IN_SINGULAR.get(each.kind)
         number = one_number(noun.findall(said)) if noun else None
+        if single and each.count.exact and f"{each.count.lo:g}" in ARMED.findall(said):
+            number = number or len(single.findall(said))  # "a three-arm roundabout" is one
         is_clear = number is not None and each.count.exact and kinds.count(each.kind) == 1
         out.append(each.model_copy(update={"count": exactly(number)}) if is_clear and number else each)
     return tuple(out)

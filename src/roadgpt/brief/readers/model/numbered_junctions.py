@@ -19,7 +19,7 @@ from roadgpt.brief.readers.model.map_words import (
     KINDS_IN_SINGULAR,
     TAKEN_BACK,
 )
-from roadgpt.brief.readers.model.ordinals import EXCEPT, OTHERS, WHICH, places_in
+from roadgpt.brief.readers.model.ordinals import DETERMINER, EXCEPT, OTHERS, WHICH, places_in
 from roadgpt.brief.readers.model.sign_words import (
     ALL,
     ARE,
@@ -47,6 +47,11 @@ NOT_GIVEN = re.compile(
     r"\b(?:giv\w*|yield\w*|gewahr\w*|ced\w*|d(?:o|a|are|ai|iamo)|losing|lose|without|no) (?:\w+ )?$"
 )
 """Words before "priority" or "precedenza" with which the route has none."""
+OF_OTHERS = re.compile(
+    r"\b(?:cross traffic|traffic|others?|everybody|everyone|they|side (?:roads?|streets?)|querverkehr|"
+    r"quer\w*|anderen?|autres?|transversal\w*|demas|otr[oa]s?|altri|altre|laterali)\b[^.,;:]*$"
+)
+"""Words before a sign that is not for the route."""
 NO_WAY = re.compile(
     r"\b(?:on|from|von|auf|de|da|sur|desde|por|su) (?:the |your |my |our |its |la |der |mano )?$|"
     r"\b(?:sulla|dalla|keep|bear|lane|then|and then|sharp|slight\w*|slightly) $"
@@ -54,6 +59,7 @@ NO_WAY = re.compile(
 """Words before a side that is no way at a junction, or not the whole of it: "a side road on the left"."""
 AT = r"(?:at|on|an|am|bei|beim|auf|in|im|aux?|al|alla|allo|all '|a|en|sur|dans|nel|nella|of)"
 PLACES = rf"({WHICH}|{OTHERS})"
+EVERY = rf"(?:{ALL}|each|throughout|both|beide\w*|amb[oa]s|entramb[ie]|chaque|cada|ciascun\w*)"
 NOUN = rf"(?:(?:{SINGULARS}|{PLURAL}|{ANY_KIND}|ones?)\b|{OF_THEM})"
 ENDS = rf"(?= (?:[.,;:!?)]|and|und|et|y|e|{EXCEPT}|sind|ist|steht|stehen)(?: |$)|$)"
 """What may follow the places; any other word, as in "the second exit", names something else."""
@@ -100,6 +106,8 @@ def with_numbered_junctions(brief: Brief, text: SlottedText) -> Brief:
     ways = _by_junction(brief.junctions, takes, said)
     if any(brief.junctions[n].kind not in CROSSINGS or brief.junctions[n].ways for n in ways):
         ways = {}
+    if any(brief.junctions[n].others_stop and each != "priority" for n, each in controls.items()):
+        controls = {}  # the sign is that of the other roads
     junctions = _signed(
         brief.junctions, controls, {sign for sign in SIGNS if _is_complete(sign, signs, said)}
     )
@@ -118,7 +126,8 @@ def placed_signs(said: str) -> Iterator[Placed]:
     """
     for control, sign in SIGNS.items():
         for each, before in _found(control, (*_forms(sign), *_forms_of_sign(sign)), said):
-            if control != "priority" or not NOT_GIVEN.search(before):
+            is_given = control == "priority" and NOT_GIVEN.search(before) is not None
+            if not is_given and not OF_OTHERS.search(before):
                 yield each
 
 
@@ -153,9 +162,11 @@ def _forms(words: str) -> tuple[re.Pattern[str], ...]:
 @cache
 def _forms_of_sign(sign: str) -> tuple[re.Pattern[str], ...]:
     """Returns the forms in which the places stand before a sign."""
+    every = rf"(?:{AT} )*({EVERY})(?: (?:of )?(?:{DETERMINER} )*({NOUN}))?(?: {OF_THEM})?"
     noun, end = rf"(?: ({NOUN}))? ,? ?", rf"\b(?: {AT} {ALL} \w+)?(?! {AT} ){ENDS}"
     have = rf"(?:{HAVE}|{VERB} (?:with|mit|avec|con))"
     return (
+        re.compile(rf"\b{sign} {every}{ENDS}(?! ?,? ?{EXCEPT})"),
         re.compile(rf"\b{PLACES}{noun}{have} {ARTICLE}{sign}{end}"),
         re.compile(rf"\b(?:{AT} )+(?:{ONLY})?{PLACES}{noun}{ARE} {ARTICLE}{sign}{end}"),
     )
@@ -193,7 +204,8 @@ def _by_junction(junctions: Sequence[JunctionClause], found: Sequence[Placed], s
     rest = [each for each in found if re.fullmatch(OTHERS, each.where)]
     for each in (each for each in found if each not in rest):
         row = _row(junctions, each.noun, said)
-        named = {row[place] for place in places_in(each.where, len(row)) or ()}
+        is_of_all = re.fullmatch(EVERY, each.where) is not None
+        named = {*row} if is_of_all else {row[place] for place in places_in(each.where, len(row)) or ()}
         numbers = [n for n in row if (n in named) != each.is_exception] if named else []
         if not numbers or any(out.get(n, each.value) != each.value for n in numbers):
             return {}

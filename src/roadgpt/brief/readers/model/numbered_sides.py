@@ -68,7 +68,7 @@ def with_numbered_sides(brief: Brief, text: SlottedText) -> Brief:
     here = sum(clause.kind not in STRAIGHT for clause in each)
     if not is_road or not here or CORRECTED.search(said) or NOT_THIS.search(said):
         return brief
-    each = _as_long(each, _told(said) or here) or each
+    each = _as_long(each, told_turns(said) or here) or each
     sides = _sides(said, sum(clause.kind not in STRAIGHT for clause in each))
     if sides is None:
         return brief
@@ -87,8 +87,8 @@ def _as_long(clauses: Sequence[Clause], number: int) -> list[Clause]:
     return [*clauses[:first], *inner[:1] * number, *clauses[last + 1 :]]
 
 
-def _told(said: str) -> int | None:
-    """Returns the number of turns in the words; None if there is none or several."""
+def told_turns(said: str) -> int | None:
+    """Returns the number of turns in words, as networks read them; None if there is none, or several."""
     found = {int(first or second) for first, second in COUNT.findall(said)}
     return found.pop() if len(found) == 1 else None
 

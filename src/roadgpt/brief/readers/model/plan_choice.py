@@ -7,13 +7,14 @@ from typing import TypeVar
 from roadgpt.brief.amount import meets
 from roadgpt.brief.feasible import check
 from roadgpt.brief.junctions import BENDS
-from roadgpt.brief.model import Brief, Clause, exactly
+from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.normal import STRAIGHT, normal, total
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
 from roadgpt.brief.readers.model.armed_junctions import with_told_arms
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
+from roadgpt.brief.readers.model.denied_slopes import with_denied_slope
 from roadgpt.brief.readers.model.exit_words import with_motorway_behind_ramp, with_stay_on_motorway
 from roadgpt.brief.readers.model.from_start import with_distances_from_start
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
@@ -23,10 +24,11 @@ from roadgpt.brief.readers.model.map_signs import with_counted_signs
 from roadgpt.brief.readers.model.map_words import asks_for_grid, with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.numbered_junctions import with_numbered_junctions
-from roadgpt.brief.readers.model.numbered_sides import with_numbered_sides
+from roadgpt.brief.readers.model.numbered_sides import told_turns, with_numbered_sides
 from roadgpt.brief.readers.model.other_roads import with_other_roads
 from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lane
 from roadgpt.brief.readers.model.ramp_lengths import with_distances_to_exits, with_ramp_lengths
+from roadgpt.brief.readers.model.ring_sizes import used_diameters
 from roadgpt.brief.readers.model.sharp_sides import with_sharp_side
 from roadgpt.brief.readers.model.side_roads import with_sides_of_side_roads
 from roadgpt.brief.readers.model.slots import SlottedText
@@ -34,11 +36,13 @@ from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.told_junctions import (
     has_told_kinds,
     most_of_kinds,
+    names_kinds,
     number_of_listed,
     with_told_letter,
     with_told_total,
 )
 from roadgpt.brief.readers.model.told_takes import with_told_takes
+from roadgpt.brief.readers.model.used_words import left_out
 from roadgpt.brief.readers.model.whole_drive import with_whole_drive
 from roadgpt.brief.readers.model.word_set import word_set
 from roadgpt.brief.words import Range
@@ -50,6 +54,8 @@ NEARLY = 0.7  # difference of score
 EACH = word_set("each apiece every je jeweils jede chacun chacune chaque cada ciascuno ciascuna ogni")
 LONGEST_TURN = 1000.0
 """Length in metres from which no length is that of each of several turns."""
+ALMOST = 1.0  # difference of score
+FAIRLY = 1.5  # difference of score
 LIKELY = 2.5
 """Largest difference of score at which a plan is preferred that has as many junctions as the words name."""
 
@@ -61,14 +67,41 @@ def most_plausible(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan
     lists none or no plan has them, returns the likeliest plan; but if that is a route or a map that
     contradicts itself, returns the likeliest plan that does not, if it is nearly as likely.
     """
-    first = found[0]
+    first = found[0] if found[0].is_refusal else _with_all_numbers(found, text) or found[0]
+    found = (first, *(draft for draft in found if draft is not first))
     listed = _as_listed(found, text)
-    if listed is not None or first.is_refusal or not is_of_junctions(first.line):
+    if listed is not None or first.is_refusal:
         return listed or first
+    if not is_of_junctions(first.line):
+        return _with_told_turns(found, text) or first
     if can_be_kept(first.line):
         return _as_counted(found, text) or first
     near = [draft for draft in found if not draft.is_refusal and draft.score > first.score - NEARLY]
     return next((draft for draft in near if can_be_kept(draft.line)), first)
+
+
+def _with_all_numbers(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
+    """Returns the likeliest plan that leaves out no number of the text, if it is almost as likely as the
+    first plan; else None.
+    """
+    near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - ALMOST)
+    whole = (draft for draft in near if {*left_out(draft.tokens, text)} <= used_diameters(draft.tokens, text))
+    return next((draft for draft in whole if can_be_kept(draft.line)), None)
+
+
+def _with_told_turns(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
+    """Returns the likeliest plan of a single road with as many turns as the words count, if it is nearly as
+    likely as the first plan; else None.
+    """
+    told = told_turns(text.text)
+    near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - FAIRLY)
+    kept = (draft for draft in near if not is_of_junctions(draft.line) and can_be_kept(draft.line))
+    return next((draft for draft in kept if told is not None and _turns(draft.line) == exactly(told)), None)
+
+
+def _turns(line: str) -> Amount:
+    brief = normal(read_plan(line))
+    return brief.turns or total(brief.clauses)
 
 
 def _as_counted(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
@@ -86,6 +119,7 @@ def _as_counted(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | 
             for draft, brief in plans
             if has_told_kinds(brief, most)
             and listed in (None, len(brief.junctions))
+            and names_kinds(brief, text)
             and not (no_village and brief.map is not None and brief.map.junctions)
         ),
         None,
@@ -111,11 +145,12 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
 def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, corrected by rules where the words of the description are clear."""
     brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line)), text), text)
+    brief = with_denied_slope(brief, text)
     brief = with_numbered_sides(with_listed_values(with_checked_counts(brief, text), text), text)
     brief = with_told_takes(with_told_total(brief, text), text)
     brief = with_ramp_lengths(with_distances_to_exits(with_counted_junctions(brief, text), text), text)
     brief = with_whole_length(with_counted_signs(with_counted_map(brief, text), text), text)
-    brief = _with_listed_hills(with_each_lane(brief))
+    brief = _with_listed_hills(with_each_lane(_into_new_lane(brief)))
     brief = _with_turns_by_degrees(with_sharp_side(with_told_arms(brief, text), words))
     brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)
     brief = with_numbered_junctions(with_motorway_behind_ramp(brief, words), text)
@@ -134,6 +169,15 @@ def _level_at_zero(brief: Brief) -> Brief:
 def _at_zero(said: Sloped) -> Sloped:
     is_level = said.slope is not None and said.incline == exactly(0)
     return said.model_copy(update={"slope": "flat", "incline": None}) if is_level else said
+
+
+def _into_new_lane(brief: Brief) -> Brief:
+    """Returns a route that changes into the lane that begins, if the side of the change is not said."""
+    places = list(brief.junctions)
+    for n, (before, place) in enumerate(pairwise(brief.junctions), 1):
+        if before.kind == "lane_gain" and place.kind == "lane_change" and before.side and place.take is None:
+            places[n] = place.model_copy(update={"take": before.side})
+    return brief.model_copy(update={"junctions": tuple(places)})
 
 
 def _with_turns_by_degrees(brief: Brief) -> Brief:

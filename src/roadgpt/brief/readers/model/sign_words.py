@@ -185,7 +185,10 @@ def _others(control: Control) -> re.Pattern[str]:
 
 @cache
 def _at_kinds(control: Control) -> re.Pattern[str]:
-    the = r"(?:the|der|die|den|dem|am|aux?|le|la|les|el|al|los|las|il|alla|gli|i|alle|agli|ai)"
+    the = (
+        r"(?:both|beiden|amb[oa]s|entramb[ie]|the|der|die|den|dem|am|aux?|le|la|les|el|al|los|las|il|alla|"
+        r"gli|i|alle|agli|ai)"
+    )
     noun, alone = rf"({SINGULARS}|{PLURALS})", "only|alone|nur|seulement|solamente|solo|soltanto"
     return re.compile(rf"\b{SIGN_WORDS[control]} {ONLY}?(?:{AT} )?{the} {noun}(?= (?:{alone}|[.,;])|$)")
 

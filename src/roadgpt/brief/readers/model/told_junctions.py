@@ -68,6 +68,21 @@ TOTAL = re.compile(
 begins."""
 
 
+MENTIONS: Mapping[JunctionKind, re.Pattern[str]] = {
+    "t_junction": re.compile(
+        r"\bts?\b|\btees?\b|side (?:road|street)|branch|einmund|abzweig|seiten|neben|lateral|secund|"
+        r"secondair|turn"
+    ),
+    "y_junction": re.compile(r"\bys?\b|fork|split|gabel|fourche|bifurc|bivi|horquilla"),
+    "crossroads": re.compile(r"cross|kreuz|carrefour|croisement|cruce|incroc|quadriv"),
+    "roundabout": re.compile(r"round|rotary|circle|kreis|giratoire|rond|glorieta|rotond|rotator|circol"),
+    "star": re.compile(r"star|stern|etoile|estrella|stell"),
+}
+"""Parts of words for each kind of junction."""
+ANY_MENTION = re.compile(
+    r"junction|inters|node|knoten|jonction|noeud|nudo|nodo|crossing|kreuzung|cruce|croisement|incroc"
+)
+"""Parts of words for junctions of any kind."""
 LISTED = re.compile(rf"^\W*(?:\w+ )?(\d+) (?:{PLURAL}|{ANY_KIND}) (?:in all |in total )?:")
 """The number of junctions before the list of all of them."""
 
@@ -120,6 +135,13 @@ def has_told_kinds(brief: Brief, most: Mapping[JunctionKind, int]) -> bool:
     """Returns whether a route has no more junctions of a kind than the words can mean."""
     kinds = [junction.kind for junction in brief.junctions]
     return all(kinds.count(kind) <= number for kind, number in most.items())
+
+
+def names_kinds(brief: Brief, text: SlottedText) -> bool:
+    """Returns whether the words mention every kind of junction of a map, or junctions of any kind."""
+    if brief.map is None or ANY_MENTION.search(text.text):
+        return True
+    return all(MENTIONS[each.kind].search(text.text) for each in brief.map.junctions if each.kind in MENTIONS)
 
 
 def with_told_letter(brief: Brief, text: SlottedText) -> Brief:

@@ -84,7 +84,7 @@ def told_takes(text: SlottedText) -> dict[Take, int]:
         patterns = (
             rf"\b(?:{way}) {EXACTLY}({TIMES})\b",
             rf"\b({TIMES}) {EXACTLY}{TO}(?:{way})\b",
-            rf"\b(?:{way}) at {EXACTLY}(\d+) of (?:them|these|those)\b",
+            rf"\b(?:{way}) at {EXACTLY}(\d+)(?: of (?:them|these|those)\b|(?= [,.;]|$))",
             rf"\b(?:{way}) at the other (\d+)\b",
             *([rf"\b(\d+) (?:{PLURALS[take]})\b"] if take in PLURALS else []),
         )

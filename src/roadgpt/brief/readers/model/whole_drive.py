@@ -53,6 +53,11 @@ ALL_THE_WAY = re.compile(
     r"ovunque|dappertutto|tutt[oa] (?:il|la|l') ?(?:percorso|tragitto|strada|giro)|tutte le strade)\b"
 )
 """Words that say that something holds on every road of the route."""
+ALL_FLAT = re.compile(
+    r"\b(?:all|everything|it all)(?: is| of it| roads?)? (?:flat|level)\b|"
+    r"\b(?:flat|level) (?:all the way|throughout)|\balles (?:ist )?(?:eben|flach)|"
+    r"\btout (?:est )?(?:a )?plat|\btodo (?:es )?(?:llano|plano)|\btutto (?:e )?(?:in )?pian"
+)
 LANES = re.compile(r"\blanes?\b|spur|streifen|\bvoies?\b|carril|corsi[ae]\b")
 OF_LANES = ("lanes", "against", "divided")
 SIDE_STREET = re.compile(
@@ -121,6 +126,7 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
         each.model_copy(update={"centre": line}) if line and _has_centre_line(each) else each
         for each in _with_dual_carriageway(brief.stretches, words)
     )
+    roads = _with_shared(roads, ("slope",), lambda road: True) if ALL_FLAT.search(plain(words)) else roads
     return brief.model_copy(
         update={
             "left_hand": (brief.left_hand and may_mean_left_hand(words))
