@@ -25,6 +25,12 @@ FIVE = "turn left r=30; turn right r=30; turn left r=30; turn right r=30; turn l
             FIVE,
         ),
         ("fünf Bögen im Wechsel, erst links, Radius 30 m", f"{FIVE}; turn right r=30", FIVE),
+        (
+            "tranne l'ultima, che è un tornante a sinistra, nessuna curva supera i 40 gradi",
+            "turn x3; hairpin left | deg=..40",
+            "turn x3 deg=..40; hairpin left",
+        ),
+        ("no turn over 40 degrees, and a hairpin", "turn x3; hairpin left | deg=..40", None),  # cannot be
         ("four bends, none under 40 m radius, last one right", "turn x3 r=40..; turn right", None),
         ("vier Kurven, keine davon mehr als 60 Grad", "turn x2; turn x2 deg=..60", None),
         ("no bend under 60 degrees, left then right", "turn left deg=60..; turn right", None),

@@ -24,6 +24,8 @@ SIDES, CLIMB = "!contradiction sides", "!contradiction climb"
         ("three left, no rights at all", SIDES, ["turn", "x", "3", "left"], "3 left ,"),
         ("up by a bit and never down", CLIMB, ["up", "climb=", "S0"], "up by a bit and"),
         ("not right, but left", SIDES, ["turn", "left"], ", but left"),
+        ("never up: it ends lower", CLIMB, ["|", "down", "climb=", "-", "[1]"], ": it ends lower"),
+        ("no up in it, two bends", CLIMB, ["turn", "x", "2", "|", "flat"], ", 2 bends"),
     ],
 )
 def test_a_denial_of_what_is_not_asked_for_is_left_out(

@@ -42,8 +42,8 @@ def corrected(words: str, written: str) -> str:
             "map crossroads stop; y_junction x2",
         ),
         (
-            "two roundabouts, four T-junctions and one crossroads. Traffic lights at the crossroads only, stop"
-            " signs at exactly two of the T-junctions and nowhere else.",
+            "two roundabouts, four T-junctions and one crossroads. Traffic lights at the crossroads only,"
+            " stop signs at exactly two of the T-junctions and nowhere else.",
             "map roundabout x2 stop; t_junction x4; crossroads",
             "map t_junction x2 stop; crossroads lights; roundabout x2; t_junction x2",
         ),

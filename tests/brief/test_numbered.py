@@ -75,6 +75,28 @@ def test_places_of_ordinals(word: str, place: int | None) -> None:
             "turn left; turn right; turn left",
         ),
         (
+            "Six turns. From the third on they all go right; the first two don't.",
+            "turn x6",
+            "turn x2 left; turn x4 right",
+        ),
+        (
+            "Ab der dritten Kurve keine Linkskurve mehr, davor nur Linkskurven, insgesamt fünf Kurven.",
+            "turn x4 left; turn right",
+            "turn x2 left; turn x3 right",
+        ),
+        (
+            "quattro curve: dalla seconda in poi nessuna va a sinistra, la prima sì",
+            "turn x4",
+            "turn left; turn x3 right",
+        ),
+        (
+            "due tornanti: il primo gira a sinistra, il secondo no",
+            "hairpin x2 left",
+            "hairpin left; hairpin right",
+        ),
+        ("three turns, only one of which is a right", "turn x3 left", "turn x3 | lefts=2 rights=1"),
+        ("vier Kurven, davon nur eine nach links", "turn x4 left", "turn x4 | lefts=1 rights=3"),
+        (
             "two hairpins and then a bend, all three to the left but the first",
             "hairpin x2 left; turn right",
             "hairpin right; hairpin left; turn left",
@@ -93,6 +115,11 @@ def test_turns_lead_to_the_sides_that_are_told(words: str, read: str, meant: str
         ("four bends, the first, sorry, the second to the right, the others left", "turn x4 left"),
         ("four bends, the fifth to the right, the others left", "turn x4 left"),
         ("an S-bend, the first turn to the left, the second to the right", "s_bend left"),
+        ("8 virages, dont 2 pas à gauche", "turn x8 | lefts=6 rights=2"),
+        (
+            "six bends, none left but the last two. After these 4 left curves",
+            "turn x4 right; turn x2 left; turn x4 left up",
+        ),
         ("una curva a la derecha, otra a la izquierda y una tercera a la derecha", "turn x3 right"),
         ("three bends that alternate, the first to the left, the rest right", "turn x3 left alternating"),
         ("the first crossroads to the left, the rest right", "crossroads left // crossroads right"),
@@ -174,6 +201,16 @@ def test_turns_get_the_values_of_a_list(words: str, read: str, meant: str | None
             "crossroads // roundabout // crossroads stop",
         ),
         (
+            "Three crossroads in a row, straight over all but the last.",
+            "crossroads straight // crossroads straight // crossroads straight",
+            "crossroads straight // crossroads straight // crossroads right",
+        ),
+        (
+            "you have priority everywhere, straight over a crossroads, then left at a T-junction",
+            "crossroads straight priority // t_junction left",
+            "crossroads straight priority // t_junction left priority",
+        ),
+        (
             "two crossroads, only the second is with traffic lights on every approach",
             "crossroads lights all_way // crossroads",
             "crossroads // crossroads lights all_way",
@@ -201,6 +238,10 @@ def test_junctions_have_what_is_told_of_their_places(words: str, read: str, mean
         (
             "Zwei Einmündungen, an der ersten zweigt sie links ab",
             "t_junction straight ways=left+straight // t_junction",
+        ),
+        (
+            "two crossroads, the side roads have to stop at both",
+            "crossroads priority others_stop // crossroads priority",
         ),
         ("left at the second roundabout", "roundabout exit=1 // roundabout exit=3"),
     ],

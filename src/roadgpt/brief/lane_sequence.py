@@ -49,6 +49,6 @@ def _check_step(place: JunctionClause, before: "Brief", after: "Brief", step: in
     if not meets(after.lanes, Range(own.lo + step, own.hi + step)):
         what = {-1: "one lane fewer", 0: "as many lanes", 1: "one lane more"}[step]
         raise BriefError(
-            f"behind a {place.name} there is {what}, but the road before it has {before.lanes} and the one "
-            f"behind it {after.lanes}; change one of them"
+            f"behind a {place.name} the road has {what}, but the road before it has {before.lanes} and the "
+            f"one behind it {after.lanes}; change one of them"
         )

@@ -111,11 +111,26 @@ def with_numbered_junctions(brief: Brief, text: SlottedText) -> Brief:
     junctions = _signed(
         brief.junctions, controls, {sign for sign in SIGNS if _is_complete(sign, signs, said)}
     )
+    ways |= _other_ways(brief.junctions, takes, ways)
     junctions = tuple(
         each.model_copy(update={"take": ways[n]}) if n in ways and not _goes(each, ways[n]) else each
         for n, each in enumerate(junctions)
     )
     return brief.model_copy(update={"junctions": junctions})
+
+
+def _other_ways(
+    junctions: Sequence[JunctionClause], takes: Sequence[Placed], ways: Mapping[int, str]
+) -> dict[int, str]:
+    """Returns a way for each junction that is excepted from another one: after "straight over all but the
+    last", the route turns there.
+    """
+    excepted = {each.value for each in takes if each.is_exception} if ways else set()
+    if len(excepted) != 1:
+        return {}
+    (way,) = excepted
+    other = "left" if way == "right" else "right"
+    return {n: other for n, each in enumerate(junctions) if n not in ways and _goes(each, way)}
 
 
 def placed_signs(said: str) -> Iterator[Placed]:

@@ -190,7 +190,8 @@ def _at_kinds(control: Control) -> re.Pattern[str]:
         r"gli|i|alle|agli|ai)"
     )
     noun, alone = rf"({SINGULARS}|{PLURALS})", "only|alone|nur|seulement|solamente|solo|soltanto"
-    return re.compile(rf"\b{SIGN_WORDS[control]} {ONLY}?(?:{AT} )?{the} {noun}(?= (?:{alone}|[.,;])|$)")
+    end = rf"(?= (?:{alone}|and|und|et|y|e|[.,;])(?: |$)|$)"
+    return re.compile(rf"\b{SIGN_WORDS[control]} {ONLY}?(?:{AT} )?{the} {noun}{end}")
 
 
 @cache

@@ -1,0 +1,91 @@
+"""Which of several plans is chosen: the likeliest, or one that is nearly as likely and fits the words better."""
+
+import pytest
+
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.denied_slopes import with_denied_slope
+from roadgpt.brief.readers.model.plan_choice import brief_of, most_plausible
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
+
+ROUTE = "| motorway lanes=3 // diverge main // diverge ramp"
+
+
+def plans(*scored: tuple[str, float]) -> list[ScoredPlan]:
+    """Plans with their scores; a number in brackets, such as [1], is that of a slot."""
+    out = []
+    for line, score in scored:
+        tokens = tuple(line.replace("=", "= ").split())
+        shown = line.replace("[1]", "1000").replace("[2]", "120")
+        out.append(ScoredPlan(tokens, shown, score, (), agreement=1.0))
+    return out
+
+
+@pytest.mark.parametrize(
+    ("behind", "chosen"), [(0.7, f"{ROUTE} len=120 || len=1000"), (1.3, f"{ROUTE} len=120")]
+)
+def test_a_plan_with_every_number_is_preferred_if_it_is_almost_as_likely(behind: float, chosen: str) -> None:
+    text = slotted("Route of 1 km on a motorway: past an exit, leave at the next, deceleration lane 120 m")
+    found = plans((f"{ROUTE} len=[2]", -0.1), (f"{ROUTE} len=[2] || len=[1]", -0.1 - behind))
+    assert most_plausible(found, text).line == chosen
+
+
+def test_a_plan_with_the_told_number_of_turns_is_preferred() -> None:
+    found = plans(("turn x7 alternating", -0.1), ("turn x5", -0.5), ("turn x6 alternating", -1.0))
+    assert most_plausible(found, slotted("six turns that alternate")).line == "turn x6 alternating"
+    assert most_plausible(found, slotted("six turns or seven turns")).line == "turn x7 alternating"
+
+
+def test_a_map_has_only_kinds_that_are_named() -> None:
+    found = plans(("map crossroads; t_junction x4 dead_ends=4", -0.4), ("map crossroads dead_ends=4", -0.7))
+    few = "a hamlet with one crossroads and four roads that all end as cul-de-sacs"
+    assert most_plausible(found, slotted(few)).line == "map crossroads dead_ends=4"
+    any_kind = "a hamlet with one crossroads, four more junctions and four cul-de-sacs"
+    assert most_plausible(found, slotted(any_kind)).line == "map crossroads; t_junction x4 dead_ends=4"
+
+
+def test_refusals_stay() -> None:
+    found = plans(("!contradiction length", -0.1), ("turn | len=[1]", -0.2))
+    assert most_plausible(found, slotted("a bend on a road of 1 km")).line == "!contradiction length"
+
+
+@pytest.mark.parametrize(
+    ("words", "read", "meant"),
+    [
+        ("it never goes down and gains 14 m", "| down climb=14", "| up climb=14"),
+        ("elle ne descend jamais et gagne 14 m", "| down climb=14", "| up climb=14"),
+        ("kein Stück führt bergauf, am Ende 6 m tiefer", "| up climb=-6", "| down climb=-6"),
+        (
+            "a downhill road without turns that gains 14 m",
+            "| down climb=14",
+            "| down climb=14",
+        ),  # contradicts itself
+        ("it never goes down", "| down", "| down"),  # what it does is not said
+    ],
+)
+def test_a_slope_that_is_denied_gives_way_to_that_of_the_height(words: str, read: str, meant: str) -> None:
+    assert plan(with_denied_slope(read_plan(read), slotted(words))) == plan(read_plan(meant))
+
+
+@pytest.mark.parametrize(
+    ("words", "read", "meant"),
+    [
+        (
+            "a lane is added on the left, then I change into it",
+            "| lanes=1 // lane_gain side=left // lane_change",
+            "| lanes=1 // lane_gain side=left // lane_change left",
+        ),
+        (
+            "all flat: a crossroads, straight on, then a T-junction",
+            "| flat // crossroads straight // t_junction",
+            "| flat // crossroads straight // | flat // t_junction // | flat",
+        ),
+        (
+            "map: three-arm roundabout and a crossroads",
+            "map crossroads; roundabout x3",
+            "map crossroads; roundabout",
+        ),
+    ],
+)
+def test_words_complete_a_route_or_a_map(words: str, read: str, meant: str) -> None:
+    assert plan(brief_of(read, slotted(words), words)) == plan(read_plan(meant))
