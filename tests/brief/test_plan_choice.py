@@ -1,4 +1,4 @@
-"""Which of several plans is chosen: the likeliest, or one that is nearly as likely and fits the words better."""
+"""Which of several plans is chosen: the likeliest, or a nearly as likely one that fits the words better."""
 
 import pytest
 
