@@ -41,6 +41,8 @@ def test_traffic_on_the_left_is_heard_in_five_languages(words: str) -> None:
         "tournez à gauche au carrefour",
         "gira a sinistra all'incrocio",
         "en el cruce, a la izquierda",
+        "usciamo da un senso unico e al bivio si tiene la sinistra",
+        "à la fourche on tient la gauche",
     ],
 )
 def test_the_left_alone_is_no_traffic_on_the_left(words: str) -> None:

@@ -81,6 +81,11 @@ def test_a_slope_that_is_denied_gives_way_to_that_of_the_height(words: str, read
             "| flat // crossroads straight // | flat // t_junction // | flat",
         ),
         (
+            "straight over both crossroads, no bends between the two",
+            "crossroads straight // crossroads straight",
+            "crossroads straight // | turns=0 // crossroads straight",
+        ),
+        (
             "map: three-arm roundabout and a crossroads",
             "map crossroads; roundabout x3",
             "map crossroads; roundabout",

@@ -34,6 +34,8 @@ MAY_MEAN = re.compile(
     rf"brit\w*|anglais\w*|ingles\w*|englisch\w*|japan\w*|{COUNTRIES})\b"
 )
 """Words without which a description cannot mean traffic on the left."""
+FORK = re.compile(r"\b(?:bivio|biforcazione|fourche|bifurcation)\b")
+"""Where "keep left" says where the route goes."""
 NEGATED = re.compile(
     r"\b(?:no|not|without|never|kein|keinen|nicht|ohne|pas de|sans|sin|senza)\b(?:\s\w+)?\s*$"
 )
@@ -54,7 +56,10 @@ def says_left_hand(words: str, by_place: bool = False) -> bool:
     """
     said = unaccented(words)
     found = [*SAYS.finditer(said), *(BY_PLACE.finditer(said) if by_place else ())]
-    return any(not NEGATED.search(said[: each.start()]) for each in found)
+    is_at_fork = FORK.search(said) is not None
+    return any(
+        not NEGATED.search(said[: each.start()]) and not (is_at_fork and "tien" in each[0]) for each in found
+    )
 
 
 def with_driving_side(brief: Brief, words: str) -> Brief:

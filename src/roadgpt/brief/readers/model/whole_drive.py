@@ -58,6 +58,11 @@ ALL_FLAT = re.compile(
     r"\b(?:flat|level) (?:all the way|throughout)|\balles (?:ist )?(?:eben|flach)|"
     r"\btout (?:est )?(?:a )?plat|\btodo (?:es )?(?:llano|plano)|\btutto (?:e )?(?:in )?pian"
 )
+NO_BENDS_BETWEEN = re.compile(
+    r"\b(?:(?:no|without(?: any)?) (?:bends?|turns?|curves?)|keine kurven?|ohne kurven?|"
+    r"(?:pas de|sans) virages?|sin curvas|ninguna curva|senza curve|nessuna curva|dead straight|straight) "
+    r"(?:in )?(?:between|dazwischen|zwischen|entre|tra)\b"
+)
 LANES = re.compile(r"\blanes?\b|spur|streifen|\bvoies?\b|carril|corsi[ae]\b")
 OF_LANES = ("lanes", "against", "divided")
 SIDE_STREET = re.compile(
@@ -126,6 +131,7 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
         each.model_copy(update={"centre": line}) if line and _has_centre_line(each) else each
         for each in _with_dual_carriageway(brief.stretches, words)
     )
+    roads = _without_bends_between(roads) if says(NO_BENDS_BETWEEN, plain(words)) else roads
     roads = _with_shared(roads, ("slope",), lambda road: True) if ALL_FLAT.search(plain(words)) else roads
     return brief.model_copy(
         update={
@@ -183,6 +189,15 @@ def _alike(brief: Brief, roads: tuple[Brief, ...], words: str) -> tuple[Brief, .
     if any(pattern.search(part) for part in whole for pattern in LINES.values()):
         roads = _with_shared(roads, ("centre",), _has_centre_line)
     return roads
+
+
+def _without_bends_between(roads: tuple[Brief, ...]) -> tuple[Brief, ...]:
+    """Returns the roads of a route; those between junctions have no turns, if they have no features."""
+    inner = (
+        road if road.clauses or road.turns else road.model_copy(update={"turns": exactly(0)})
+        for road in roads[1:-1]
+    )
+    return (*roads[:1], *inner, *roads[1:][-1:])
 
 
 def _with_shared(
