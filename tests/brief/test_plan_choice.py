@@ -81,6 +81,26 @@ def test_a_slope_that_is_denied_gives_way_to_that_of_the_height(words: str, read
             "| flat // crossroads straight // | flat // t_junction // | flat",
         ),
         (
+            "Three roundabouts one after the other, route about 500 m. The first has three arms.",
+            "roundabout arms=3 // roundabout // roundabout",
+            "roundabout arms=3 // roundabout // roundabout || len=500",
+        ),
+        (
+            "pass two side streets on the left, then turn into the third one on the left",
+            " // ".join(["junction straight ways=left+straight"] * 3 + ["junction left"]),
+            " // ".join(["junction straight ways=left+straight"] * 2 + ["junction left ways=left+straight"]),
+        ),
+        (
+            "a grid of four by three blocks, lights at all six inner crossroads",
+            "map columns=4 rows=3 lights",
+            "map columns=4 rows=3; crossroads x6 lights",
+        ),
+        (
+            "exactly six T junctions and no other junction, stop signs at exactly two of the junctions",
+            "map t_junction x6 stop; t_junction x2",
+            "map t_junction x2 stop; t_junction x4",
+        ),
+        (
             "straight over both crossroads, no bends between the two",
             "crossroads straight // crossroads straight",
             "crossroads straight // | turns=0 // crossroads straight",

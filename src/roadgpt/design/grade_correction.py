@@ -9,7 +9,7 @@ grades of straights are corrected by the measured errors, and the draft is measu
 moves the joints between them but not the road in plan view.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby, pairwise
 from math import ceil, copysign
 
@@ -30,6 +30,7 @@ from roadgpt.road import Segment
 from roadgpt.road.builder import elevation_of
 
 CORRECTIONS = 8
+MOST_OFF = 0.1  # of its length, that a straight is measured longer or shorter
 SHORTEST = 4.0  # m that a correction leaves of a straight
 TENTH = 10.0  # per percent
 
@@ -59,7 +60,7 @@ def corrected_draft(
         bumps: True allows vertical accelerations of up to 1 g, as for a requested crest or dip.
     """
     ends = np.cumsum([element.length for element in elements])
-    for _ in range(CORRECTIONS):
+    for n in range(CORRECTIONS):
         parts = [part for one in _with_radii(elements, pace, ease, bumps) for part in cut(one)]
         segments = joined(parts, pace, share)
         heights = elevation_of(segments, 0.0).height(line.s)
@@ -68,6 +69,7 @@ def corrected_draft(
             broken = [Complaint(TOO_ABRUPT, on_heights=True)]
         else:
             broken = complaints(found, outline)
+        ends = _shared_ends(elements, ends, found) if n == 0 else ends
         before, elements = elements, _corrected(elements, ends, found, limit)
         if not any(complaint.on_heights for complaint in broken) or elements == before:
             break
@@ -84,6 +86,38 @@ def _with_radii(elements: Sequence[Element], pace: Pace, ease: float, bumps: boo
     return out
 
 
+def _shared_ends(elements: Sequence[Element], ends: Array, found: Measures) -> Array:
+    """Returns the stations at which straights of other grades should be measured to end.
+
+    With the joint where it is required, the climb is as the words say, but the steeper straight is measured
+    longer; with the joint moved until its length is right, the climb is less. So both err by half, as far as
+    no straight is measured ``MOST_OFF`` longer or shorter than required.
+    """
+    out = ends.copy()
+    for row, pieces, runs in _pieces(elements, found):
+        lengths = [elements[i].length for i in row]
+        for run, piece in zip(runs[:-1], pieces, strict=False):
+            last = run[-1]
+            most = MOST_OFF * min(lengths[last - row.start], lengths[last - row.start + 1])
+            out[last] += np.clip((piece.end - ends[last]) / 2, -most, most)
+    return out
+
+
+def _pieces(
+    elements: Sequence[Element], found: Measures
+) -> Iterator[tuple[range, list[MeasuredFeature], list[list[int]]]]:
+    """Yields the straights between two turns, as they are measured and as the draft has them: runs of the
+    same direction of slope. They are left out if they do not correspond, or if no length is fixed.
+    """
+    if len(found.turns) != sum(bool(element.turn) for element in elements):
+        return
+    for row, gap in zip(_rows(elements), found.gaps, strict=True):
+        pieces = [piece for straight in gap for piece in straight.pieces]
+        runs = [[*run] for _, run in groupby(row, key=lambda i: way(elements[i].incline))]
+        if len(pieces) == len(runs) and any(elements[i].has_fixed_length for i in row):
+            yield row, pieces, runs
+
+
 def _corrected(elements: Sequence[Element], ends: Array, found: Measures, limit: Range) -> list[Element]:
     """Returns the elements with joints and grades of straights corrected by the measured errors.
 
@@ -91,14 +125,8 @@ def _corrected(elements: Sequence[Element], ends: Array, found: Measures, limit:
     measured straights do not correspond to those of the draft.
     """
     out = list(elements)
-    if len(found.turns) != sum(bool(element.turn) for element in elements):
-        return out
     joints = np.cumsum([0.0, *(element.length for element in elements)])
-    for row, gap in zip(_rows(elements), found.gaps, strict=True):
-        pieces = [piece for straight in gap for piece in straight.pieces]
-        runs = [[*run] for _, run in groupby(row, key=lambda i: way(elements[i].incline))]
-        if len(pieces) != len(runs) or not any(elements[i].has_fixed_length for i in row):
-            continue
+    for row, pieces, runs in _pieces(elements, found):
         for run, piece in zip(runs, pieces, strict=True):
             last = run[-1]
             if last != row[-1] and (out[last].has_fixed_length or out[last + 1].has_fixed_length):

@@ -1,6 +1,8 @@
-"""Finds how long all roads of a map are together: "a village with 2 km of streets".
+"""Finds how long all roads of a map are together, "a village with 2 km of streets", or how long a route is:
+"route about 500 m".
 
-The network knows one length of a map only: the distance from a junction to the next.
+The network knows one length of a map only, the distance from a junction to the next, and leaves out the
+length of routes that are told in many words.
 """
 
 import re
@@ -10,6 +12,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.map_words import IN_ALL, TAKEN_BACK
 from roadgpt.brief.readers.model.sign_words import LEAST, MOST
 from roadgpt.brief.readers.model.slots import SlottedText
+from roadgpt.brief.readers.model.told_junctions import DRIVE
 
 ROADS = (
     r"(?:roads?|streets?|stra(?:ss|ß)en?(?:netz\w*)?|wegen?|rues?|routes?|voirie|calles?|carreteras?|strad[ae]|"
@@ -25,6 +28,25 @@ WHOLE = re.compile(
     rf"\b(?:{IN_ALL}) {METRES}\b"
 )
 """The length of all roads."""
+
+
+ROUTE = re.compile(
+    rf"\b(?:{DRIVE}) (?:(?:of|is|about|around|roughly|some|von|ist|etwa|rund|circa|ca|de|d '|environ|fait|"
+    rf"mesure|mide|unos|es|di|misura|lunga?|long|lang|total|length) )*{METRES}(?= (?:[.,;:]|in all|long|lang)|$)"
+)
+"""The length of a whole route."""
+
+
+def with_length_of_route(brief: Brief, text: SlottedText) -> Brief:
+    """Returns the Brief of a route with the length that the words give to it, if the Brief has no length."""
+    found = {int(group) for match in ROUTE.finditer(text.text) for group in match.groups() if group}
+    has_length = brief.length is not None or any(road.length is not None for road in brief.stretches)
+    if not brief.junctions or has_length or len(found) != 1 or TAKEN_BACK.search(text.text):
+        return brief
+    number = found.pop()
+    if number > len(text.slots):
+        return brief
+    return brief.model_copy(update={"length": exactly(text.slots[number - 1].value)})
 
 
 def with_whole_length(brief: Brief, text: SlottedText) -> Brief:

@@ -23,6 +23,7 @@ from roadgpt.brief.readers.model.map_words import (
     said_of,
 )
 from roadgpt.brief.readers.model.sign_words import (
+    ALL,
     EVERYWHERE,
     PLURALS,
     SIGN_WORDS,
@@ -58,9 +59,13 @@ def with_counted_signs(brief: Brief, text: SlottedText) -> Brief:
     said = said_of(text)
     signs = signs_in_words(said)
     if any(each.control for each in asked.junctions):
+        placed = {(each.control, each.count) for each in asked.junctions}
+        if signs.counted and all((each.control, each.amount) in placed for each in signs.counted):
+            return brief
         asked = _without_signs(asked)
         named = [*(each.nouns for each in signs.counted), *(noun for _, noun in signs.of_kinds)]
-        if not signs.of_kinds or not all(_kinds_of(noun) for noun in named):
+        is_of_kinds = bool(signs.of_kinds) and all(_kinds_of(noun) for noun in named)
+        if not is_of_kinds and (len(asked.junctions) > 1 or len(signs.counted) != 1):
             return brief
     if not signs.counted and signs.all_but is None and not signs.of_kinds:
         return brief
@@ -113,7 +118,8 @@ def _inside_grid(asked: MapClause, said: str) -> dict[str, object] | None:
         for control, sign in SIGN_WORDS.items()
         if re.search(rf"\b{sign} [^.;:]{{0,32}}\b{where}\b|\b{where} {nouns}[^.;:]{{0,15}} {sign}\b", said)
     ]
-    if number < 1 or len(named) != 1 or TAKEN_BACK.search(said) or EVERYWHERE.search(said):
+    everywhere = EVERYWHERE.search(re.sub(rf"\b{ALL} (?:\w+ ){{0,3}}?(?={INNER})", "", said))
+    if number < 1 or len(named) != 1 or TAKEN_BACK.search(said) or everywhere:
         return None
     within = _of("crossroads", exactly(number), named[0])
     return {"signed": (within,), "control": signs_in_words(said).others}

@@ -98,7 +98,11 @@ KINDS_IN_PLURAL: Mapping[MapJunctionKind, re.Pattern[str]] = {
         r"glorietas|rotondas|ronds - points|giratoires)\b"
     ),
     "crossroads": re.compile(NUMBER + r"(?:cross ?-? ?roads|kreuzungen)\b"),
-    "t_junction": re.compile(NUMBER + r"(?:t - junctions|einmundungen)\b"),
+    "t_junction": re.compile(
+        NUMBER + r"(?:t (?:- )?(?:junctions|crossings|intersections|kreuzungen|einmundungen)|einmundungen|"
+        r"(?:cruces|intersecciones) en t|(?:incroci|intersezioni) a t|"
+        r"(?:carrefours|intersections|croisements) en t)\b"
+    ),
     "y_junction": re.compile(NUMBER + r"(?:forks|gabelungen|fourches|bifurcations|bifurcaciones|bivi)\b"),
     "star": re.compile(NUMBER + r"(?:stars|sterne|etoiles|estrellas|stelle)\b"),
 }
@@ -280,7 +284,9 @@ def _blocks(asked: MapClause, said: str) -> dict[str, Amount]:
     """
     found = BY.findall(said)
     is_exact = all(each is not None and each.exact for each in (asked.columns, asked.rows))
-    number = None if ACROSS.search(said) else one_number(BLOCKS.findall(said))
+    number = (
+        None if ACROSS.search(said) else one_number([each for each in BLOCKS.findall(said) if each != "solo"])
+    )
     if len(found) == 1:
         columns, rows = map(int, found[0])
     elif number and not found and (number == 1 or IN_A_ROW.search(said)):

@@ -61,7 +61,8 @@ AT = r"(?:at|on|an|am|bei|beim|auf|in|im|aux?|al|alla|allo|all '|a|en|sur|dans|n
 PLACES = rf"({WHICH}|{OTHERS})"
 EVERY = rf"(?:{ALL}|each|throughout|both|beide\w*|amb[oa]s|entramb[ie]|chaque|cada|ciascun\w*)"
 NOUN = rf"(?:(?:{SINGULARS}|{PLURAL}|{ANY_KIND}|ones?)\b|{OF_THEM})"
-ENDS = rf"(?= (?:[.,;:!?)]|and|und|et|y|e|{EXCEPT}|sind|ist|steht|stehen)(?: |$)|$)"
+LAST = r"(?:[.,;:!?)]|only|alone|nur|seulement|solo|solamente|soltanto|and|und|et|y|e|sind|ist|steht|stehen)"
+ENDS = rf"(?= (?:{LAST}|{EXCEPT})(?: |$)|$)"
 """What may follow the places; any other word, as in "the second exit", names something else."""
 VERB = r"(?:is|are|ist|sind|est|sont|es|son|sono|e)"
 GOING = (

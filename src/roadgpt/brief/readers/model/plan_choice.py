@@ -19,7 +19,7 @@ from roadgpt.brief.readers.model.exit_words import with_motorway_behind_ramp, wi
 from roadgpt.brief.readers.model.from_start import with_distances_from_start
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.listed_values import with_listed_values
-from roadgpt.brief.readers.model.map_lengths import with_whole_length
+from roadgpt.brief.readers.model.map_lengths import with_length_of_route, with_whole_length
 from roadgpt.brief.readers.model.map_signs import with_counted_signs
 from roadgpt.brief.readers.model.map_words import asks_for_grid, with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
@@ -149,6 +149,7 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     brief = with_numbered_sides(with_listed_values(with_checked_counts(brief, text), text), text)
     brief = with_told_takes(with_told_total(brief, text), text)
     brief = with_ramp_lengths(with_distances_to_exits(with_counted_junctions(brief, text), text), text)
+    brief = with_length_of_route(brief, text)
     brief = with_whole_length(with_counted_signs(with_counted_map(brief, text), text), text)
     brief = _with_listed_hills(with_each_lane(_into_new_lane(brief)))
     brief = _with_turns_by_degrees(with_sharp_side(with_told_arms(brief, text), words))

@@ -10,6 +10,7 @@ from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model.denial import says
 from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
 from roadgpt.brief.readers.model.numerals import plain
+from roadgpt.brief.readers.model.ordinals import PLACE, place_of
 from roadgpt.brief.readers.model.slots import SlottedText
 
 SIDES: tuple[Side, ...] = ("left", "right")
@@ -17,6 +18,11 @@ ENGLISH = frozenset(["left", "right"])
 BEFORE_SIDE = frozenset(["the", "my", "our", "your", "its"])
 """Words before "left" or "right" where these are sides: "on the right", but not "right after the bend"."""
 AFTER_SIDE = frozenset(["-", "hand", "side"])
+TAKEN_NEXT = re.compile(
+    rf"\b(?:pass|past|ignore|skip|vorbei|passe[rz]?|pasa\w*|supera\w*|oltre)\b[^.;]{{0,20}}?"
+    rf"\b(\d+) [^.;]{{0,60}}?({PLACE})\b"
+)
+"""A number of streets that the route passes, and the place of the one that it takes."""
 OFF_A_ROAD = re.compile(
     r"\b(?:left|right) off (?:the|a|our|my) (?:main|major|priority|through) (?:road|street)\b|"
     r"\boff (?:the|a|our|my) (?:main|major|priority|through) (?:road|street) to the (?:left|right)\b|"
@@ -39,6 +45,7 @@ def with_sides_of_side_roads(brief: Brief, text: SlottedText, words: str) -> Bri
     sides as there are such T-junctions and the plan uses no side. At the only T-junction, where the route
     turns "off the main road", that road goes straight on.
     """
+    brief = _as_many_as_passed(brief, text)
     brief = _with_ways(brief, _taken_behind_others(brief.junctions))
     passed = [n for n, each in enumerate(brief.junctions) if _is_open(each) and each.take == "straight"]
     sides = _sides(text)
@@ -50,6 +57,27 @@ def with_sides_of_side_roads(brief: Brief, text: SlottedText, words: str) -> Bri
         if side in ("left", "right"):
             return _with_ways(brief, {turned[0]: side})
     return brief
+
+
+def _as_many_as_passed(brief: Brief, text: SlottedText) -> Brief:
+    """Returns a route that takes the third street behind two passed ones, where the network has one more of
+    those that it passes: "pass two side streets, then turn into the third".
+    """
+    found = TAKEN_NEXT.findall(text.text)
+    passed = brief.junctions[:-1]
+    is_alike = len(passed) > 1 and all(each == passed[0] for each in passed)
+    if len(found) != 1 or not is_alike or passed[0].take != "straight":
+        return brief
+    number, ordinal = int(found[0][0]), place_of(found[0][1])
+    if (
+        ordinal != number + 1
+        or len(passed) != number + 1
+        or any(not road.is_open for road in brief.stretches[1:-1])
+    ):
+        return brief
+    return brief.model_copy(
+        update={"junctions": brief.junctions[1:], "stretches": (brief.stretches[0], *brief.stretches[2:])}
+    )
 
 
 def _taken_behind_others(junctions: Sequence[JunctionClause]) -> dict[int, Side]:

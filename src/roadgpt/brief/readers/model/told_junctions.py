@@ -61,7 +61,7 @@ TOTAL = re.compile(
     r"in totale|in (?:any|whatever) order|in beliebiger reihenfolge|"
     r"dans n ' importe quel ordre|en cualquier orden|in qualsiasi ordine)\b|"
     rf"\binsgesamt (\d+) (?:\w+ )?(?:{PLURAL}|{ANY_KIND})\b|"
-    rf"^\W*(?:(?:\w+ ){{0,6}}?(?:{DRIVE}) (?:\w+ ){{0,3}}?)?(\d+) (?:{ANY_KIND})\b"
+    rf"^\W*(?:(?:\w+ ){{0,6}}?(?:{DRIVE}) (?:\S+ ){{0,7}}?)?(\d+) (?:{ANY_KIND})\b"
     rf"(?! (?:, )?{MORE_BEHIND}\b)"
 )
 """The number of all junctions of a route: said to be all of them, or that of the route with which a text
@@ -83,7 +83,10 @@ ANY_MENTION = re.compile(
     r"junction|inters|node|knoten|jonction|noeud|nudo|nodo|crossing|kreuzung|cruce|croisement|incroc"
 )
 """Parts of words for junctions of any kind."""
-LISTED = re.compile(rf"^\W*(?:\w+ )?(\d+) (?:{PLURAL}|{ANY_KIND}) (?:in all |in total )?:")
+LISTED = re.compile(
+    rf"^\W*(?:\w+ )?(\d+) (?:{PLURAL}|{ANY_KIND}) (?:in all |in total )?:|"
+    rf"\b(\d+) (?:{PLURAL}|{ANY_KIND})(?: (?![.;])\S+){{0,8}} :"
+)
 """The number of junctions before the list of all of them."""
 
 
@@ -93,7 +96,7 @@ IS_BOUND = re.compile(rf"\b(?:{INEXACT})\b")
 def number_of_listed(text: SlottedText) -> int | None:
     """Returns how many junctions a description says that it lists ("five junctions: left at a T, ...")."""
     found = LISTED.search(text.text)
-    return int(found[1]) if found else None
+    return int(found[1] or found[2]) if found else None
 
 
 def most_of_kinds(text: SlottedText) -> dict[JunctionKind, int]:
