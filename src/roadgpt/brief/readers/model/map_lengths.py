@@ -32,7 +32,8 @@ WHOLE = re.compile(
 
 ROUTE = re.compile(
     rf"\b(?:{DRIVE}) (?:(?:of|is|about|around|roughly|some|von|ist|etwa|rund|circa|ca|de|d '|environ|fait|"
-    rf"mesure|mide|unos|es|di|misura|lunga?|long|lang|total|length) )*{METRES}(?= (?:[.,;:]|in all|long|lang)|$)"
+    rf"mesure|mide|unos|es|di|misura|lunga?|long|lang|total|length) )*{METRES}"
+    r"(?= (?:[.,;:]|in all|long|lang)|$)"
 )
 """The length of a whole route."""
 

@@ -59,8 +59,7 @@ def with_counted_signs(brief: Brief, text: SlottedText) -> Brief:
     said = said_of(text)
     signs = signs_in_words(said)
     if any(each.control for each in asked.junctions):
-        placed = {(each.control, each.count) for each in asked.junctions}
-        if signs.counted and all((each.control, each.amount) in placed for each in signs.counted):
+        if signs.counted and all(_is_placed(each, asked) for each in signs.counted):
             return brief
         asked = _without_signs(asked)
         named = [*(each.nouns for each in signs.counted), *(noun for _, noun in signs.of_kinds)]
@@ -162,6 +161,15 @@ def _in_village(asked: MapClause, said: str, signs: SignsInWords) -> dict[str, o
             "control": kinds[-1].control,
         }
     return {"junctions": kinds, "control": others}
+
+
+def _is_placed(signs: CountedSigns, asked: MapClause) -> bool:
+    """Returns whether a map has these signs at as many junctions, of a kind that the words name, if any."""
+    kinds = _kinds_of(signs.nouns)
+    return any(
+        each.control == signs.control and each.count == signs.amount and (not kinds or each.kind in kinds)
+        for each in asked.junctions
+    )
 
 
 def _without_signs(asked: MapClause) -> MapClause:

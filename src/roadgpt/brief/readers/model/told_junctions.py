@@ -96,7 +96,9 @@ IS_BOUND = re.compile(rf"\b(?:{INEXACT})\b")
 def number_of_listed(text: SlottedText) -> int | None:
     """Returns how many junctions a description says that it lists ("five junctions: left at a T, ...")."""
     found = LISTED.search(text.text)
-    return int(found[1] or found[2]) if found else None
+    if found is None or any(each.search(text.text[: found.start(0)]) for each in MENTIONS.values()):
+        return None
+    return int(found[1] or found[2])
 
 
 def most_of_kinds(text: SlottedText) -> dict[JunctionKind, int]:
