@@ -379,7 +379,7 @@ def test_a_straight_road_stays_straight_where_it_goes_on(place: str) -> None:
     ("line", "lanes"),
     [
         ("| lanes=2 divided // roundabout straight large", [(2, 2), (2, 2)]),
-        ("| lanes=2 against=2 // roundabout straight // roundabout left", [(2, 2), (1, 1), (1, 1)]),
+        ("| lanes=2 against=2 // roundabout straight // roundabout left", [(2, 2), (2, 2), (1, 1)]),
         ("| lanes=2 against=2 // roundabout straight lanes=2 // | lanes=1", [(2, 2), (1, 1)]),
         ("| lanes=2 against=2 // lane_change left // crossroads left", [(2, 2), (2, 2), (2, 2)]),
     ],
@@ -495,7 +495,7 @@ def checked_draft(line: str) -> None:
         ("| oneway against=2 // crossroads", "against twice"),
         ("merge ramp lights // | motorway", "has no control"),
         ("| lanes=2 // lane_change left len=80", "leave side and len out"),
-        ("| lanes=2 // lane_drop // | lanes=2", "behind a lane drop there is one lane fewer"),
+        ("| lanes=2 // lane_drop // | lanes=2", "behind a lane drop the road has one lane fewer"),
         ("| lanes=4 // lane_gain", "5 lanes"),
         ("| lanes=1 // lane_drop", "0 lanes"),
         ("| lanes=1 // lane_change left", "change to the left"),

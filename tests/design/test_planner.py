@@ -335,3 +335,16 @@ def test_crests_that_are_counted_are_all_there(line: str) -> None:
         heights = build(draft(read_plan(line), World(), seed=seed)).sample().points[:, 2]
         ways = np.sign(np.diff(heights)[np.abs(np.diff(heights)) > 1e-3])
         assert np.count_nonzero(ways[1:] != ways[:-1]) == 5  # up, down, three times
+
+
+@pytest.mark.parametrize(
+    ("plan", "climb"),
+    [
+        ("straight flat len=50; straight up len=100 pct=8; straight flat len=50 | turns=0", 8.0),
+        ("straight flat len=60; straight down len=150 pct=4; straight flat len=60 | turns=0", -6.0),
+    ],
+)
+def test_a_slope_of_so_many_metres_gains_about_the_height_that_it_should(plan: str, climb: float) -> None:
+    roads = [build(Planner().draft(read_plan(plan), World(), (), (), seed)) for seed in range(12)]
+    gained = [float(road.at(road.length)[2] - road.at(0.0)[2]) for road in roads]
+    assert sum(gained) / len(gained) == pytest.approx(climb, rel=0.15)

@@ -31,6 +31,7 @@ from roadgpt.road.builder import elevation_of
 
 CORRECTIONS = 8
 MOST_OFF = 0.1  # of its length, that a straight is measured longer or shorter
+LONG_ENOUGH = 35.0  # m of a straight that may be measured longer or shorter
 SHORTEST = 4.0  # m that a correction leaves of a straight
 TENTH = 10.0  # per percent
 
@@ -91,14 +92,19 @@ def _shared_ends(elements: Sequence[Element], ends: Array, found: Measures) -> A
 
     With the joint where it is required, the climb is as the words say, but the steeper straight is measured
     longer; with the joint moved until its length is right, the climb is less. So both err by half, as far as
-    no straight is measured ``MOST_OFF`` longer or shorter than required.
+    no straight is measured ``MOST_OFF`` longer or shorter than required. Short straights keep their lengths.
     """
     out = ends.copy()
     for row, pieces, runs in _pieces(elements, found):
-        lengths = [elements[i].length for i in row]
+        spare = [
+            MOST_OFF * elements[i].length / (1 if i in (row[0], row[-1]) else 2)
+            if elements[i].length >= LONG_ENOUGH
+            else 0.0
+            for i in row
+        ]
         for run, piece in zip(runs[:-1], pieces, strict=False):
             last = run[-1]
-            most = MOST_OFF * min(lengths[last - row.start], lengths[last - row.start + 1])
+            most = min(spare[last - row.start : last - row.start + 2])
             out[last] += np.clip((piece.end - ends[last]) / 2, -most, most)
     return out
 
