@@ -69,7 +69,8 @@ def test_so_many_metres_of_a_straight_have_a_slope_of_their_own(
 def test_what_changed_is_told_of_the_stretch() -> None:
     told = edited(STRAIGHT, "end len=80: slope down =5").changes
     length = build(STRAIGHT).length
-    assert told[0].startswith(f"from {length - 80:.0f} to {length:.0f} m: grade -0.4 -> -4.")
+    before = grades(STRAIGHT, 1 - 80 / length, 1.0).mean()
+    assert told[0].startswith(f"from {length - 80:.0f} to {length:.0f} m: grade {before:.1f} -> -4.")
 
 
 def test_both_halves_of_a_straight_change_at_once() -> None:

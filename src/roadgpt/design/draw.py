@@ -30,6 +30,8 @@ RADII_OF_TRANSITION = 9.0  # of wide turns: RAS-L 1995 asks for a parameter A >=
 WIDE_ANGLE = 80.0  # degrees: a turn of a large required radius may be long enough for this angle
 LEAD = 16.5  # m: a straight of this length before the first or after the last turn is measured as 10 m
 SEPARATE = 17.5  # m between two turns to the same side, so that they are measured as two
+NEAR_NUMBER = 0.3  # share of the tolerance of a radius, at either end, that is not used
+OF_NUMBER = 1.36  # greatest ratio of the ends of a range of metres at which it may be that of one number
 KEPT = 0.5  # degrees by which a turn may differ from its share of a required sum
 OFF_TOP, UP_TO = 0.6, 0.97  # share of its range to which a straight may grow: without haste, and at most
 TIGHTER = 1.35  # ratio of the widest radius of a hard road to its least
@@ -52,7 +54,8 @@ def narrowed_turns(
 def _narrowed(turn: Feature, outline: Outline, world: World) -> Feature:
     least = max(world.limits.design_radius, 0.8 * world.section.road_width)
     promised = overlap(turn.radius, outline.each_turn.radius)
-    radius = overlap(_inside(promised, 0.04), Range(least, inf)) if promised else Range(least, inf)
+    share = NEAR_NUMBER if promised and promised.hi <= OF_NUMBER * promised.lo else 0.04
+    radius = overlap(_inside(promised, share), Range(least, inf)) if promised else Range(least, inf)
     assert radius is not None
     if promised and promised.lo > promised.hi:
         raise DesignError(f"the radius asked for does not go with a {turn.name}; leave one of them out")
@@ -238,7 +241,7 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
         low = max(inside(low), 22.0, least)
         return free_straight(rng, haste, low, mean)
     low = max(low, 0.0)
-    share = 0.3 + 0.4 * rng.random()
+    share = 0.5 + (0.2 if high <= OF_NUMBER * low else 0.4) * (rng.random() - 0.5)
     most = low + min(OFF_TOP + 3 * haste, UP_TO) * (high - low)
     return max(low + share * (high - low), min(least, most))
 
