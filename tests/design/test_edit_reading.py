@@ -255,6 +255,20 @@ PARTS = [
 """How many turns there are, distances from an end, moves, steepness, crests."""
 
 BY_RULES = [
+    (
+        "inverse le sens de tous les virages : la gauche devient la droite et la droite devient la gauche",
+        "turn all: side other",
+    ),
+    (
+        "Vertausche links und rechts bei allen Kurven und kürze die Gerade ganz am Ende auf 20 m.",
+        "turn all: side other; straight -1: length =20",
+    ),
+    (
+        "Riduci a un terzo il rettilineo tra la prima e la seconda curva",
+        "straight between(turn 1, turn 2): length x0.333",
+    ),
+    ("reduce the first straight by a third", "straight 1: length x0.667"),
+    ("kürze die erste Gerade auf ein Drittel", "straight 1: length x0.333"),
     ("swap the first turn and the last turn, the straights stay where they are", "turn 1,-1: swap"),
     ("tausche die zweite und die dritte Kurve, der Rest bleibt, wie er ist", "turn 2,3: swap"),
     ("reverse the road", "road: reverse"),

@@ -1,9 +1,29 @@
 """Reads change requests by rules where the words leave no choice, and finds numbers that a plan has lost."""
 
+import re
+
 from roadgpt.brief.readers.model.height_words import height_wish
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.swap_words import exchanged_values, turns_to_swap
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
+
+PARTS = {
+    3: ("third|drittel|tiers|tercio|terzo", "0.333", "0.667"),
+    4: ("quarter|viertel|quart|cuarto|cuarta parte|quarto", "0.25", "0.75"),
+}
+"""For each share: its words, the factor of what is reduced to it, and of what is reduced by it."""
+TO = r"(?:(?:to|auf) (?:(?:a|one|its|ein) )?|(?:a|al|alla|au) (?:un[ea]?|la|le) )"
+BY = r"(?:(?:by|um) (?:(?:a|one|ein) )?|(?:de|d '|en|di) (?:un[ea]?|la|le) )"
+LEFT_OR_RIGHT = re.compile(
+    r"\b(?:left|links|gauche|izquierd[ao]|sinistra)\b.*\b(?:right|rechts|droite|derech[ao]|destra)\b|"
+    r"\b(?:right|rechts|droite|derech[ao]|destra)\b.*\b(?:left|links|gauche|izquierd[ao]|sinistra)\b"
+)
+EXCHANGES = re.compile(
+    r"\b(?:swap|exchange|switch|flip|becomes?|(?:ver)?tausch\w*|vertausch\w*|wird|werden|echang\w*|invers\w*|"
+    r"devien\w*|intercambi\w*|inviert\w*|invert\w*|pasa\w* a|scambi\w*|divent\w*)\b"
+)
+ALTERNATE = "turn all: alternate"
+ALTERNATES = re.compile(r"\b(?:altern\w*|abwechs\w*|wechsel\w*|tour a tour|avvicend\w*)\b")
 
 
 def read_by_rules(line: str, text: SlottedText) -> str | None:
@@ -13,7 +33,8 @@ def read_by_rules(line: str, text: SlottedText) -> str | None:
         line: the plan that the network wrote.
         text: the change request.
     """
-    return _climb(text, line) or _swap(text, line) or exchanged_values(line, text)
+    read = _climb(text, line) or _swap(text, line) or exchanged_values(line, text)
+    return read or _other_sides(text, line) or _share(text, line)
 
 
 def _climb(text: SlottedText, line: str) -> str | None:
@@ -34,6 +55,28 @@ def _swap(text: SlottedText, line: str) -> str | None:
     """Returns the plan of a change request that asks two turns to change places; None for other requests."""
     place = turns_to_swap(text) if "swap" not in line else None
     return f"{place}: swap" if place else None
+
+
+def _other_sides(text: SlottedText, line: str) -> str | None:
+    """Returns the plan with all turns to their other sides, where the network lets them alternate and the
+    words exchange left and right; None for other requests.
+    """
+    said = text.text
+    is_exchange = LEFT_OR_RIGHT.search(said) and EXCHANGES.search(said) and not ALTERNATES.search(said)
+    return line.replace(ALTERNATE, "turn all: side other") if ALTERNATE in line and is_exchange else None
+
+
+def _share(text: SlottedText, line: str) -> str | None:
+    """Returns the plan of a request to reduce a value to, or by, a third or a quarter, where the network has
+    taken one for the other; None for other requests.
+    """
+    for words, to, by in PARTS.values():
+        is_to = re.search(rf"\b{TO}(?:{words})\b", text.text) is not None
+        is_by = re.search(rf"\b{BY}(?:{words})\b", text.text) is not None
+        factors = re.findall(r"\bx(0\.\d+)\b", line)
+        if is_to != is_by and len(factors) == 1 and factors[0] == (by if is_to else to):
+            return line.replace(f"x{factors[0]}", f"x{to if is_to else by}")
+    return None
 
 
 def lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
