@@ -44,7 +44,7 @@ def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, has
     size = drawn_count(asked.columns, rng), drawn_count(asked.rows, rng)
     entrances = _entrances(size, asked.dead_ends, rng, haste)
     lengths = [
-        _streets(count, asked.length, room - _outside(entrances, axis), rng, haste)
+        drawn_streets(count, asked.length, room - _outside(entrances, axis), rng, haste)
         for axis, count in enumerate(size)
     ]
     xs, ys = (np.concatenate([[0.0], np.cumsum(each)]) for each in lengths)
@@ -61,7 +61,11 @@ def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, has
         node = draft.nodes[numbers[cell]]
         draft.add(DraftNode(node.z + way * (CONTACT + drawn_stub(rng, haste)), "end"), numbers[cell])
     inner = [draft.nodes[n] for (i, j), n in numbers.items() if 0 < i < size[0] and 0 < j < size[1]]
-    return draft if _finished(draft, least_radius, rng) and _signed(draft, asked.signed, inner, rng) else None
+    return (
+        draft
+        if with_kinds_and_bends(draft, least_radius, rng) and _signed(draft, asked.signed, inner, rng)
+        else None
+    )
 
 
 def drawn_count(asked: Amount | None, rng: Rng, most: int = 8, least: int = 1) -> int:
@@ -109,7 +113,7 @@ def _outside(entrances: list[tuple[Cell, tuple[int, int]]], axis: int) -> float:
     return sum(CONTACT + 25.0 for side in {side for _, side in entrances} if side[axis])
 
 
-def _streets(count: int, asked: Amount | None, room: float, rng: Rng, haste: float) -> list[float]:
+def drawn_streets(count: int, asked: Amount | None, room: float, rng: Rng, haste: float) -> list[float]:
     """Returns the distances in metres between neighbouring streets."""
     if asked is None:
         most = min(max(room / count / (1 + UNEVEN / 2), LEAST_BLOCK), MOST_BLOCK)
@@ -145,7 +149,7 @@ def _signed(draft: MapDraft, asked: Sequence[JunctionCount], inner: Sequence[Dra
     return True
 
 
-def _finished(draft: MapDraft, least_radius: float, rng: Rng) -> bool:
+def with_kinds_and_bends(draft: MapDraft, least_radius: float, rng: Rng) -> bool:
     """Gives each node its kind, and each bend its radius; returns whether all bends have room."""
     ends = draft.neighbours()
     for number, node in enumerate(draft.nodes):

@@ -19,6 +19,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.check.map_measures import measured_map
 from roadgpt.check.route_promises import length_range
 from roadgpt.design.advice import larger_map
+from roadgpt.design.carved_draft import can_be_carved, draft_carved
 from roadgpt.design.first_accepted import first_accepted
 from roadgpt.design.grid_draft import LEAST_BLOCK, draft_grid
 from roadgpt.design.layout import boxes
@@ -44,6 +45,7 @@ PARTS = 250.0  # m, side of the usual map
 LEANING = 14.0  # degrees, greatest rotation of a grid; its columns still run from south to north
 TURNS = 24  # number of rotations that are tried
 TIGHTEST = 1.05  # least radius of bends, as a multiple of the smallest radius allowed
+CARVED = 0.7  # share of drafts with few dead ends that are carved out of a grid
 LEVEL = 0.4  # share of maps that are level
 TILT = 0.02  # ratio, greatest slope of the plane in which the nodes of a map lie
 STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest node
@@ -95,7 +97,12 @@ class MapSearch:
         room = world.site.map_size - world.section.road_width - 2 * EDGE
         radius = TIGHTEST * world.limits.min_radius
         if self.asked.junctions:
-            draft = draft_village(self.asked, world, radius, self.rng, haste)
+            is_carved = can_be_carved(self.asked) and self.rng.random() < CARVED
+            draft = (
+                draft_carved(self.asked, room, radius, self.rng, haste)
+                if is_carved
+                else draft_village(self.asked, world, radius, self.rng, haste)
+            )
             turns = self.rng.uniform(0, 360, TURNS)
         else:
             draft = draft_grid(self.asked, room, radius, self.rng, haste)
