@@ -72,6 +72,12 @@ def test_words_set_the_map_and_nothing_else(words: str) -> None:
     assert world_for(brief, World(site=Site(map_size=300))).site.map_size == 300
 
 
+def test_the_other_reading_is_on_the_same_map() -> None:
+    brief = read("seven crossroads, left at each, on a map of 500 m", is_map_fixed=False)
+    assert brief.other
+    assert read_plan(brief.other).map_size == 500
+
+
 def test_remarks_say_which_map_is_used() -> None:
     brief = read("two bends on a map of 500 m", is_map_fixed=False)
     said = [

@@ -37,7 +37,7 @@ from roadgpt.brief.model import (
 from roadgpt.brief.motorway import says_motorway
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
-from roadgpt.brief.plan import plan
+from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.refusal import (
     AnotherRoadError,
     ContradictionError,
@@ -157,7 +157,7 @@ def read(
         brief, too_much = reader_of(reader, chat).read(sized.rest if sized else words), None
     except TooMuchError as refusal:
         brief, too_much = refusal.brief, refusal
-    brief = brief.model_copy(update={"words": words, "map_size": sized.metres}) if sized else brief
+    brief = _on_map(brief, words, sized.metres) if sized else brief
     if brief.map_size is not None and not is_map_fixed:
         map_size, is_map_fixed = brief.map_size, True
     check(brief, map_size if is_map_fixed else LARGEST_MAP, min_radius, max_grade, road_width)
@@ -171,6 +171,13 @@ def read(
     if reader != PLAN:
         brief = with_driving_side(brief, words)
     return brief.model_copy(update={"motorway": True}) if is_road and says_motorway(words) else brief
+
+
+def _on_map(brief: Brief, words: str, metres: float) -> Brief:
+    """Returns the Brief of a description whose words also give the size of the map, and its other reading."""
+    size = {"map_size": metres}
+    other = plan(read_plan(brief.other).model_copy(update=size)) if brief.other else ""
+    return brief.model_copy(update={"words": words, "other": other, **size})
 
 
 def alternatives(
