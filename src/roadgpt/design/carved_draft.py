@@ -15,7 +15,15 @@ import numpy as np
 
 from roadgpt.brief.junctions import MapJunctionKind
 from roadgpt.brief.map_clause import JunctionCount, MapClause
-from roadgpt.design.grid_draft import CONTACT, MOVED, Cell, drawn_count, drawn_streets, with_kinds_and_bends
+from roadgpt.design.grid_draft import (
+    CONTACT,
+    MOVED,
+    SIDES,
+    Cell,
+    drawn_count,
+    drawn_streets,
+    with_kinds_and_bends,
+)
 from roadgpt.design.map_draft import DraftNode, MapDraft, Rng, drawn_kerb, drawn_stub
 
 FEW_ENDS = 3
@@ -30,7 +38,6 @@ SPARE = 9  # greatest number of nodes of a grid that are no junctions in the end
 CARVINGS = 60  # grids that are tried
 IDLE = 0.25  # chance of taking out a street that brings the grid no nearer
 ISLANDS = (12.0, 15.0)  # m, radii of the central islands of roundabouts
-SIDES: tuple[tuple[int, int], ...] = ((-1, 0), (1, 0), (0, -1), (0, 1))
 Street = frozenset[Cell]
 
 

@@ -3,8 +3,9 @@
 import re
 
 from roadgpt.brief.readers.model.height_words import height_wish
+from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
 from roadgpt.brief.readers.model.slots import SlottedText
-from roadgpt.brief.readers.model.swap_words import exchanged_values, turns_to_swap
+from roadgpt.brief.readers.model.swap_words import SWAP, exchanged_values, turns_to_swap
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 
 PARTS = {
@@ -14,14 +15,8 @@ PARTS = {
 """For each share: its words, the factor of what is reduced to it, and of what is reduced by it."""
 TO = r"(?:(?:to|auf) (?:(?:a|one|its|ein) )?|(?:a|al|alla|au) (?:un[ea]?|la|le) )"
 BY = r"(?:(?:by|um) (?:(?:a|one|ein) )?|(?:de|d '|en|di) (?:un[ea]?|la|le) )"
-LEFT_OR_RIGHT = re.compile(
-    r"\b(?:left|links|gauche|izquierd[ao]|sinistra)\b.*\b(?:right|rechts|droite|derech[ao]|destra)\b|"
-    r"\b(?:right|rechts|droite|derech[ao]|destra)\b.*\b(?:left|links|gauche|izquierd[ao]|sinistra)\b"
-)
-EXCHANGES = re.compile(
-    r"\b(?:swap|exchange|switch|flip|becomes?|(?:ver)?tausch\w*|vertausch\w*|wird|werden|echang\w*|invers\w*|"
-    r"devien\w*|intercambi\w*|inviert\w*|invert\w*|pasa\w* a|scambi\w*|divent\w*)\b"
-)
+BECOMES = re.compile(r"\b(?:flip|becomes?|wird|werden|invers\w*|devien\w*|inviert\w*|pasa\w* a|divent\w*)\b")
+"""Words with which one side becomes the other, beside those that exchange two things."""
 ALTERNATE = "turn all: alternate"
 ALTERNATES = re.compile(r"\b(?:altern\w*|abwechs\w*|wechsel\w*|tour a tour|avvicend\w*)\b")
 
@@ -62,7 +57,9 @@ def _other_sides(text: SlottedText, line: str) -> str | None:
     words exchange left and right; None for other requests.
     """
     said = text.text
-    is_exchange = LEFT_OR_RIGHT.search(said) and EXCHANGES.search(said) and not ALTERNATES.search(said)
+    words = {word.text for word in text.words}
+    names_both = not words.isdisjoint(LEFT) and not words.isdisjoint(RIGHT)
+    is_exchange = names_both and (SWAP.search(said) or BECOMES.search(said)) and not ALTERNATES.search(said)
     return line.replace(ALTERNATE, "turn all: side other") if ALTERNATE in line and is_exchange else None
 
 
