@@ -51,6 +51,7 @@ FORMS = tuple(
         rf"(?P<on>\b{SIZE}(?: of| von| de| di|:| =| is)? )(?P<rest>){METRES}",
     )
 )
+ONLY_SIZE = "this gives only the size of the map; say what the road should be like, such as 'two sharp turns'"
 LOOSE = re.compile(r"^[\s,;:.]+|[,;:]\s*(?=[,;:.!?]|$)|\s+(?=[,.;:!?])")
 """Spaces and marks that are left over where words were taken out."""
 
@@ -69,7 +70,7 @@ def said_map_size(words: str) -> SizedMap | None:
     "On a map of 500 m by 500 m" is taken out; of "a map of 500 m by 500 m with two crossroads", its size.
 
     Raises:
-        BriefError: no map may have this size.
+        BriefError: no map may have this size, or the words say nothing else.
     """
     found = next(filter(None, (form.search(words) for form in FORMS)), None)
     if found is None:
@@ -86,7 +87,9 @@ def said_map_size(words: str) -> SizedMap | None:
         raise BriefError(f"a map of {metres:g} m by {metres:g} m cannot be made; ask for one of {limits}")
     noun = f"{groups['rest']}{groups.get('noun') or ''}" if groups["on"] is None else ""
     rest = LOOSE.sub("", f"{words[: found.start()]}{noun}{words[found.end() :]}").strip()
-    return SizedMap(metres, rest) if re.search(r"\w", rest) else None
+    if not re.search(r"\w", rest):
+        raise BriefError(ONLY_SIZE)
+    return SizedMap(metres, rest)
 
 
 def _metres(unit: str) -> float:

@@ -229,6 +229,10 @@ def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> Non
         amount = read_amount(value)
         if not amount.exact:
             raise BriefError(f"a map has one size, not '{value[:40]}'; write for example {MAP_SIZE}500")
+        if not 50 <= (amount.lo or 0) <= 10_000:
+            raise BriefError(
+                f"a map is 50 to 10000 m wide, not {value[:40]}; write for example {MAP_SIZE}500"
+            )
         _set(fields, "map_size", amount.lo)
     elif word in WORDS:
         _set(fields, WORDS[word], word)
