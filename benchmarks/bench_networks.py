@@ -2,13 +2,14 @@
 
     python benchmarks/bench_networks.py [--networks N] [--profile STEP]
 
-The designs are those of the tests: one to four junctions of all kinds. Times are of the processor. A step
-that is named with --profile (build, paved or opendrive) is profiled, and its dearest functions are printed.
+The designs are those of the tests: one to four junctions of all kinds. Times are of the processor, with
+Python's garbage collector at its defaults, as in a run of many networks. A collection before each step would
+empty the caches of the processor and add up to half of the time. A step that is named with --profile (build,
+paved or opendrive) is profiled, and its dearest functions are printed.
 """
 
 import argparse
 import cProfile
-import gc
 import pstats
 import sys
 import time
@@ -59,7 +60,6 @@ def built(design: NetworkDesign, world: World) -> Route | None:
 
 def timed(step: Callable[[int], object], number: int, profiler: cProfile.Profile | None) -> float:
     """Seconds of processor time of one step."""
-    gc.collect()
     begun = time.process_time()
     if profiler is None:
         step(number)

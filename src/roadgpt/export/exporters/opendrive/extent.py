@@ -6,6 +6,7 @@ import numpy as np
 
 from roadgpt.export.exporters.opendrive.plan import Start
 from roadgpt.geometry import CubicProfile
+from roadgpt.geometry.curve import Array
 from roadgpt.geometry.pieces import advance
 from roadgpt.road import Profile
 from roadgpt.road.profile import Width
@@ -32,8 +33,11 @@ def bounds_of(
     x, y, heading = np.array([start[1:4] for start in starts]).T
     bend = np.maximum(np.abs(k0), np.abs(k1))
     count = np.where(bend > 0, np.ceil(length / APART_ON_BENDS), 1).astype(int)
-    piece = np.repeat(np.arange(len(starts)), count + 1)
-    first = np.cumsum(count + 1) - count - 1
+    outer = np.flatnonzero(_may_be_outermost(x, y, length + np.maximum(left, right)))
+    points_of = count[outer] + 1
+    piece = np.repeat(outer, points_of)
+    first = np.zeros(len(starts), int)
+    first[outer] = np.cumsum(points_of) - points_of
     u = length[piece] * (np.arange(len(piece)) - first[piece]) / count[piece]
     k, dk = k0[piece], ((k1 - k0) / length)[piece]
     dx, dy = advance(u, heading[piece], k, dk, length[piece])
@@ -46,6 +50,18 @@ def bounds_of(
     west, south = (corners.min(axis=1) - sag).tolist()
     east, north = (corners.max(axis=1) + sag).tolist()
     return west, south, east, north
+
+
+def _may_be_outermost(x: Array, y: Array, reach: Array) -> Array:
+    """Returns for each piece whether it may be outside the box around the starts of all pieces.
+
+    Args:
+        x: The starts of the pieces in metres.
+        y: The same.
+        reach: The distances in metres from the starts that the lanes beside the pieces do not exceed.
+    """
+    outside = [(v - reach < v.min()) | (v + reach > v.max()) for v in (x, y)]
+    return np.asarray(outside[0] | outside[1])
 
 
 def reaches(profile: Profile) -> tuple[float, float]:
