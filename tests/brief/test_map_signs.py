@@ -3,7 +3,11 @@
 import pytest
 
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.exit_words import with_motorway_behind_ramp, with_stay_on_motorway
+from roadgpt.brief.readers.model.exit_words import (
+    with_motorway_behind_ramp,
+    with_passed_exits,
+    with_stay_on_motorway,
+)
 from roadgpt.brief.readers.model.map_signs import with_counted_signs
 from roadgpt.brief.readers.model.map_words import with_counted_map
 from roadgpt.brief.readers.model.own_lane import with_each_lane
@@ -26,6 +30,20 @@ def corrected(words: str, written: str) -> str:
             "map roundabout x2; crossroads x4; junction x6 lights",
             "map junction x4 lights; roundabout x2; junction x6",
         ),
+        (
+            "four T-junctions, one crossroads, and stop signs only at the crossroads",
+            "map t_junction x4; crossroads stop",
+            "map crossroads stop; t_junction x4",
+        ),
+        (
+            "a four by one grid, stop signs at exactly two crossings, lights at exactly one of the others",
+            "map columns=4 rows=1; crossroads x2 stop",
+            "map columns=4 rows=1; junction lights; junction x2 stop",
+        ),
+        ("a town with five blocks and no lights", "map columns=5 rows=5", "map columns=5 rows=1"),
+        ("una ciudad de seis manzanas", "map columns=6 rows=6", "map columns=3 rows=2"),
+        ("a town five blocks wide", "map columns=5 rows=5", "map columns=5 rows=5"),
+        ("a town of nine blocks", "map columns=3 rows=3", "map columns=3 rows=3"),
         (
             "a star, three T-junctions and a fork, and stop signs at two of the junctions, not more",
             "map star; t_junction x3; y_junction stop",
@@ -264,6 +282,28 @@ def test_signs_behind_the_last_kind_are_those_of_the_map() -> None:
 )
 def test_who_stays_on_the_motorway_takes_no_exit(words: str, written: str, right: str) -> None:
     assert plan(with_stay_on_motorway(read_plan(written), words)) == right
+
+
+@pytest.mark.parametrize(
+    ("words", "written", "right"),
+    [
+        (
+            "we leave the motorway at the second exit",
+            "| motorway // diverge ramp // | motorway // diverge ramp",
+            "| motorway // diverge main // | motorway // diverge ramp",
+        ),
+        (
+            "dritte Ausfahrt der Autobahn",
+            "| motorway // diverge ramp // diverge ramp // diverge ramp",
+            "| motorway // diverge main // diverge main // diverge ramp",
+        ),
+        ("the third exit", "| motorway // diverge ramp // diverge ramp", None),
+        ("the first exit, then the second exit", "| motorway // diverge ramp // diverge ramp", None),
+        ("two exits, both taken", "| motorway // diverge ramp // diverge ramp", None),
+    ],
+)
+def test_exits_before_the_numbered_one_are_passed(words: str, written: str, right: str | None) -> None:
+    assert plan(with_passed_exits(read_plan(written), words)) == (right or written)
 
 
 @pytest.mark.parametrize(

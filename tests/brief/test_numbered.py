@@ -201,6 +201,16 @@ def test_turns_get_the_values_of_a_list(words: str, read: str, meant: str | None
             "crossroads // roundabout // crossroads stop",
         ),
         (
+            "Three crossroads, straight over every one of them except the second, where I turn left",
+            " // ".join(["crossroads straight"] * 3),
+            "crossroads straight // crossroads left // crossroads straight",
+        ),
+        (
+            "Drei Kreuzungen, geradeaus an jeder außer der ersten, wo wir nach links abbiegen",
+            " // ".join(["crossroads straight"] * 3),
+            "crossroads left // crossroads straight // crossroads straight",
+        ),
+        (
             "Three crossroads in a row, straight over all but the last.",
             "crossroads straight // crossroads straight // crossroads straight",
             "crossroads straight // crossroads straight // crossroads right",

@@ -44,6 +44,27 @@ def test_a_map_has_only_kinds_that_are_named() -> None:
     assert most_plausible(found, slotted(any_kind)).line == "map crossroads; t_junction x4 dead_ends=4"
 
 
+def test_a_map_has_the_told_dead_ends() -> None:
+    found = plans(("map t_junction x3 blocks=0", -0.2), ("map t_junction x3 dead_ends=3", -1.0))
+    assert (
+        most_plausible(found, slotted("a village with three dead ends")).line
+        == "map t_junction x3 dead_ends=3"
+    )
+    assert most_plausible(found, slotted("a village, five cul-de-sacs")).line == "map t_junction x3 blocks=0"
+    kinds = plans(("map roundabout x2; t_junction x3", -0.2), ("map roundabout x2; junction", -1.0))
+    words = "a village with two roundabouts, another junction and three dead ends"
+    assert most_plausible(kinds, slotted(words)).line == "map roundabout x2; junction"
+    words = "a village with two roundabouts, T-junctions and three dead ends"
+    assert most_plausible(kinds, slotted(words)).line == "map roundabout x2; t_junction x3"
+
+
+def test_a_kind_that_is_counted_once_has_no_more_junctions() -> None:
+    four, five = (" // ".join(["crossroads straight"] * n) for n in (4, 5))
+    found = plans((five, -0.2), (four, -1.0))
+    assert most_plausible(found, slotted("four crossroads, straight over every one")).line == four
+    assert most_plausible(found, slotted("four crossroads and one more crossroads, the last")).line == five
+
+
 def test_refusals_stay() -> None:
     found = plans(("!contradiction length", -0.1), ("turn | len=[1]", -0.2))
     assert most_plausible(found, slotted("a bend on a road of 1 km")).line == "!contradiction length"

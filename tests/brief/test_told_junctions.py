@@ -173,7 +173,7 @@ def test_the_arms_that_are_told_decide_the_kind(words: str, line: str, wanted: s
     ],
 )
 def test_some_nouns_can_only_mean_a_junction(words: str, is_named: bool) -> None:
-    assert names_a_junction(slotted(words)) == is_named
+    assert names_a_junction(slotted(words).text) == is_named
 
 
 @pytest.mark.parametrize(

@@ -31,6 +31,8 @@ CASES: dict[str, dict[str, Any]] = {
     "map columns=4 rows=3 stop": {"blocks": 12, "junctions": [16, 20]},
     "map columns=1 rows=1": {"blocks": 1, "junctions": [2, 4]},
     "map columns=5 rows=1 yield": {"blocks": 5},
+    "map roundabout dead_ends=6": {"junctions": 1, "roundabouts": 1, "dead_ends": 6},
+    "map roundabout dead_ends=3": {"junctions": 1, "roundabouts": 1, "dead_ends": 3},
     "map crossroads x3": {"junctions": 3, "kinds": {"X": 3}},
     "map crossroads x3; roundabout; t_junction x2": {
         "junctions": 6,

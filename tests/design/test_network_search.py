@@ -285,6 +285,14 @@ def test_what_finds_no_place_is_refused_with_what_to_do() -> None:
         search.run(100)
 
 
+def test_the_most_frequent_reason_is_named_without_a_place() -> None:
+    brief = read_plan("| lanes=2 against=2 // roundabout exit=3 arms=5 r=9")
+    with pytest.raises(
+        DesignError, match=r"accepted: at the roundabout: the mouths of two arms overlap; turn"
+    ):
+        NetworkSearch(brief, USUAL, np.random.default_rng(1)).run(100)
+
+
 def test_a_larger_map_holds_what_a_small_one_does_not() -> None:
     line = "// roundabout large // // roundabout large // // roundabout large //"
     route = drafted(line, 1, World(site=Site(map_size=600)))
@@ -330,7 +338,13 @@ def test_a_road_between_junctions_climbs_as_many_metres_as_asked() -> None:
 
 @pytest.mark.parametrize(
     "line",
-    ["star straight arms=5", "roundabout arms=5 exit=2", "junction // junction // junction || len=..450"],
+    [
+        "star straight arms=5",
+        "roundabout arms=5 exit=2",
+        "junction // junction // junction || len=..450",
+        "| divided lanes=2 // crossroads straight // | turns=0 // crossroads straight || len=220",
+        "| lanes=2 against=2 // crossroads straight // | len=120 // roundabout exit=2 arms=4",
+    ],
 )
 def test_what_can_be_drawn_is_drawn(line: str) -> None:
     for seed in range(3):

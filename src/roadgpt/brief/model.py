@@ -217,6 +217,11 @@ class Brief(Frozen):
         return self._requires_only((*OF_THE_WORDS, "lanes", "against", "divided", "centre", "motorway"))
 
     @property
+    def is_straight_of_any_length(self) -> bool:
+        """Whether nothing is required of the road but that it has no turns, lanes and markings."""
+        return self.turns == exactly(0) and self.model_copy(update={"turns": None}).has_free_shape
+
+    @property
     def as_stretch(self) -> "Brief":
         """The requirements for a road between junctions: it needs no turn unless turns are asked for."""
         if self.clauses or self.turns is not None:

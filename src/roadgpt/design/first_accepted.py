@@ -1,5 +1,6 @@
 """Builds drafts of networks one after another until the rules accept one."""
 
+import re
 from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import TypeVar
@@ -15,6 +16,9 @@ LANES_DIFFER = (
     "have different numbers of lanes"
 )
 """The reason why a draft fails if a lane does not continue at a junction (rule ``unreachable``)."""
+NUMBER = re.compile(r"\d[\d.]*")
+PLACE = re.compile(r"^at s = [\d.]+ m: | near \([^)]*\)")
+"""The place of a fault, of which nothing can be seen on a draft that is not shown."""
 Draft = TypeVar("Draft", NetworkDesign, MapDesign)
 
 
@@ -33,10 +37,12 @@ def first_accepted(
         build: builds the route of a draft.
         brief: the requirements.
         world: limits that the rules check.
-        failed: number of drafts that failed for each reason; this function adds to it.
+        failed: number of drafts that failed for each reason; this function adds to it. Reasons that differ
+            only in places and sizes, or are findings of one rule, count as the first of them.
         most: greatest number of drafts that are built.
     """
     built = 0
+    reasons: dict[str, str] = {}
     for draft in drafts:
         if draft is None:
             continue
@@ -44,12 +50,14 @@ def first_accepted(
         try:
             findings = check.inspect(build(draft, world), brief, world)
         except UsageError as error:
-            failed[str(error)] += 1
+            why = PLACE.sub("", str(error))
+            failed[reasons.setdefault(NUMBER.sub("", why), why)] += 1
         else:
             if not findings:
                 return draft
-            is_lane = findings[0].rule == "unreachable"
-            failed[LANES_DIFFER if is_lane else findings[0].sentence] += 1
+            first = findings[0]
+            why = LANES_DIFFER if first.rule == "unreachable" else PLACE.sub("", first.sentence)
+            failed[reasons.setdefault(first.rule, why)] += 1
         if built == most:
             break
     return None

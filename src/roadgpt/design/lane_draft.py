@@ -240,12 +240,12 @@ def _of_same_road(known: Brief, road: Brief, place: JunctionClause) -> Brief:
 def _keeps_lanes(place: JunctionClause, road: Brief) -> bool:
     """Returns whether a road behind a junction keeps the lanes of the road before if it requires none itself.
 
-    It does if the route leads straight on, also over a roundabout whose ring may have so many lanes, or if
-    the route turns and ``road``, the road before, requires the lanes of both directions.
+    It does if the route leads straight on, or if the route turns and ``road``, the road before, requires the
+    lanes of both directions. A roundabout must have a ring that may have so many lanes.
     """
-    if place.kind == "roundabout":
-        return place.take == "straight" and place.lanes is None and span(road.lanes).lo <= MOST_RING_LANES
     is_said = road.lanes is not None and road.against is not None and span(road.against).hi > 0
+    if place.kind == "roundabout":
+        return (place.take == "straight" or is_said) and _can_take(place, road)
     turns = place.take in ("left", "right") and place.kind in ("t_junction", "crossroads", "junction")
     return leads_straight_on(place) or (turns and is_said)
 

@@ -213,13 +213,15 @@ class NetworkSearch:
         """Returns a draft of each road between the junctions; None if one of them cannot be drafted.
 
         The roads of which nothing is required, or else those of which no length is, are drafted last: they
-        make up the length of the whole route.
+        make up the length of the whole route. If one is required, straight roads of any length do so too.
         """
         briefs = counted_from_lanes(self.brief, junctions, self.usual.width)
+        rest = self._rest(junctions)
         free = [n for n, brief in enumerate(briefs) if brief.has_free_shape]
+        if free and rest is not None:
+            free = [n for n, brief in enumerate(briefs) if n in free or brief.is_straight_of_any_length]
         free = free or [n for n, brief in enumerate(briefs) if brief.length is None]
         found: dict[int, Draft] = {}
-        rest = self._rest(junctions)
         for n in sorted(range(len(briefs)), key=lambda n: (n in free, n)):
             share = None
             if rest is not None and n in free:
@@ -232,13 +234,18 @@ class NetworkSearch:
             found[n] = draft
         return [found[n] for n in range(len(briefs))]
 
-    def _shortest(self, n: int) -> float:
-        """Returns the least length in metres of a road of which no length is required."""
+    def _shortest(self, n: int, haste: float) -> float:
+        """Returns the least length in metres of a road of which no length is required.
+
+        The larger ``haste``, from 0 to 1, the shorter a road with several lanes on which none ends, begins or
+        is changed.
+        """
         around = self.brief.junctions[max(n - 1, 0) : n + 1]
         if [place.kind for place in around] == ["diverge", "merge"]:
             return SHORTEST_BETWEEN_RAMPS
-        changes = any(place.kind in LANE_KINDS for place in around) or self.lanes[n].forward > 1
-        return SHORTEST_WITH_LANES if changes else SHORTEST
+        if any(place.kind in LANE_KINDS for place in around):
+            return SHORTEST_WITH_LANES
+        return max(SHORTEST_WITH_LANES * (1 - haste), SHORTEST) if self.lanes[n].forward > 1 else SHORTEST
 
     def _rest(self, junctions: Sequence[PlaceDesign]) -> float | None:
         """Returns the length in metres that the roads between junctions share; None if it is open."""
@@ -262,7 +269,7 @@ class NetworkSearch:
             haste: from 0 to 1; the larger it is, the shorter the road.
             length: the length in metres that the road should have; None if it is open.
         """
-        wanted, shortest = brief, self._shortest(n)
+        wanted, shortest = brief, self._shortest(n, haste)
         if length is not None:
             if length < SHORTEST:
                 return None

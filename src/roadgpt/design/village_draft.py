@@ -84,7 +84,7 @@ def _junctions(
     kinds: Sequence[JunctionCount], asked: MapClause, rng: Rng, haste: float, has_few_arms: bool
 ) -> list[JunctionDesign] | None:
     """Returns one junction for each of ``kinds``, in random order; roundabouts with three arms each if
-    ``has_few_arms`` is true.
+    ``has_few_arms`` is true. A junction alone has an arm for each dead end that is required.
 
     Returns None if one of them was not found. Also returns None if the required number of dead ends is
     impossible: there are too few arms, or joining arms in pairs always leaves another number.
@@ -92,6 +92,7 @@ def _junctions(
     found = []
     for n in rng.permutation(len(kinds)):
         arms = exactly(3) if has_few_arms and kinds[n].kind == "roundabout" else None
+        arms = asked.dead_ends if len(kinds) == 1 else arms
         junction = drawn_junction(JunctionClause(kind=kinds[n].kind, arms=arms), 1, rng, haste)
         if junction is None:
             return None

@@ -254,7 +254,7 @@ class ModelReader:
         why = draft.line
         if why.startswith("!contradiction"):
             return self._brief_in_spite_of(why, words, text, ensemble)
-        if why == TOO_MANY_TURNS and names_a_junction(text):
+        if why == TOO_MANY_TURNS and names_a_junction(text.text):
             raise BriefError(MANY_JUNCTIONS)
         brief = self._for_the_usual_map(words, text, ensemble) if why.startswith("!impossible") else None
         raise TooMuchError(TOO_MUCH, brief) if brief else refused(why)

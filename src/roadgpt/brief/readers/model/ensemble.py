@@ -102,7 +102,7 @@ def scored_by(
     read = routes.scored(words, refuse_from) if routes and may_tell_a_route(words) else ()
     is_route = bool(read) and not roads.knows(_without_motorway(read[0].tokens))
     sure = _confidence(routes, read, text) if routes and is_route else 0.0
-    is_said = names_a_junction(text) or asks_for_map(text)
+    is_said = names_a_junction(text.text) or asks_for_map(text)
     if routes and is_route and (sure >= GUESS or (is_said and not read[0].is_refusal)):
         return routes, read
     found = roads.scored(words, refuse_from)

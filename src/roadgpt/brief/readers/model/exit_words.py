@@ -6,6 +6,7 @@ from roadgpt.brief.amount import exactly
 from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.numerals import plain
+from roadgpt.brief.readers.model.ordinals import PLACE, place_of
 
 ROAD = (
     r"(?:motorway|freeway|highway|interstate|main (?:road|carriageway|line)|mainline|autobahn|hauptfahrbahn|"
@@ -56,6 +57,8 @@ ONTO_LANES = re.compile(
     rf"\b(?:in|su|nell?'? ?)(?: ?una?'? ?)? ?autostrada a {NUMBER} corsie\b"
 )
 """Words that give the number of lanes of the motorway that a route joins."""
+NUMBERED = re.compile(rf"\b({PLACE}) (?:\w+ )?{EXIT}\b")
+"""An exit with its number: those before it are passed."""
 LEAVES = re.compile(
     r"\b(?:leav\w*|off|come off|get off|take|taking|turn|exits? (?:there|again|right|left)|verlass\w*|"
     r"(?:fahr\w*|geh\w*) [^.;]*\b(?:ab|raus|runter)|abfahren|ausfahren|herunter|nehm\w*|nimm\w*|genommen|"
@@ -78,6 +81,22 @@ def with_stay_on_motorway(brief: Brief, words: str) -> Brief:
     at = ramps[0]
     passed = brief.junctions[at].model_copy(update={"take": "main"})
     return brief.model_copy(update={"junctions": (*brief.junctions[:at], passed, *brief.junctions[at + 1 :])})
+
+
+def with_passed_exits(brief: Brief, words: str) -> Brief:
+    """Returns the Brief of a route that leaves a motorway at "the second exit" and passes those before it.
+
+    The Brief is returned unchanged if it has another number of exits, or passes one of them already.
+    """
+    ramps = [n for n, each in enumerate(brief.junctions) if each.kind == "diverge"]
+    found = {place_of(each) for each in NUMBERED.findall(plain(words))}
+    if len(ramps) < 2 or found != {len(ramps)} or _is_passed(brief.junctions):
+        return brief
+    junctions = tuple(
+        each.model_copy(update={"take": "main"}) if n in ramps[:-1] else each
+        for n, each in enumerate(brief.junctions)
+    )
+    return brief.model_copy(update={"junctions": junctions})
 
 
 def with_motorway_behind_ramp(brief: Brief, words: str) -> Brief:

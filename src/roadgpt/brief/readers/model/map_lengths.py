@@ -8,11 +8,14 @@ length of routes that are told in many words.
 import re
 
 from roadgpt.brief.amount import Amount, exactly
+from roadgpt.brief.junctions import LANE_KINDS
 from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.end_lengths import ABOUT
 from roadgpt.brief.readers.model.map_words import IN_ALL, TAKEN_BACK
 from roadgpt.brief.readers.model.sign_words import LEAST, MOST
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.told_junctions import DRIVE
+from roadgpt.brief.readers.model.whole_drive import PLACED
 
 ROADS = (
     r"(?:roads?|streets?|stra(?:ss|ß)en?(?:netz\w*)?|wegen?|rues?|routes?|voirie|calles?|carreteras?|strad[ae]|"
@@ -38,6 +41,13 @@ ROUTE = re.compile(
 """The length of a whole route."""
 
 
+OF_ALL = (
+    r"(?: (?:long|dead|straight|in length|lang|gerade(?:aus)?|de long|tout droit|de largo|rect[ao]|lung[ao]|"
+    r"dritt[ao])){0,2}"
+)
+"""What may follow the length of a road without junctions."""
+
+
 def with_length_of_route(brief: Brief, text: SlottedText) -> Brief:
     """Returns the Brief of a route with the length that the words give to it, if the Brief has no length."""
     found = {int(group) for match in ROUTE.finditer(text.text) for group in match.groups() if group}
@@ -48,6 +58,35 @@ def with_length_of_route(brief: Brief, text: SlottedText) -> Brief:
     if number > len(text.slots):
         return brief
     return brief.model_copy(update={"length": exactly(text.slots[number - 1].value)})
+
+
+def with_length_past_lanes(brief: Brief, text: SlottedText) -> Brief:
+    """Returns the Brief of a route without junctions, on which lanes only end, begin or are changed, with the
+    only length in the words as the length of the whole route.
+
+    The Brief is returned unchanged if the length is not that of its first road, if it does not stand
+    alone between commas, or if a word near it may limit it to a part of the route: "then 200 m".
+    """
+    lengths = [n for n, slot in enumerate(text.slots, 1) if slot.unit == "metres"]
+    first = brief.stretches[0] if brief.junctions else None
+    if first is None or len(lengths) != 1 or any(each.kind not in LANE_KINDS for each in brief.junctions):
+        return brief
+    said = next(part for part in re.split(r"[.;]", text.text) if f"[unused{lengths[0]}]" in part)
+    alone = rf"(?:^|,) {ABOUT}\[unused{lengths[0]}\] metres{OF_ALL}(?: ?,|$)"
+    is_alone = re.search(alone, f" {said.strip()}") is not None
+    length, metres = first.length, exactly(text.slots[lengths[0] - 1].value)
+    clauses = first.clauses
+    if len(clauses) == 1 and clauses[0].kind == "straight" and length is None:
+        length, clauses = clauses[0].length, (clauses[0].model_copy(update={"length": None}),)
+    if (
+        not is_alone
+        or length != metres
+        or PLACED.search(said)
+        or any(each.length for each in brief.junctions)
+    ):
+        return brief
+    bare = first.model_copy(update={"length": None, "clauses": clauses})
+    return brief.model_copy(update={"length": metres, "stretches": (bare, *brief.stretches[1:])})
 
 
 def with_whole_length(brief: Brief, text: SlottedText) -> Brief:

@@ -54,10 +54,12 @@ def with_counted_signs(brief: Brief, text: SlottedText) -> Brief:
     asked = brief.map
     if asked is not None and (inside := _inside_grid(asked, said_of(text))) is not None:
         return brief.model_copy(update={"map": asked.model_copy(update=inside)})
-    if asked is None or asked.signed:
+    if asked is None:
         return brief
     said = said_of(text)
     signs = signs_in_words(said)
+    if asked.signed and {each.control for each in signs.counted} <= {each.control for each in asked.signed}:
+        return brief
     if any(each.control for each in asked.junctions):
         if signs.counted and all(_is_placed(each, asked) for each in signs.counted):
             return brief

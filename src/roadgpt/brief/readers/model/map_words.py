@@ -4,8 +4,9 @@ ends or blocks the map has.
 
 import re
 from collections.abc import Mapping, Sequence
+from math import isqrt
 
-from roadgpt.brief.amount import Amount, exactly
+from roadgpt.brief.amount import Amount, exactly, span
 from roadgpt.brief.junction_check import has_fixed_arms, most_ends
 from roadgpt.brief.junctions import MapJunctionKind
 from roadgpt.brief.map_clause import JunctionCount, MapClause
@@ -50,7 +51,7 @@ BLOCKS = re.compile(
 )
 BY = re.compile(
     r"\b(\d+) (?:blocks? |(?:hauser)?blocke? |ilots? |manzanas? |isolati )?"
-    r"(?:by|x|mal|auf|per|por|sur) (\d+)\b(?! (?:lanes?|spuren|streifen|voies|carriles|corsie))"
+    r"(?:by|x|mal|auf|par|per|por|sur) (\d+)\b(?! (?:lanes?|spuren|streifen|voies|carriles|corsie))"
 )
 SIDE_OF_BLOCK = re.compile(
     r"\b(?:blocks?|(?:hauser)?blocken?|ilots|manzanas|isolati) (?:of|von|de|di) \[unused(\d+)\] metres\b"
@@ -59,10 +60,14 @@ IN_A_ROW = re.compile(
     r"\bin (?:one|1|a|single|einer|una) (?:single |einzigen )?(?:row|reihe|fila)\b|en (?:une )?rangee"
 )
 ACROSS = re.compile(
-    r"\b(?:by|across|columns?|rows|mal|auf|spalten?|reihen|colonn\w+|rangees|filas|righe|sur|por|per|"
+    r"\b(?:by|across|columns?|rows|mal|auf|spalten?|reihen|colonn\w+|rangees|filas|righe|sur|par|por|per|"
     r"deep|high|north|south|each|long|len\w*|lang|x)\b"
 )
 """Words of grids whose total number of blocks may be larger than the number in the text ("3 blocks deep")."""
+WIDE = re.compile(
+    r"\b(?:wide|width|side|square|breit\w*|seite\w*|quadrat\w*|larg\w+|cote|carre\w*|anch\w+|lad[oi])\b"
+)
+"""Words with which the number of blocks may be that of one side of a grid."""
 EIGHT = re.compile(r"\b(?:acht|huit|ocho|otto)\b(?= \w+[sni]\b)")
 """The number 8 before a plural; the networks read these words themselves."""
 ANY_KIND = (
@@ -280,7 +285,8 @@ def is_counted(junctions: JunctionCount, said: str) -> bool:
 
 def _blocks(asked: MapClause, said: str) -> dict[str, Amount]:
     """Returns the columns and rows of a grid if the words leave no doubt about them: "two by three", "four
-    blocks in a row", "a single block".
+    blocks in a row", "a single block". If they only give the number of blocks, and the plan has another
+    number, the grid is as close to a square as this number allows.
     """
     found = BY.findall(said)
     is_exact = all(each is not None and each.exact for each in (asked.columns, asked.rows))
@@ -291,10 +297,23 @@ def _blocks(asked: MapClause, said: str) -> dict[str, Amount]:
         columns, rows = map(int, found[0])
     elif number and not found and (number == 1 or IN_A_ROW.search(said)):
         columns, rows = number, 1
+    elif number and is_exact and number != _product(asked) and _is_total(number, said):
+        rows = max(n for n in range(1, isqrt(number) + 1) if number % n == 0)
+        columns = number // rows
     else:
         return {}
     is_turned = asked.columns == exactly(rows) and asked.rows == exactly(columns)
     return {} if is_turned or not is_exact else {"columns": exactly(columns), "rows": exactly(rows)}
+
+
+def _is_total(blocks: int, said: str) -> bool:
+    """Returns whether words that count blocks have no other number, and speak of no side of a grid."""
+    return re.findall(r"\b\d+\b", said) == [str(blocks)] and WIDE.search(said) is None
+
+
+def _product(asked: MapClause) -> float:
+    """Returns the number of blocks of a grid with exact columns and rows."""
+    return span(asked.columns).lo * span(asked.rows).lo
 
 
 def _side(asked: MapClause, text: SlottedText) -> dict[str, Amount]:

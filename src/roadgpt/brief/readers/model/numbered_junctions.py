@@ -49,7 +49,7 @@ NOT_GIVEN = re.compile(
 """Words before "priority" or "precedenza" with which the route has none."""
 OF_OTHERS = re.compile(
     r"\b(?:cross traffic|traffic|others?|everybody|everyone|they|side (?:roads?|streets?)|querverkehr|"
-    r"quer\w*|anderen?|autres?|transversal\w*|demas|otr[oa]s?|altri|altre|laterali)\b[^.,;:]*$"
+    r"quer\w*|anderen?|autres?|transversal\w*|lati|demas|otr[oa]s?|altri|altre|laterali)\b[^.,;:]*$"
 )
 """Words before a sign that is not for the route."""
 NO_WAY = re.compile(
@@ -75,7 +75,11 @@ CORRECTED = re.compile(
 )
 """Words with which something said before is replaced."""
 BUT = re.compile(rf"\b{EXCEPT} (?:{AT} )*$")
-ALL_BUT = re.compile(rf"\b{ALL}(?: \w+){{0,4}}? ,? ?{EXCEPT} (?:{AT} )*$")
+ALL_BUT = re.compile(rf"\b{EVERY}(?: \w+){{0,4}}? ,? ?{EXCEPT} (?:{AT} )*$")
+EXCEPTED = re.compile(
+    rf"\b{EXCEPT} (?:{AT} )*{WHICH}(?: {NOUN})?(?: {OF_THEM})? ?,? (?:where|wo|ou|donde|dove) ([^.;:]*)"
+)
+"""What is said of a junction that is excepted: "except the second, where the car turns left"."""
 ANY_NOUN = re.compile(rf"(?:{ANY_KIND}|junction|intersection|crossing|knoten(?:punkt)?)")
 T_JUNCTION = re.compile(r"t - (?:junction|crossing|intersection)s?|einmundung(?:en)?")
 
@@ -112,7 +116,7 @@ def with_numbered_junctions(brief: Brief, text: SlottedText) -> Brief:
     junctions = _signed(
         brief.junctions, controls, {sign for sign in SIGNS if _is_complete(sign, signs, said)}
     )
-    ways |= _other_ways(brief.junctions, takes, ways)
+    ways |= _other_ways(brief.junctions, takes, ways, said)
     junctions = tuple(
         each.model_copy(update={"take": ways[n]}) if n in ways and not _goes(each, ways[n]) else each
         for n, each in enumerate(junctions)
@@ -121,16 +125,18 @@ def with_numbered_junctions(brief: Brief, text: SlottedText) -> Brief:
 
 
 def _other_ways(
-    junctions: Sequence[JunctionClause], takes: Sequence[Placed], ways: Mapping[int, str]
+    junctions: Sequence[JunctionClause], takes: Sequence[Placed], ways: Mapping[int, str], said: str
 ) -> dict[int, str]:
     """Returns a way for each junction that is excepted from another one: after "straight over all but the
-    last", the route turns there.
+    last", the route turns there, to the side that the words name.
     """
     excepted = {each.value for each in takes if each.is_exception} if ways else set()
     if len(excepted) != 1:
         return {}
     (way,) = excepted
-    other = "left" if way == "right" else "right"
+    told = " ".join(EXCEPTED.findall(said))
+    named = [take for take, words in TAKES.items() if take != way and re.search(rf"\b{words}\b", told)]
+    other = named[0] if len(named) == 1 else "left" if way == "right" else "right"
     return {n: other for n, each in enumerate(junctions) if n not in ways and _goes(each, way)}
 
 
@@ -168,7 +174,7 @@ def _found(value: str, forms: Sequence[re.Pattern[str]], said: str) -> Iterator[
 def _forms(words: str) -> tuple[re.Pattern[str], ...]:
     """Returns the forms in which the places stand behind a sign or a way."""
     noun = rf"(?: ({NOUN}))?(?: {OF_THEM})?{ENDS}"
-    all_but = rf"(?:{AT} )*{ALL}(?: \w+){{0,3}}? ,? ?{EXCEPT} (?:{AT} )*({WHICH})"
+    all_but = rf"(?:{AT} )*{EVERY}(?: \w+){{0,3}}? ,? ?{EXCEPT} (?:{AT} )*({WHICH})"
     return (
         re.compile(rf"\b{words} (?:{ONLY})?(?:{AT} )+(?:{ONLY})?{PLACES}{noun}"),
         re.compile(rf"\b{words} {all_but}{noun}"),

@@ -15,11 +15,20 @@ from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
 from roadgpt.brief.readers.model.armed_junctions import with_told_arms
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.denied_slopes import with_denied_slope
-from roadgpt.brief.readers.model.exit_words import with_motorway_behind_ramp, with_stay_on_motorway
+from roadgpt.brief.readers.model.end_lengths import with_lengths_of_ends
+from roadgpt.brief.readers.model.exit_words import (
+    with_motorway_behind_ramp,
+    with_passed_exits,
+    with_stay_on_motorway,
+)
 from roadgpt.brief.readers.model.from_start import with_distances_from_start
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.listed_values import with_listed_values
-from roadgpt.brief.readers.model.map_lengths import with_length_of_route, with_whole_length
+from roadgpt.brief.readers.model.map_lengths import (
+    with_length_of_route,
+    with_length_past_lanes,
+    with_whole_length,
+)
 from roadgpt.brief.readers.model.map_signs import with_counted_signs
 from roadgpt.brief.readers.model.map_words import asks_for_grid, with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
@@ -34,7 +43,9 @@ from roadgpt.brief.readers.model.side_roads import with_sides_of_side_roads
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.told_junctions import (
+    has_told_ends,
     has_told_kinds,
+    lacks_ends_as_junctions,
     most_of_kinds,
     names_kinds,
     number_of_listed,
@@ -106,24 +117,23 @@ def _turns(line: str) -> Amount:
 
 def _as_counted(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
     """Returns the likeliest plan without more junctions of a kind than the words can mean, and with a grid if
-    the words can only mean one as a map; None if there is none that is likely.
+    the words can only mean one as a map; None if there is none that is likely. Maps of kinds that the words
+    mention, and with as many dead ends as they count, are preferred.
     """
     most, listed = most_of_kinds(text), number_of_listed(text)
     near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - LIKELY)
     kept = (draft for draft in near if is_of_junctions(draft.line) and can_be_kept(draft.line))
-    plans = ((draft, read_plan(draft.line)) for draft in kept)
     no_village = asks_for_grid(text)
-    return next(
-        (
-            draft
-            for draft, brief in plans
-            if has_told_kinds(brief, most)
-            and listed in (None, len(brief.junctions))
-            and names_kinds(brief, text)
-            and not (no_village and brief.map is not None and brief.map.junctions)
-        ),
-        None,
-    )
+    plans = [
+        (draft, brief)
+        for draft, brief in ((draft, read_plan(draft.line)) for draft in kept)
+        if has_told_kinds(brief, most)
+        and listed in (None, len(brief.junctions))
+        and not (no_village and brief.map is not None and brief.map.junctions)
+    ]
+    for is_preferred in (names_kinds, has_told_ends, lacks_ends_as_junctions):
+        plans = [each for each in plans if is_preferred(each[1], text)] or plans
+    return plans[0][0] if plans else None
 
 
 def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
@@ -149,12 +159,12 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     brief = with_numbered_sides(with_listed_values(with_checked_counts(brief, text), text), text)
     brief = with_told_takes(with_told_total(brief, text), text)
     brief = with_ramp_lengths(with_distances_to_exits(with_counted_junctions(brief, text), text), text)
-    brief = with_length_of_route(brief, text)
+    brief = with_lengths_of_ends(with_length_past_lanes(with_length_of_route(brief, text), text), text)
     brief = with_whole_length(with_counted_signs(with_counted_map(brief, text), text), text)
     brief = _with_listed_hills(with_each_lane(_into_new_lane(brief)))
     brief = _with_turns_by_degrees(with_sharp_side(with_told_arms(brief, text), words))
     brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)
-    brief = with_numbered_junctions(with_motorway_behind_ramp(brief, words), text)
+    brief = with_numbered_junctions(with_motorway_behind_ramp(with_passed_exits(brief, words), words), text)
     brief = with_distances_from_start(brief, words)
     brief = with_sides_of_side_roads(brief, text, words)
     return with_other_roads(with_whole_drive(brief, words), words)

@@ -49,7 +49,7 @@ ARTICLE = (
     r"(?:the |an? |a set of |eine[rn]? |ein |des |les |un |une |uno |una |"
     r"unos |unas |los |i |il |el |le |la |lo |dei |degli )?"
 )
-ONE = r"(?:one|a single|an?|ein(?:e[rnms]?)?|une?|un seul|une seule|un[oa]|un solo|una sola)"
+ONE = r"(?:(?:one|a single|an?|ein(?:e[rnms]?)?|une?|un seul|une seule|un[oa]|un solo|una sola)\b)"
 ARTICLES = ("a", "an", "ein", "eine", "einer", "einem", "un", "une", "uno", "una")
 OF_THEM = (
     r"(?:of (?:them|these|which)|davon|d ' (?:entre )?(?:eux|elles)|de (?:ell[oa]s|l[oa]s cuales)|"

@@ -4,18 +4,22 @@ import re
 from collections.abc import Mapping, Sequence
 from functools import reduce
 
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind
+from roadgpt.brief.amount import exactly, meets, span
+from roadgpt.brief.junction_check import has_fixed_arms, most_ends
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind, MapJunctionKind
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.alike_junctions import NOUN as PLURAL
 from roadgpt.brief.readers.model.exit_words import EXIT
 from roadgpt.brief.readers.model.map_words import (
     ALL_KINDS,
     ANY_KIND,
+    DEAD_ENDS,
     IS_TOTAL,
     KINDS_IN_PLURAL,
     KINDS_IN_SINGULAR,
     TAKEN_BACK,
     one_number,
+    with_counted_map,
 )
 from roadgpt.brief.readers.model.ramp_lengths import INEXACT, LANE
 from roadgpt.brief.readers.model.slots import SlottedText
@@ -43,6 +47,10 @@ NUMBERED_EXIT = re.compile(
     rf"{EXIT}\b"
 )
 """An exit with its number, which is no further junction."""
+AGAIN = re.compile(
+    r"\b(?:another|again|further|more|noch|wieder|weitere[nrms]?|encore|autres?|otr[oa]s?|mas|altr[oaie]|ancora)\b"
+)
+"""Words with which a further junction may follow those that are counted."""
 CROSSINGS: tuple[JunctionKind, ...] = ("crossroads", "junction", "t_junction", "y_junction")
 LETTERED: Mapping[str, JunctionKind] = {"t": "t_junction", "y": "y_junction"}
 LETTER = re.compile(
@@ -105,12 +113,14 @@ def most_of_kinds(text: SlottedText) -> dict[JunctionKind, int]:
     """Returns for each kind the largest number of junctions that the words can mean, as far as they say it.
 
     A kind is counted if its noun is in the text, in the singular or behind a number, and no word speaks of
-    further junctions.
+    further junctions. If some word may do so, only a kind that is named once, behind its number, is counted.
     """
     counted = {kind: noun.findall(text.text) for kind, noun in KINDS_IN_PLURAL.items()}
     said = reduce(lambda rest, noun: noun.sub("", rest), KINDS_IN_PLURAL.values(), text.text)
-    if ANY_PLURAL.search(_without_crossroads(said)) or MORE.search(NUMBERED_EXIT.sub("", said)):
+    if ANY_PLURAL.search(_without_crossroads(said)):
         return {}
+    if MORE.search(NUMBERED_EXIT.sub("", said)):
+        return {} if AGAIN.search(said) else _named_once(counted, said)
     found = {kind: len(noun.findall(said)) for kind, noun in KINDS_IN_SINGULAR.items()}
     for kind, numbers in counted.items():
         if all(map(str.isdecimal, numbers)):
@@ -118,14 +128,24 @@ def most_of_kinds(text: SlottedText) -> dict[JunctionKind, int]:
     return {kind: number for kind, number in found.items() if number}
 
 
+def _named_once(counted: Mapping[MapJunctionKind, Sequence[str]], rest: str) -> dict[JunctionKind, int]:
+    """Returns the numbers of those kinds that the words name only once.
+
+    Args:
+        counted: the numbers before the plural noun of each kind.
+        rest: the text without these nouns.
+    """
+    once = {kind: found[0] for kind, found in counted.items() if len(found) == 1 and found[0].isdecimal()}
+    return {kind: int(number) for kind, number in once.items() if not MENTIONS[kind].search(rest)}
+
+
 def _without_crossroads(said: str) -> str:
     """Returns the words without "crossroads", which is singular and plural."""
     return re.sub(r"\bcross ?-? ?roads\b", "", said)
 
 
-def names_a_junction(text: SlottedText) -> bool:
-    """Returns whether a noun of the text can only mean a junction, a merge or an exit."""
-    said = text.text
+def names_a_junction(said: str) -> bool:
+    """Returns whether a noun of some words can only mean a junction, a merge or an exit."""
     nouns = (
         KINDS_IN_SINGULAR["crossroads"],
         KINDS_IN_SINGULAR["roundabout"],
@@ -147,6 +167,33 @@ def names_kinds(brief: Brief, text: SlottedText) -> bool:
     if brief.map is None or ANY_MENTION.search(text.text):
         return True
     return all(MENTIONS[each.kind].search(text.text) for each in brief.map.junctions if each.kind in MENTIONS)
+
+
+def has_told_ends(brief: Brief, text: SlottedText) -> bool:
+    """Returns whether a map has as many dead ends as the words count."""
+    number, asked = _told_ends(text), with_counted_map(brief, text).map
+    if asked is None or not number:
+        return True
+    if asked.dead_ends is None and asked.blocks == exactly(0) and has_fixed_arms(asked):
+        return asked.ends_of_tree(most_ends(asked)).lo == number
+    return asked.dead_ends is None or meets(exactly(number), span(asked.dead_ends))
+
+
+def lacks_ends_as_junctions(brief: Brief, text: SlottedText) -> bool:
+    """Returns whether a map lacks any kind that the words do not mention, with as many junctions as the words
+    count dead ends.
+    """
+    number = _told_ends(text) or 0
+    number = 0 if len(re.findall(rf"\b{number}\b", text.text)) > 1 else number
+    kinds = [] if brief.map is None else [each for each in brief.map.junctions if each.kind in MENTIONS]
+    return number < 2 or not any(
+        each.count == exactly(number) and not MENTIONS[each.kind].search(text.text) for each in kinds
+    )
+
+
+def _told_ends(text: SlottedText) -> int | None:
+    """Returns the number of dead ends that the words give once; None if they give none, or take it back."""
+    return None if TAKEN_BACK.search(text.text) else one_number(DEAD_ENDS.findall(text.text))
 
 
 def with_told_letter(brief: Brief, text: SlottedText) -> Brief:
