@@ -40,6 +40,42 @@ def corrected(words: str, written: str) -> str:
             "map columns=4 rows=1; crossroads x2 stop",
             "map columns=4 rows=1; junction lights; junction x2 stop",
         ),
+        (
+            "two crossroads and four T-junctions. Both crossroads have traffic lights, nothing else has.",
+            "map crossroads x2; t_junction x4 lights",
+            "map crossroads x2 lights; t_junction x4",
+        ),
+        ("six T-junctions, no road that just ends", "map t_junction x6", "map t_junction x6 dead_ends=0"),
+        (
+            "two T-junctions, a single dead end",
+            "map t_junction x2; roundabout",
+            "map t_junction x2; roundabout dead_ends=1",
+        ),
+        (
+            "two T-junctions, not a single dead end",
+            "map t_junction x2; roundabout",
+            "map t_junction x2; roundabout",
+        ),
+        (
+            "two roundabouts, three T-junctions and exactly one cul-de-sac",
+            "map roundabout x2; t_junction x3; t_junction",
+            "map roundabout x2; t_junction x3 dead_ends=1",
+        ),
+        (
+            "three T-junctions and a T-junction",
+            "map t_junction x3; t_junction",
+            "map t_junction x3; t_junction",
+        ),
+        (
+            "two roundabouts, a crossroads and three dead ends",
+            "map roundabout x2; crossroads blocks=0",
+            "map roundabout x2; crossroads dead_ends=3",
+        ),
+        (
+            "two roundabouts, a crossroads and eight dead ends",
+            "map roundabout x2; crossroads blocks=0",
+            "map roundabout x2; crossroads blocks=0 dead_ends=8",
+        ),
         ("a town with five blocks and no lights", "map columns=5 rows=5", "map columns=5 rows=1"),
         ("una ciudad de seis manzanas", "map columns=6 rows=6", "map columns=3 rows=2"),
         ("a town five blocks wide", "map columns=5 rows=5", "map columns=5 rows=5"),

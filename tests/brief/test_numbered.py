@@ -201,6 +201,16 @@ def test_turns_get_the_values_of_a_list(words: str, read: str, meant: str | None
             "crossroads // roundabout // crossroads stop",
         ),
         (
+            "straight over two crossroads with lights, left at the third",
+            "crossroads straight // crossroads straight // crossroads left lights",
+            "crossroads straight lights // crossroads straight lights // crossroads left",
+        ),
+        (
+            "passer devant deux rues latérales à droite où l'on a la priorité, puis un rond-point",
+            "t_junction straight // t_junction straight priority // roundabout",
+            "t_junction straight priority // t_junction straight priority // roundabout",
+        ),
+        (
             "Three crossroads, straight over every one of them except the second, where I turn left",
             " // ".join(["crossroads straight"] * 3),
             "crossroads straight // crossroads left // crossroads straight",
@@ -254,6 +264,10 @@ def test_junctions_have_what_is_told_of_their_places(words: str, read: str, mean
             "crossroads priority others_stop // crossroads priority",
         ),
         ("left at the second roundabout", "roundabout exit=1 // roundabout exit=3"),
+        (
+            "a crossroads, then two crossroads with lights",
+            "crossroads // crossroads lights // crossroads lights",
+        ),
     ],
 )
 def test_junctions_of_which_nothing_clear_is_told_stay(words: str, read: str) -> None:

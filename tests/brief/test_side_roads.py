@@ -72,6 +72,24 @@ def test_the_road_that_is_left_goes_straight_on(words: str, line: str, expected:
 
 
 @pytest.mark.parametrize(
+    ("words", "last"),
+    [
+        ("three side streets on the left, turn into the third", "left"),
+        ("drei Seitenstraßen links, nimm die dritte", "left"),
+        ("three side streets on the left, turn into the last", "left"),
+        ("three side streets on the left, turn into the second", "straight"),
+        ("three side streets on the left, then take the third exit", "straight"),
+        ("three side streets on the left, straight past all", "straight"),
+    ],
+)
+def test_the_numbered_street_is_taken(words: str, last: str) -> None:
+    line = " // ".join(["t_junction straight ways=left+straight"] * 3)
+    assert corrected(line, words) == " // ".join(
+        [*line.split(" // ")[:2], f"t_junction {last} ways=left+straight"]
+    )
+
+
+@pytest.mark.parametrize(
     ("words", "line", "expected"),
     [
         ("four junctions, two of them roundabouts, the last a T-junction, right",

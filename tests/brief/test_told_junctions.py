@@ -89,6 +89,16 @@ def test_a_route_has_no_more_junctions_of_a_kind_than_are_told() -> None:
             "junction lights // junction lights // junction // junction",
         ),
         (
+            "la ruta pasa por tres intersecciones, las dos primeras en T, recto, y la última a la izquierda",
+            "t_junction // t_junction // t_junction straight // t_junction straight // crossroads left",
+            "t_junction straight // t_junction straight // crossroads left",
+        ),
+        (
+            "the route has three junctions, the first two T-junctions, straight, and the last to the left",
+            "t_junction // t_junction straight // t_junction straight // t_junction right // crossroads left",
+            None,
+        ),
+        (
             "three junctions in all, then the ramp",
             "junction // merge ramp",
             "junction // merge ramp",

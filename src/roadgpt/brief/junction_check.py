@@ -252,6 +252,12 @@ def most_ends(asked: MapClause) -> float:
     return arms - 2 * (sum(n.hi for n in counts) - 1)
 
 
+def least_ends(asked: MapClause) -> float:
+    """Returns the least number of dead ends of a map of junctions whose roads enclose no block."""
+    counts = [span(each.count) for each in asked.junctions]
+    return 2 + sum((ARMS[each.kind].lo - 2) * n.lo for each, n in zip(asked.junctions, counts, strict=True))
+
+
 def has_fixed_arms(asked: MapClause) -> bool:
     """Returns whether the number of arms of all junctions of a map is fixed."""
     return all(each.kind in FIXED_ARMS and each.count.exact for each in asked.junctions)

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from math import isqrt
 
 from roadgpt.brief.amount import Amount, exactly, span
-from roadgpt.brief.junction_check import has_fixed_arms, most_ends
+from roadgpt.brief.junction_check import has_fixed_arms, least_ends, most_ends
 from roadgpt.brief.junctions import MapJunctionKind
 from roadgpt.brief.map_clause import JunctionCount, MapClause
 from roadgpt.brief.model import Brief
@@ -28,6 +28,14 @@ DEAD_END = (
     r"vicol[io] ciec(?:o|hi)|strad[ae] senza uscita)"
 )
 DEAD_ENDS = re.compile(rf"\b(\d+|{NONE}|{ONE}) (?:\w+ )?{DEAD_END}\b")
+NO_ENDS = re.compile(
+    r"\bno (?:roads?|streets?) (?:that |which )?(?:just |simply )?ends?\b(?! (?:at|in|on)\b)|"
+    r"\bkeine stra(?:ss|ß)e endet\b"
+)
+ONE_END = re.compile(
+    rf"(?:\b(?:exactly|only|just|genau|nur|exactement|exactamente|esattamente) (?:{ONE})|"
+    rf"\b(?:a single|une seule|una sola|un solo|un unico|una unica|eine einzige)) (?:\w+ )?{DEAD_END}\b"
+)
 ROAD_OUT = (
     r"(?:(?:roads?|streets?) (?:that )?(?:leads? out|leading out|goes? out|"
     r"leaves? (?:it|the (?:town|village)))|"
@@ -125,6 +133,7 @@ KINDS_IN_SINGULAR: Mapping[MapJunctionKind, re.Pattern[str]] = {
     "star": re.compile(r"\bstar\b"),
 }
 """The singular nouns for junctions of each kind, in a text without accents."""
+SINGLE_T = re.compile(r"\b(?:t - (?:junction|crossing|intersection|kreuzung|einmundung)|einmundung)\b")
 TAKEN_BACK = re.compile(
     r"\bno ,|\bnein ,|\bnot\b(?! more\b(?! than))|\brather\b|\binstead\b|\bsondern\b|\bmake that\b|"
     r"\btoo many\b|\? (?:no|non|nein)\b"
@@ -178,17 +187,19 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
     update: dict[str, object] = {} if asked.junctions else {**_blocks(asked, said), **_side(asked, text)}
     asked = asked.model_copy(update={"junctions": _counted_kinds(asked, said)})
     asked = asked.model_copy(update=_other_junctions(asked, said))
-    found = found or ROADS_OUT.findall(said)
+    found = found or ROADS_OUT.findall(said) or ["0"] * (NO_ENDS.search(said) is not None)
     bounded = _bounded_ends(said)
     if bounded is not None and len(found) == 1:
         update["dead_ends"] = bounded
     elif asked.dead_ends is None or asked.dead_ends.exact:
         dead_ends = one_number(found) if found else _around_blocks(asked, said)
-        is_vague = any(re.fullmatch(ONE, each) for each in found)  # "not a single one", "eine"
+        is_vague = any(re.fullmatch(ONE, each) for each in found) and not says(ONE_END, said)  # "eine"
         is_tree = asked.blocks == exactly(0) and has_fixed_arms(asked)  # its arms say how many ends it has
         if dead_ends is not None and not is_vague and not is_tree:
             update["dead_ends"] = exactly(dead_ends)
-            update |= {} if found else {"blocks": None}  # the dead ends follow from the blocks in the words
+            # the dead ends follow from the blocks in the words, or forbid that there are none
+            is_enclosed = asked.blocks == exactly(0) and dead_ends < least_ends(asked)
+            update |= {} if found and not is_enclosed else {"blocks": None}
     asked = asked.model_copy(update=update)
     return brief.model_copy(update={"map": _with_possible_ends(asked, said)})
 
@@ -229,8 +240,9 @@ def _counted_kinds(asked: MapClause, said: str) -> tuple[JunctionCount, ...]:
     """Returns the junctions of a map, with the number before the only plural noun of each kind."""
     if OTHERS.search(said) or TAKEN_BACK.search(said):
         return asked.junctions
-    out, kinds = [], [each.kind for each in asked.junctions]
-    for each in asked.junctions:
+    out, junctions = [], _told_once(asked.junctions, said)
+    kinds = [each.kind for each in junctions]
+    for each in junctions:
         noun, single = KINDS_IN_PLURAL.get(each.kind), KINDS_IN_SINGULAR.get(each.kind)
         number = one_number(noun.findall(said)) if noun else None
         if single and each.count.exact and f"{each.count.lo:g}" in ARMED.findall(said):
@@ -238,6 +250,19 @@ def _counted_kinds(asked: MapClause, said: str) -> tuple[JunctionCount, ...]:
         is_clear = number is not None and each.count.exact and kinds.count(each.kind) == 1
         out.append(each.model_copy(update={"count": exactly(number)}) if is_clear and number else each)
     return tuple(out)
+
+
+def _told_once(junctions: Sequence[JunctionCount], said: str) -> list[JunctionCount]:
+    """Returns the junctions of a map, only once for a kind that the words name once."""
+    out: list[JunctionCount] = []
+    for each in junctions:
+        noun = KINDS_IN_PLURAL.get(each.kind)
+        is_again = any(other.kind == each.kind and other.control == each.control for other in out)
+        number = one_number(noun.findall(said)) if noun and is_again else None
+        single = KINDS_IN_SINGULAR.get(each.kind, SINGLE_T)
+        if not number or single.search(said) or len(re.findall(rf"\b{number}\b", said)) > 1:
+            out.append(each)
+    return out
 
 
 def _other_junctions(asked: MapClause, said: str) -> dict[str, object]:

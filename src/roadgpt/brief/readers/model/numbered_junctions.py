@@ -17,6 +17,7 @@ from roadgpt.brief.readers.model.map_words import (
     EITHER,
     KINDS_IN_PLURAL,
     KINDS_IN_SINGULAR,
+    SIDE_STREETS,
     TAKEN_BACK,
 )
 from roadgpt.brief.readers.model.ordinals import DETERMINER, EXCEPT, OTHERS, WHICH, places_in
@@ -151,6 +152,25 @@ def placed_signs(said: str) -> Iterator[Placed]:
             is_given = control == "priority" and NOT_GIVEN.search(before) is not None
             if not is_given and not OF_OTHERS.search(before):
                 yield each
+        yield from _of_first(control, said)
+
+
+def _of_first(control: Control, said: str) -> Iterator[Placed]:
+    """Yields a sign that the first junctions of a kind have, as many as the words count: "straight over two
+    crossroads with lights, left at the third".
+    """
+    for match in _counted(SIGNS[control]).finditer(said):
+        before = said[: match.start()]
+        if not is_denied(before) and _kind(match[2]) and not re.search(rf"\b{match[2]}\b", before):
+            yield Placed(control, f"the first {match[1]}", match[2], is_exception=False)
+
+
+@cache
+def _counted(sign: str) -> re.Pattern[str]:
+    noun = rf"({PLURAL}|{SIDE_STREETS.pattern})"
+    on_side = r"(?: (?:on|to) the (?:left|right)| (?:rechts|links)| (?:a|à) (?:droite|gauche))?"
+    with_it = rf"(?:{HAVE}|(?:where|at which|wo|an denen|ou|donde|dove) (?:\S+ ){{1,4}}?)"
+    return re.compile(rf"\b([2-9]) {noun}{on_side}(?: ,)? {with_it} ?{ARTICLE}{sign}\b(?! {AT} )")
 
 
 def placed_takes(said: str) -> Iterator[Placed]:
@@ -254,9 +274,12 @@ def _row(junctions: Sequence[JunctionClause], noun: str, said: str) -> list[int]
 
 
 def _kind(noun: str) -> JunctionKind | None:
-    if T_JUNCTION.fullmatch(noun):
+    if T_JUNCTION.fullmatch(noun) or SIDE_STREETS.fullmatch(noun):
         return "t_junction"
-    return next((kind for kind, its in KINDS_IN_SINGULAR.items() if its.fullmatch(noun)), None)
+    kinds = (kind for kind, its in KINDS_IN_SINGULAR.items() if its.fullmatch(noun))
+    return next(kinds, None) or next(
+        (kind for kind, its in KINDS_IN_PLURAL.items() if its.fullmatch(f"2 {noun}")), None
+    )
 
 
 def _has_counted_kinds(said: str) -> bool:

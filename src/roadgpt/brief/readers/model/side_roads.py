@@ -8,6 +8,7 @@ from roadgpt.brief.junctions import JunctionClause, Side
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model.denial import says
+from roadgpt.brief.readers.model.exit_words import EXIT
 from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.ordinals import PLACE, place_of
@@ -23,6 +24,11 @@ TAKEN_NEXT = re.compile(
     rf"\b(\d+) [^.;]{{0,60}}?({PLACE})\b"
 )
 """A number of streets that the route passes, and the place of the one that it takes."""
+TURNS_INTO = re.compile(
+    rf"\b(?:(?:turn|go|drive)\w* (?:in ?to|down|up)|take|biege\w* in|nimm|nehm\w*|prend\w*|tom[aoe]\w*) "
+    rf"(?:the |die |la |le )?({PLACE})\b(?! (?:\w+ )?{EXIT}\b)"
+)
+"""The place of the street that the route takes."""
 OFF_A_ROAD = re.compile(
     r"\b(?:left|right) off (?:the|a|our|my) (?:main|major|priority|through) (?:road|street)\b|"
     r"\boff (?:the|a|our|my) (?:main|major|priority|through) (?:road|street) to the (?:left|right)\b|"
@@ -38,14 +44,14 @@ OFF_A_ROAD = re.compile(
 def with_sides_of_side_roads(brief: Brief, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a route with the ways on at its T-junctions as far as the words tell them.
 
-    A street that is taken behind others on its side, which the route passes, leaves a road that goes straight
-    on, as theirs does.
+    A street that the words number is taken. A street that is taken behind others on its side, which the route
+    passes, leaves a road that goes straight on, as theirs does.
 
     A T-junction that the route passes gets its side road on the side that is named, if the words name as many
     sides as there are such T-junctions and the plan uses no side. At the only T-junction, where the route
     turns "off the main road", that road goes straight on.
     """
-    brief = _as_many_as_passed(brief, text)
+    brief = _into_numbered(_as_many_as_passed(brief, text), text)
     brief = _with_ways(brief, _taken_behind_others(brief.junctions))
     passed = [n for n, each in enumerate(brief.junctions) if _is_open(each) and each.take == "straight"]
     sides = _sides(text)
@@ -78,6 +84,21 @@ def _as_many_as_passed(brief: Brief, text: SlottedText) -> Brief:
     return brief.model_copy(
         update={"junctions": brief.junctions[1:], "stretches": (brief.stretches[0], *brief.stretches[2:])}
     )
+
+
+def _into_numbered(brief: Brief, text: SlottedText) -> Brief:
+    """Returns a route that takes the last of some side streets where the words say so by its number: "there
+    are four side streets on the left, turn into the fourth".
+    """
+    found = TURNS_INTO.findall(text.text)
+    last = brief.junctions[-1] if brief.junctions else None
+    if last is None or len(found) != 1 or place_of(found[0]) not in (-1, len(brief.junctions)):
+        return brief
+    sides = [side for side in SIDES if {*last.ways} == {side, "straight"}]
+    if not sides or any(each.take != "straight" or not each.ways for each in brief.junctions):
+        return brief
+    taken = last.model_copy(update={"take": sides[0]})
+    return brief.model_copy(update={"junctions": (*brief.junctions[:-1], taken)})
 
 
 def _taken_behind_others(junctions: Sequence[JunctionClause]) -> dict[int, Side]:

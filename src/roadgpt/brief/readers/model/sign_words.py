@@ -140,7 +140,7 @@ def signs_in_words(said: str) -> SignsInWords:
     others = [control for control in SIGN_WORDS if _others(control).search(said)]
     placed = named | {each.control for each in counted} | {*others}
     of_kinds = [
-        (control, match[1])
+        (control, match["noun"] or match["before"])
         for control in SIGN_WORDS
         if control not in placed and not _is_denied(control, said)
         for match in _at_kinds(control).finditer(said)
@@ -185,13 +185,14 @@ def _others(control: Control) -> re.Pattern[str]:
 
 @cache
 def _at_kinds(control: Control) -> re.Pattern[str]:
-    the = (
-        r"(?:both|beiden|amb[oa]s|entramb[ie]|the|der|die|den|dem|am|aux?|le|la|les|el|al|los|las|il|alla|"
-        r"gli|i|alle|agli|ai)"
-    )
+    both = r"both|beiden?|amb[oa]s|entramb[ie]"
+    the = rf"(?:{both}|the|der|die|den|dem|am|aux?|le|la|les|el|al|los|las|il|alla|gli|i|alle|agli|ai)"
     noun, alone = rf"({SINGULARS}|{PLURALS})", "only|alone|nur|seulement|solamente|solo|soltanto"
     end = rf"(?= (?:{alone}|and|und|et|y|e|[.,;])(?: |$)|$)"
-    return re.compile(rf"\b{SIGN_WORDS[control]} {ONLY}?(?:{AT} )?{the} {noun}{end}")
+    sign, have = SIGN_WORDS[control], rf"{HAVE} {ARTICLE}{SIGN_WORDS[control]}\b"
+    return re.compile(
+        rf"\b{sign} {ONLY}?(?:{AT} )?{the} (?P<noun>{noun}){end}|\b(?:{both}) (?P<before>{noun}) {have}"
+    )
 
 
 @cache

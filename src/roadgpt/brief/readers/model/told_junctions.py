@@ -17,6 +17,7 @@ from roadgpt.brief.readers.model.map_words import (
     IS_TOTAL,
     KINDS_IN_PLURAL,
     KINDS_IN_SINGULAR,
+    NONE,
     TAKEN_BACK,
     one_number,
     with_counted_map,
@@ -117,6 +118,7 @@ def most_of_kinds(text: SlottedText) -> dict[JunctionKind, int]:
     """
     counted = {kind: noun.findall(text.text) for kind, noun in KINDS_IN_PLURAL.items()}
     said = reduce(lambda rest, noun: noun.sub("", rest), KINDS_IN_PLURAL.values(), text.text)
+    said = re.sub(rf"\b(?:{NONE}) (?:\w+ )?(?:{PLURAL})\b", "", said)
     if ANY_PLURAL.search(_without_crossroads(said)):
         return {}
     if MORE.search(NUMBERED_EXIT.sub("", said)):
@@ -220,9 +222,10 @@ def with_told_total(brief: Brief, text: SlottedText) -> Brief:
     found = None if TAKEN_BACK.search(text.text) else TOTAL.search(text.text)
     number = int(next(filter(None, found.groups()))) if found else 0
     counted = [n for n, each in enumerate(brief.junctions) if each.kind not in (*RAMPS, *LANE_KINDS)]
-    bare = [n for n in counted if _is_bare(brief, n)]
-    bare = [n for n in bare if brief.junctions[n].kind == "junction"] or _too_many(brief, bare, text)
     surplus = len(counted) - number
+    bare = [n for n in counted if _is_bare(brief, n)]
+    of_any_kind = [n for n in bare if brief.junctions[n].kind == "junction"]
+    bare = of_any_kind or _too_many(brief, bare, text) or (bare if len(bare) == surplus else [])
     if one_number(ALL_KINDS.findall(text.text)) == len(brief.junctions) and IS_TOTAL.search(text.text):
         surely_too_many = [] if IS_BOUND.search(text.text) else _too_many(brief, counted, text)
         return _as_any_kind(brief, surely_too_many)
