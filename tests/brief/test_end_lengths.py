@@ -4,7 +4,7 @@ import pytest
 
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.end_lengths import with_lengths_of_ends
-from roadgpt.brief.readers.model.map_lengths import with_length_past_lanes
+from roadgpt.brief.readers.model.map_lengths import with_length_of_route, with_length_past_lanes
 from roadgpt.brief.readers.model.slots import slotted
 
 CHANGE = "lane_change right"
@@ -60,4 +60,28 @@ def test_a_length_between_commas_is_that_of_a_route_without_junctions(
     words: str, read: str, meant: str | None
 ) -> None:
     found = with_length_past_lanes(read_plan(read), slotted(words))
+    assert plan(found) == plan(read_plan(meant or read))
+
+
+@pytest.mark.parametrize(
+    ("words", "read", "meant"),
+    [
+        (
+            "Motorway section of 600 m without junctions, after 300 m reduced to two lanes",
+            "| motorway lanes=3 len=300 // lane_drop",
+            "| motorway lanes=3 len=300 // lane_drop || len=600",
+        ),
+        (
+            "Straße von 600 m ohne Kreuzungen, eine Spur endet",
+            "| lanes=2 len=600 // lane_drop",
+            "| lanes=2 // lane_drop || len=600",
+        ),
+        ("after 600 m without junctions a lane ends", "| lanes=2 len=600 // lane_drop", None),
+        ("Road of 600 m without lights, left at the fork", "| len=600 // y_junction left", None),
+    ],
+)
+def test_a_road_without_junctions_is_as_long_as_its_first_words_say(
+    words: str, read: str, meant: str | None
+) -> None:
+    found = with_length_of_route(read_plan(read), slotted(words))
     assert plan(found) == plan(read_plan(meant or read))

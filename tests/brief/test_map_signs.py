@@ -10,7 +10,7 @@ from roadgpt.brief.readers.model.exit_words import (
 )
 from roadgpt.brief.readers.model.map_signs import with_counted_signs
 from roadgpt.brief.readers.model.map_words import with_counted_map
-from roadgpt.brief.readers.model.own_lane import with_each_lane
+from roadgpt.brief.readers.model.own_lane import with_each_lane, with_told_lane
 from roadgpt.brief.readers.model.ramp_lengths import with_ramp_lengths
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.sentence import sentence
@@ -44,6 +44,16 @@ def corrected(words: str, written: str) -> str:
             "two crossroads and four T-junctions. Both crossroads have traffic lights, nothing else has.",
             "map crossroads x2; t_junction x4 lights",
             "map crossroads x2 lights; t_junction x4",
+        ),
+        (
+            "two roundabouts, three forks, lights at one of the forks and nowhere else",
+            "map y_junction x3 lights; roundabout x2; y_junction",
+            "map y_junction lights; y_junction x2; roundabout x2",
+        ),
+        (
+            "map with four dead ends and two blocks",
+            "map columns=4 rows=2 dead_ends=0",
+            "map columns=2 rows=1 dead_ends=4",
         ),
         ("six T-junctions, no road that just ends", "map t_junction x6", "map t_junction x6 dead_ends=0"),
         (
@@ -305,6 +315,12 @@ def test_signs_behind_the_last_kind_are_those_of_the_map() -> None:
         ("an exit, but I stay on the motorway", "diverge ramp", "diverge main"),
         ("stay on the motorway and do not take the exit", "diverge ramp", "diverge main"),
         ("je reste sur l'autoroute sans prendre la sortie", "diverge ramp", "diverge main"),
+        ("motorway, I stay on it the whole time, past an exit", "diverge ramp", "diverge main"),
+        (
+            "I stay on it the whole time: an entry joins, an exit leaves",
+            "merge main // diverge ramp",
+            "merge main // diverge main",
+        ),
         ("stay on the motorway until the exit", "diverge ramp", "diverge ramp"),
         ("stay on the motorway for 500 m, then exit", "diverge ramp", "diverge ramp"),
         ("Ich bleibe auf der Autobahn bis zur nächsten Ausfahrt", "diverge ramp", "diverge ramp"),
@@ -318,6 +334,29 @@ def test_signs_behind_the_last_kind_are_those_of_the_map() -> None:
 )
 def test_who_stays_on_the_motorway_takes_no_exit(words: str, written: str, right: str) -> None:
     assert plan(with_stay_on_motorway(read_plan(written), words)) == right
+
+
+@pytest.mark.parametrize(
+    ("words", "written", "right"),
+    [
+        (
+            "two lanes, past an on-ramp, later a third lane is added, then leave",
+            "| motorway lanes=2 // merge main // | lanes=3 // diverge ramp",
+            "| motorway lanes=2 // merge main // | lanes=2 // lane_gain // | lanes=3 // diverge ramp",
+        ),
+        (
+            "drei Spuren, auf die linke, danach endet ein Fahrstreifen",
+            "| lanes=3 // lane_change left // | lanes=2",
+            "| lanes=3 // lane_change left // | lanes=3 // lane_drop // | lanes=2",
+        ),
+        ("three lanes behind the on-ramp", "| motorway lanes=2 // merge main // | lanes=3", None),
+        ("a lane is added behind the on-ramp", "| motorway lanes=2 // merge main // | lanes=4", None),
+        ("we come off a ramp, a lane is added", "| lanes=1 // merge ramp // | motorway lanes=2", None),
+        ("a lane is added, one ends", "| lanes=2 // lane_gain // | lanes=3 // merge main // | lanes=2", None),
+    ],
+)
+def test_a_lane_of_which_the_words_tell_begins_or_ends(words: str, written: str, right: str | None) -> None:
+    assert plan(with_told_lane(read_plan(written), words)) == (right or written)
 
 
 @pytest.mark.parametrize(

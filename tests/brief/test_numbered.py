@@ -211,6 +211,16 @@ def test_turns_get_the_values_of_a_list(words: str, read: str, meant: str | None
             "t_junction straight priority // t_junction straight priority // roundabout",
         ),
         (
+            "Three crossroads, all with traffic lights but the last, which has a stop sign for me.",
+            "crossroads lights // crossroads stop // crossroads",
+            "crossroads lights // crossroads lights // crossroads stop",
+        ),
+        (
+            "Three crossroads, the first and the second have lights, at the third the others have to stop",
+            "crossroads lights // crossroads priority others_stop // crossroads priority others_stop",
+            "crossroads lights // crossroads lights // crossroads priority others_stop",
+        ),
+        (
             "Three crossroads, straight over every one of them except the second, where I turn left",
             " // ".join(["crossroads straight"] * 3),
             "crossroads straight // crossroads left // crossroads straight",

@@ -72,6 +72,33 @@ def test_the_road_that_is_left_goes_straight_on(words: str, line: str, expected:
 
 
 @pytest.mark.parametrize(
+    ("words", "read", "sides"),
+    [
+        ("pass three side roads: the first on the left, the second on the right, the third again on the left",
+         ("right", "left"), ("left", "right", "left")),
+        ("past three side streets: the second of them is on the left, the others on the right",
+         ("right", "left", "left"), ("right", "left", "right")),
+        ("vorbei an 3 Seitenstraßen, die erste links, die anderen rechts",
+         ("right", "right", "right"), ("left", "right", "right")),
+        ("devant deux rues latérales, la première à droite, la seconde à gauche",
+         ("left", "left"), ("right", "left")),
+        ("three side roads, the first on the left", ("right", "right", "right"), None),
+        ("two side roads, the third on the left, the others on the right", ("right", "right"), None),
+        ("one side road, the first on the left", ("right", "right"), None),
+        ("two side roads, the first on the left, the second on the right, no, on the left",
+         ("right", "right"), None),
+    ],
+)  # fmt: skip
+def test_side_roads_are_on_the_sides_that_their_places_tell(
+    words: str, read: tuple[str, ...], sides: tuple[str, ...] | None
+) -> None:
+    def line(each: tuple[str, ...]) -> str:
+        return " // ".join(f"t_junction straight ways={side}+straight" for side in each)
+
+    assert corrected(line(read), words) == line(sides or read)
+
+
+@pytest.mark.parametrize(
     ("words", "last"),
     [
         ("three side streets on the left, turn into the third", "left"),

@@ -179,3 +179,45 @@ def test_cars_from_the_right_go_first_at_every_junction_of_which_that_is_said() 
     assert plan(found) == "crossroads none // junction left lights // roundabout // t_junction right none"
     for map_asked in ("map crossroads x3", "map crossroads x3 yield"):
         assert plan(with_whole_drive(read_plan(map_asked), said)) == "map crossroads x3 none"
+
+
+@pytest.mark.parametrize(
+    ("words", "asked", "line"),
+    [
+        (
+            "nach 90 m geradeaus über eine Kreuzung, auf der ich Vorfahrt habe",
+            "| len=90 // crossroads straight yield",
+            "| len=90 // crossroads straight priority",
+        ),
+        ("straight over, and we have priority", "crossroads straight yield", "crossroads straight priority"),
+        ("we give way, at the next we have priority", "crossroads yield // crossroads yield", None),
+        ("straight over, we do not have priority", "crossroads straight yield", None),
+        ("j'ai la priorité au croisement", "crossroads stop", None),
+    ],
+)
+def test_who_has_priority_gives_no_way(words: str, asked: str, line: str | None) -> None:
+    assert plan(with_whole_drive(read_plan(asked), words)) == (line or asked)
+
+
+@pytest.mark.parametrize(
+    ("words", "asked", "line"),
+    [
+        (
+            "the main street, two lanes per direction, past a side street",
+            "t_junction straight",
+            "| lanes=2 against=2 // t_junction straight",
+        ),
+        (
+            "Drei Fahrstreifen je Richtung, an der Kreuzung links",
+            "crossroads left",
+            "| lanes=3 against=3 // crossroads left",
+        ),
+        ("left at a T-junction, then a road with two lanes each way", "t_junction left", None),
+        ("two lanes each way, left", "t_junction left // | lanes=2 against=2", None),
+        ("a T-junction. I go straight on. It has two lanes each way", "t_junction straight", None),
+    ],
+)
+def test_lanes_of_both_directions_at_the_start_are_those_of_the_first_road(
+    words: str, asked: str, line: str | None
+) -> None:
+    assert plan(with_whole_drive(read_plan(asked), words)) == (line or asked)

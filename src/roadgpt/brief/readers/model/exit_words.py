@@ -31,7 +31,8 @@ REFUSES = re.compile(
     rf"\b(?:not|n ' t|without) (?:take|taking|use|using) (?:the |that |this |any |my )?{EXIT}\b|"
     rf"\bohne (?:abzufahren|auszufahren|rauszufahren)\b|\bsans (?:sortir|prendre (?:la |une )?{EXIT})\b|"
     rf"\bsin (?:salir|tomar (?:la |ninguna )?{EXIT})\b|"
-    rf"\bsenza (?:uscire|prendere (?:l ?' ?|la |una )?{EXIT})\b"
+    rf"\bsenza (?:uscire|prendere (?:l ?' ?|la |una )?{EXIT})\b|"
+    r"\b(?:stay|remain|keep)\w* on it (?:the whole time|all the time|all the way|throughout)\b"
 )
 """Words that say that no exit is taken."""
 JOINED = re.compile(
@@ -76,7 +77,7 @@ def with_stay_on_motorway(brief: Brief, words: str) -> Brief:
     ramps = [n for n, each in enumerate(brief.junctions) if each.kind == "diverge"]
     said = plain(words)
     passes = PASSES.search(said) and not LEAVES.search(said)
-    if len(ramps) != 1 or _is_passed(brief.junctions) or not (passes or REFUSES.search(said)):
+    if len(ramps) != 1 or brief.junctions[ramps[0]].take == "main" or not (passes or REFUSES.search(said)):
         return brief
     at = ramps[0]
     passed = brief.junctions[at].model_copy(update={"take": "main"})

@@ -48,16 +48,32 @@ OF_ALL = (
 """What may follow the length of a road without junctions."""
 
 
+WITHOUT = re.compile(
+    rf"^\W*(?:\w+ ){{1,3}}(?:of|von|de|d '|di) {ABOUT}{METRES} (?:without|ohne|sans|sin|senza) "
+    r"(?:any )?(?:junctions?|intersections?|kreuzung(?:en)?|knoten|carrefours?|intersecciones|cruces|"
+    r"incroci)\b"
+)
+"""The length of a road without junctions, with which a text begins."""
+
+
 def with_length_of_route(brief: Brief, text: SlottedText) -> Brief:
     """Returns the Brief of a route with the length that the words give to it, if the Brief has no length."""
+    begun = WITHOUT.search(text.text)
     found = {int(group) for match in ROUTE.finditer(text.text) for group in match.groups() if group}
     has_length = brief.length is not None or any(road.length is not None for road in brief.stretches)
+    if begun and brief.length is None and all(each.kind in LANE_KINDS for each in brief.junctions):
+        found, has_length = {int(begun[1])}, False
     if not brief.junctions or has_length or len(found) != 1 or TAKEN_BACK.search(text.text):
         return brief
     number = found.pop()
     if number > len(text.slots):
         return brief
-    return brief.model_copy(update={"length": exactly(text.slots[number - 1].value)})
+    length = exactly(text.slots[number - 1].value)
+    roads = tuple(
+        road.model_copy(update={"length": None}) if road.length == length else road
+        for road in brief.stretches
+    )
+    return brief.model_copy(update={"length": length, "stretches": roads})
 
 
 def with_length_past_lanes(brief: Brief, text: SlottedText) -> Brief:

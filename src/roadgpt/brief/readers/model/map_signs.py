@@ -18,6 +18,7 @@ from roadgpt.brief.readers.model.map_words import (
     KINDS_IN_PLURAL,
     KINDS_IN_SINGULAR,
     TAKEN_BACK,
+    counted_kinds,
     is_counted,
     one_number,
     said_of,
@@ -25,6 +26,7 @@ from roadgpt.brief.readers.model.map_words import (
 from roadgpt.brief.readers.model.sign_words import (
     ALL,
     EVERYWHERE,
+    OF,
     PLURALS,
     SIGN_WORDS,
     SINGULARS,
@@ -64,8 +66,9 @@ def with_counted_signs(brief: Brief, text: SlottedText) -> Brief:
         if signs.counted and all(_is_placed(each, asked) for each in signs.counted):
             return brief
         asked = _without_signs(asked)
+        asked = asked.model_copy(update={"junctions": counted_kinds(asked, said)})
         named = [*(each.nouns for each in signs.counted), *(noun for _, noun in signs.of_kinds)]
-        is_of_kinds = bool(signs.of_kinds) and all(_kinds_of(noun) for noun in named)
+        is_of_kinds = bool(named) and all(_kinds_of(noun) for noun in named)
         if not is_of_kinds and (len(asked.junctions) > 1 or len(signs.counted) != 1):
             return brief
     if not signs.counted and signs.all_but is None and not signs.of_kinds:
@@ -195,7 +198,8 @@ def _all_of_kinds(signs: SignsInWords, counts: Mapping[MapJunctionKind, int]) ->
 
 
 def _kinds_of(nouns: str) -> list[MapJunctionKind]:
-    """Returns the kinds that some nouns name."""
+    """Returns the kinds that some nouns name, such as " of the forks"."""
+    nouns = re.sub(rf"^(?: {OF}\b)+", "", nouns)
     found = [kind for kind, noun in KINDS_IN_PLURAL.items() if noun.search(f"2 {nouns.strip()}")]
     found += [kind for kind, noun in KINDS_IN_SINGULAR.items() if noun.search(nouns)]
     return list(dict.fromkeys(found)) or (["t_junction"] if SIDE_ROAD.search(nouns) else [])

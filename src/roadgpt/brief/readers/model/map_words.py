@@ -98,7 +98,8 @@ ALL_KINDS = re.compile(
 """A number before a word for junctions of any kind."""
 ARMED = re.compile(r"\b(\d+) (?:- )?(?:arm\w*|leg\w*|branch\w*|brazos|bracci|way)\b")
 """A number of arms."""
-EITHER = re.compile(r"\b(?:crossings|intersections|kreuzungen|carrefours|croisements|cruces|incroci)\b")
+EITHER_NOUNS = "(?:crossings|intersections|kreuzungen|carrefours|croisements|cruces|incroci)"
+EITHER = re.compile(rf"\b{EITHER_NOUNS}\b")
 """Nouns that mean crossroads, or junctions of any kind."""
 NUMBER = rf"\b(\d+) (?:{OF_THESE}(?: (?:are|being|sind|son|sean|sont|sono|siano))? )?"
 OTHERS = re.compile(
@@ -185,7 +186,7 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
     if off_street is not None and (asked.dead_ends is None or asked.dead_ends.exact):
         return brief.model_copy(update={"map": asked.model_copy(update=off_street)})
     update: dict[str, object] = {} if asked.junctions else {**_blocks(asked, said), **_side(asked, text)}
-    asked = asked.model_copy(update={"junctions": _counted_kinds(asked, said)})
+    asked = asked.model_copy(update={"junctions": counted_kinds(asked, said)})
     asked = asked.model_copy(update=_other_junctions(asked, said))
     found = found or ROADS_OUT.findall(said) or ["0"] * (NO_ENDS.search(said) is not None)
     bounded = _bounded_ends(said)
@@ -236,7 +237,7 @@ def _off_main_street(said: str, dead_ends: Sequence[str]) -> dict[str, object] |
     }
 
 
-def _counted_kinds(asked: MapClause, said: str) -> tuple[JunctionCount, ...]:
+def counted_kinds(asked: MapClause, said: str) -> tuple[JunctionCount, ...]:
     """Returns the junctions of a map, with the number before the only plural noun of each kind."""
     if OTHERS.search(said) or TAKEN_BACK.search(said):
         return asked.junctions
@@ -332,8 +333,10 @@ def _blocks(asked: MapClause, said: str) -> dict[str, Amount]:
 
 
 def _is_total(blocks: int, said: str) -> bool:
-    """Returns whether words that count blocks have no other number, and speak of no side of a grid."""
-    return re.findall(r"\b\d+\b", said) == [str(blocks)] and WIDE.search(said) is None
+    """Returns whether words that count blocks have no number of other things but dead ends, and speak of no
+    side of a grid.
+    """
+    return re.findall(r"\b\d+\b", DEAD_ENDS.sub("", said)) == [str(blocks)] and WIDE.search(said) is None
 
 
 def _product(asked: MapClause) -> float:

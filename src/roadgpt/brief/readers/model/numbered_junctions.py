@@ -44,12 +44,14 @@ SIGNS: Mapping[Control, str] = {
 TAKES: Mapping[Take, str] = {take: rf"{TO}(?:{way})" for take, way in WAYS.items()}
 FLAGS = ("all_way", "others_stop")
 """Fields of a junction that belong to its sign."""
+NO_FLAGS = dict.fromkeys(FLAGS, False)
 NOT_GIVEN = re.compile(
     r"\b(?:giv\w*|yield\w*|gewahr\w*|ced\w*|d(?:o|a|are|ai|iamo)|losing|lose|without|no) (?:\w+ )?$"
 )
 """Words before "priority" or "precedenza" with which the route has none."""
 OF_OTHERS = re.compile(
-    r"\b(?:cross traffic|traffic|others?|everybody|everyone|they|side (?:roads?|streets?)|querverkehr|"
+    r"\b(?:(?:cross )?traffic(?! (?:light|signal))|others?|everybody|everyone|they|side (?:roads?|streets?)|"
+    r"querverkehr|"
     r"quer\w*|anderen?|autres?|transversal\w*|lati|demas|otr[oa]s?|altri|altre|laterali)\b[^.,;:]*$"
 )
 """Words before a sign that is not for the route."""
@@ -62,7 +64,10 @@ AT = r"(?:at|on|an|am|bei|beim|auf|in|im|aux?|al|alla|allo|all '|a|en|sur|dans|n
 PLACES = rf"({WHICH}|{OTHERS})"
 EVERY = rf"(?:{ALL}|each|throughout|both|beide\w*|amb[oa]s|entramb[ie]|chaque|cada|ciascun\w*)"
 NOUN = rf"(?:(?:{SINGULARS}|{PLURAL}|{ANY_KIND}|ones?)\b|{OF_THEM})"
-LAST = r"(?:[.,;:!?)]|only|alone|nur|seulement|solo|solamente|soltanto|and|und|et|y|e|sind|ist|steht|stehen)"
+LAST = (
+    r"(?:[.,;:!?)]|for (?:me|us|you)|only|alone|nur|seulement|solo|solamente|soltanto|and|und|et|y|e|sind|"
+    r"ist|steht|stehen)"
+)
 ENDS = rf"(?= (?:{LAST}|{EXCEPT})(?: |$)|$)"
 """What may follow the places; any other word, as in "the second exit", names something else."""
 VERB = r"(?:is|are|ist|sind|est|sont|es|son|sono|e)"
@@ -75,6 +80,9 @@ CORRECTED = re.compile(
     r"je veux dire|ou plutot|perdon|quiero decir|mejor dicho|scusa\w*|anzi|volevo dire)\b"
 )
 """Words with which something said before is replaced."""
+RELATIVE = r"(?:which|that|der|die|das|qui|que|che)"
+OWN = re.compile(rf" , {RELATIVE} ")
+"""What is said of an excepted junction itself: "all but the last, which has a stop sign"."""
 BUT = re.compile(rf"\b{EXCEPT} (?:{AT} )*$")
 ALL_BUT = re.compile(rf"\b{EVERY}(?: \w+){{0,4}}? ,? ?{EXCEPT} (?:{AT} )*$")
 EXCEPTED = re.compile(
@@ -112,7 +120,7 @@ def with_numbered_junctions(brief: Brief, text: SlottedText) -> Brief:
     ways = _by_junction(brief.junctions, takes, said)
     if any(brief.junctions[n].kind not in CROSSINGS or brief.junctions[n].ways for n in ways):
         ways = {}
-    if any(brief.junctions[n].others_stop and each != "priority" for n, each in controls.items()):
+    if any(brief.junctions[n].others_stop and each in ("stop", "yield") for n, each in controls.items()):
         controls = {}  # the sign is that of the other roads
     junctions = _signed(
         brief.junctions, controls, {sign for sign in SIGNS if _is_complete(sign, signs, said)}
@@ -185,8 +193,9 @@ def _found(value: str, forms: Sequence[re.Pattern[str]], said: str) -> Iterator[
     """Yields what the forms find, each with the text before it."""
     for match in (match for form in forms for match in form.finditer(said)):
         before = said[: match.start()]
-        is_exception = ALL_BUT.search(said[: match.start(1)]) is not None
-        if not is_denied(before) and (is_exception or not BUT.search(before)):
+        is_own = OWN.search(match[0]) is not None
+        is_exception = not is_own and ALL_BUT.search(said[: match.start(1)]) is not None
+        if not is_denied(before) and (is_exception or is_own or not BUT.search(before)):
             yield Placed(value, match[1], match[2] or "", is_exception), before
 
 
@@ -198,6 +207,7 @@ def _forms(words: str) -> tuple[re.Pattern[str], ...]:
     return (
         re.compile(rf"\b{words} (?:{ONLY})?(?:{AT} )+(?:{ONLY})?{PLACES}{noun}"),
         re.compile(rf"\b{words} {all_but}{noun}"),
+        re.compile(rf"\b{EVERY}(?: \w+)? {HAVE} {ARTICLE}{words} ,? ?{EXCEPT} (?:{AT} )*({WHICH}){noun}"),
     )
 
 
@@ -209,7 +219,7 @@ def _forms_of_sign(sign: str) -> tuple[re.Pattern[str], ...]:
     have = rf"(?:{HAVE}|{VERB} (?:with|mit|avec|con))"
     return (
         re.compile(rf"\b{sign} {every}{ENDS}(?! ?,? ?{EXCEPT})"),
-        re.compile(rf"\b{PLACES}{noun}{have} {ARTICLE}{sign}{end}"),
+        re.compile(rf"\b{PLACES}{noun}(?:{RELATIVE} )?{have} {ARTICLE}{sign}{end}"),
         re.compile(rf"\b(?:{AT} )+(?:{ONLY})?{PLACES}{noun}{ARE} {ARTICLE}{sign}{end}"),
     )
 
@@ -226,16 +236,19 @@ def _signed(
     """Returns the junctions with their signs; all others lose those signs that have all of their places."""
     if not controls:
         return tuple(junctions)
-    rest = [each for n, each in enumerate(junctions) if n not in controls]
+    rest, moved = (
+        [each for n, each in enumerate(junctions) if n not in controls],
+        complete & {*controls.values()},
+    )
     flags = {
-        name: True for name in FLAGS if any(getattr(each, name) for each in rest if each.control in complete)
+        name: True for name in FLAGS if any(getattr(each, name) for each in rest if each.control in moved)
     }
     out = []
     for n, each in enumerate(junctions):
         if n in controls and each.control != controls[n]:
-            each = each.model_copy(update={"control": controls[n], **flags})
-        elif n not in controls and each.control in complete & {*controls.values()}:
-            each = each.model_copy(update={"control": None, **dict.fromkeys(FLAGS, False)})
+            each = each.model_copy(update={"control": controls[n], **NO_FLAGS, **flags})
+        elif n not in controls and each.control in moved:
+            each = each.model_copy(update={"control": None, **NO_FLAGS})
         out.append(each)
     return tuple(out)
 

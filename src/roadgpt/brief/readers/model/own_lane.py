@@ -1,9 +1,10 @@
 """Corrects places where lanes end, begin or are changed: the network may write one too many or too few."""
 
 import re
+from collections.abc import Mapping
 
-from roadgpt.brief.amount import exactly
-from roadgpt.brief.junctions import LANE_KINDS
+from roadgpt.brief.amount import exactly, span
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.numerals import plain
 
@@ -17,6 +18,27 @@ BEGINS = re.compile(
 )
 ONE_WAY = exactly(0)
 """The number of oncoming lanes of a one-way road."""
+ADDED: Mapping[JunctionKind, int] = {"lane_gain": 1, "lane_drop": -1}
+"""How many lanes more there are behind a place."""
+CHANGED: Mapping[JunctionKind, re.Pattern[str]] = {
+    "lane_gain": re.compile(
+        r"\blanes? (?:is |are |gets? )?(?:add|begin|start|open|join)\w*|"
+        r"\b(?:add|gain)\w* (?:a |another |one )?(?:\w+ )?lane\b|\bbecom\w+ (?:three|four|3|4)\b|"
+        r"(?:spur|streifen)\b[^.;]{0,30}\b(?:hinzu|dazu|beginn)|\bvoie\b[^.;]{0,30}\b(?:ajout|commenc|s'ouvre)|"
+        r"\b(?:anade|suma|abre|empieza)\w* [^.;]{0,20}carril|\bcarril\b[^.;]{0,20}\b(?:anad|empieza|abre)|"
+        r"\b(?:aggiunge|apre|inizia)\w* [^.;]{0,20}corsia"
+    ),
+    "lane_drop": re.compile(
+        r"\blanes? (?:is |are |gets? )?(?:end|drop|clos|lost|disappear)\w*|"
+        r"\b(?:drop|los)\w* (?:a |another |one )?(?:\w+ )?lane\b|"
+        r"(?:spur|streifen)\b[^.;]{0,30}\b(?:endet|entfallt|weg)|\bendet [^.;]{0,15}(?:spur|streifen)|"
+        r"\bvoie\b[^.;]{0,30}\b(?:se termine|disparait|supprim)|"
+        r"\bcarril\b[^.;]{0,20}\b(?:acaba|termina|desaparece)|"
+        r"\b(?:finisce|termina|scompare)\w* [^.;]{0,20}corsia|"
+        r"\bcorsia\b[^.;]{0,20}\b(?:finisce|termina|scompare)"
+    ),
+}
+"""Words for a lane that begins or ends."""
 LEFT = ("left", "linken", "gauche", "izquierdo", "izquierda", "sinistra")
 
 
@@ -37,6 +59,31 @@ def without_own_lane(brief: Brief, words: str) -> Brief:
         return brief
     road = behind if before.is_open else before.model_copy(update={"length": before.length or behind.length})
     return brief.model_copy(update={"junctions": brief.junctions[1:], "stretches": (road, *roads)})
+
+
+def with_told_lane(brief: Brief, words: str) -> Brief:
+    """Returns a route on which a lane begins or ends behind a ramp or a lane change, where the words say so
+    and the network has only written the numbers of lanes before and behind.
+
+    The Brief is returned unchanged if it has a place where a lane begins or ends.
+    """
+    said = plain(words)
+    if any(each.kind in ADDED for each in brief.junctions):
+        return brief
+    for n, place in enumerate(brief.junctions):
+        before, behind = brief.stretches[n : n + 2]
+        is_same_road = place.kind == "lane_change" or (place.kind in RAMPS and place.take == "main")
+        if not is_same_road or not (before.lanes and behind.lanes):
+            continue
+        change = span(behind.lanes).lo - span(before.lanes).lo
+        kind = next((kind for kind, more in ADDED.items() if more == change), None)
+        if kind is None or not CHANGED[kind].search(said):
+            continue
+        middle = behind.model_copy(update={"lanes": before.lanes, "length": None, "clauses": ()})
+        junctions = (*brief.junctions[: n + 1], JunctionClause(kind=kind), *brief.junctions[n + 1 :])
+        roads = (*brief.stretches[: n + 1], middle, *brief.stretches[n + 1 :])
+        return brief.model_copy(update={"junctions": junctions, "stretches": roads})
+    return brief
 
 
 def with_each_lane(brief: Brief) -> Brief:

@@ -35,7 +35,7 @@ from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.numbered_junctions import with_numbered_junctions
 from roadgpt.brief.readers.model.numbered_sides import told_turns, with_numbered_sides
 from roadgpt.brief.readers.model.other_roads import with_other_roads
-from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lane
+from roadgpt.brief.readers.model.own_lane import with_each_lane, with_told_lane, without_own_lane
 from roadgpt.brief.readers.model.ramp_lengths import with_distances_to_exits, with_ramp_lengths
 from roadgpt.brief.readers.model.ring_sizes import used_diameters
 from roadgpt.brief.readers.model.sharp_sides import with_sharp_side
@@ -43,6 +43,7 @@ from roadgpt.brief.readers.model.side_roads import with_sides_of_side_roads
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.told_junctions import (
+    has_all_told,
     has_told_ends,
     has_told_kinds,
     lacks_ends_as_junctions,
@@ -50,6 +51,7 @@ from roadgpt.brief.readers.model.told_junctions import (
     names_kinds,
     number_of_listed,
     with_told_letter,
+    with_told_number,
     with_told_total,
 )
 from roadgpt.brief.readers.model.told_takes import with_told_takes
@@ -131,7 +133,7 @@ def _as_counted(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | 
         and listed in (None, len(brief.junctions))
         and not (no_village and brief.map is not None and brief.map.junctions)
     ]
-    for is_preferred in (names_kinds, has_told_ends, lacks_ends_as_junctions):
+    for is_preferred in (has_all_told, names_kinds, has_told_ends, lacks_ends_as_junctions):
         plans = [each for each in plans if is_preferred(each[1], text)] or plans
     return plans[0][0] if plans else None
 
@@ -157,11 +159,11 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line)), text), text)
     brief = with_denied_slope(brief, text)
     brief = with_numbered_sides(with_listed_values(with_checked_counts(brief, text), text), text)
-    brief = with_told_takes(with_told_total(brief, text), text)
+    brief = with_told_takes(with_told_number(with_told_total(brief, text), text), text)
     brief = with_ramp_lengths(with_distances_to_exits(with_counted_junctions(brief, text), text), text)
     brief = with_lengths_of_ends(with_length_past_lanes(with_length_of_route(brief, text), text), text)
     brief = with_whole_length(with_counted_signs(with_counted_map(brief, text), text), text)
-    brief = _with_listed_hills(with_each_lane(_into_new_lane(brief)))
+    brief = _with_listed_hills(with_each_lane(with_told_lane(_into_new_lane(brief), words)))
     brief = _with_turns_by_degrees(with_sharp_side(with_told_arms(brief, text), words))
     brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)
     brief = with_numbered_junctions(with_motorway_behind_ramp(with_passed_exits(brief, words), words), text)

@@ -9,9 +9,10 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model.denial import says
 from roadgpt.brief.readers.model.exit_words import EXIT
+from roadgpt.brief.readers.model.map_words import SIDE_STREETS, TAKEN_BACK
 from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
 from roadgpt.brief.readers.model.numerals import plain
-from roadgpt.brief.readers.model.ordinals import PLACE, place_of
+from roadgpt.brief.readers.model.ordinals import OTHERS, PLACE, WHICH, place_of, places_in
 from roadgpt.brief.readers.model.slots import SlottedText
 
 SIDES: tuple[Side, ...] = ("left", "right")
@@ -29,6 +30,18 @@ TURNS_INTO = re.compile(
     rf"(?:the |die |la |le )?({PLACE})\b(?! (?:\w+ )?{EXIT}\b)"
 )
 """The place of the street that the route takes."""
+COUNTED = re.compile(
+    rf"\b(\d) (?:\w+ )?(?:{SIDE_STREETS.pattern}|t - (?:junctions|crossings|intersections|einmundungen)|"
+    r"einmundungen)"
+)
+"""The number of side roads."""
+ON_SIDE = re.compile(
+    rf"({WHICH}|{OTHERS})(?: (?:of them|ones?|road|street|is|are|comes?|lies|also|again|wieder|ist|liegt|"
+    r"liegen|sind|auch|est|sont|encore|esta|estan|queda|quedan|otra vez|de nuevo|e|sono|ancora|di nuovo))*"
+    r"(?: (?:on|to|auf|an|a|sur|por|sulla|al))?(?: (?:the|my|our|your|der|la|le))? "
+    r"(left|right|linken|rechten|links|rechts|gauche|droite|izquierda|derecha|sinistra|destra)\b"
+)
+"""The places of side roads in their row, and their side."""
 OFF_A_ROAD = re.compile(
     r"\b(?:left|right) off (?:the|a|our|my) (?:main|major|priority|through) (?:road|street)\b|"
     r"\boff (?:the|a|our|my) (?:main|major|priority|through) (?:road|street) to the (?:left|right)\b|"
@@ -44,14 +57,15 @@ OFF_A_ROAD = re.compile(
 def with_sides_of_side_roads(brief: Brief, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a route with the ways on at its T-junctions as far as the words tell them.
 
-    A street that the words number is taken. A street that is taken behind others on its side, which the route
+    The side roads that the route passes are on the sides that the words tell by their places. A street that
+    the words number is taken. A street that is taken behind others on its side, which the route
     passes, leaves a road that goes straight on, as theirs does.
 
     A T-junction that the route passes gets its side road on the side that is named, if the words name as many
     sides as there are such T-junctions and the plan uses no side. At the only T-junction, where the route
     turns "off the main road", that road goes straight on.
     """
-    brief = _into_numbered(_as_many_as_passed(brief, text), text)
+    brief = _on_told_sides(_into_numbered(_as_many_as_passed(brief, text), text), text)
     brief = _with_ways(brief, _taken_behind_others(brief.junctions))
     passed = [n for n, each in enumerate(brief.junctions) if _is_open(each) and each.take == "straight"]
     sides = _sides(text)
@@ -84,6 +98,56 @@ def _as_many_as_passed(brief: Brief, text: SlottedText) -> Brief:
     return brief.model_copy(
         update={"junctions": brief.junctions[1:], "stretches": (brief.stretches[0], *brief.stretches[2:])}
     )
+
+
+def _on_told_sides(brief: Brief, text: SlottedText) -> Brief:
+    """Returns a route that passes as many side roads as the words count, each on the side that they tell by
+    its place: "three side roads, the second on the left, the others on the right".
+
+    The Brief is returned unchanged if the words leave one of these sides open, or if the route passes more
+    side roads, or none.
+    """
+    told = COUNTED.findall(text.text)
+    passed = [n for n, each in enumerate(brief.junctions) if _is_passed(each)]
+    number = int(told[0]) if len(told) == 1 else 0
+    if not 1 <= len(passed) <= number or TAKEN_BACK.search(text.text):
+        return brief
+    sides = _sides_by_place(text.text[text.text.index(told[0]) :], number)
+    if sides is None:
+        return brief
+    junctions, roads, last = list(brief.junctions), list(brief.stretches), passed[-1]
+    for _ in range(number - len(passed)):
+        junctions.insert(last, junctions[last])
+        roads.insert(last + 1, roads[last] if last else Brief())
+    row = [*passed, *range(last + 1, last + 1 + number - len(passed))]
+    for n, side in zip(row, sides, strict=True):
+        junctions[n] = junctions[n].model_copy(update={"ways": (side, "straight")})
+    return brief.model_copy(update={"junctions": tuple(junctions), "stretches": tuple(roads)})
+
+
+def _is_passed(junction: JunctionClause) -> bool:
+    """Returns whether the route passes a side road here, and stays on the road that goes straight on."""
+    is_beside = not junction.ways or {*junction.ways} in ({"left", "straight"}, {"right", "straight"})
+    return junction.kind == "t_junction" and junction.take == "straight" and is_beside
+
+
+def _sides_by_place(said: str, number: int) -> list[Side] | None:
+    """Returns the side of each of some side roads; None if the words do not tell one, or tell two."""
+    found: dict[int, Side] = {}
+    rest: list[Side] = []
+    for where, word in ON_SIDE.findall(said):
+        side: Side = "left" if word in LEFT or word == "linken" else "right"
+        if re.fullmatch(OTHERS, where):
+            rest.append(side)
+            continue
+        places = places_in(where, number) or frozenset()
+        if not places or any(found.get(place, side) != side for place in places):
+            return None
+        found |= dict.fromkeys(places, side)
+    if len(rest) > 1 or not found:
+        return None
+    found = {**dict.fromkeys(range(number), rest[0]), **found} if rest else found
+    return [found[n] for n in range(number)] if len(found) == number else None
 
 
 def _into_numbered(brief: Brief, text: SlottedText) -> Brief:

@@ -14,6 +14,7 @@ from roadgpt.brief.readers.model.map_words import (
     ALL_KINDS,
     ANY_KIND,
     DEAD_ENDS,
+    EITHER_NOUNS,
     IS_TOTAL,
     KINDS_IN_PLURAL,
     KINDS_IN_SINGULAR,
@@ -48,6 +49,9 @@ NUMBERED_EXIT = re.compile(
     rf"{EXIT}\b"
 )
 """An exit with its number, which is no further junction."""
+MOST_CROSSED = 4  # junctions that are written again
+EITHER_COUNTED = re.compile(rf"\b(\d+) {EITHER_NOUNS}\b(?! (?:en|a) [ty]\b)")
+"""A number before a plural noun that means crossroads or junctions of any kind."""
 AGAIN = re.compile(
     r"\b(?:another|again|further|more|noch|wieder|weitere[nrms]?|encore|autres?|otr[oa]s?|mas|altr[oaie]|ancora)\b"
 )
@@ -162,6 +166,43 @@ def has_told_kinds(brief: Brief, most: Mapping[JunctionKind, int]) -> bool:
     """Returns whether a route has no more junctions of a kind than the words can mean."""
     kinds = [junction.kind for junction in brief.junctions]
     return all(kinds.count(kind) <= number for kind, number in most.items())
+
+
+def has_all_told(brief: Brief, text: SlottedText) -> bool:
+    """Returns whether a route has as many junctions of each kind as the words count, where they name the kind
+    only once.
+    """
+    kinds = [junction.kind for junction in brief.junctions]
+    return not kinds or all(kinds.count(kind) == number for kind, number in _told_once(text).items())
+
+
+def with_told_number(brief: Brief, text: SlottedText) -> Brief:
+    """Returns a route that crosses as many junctions as the words count, where it has only one of them and
+    the words name the kind only once: "left at the fork, then straight over two crossroads".
+    """
+    for kind, number in _told_once(text).items():
+        of_kind = {kind, "junction"} if kind == "crossroads" else {kind}
+        found = [n for n, each in enumerate(brief.junctions) if each.kind in of_kind]
+        if len(found) != 1 or not 1 < number <= MOST_CROSSED or brief.junctions[found[0]].take != "straight":
+            continue
+        at = found[0]
+        more, road = [brief.junctions[at]] * (number - 1), brief.stretches[at + 1 : at + 2]
+        if any(not each.has_free_shape for each in road):
+            continue
+        junctions = (*brief.junctions[:at], *more, *brief.junctions[at:])
+        roads = (*brief.stretches[: at + 1], *road * (number - 1), *brief.stretches[at + 1 :])
+        return brief.model_copy(update={"junctions": junctions, "stretches": roads})
+    return brief
+
+
+def _told_once(text: SlottedText) -> dict[JunctionKind, int]:
+    """Returns the numbers of junctions of those kinds that the words name only once, behind a number."""
+    counted = {kind: noun.findall(text.text) for kind, noun in KINDS_IN_PLURAL.items()}
+    counted["crossroads"] += EITHER_COUNTED.findall(text.text)
+    said = reduce(
+        lambda rest, noun: noun.sub("", rest), (*KINDS_IN_PLURAL.values(), EITHER_COUNTED), text.text
+    )
+    return {} if AGAIN.search(said) or TAKEN_BACK.search(said) else _named_once(counted, said)
 
 
 def names_kinds(brief: Brief, text: SlottedText) -> bool:

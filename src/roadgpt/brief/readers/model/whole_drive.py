@@ -12,6 +12,7 @@ from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.left_hand import NEGATED, may_mean_left_hand, says_left_hand
 from roadgpt.brief.model import Brief, CentreLine
 from roadgpt.brief.readers.model.denial import says
+from roadgpt.brief.readers.model.exit_words import COUNTS
 from roadgpt.brief.readers.model.numerals import plain
 
 LINES: dict[CentreLine, re.Pattern[str]] = {
@@ -62,6 +63,25 @@ NO_BENDS_BETWEEN = re.compile(
     r"\b(?:(?:no|without(?: any)?) (?:bends?|turns?|curves?)|keine kurven?|ohne kurven?|"
     r"(?:pas de|sans) virages?|sin curvas|ninguna curva|senza curve|nessuna curva|dead straight|straight) "
     r"(?:in )?(?:between|dazwischen|zwischen|entre|tra)\b"
+)
+LANES_EACH_WAY = re.compile(
+    rf"\b({'|'.join(COUNTS)}) "
+    r"(?:lanes (?:per direction|in each direction|each (?:way|direction)|either way)|"
+    r"(?:fahr)?(?:spuren|streifen) (?:je|pro) (?:fahrt)?richtung|"
+    r"voies (?:par|dans chaque) (?:sens|direction)|"
+    r"carriles (?:por|en cada) sentido|corsie per (?:senso(?: di marcia)?|direzione))"
+)
+"""A road with the same number of lanes in both directions."""
+OWN_PRIORITY = re.compile(
+    r"\b(?:i|we|you|and|with) (?:have |has |the )?(?:priority|right of way)\b(?! to)|"
+    r"\b(?:ich|wir|man) vorfahrt hab|"
+    r"\b(?:habe|haben|hat) (?:ich |wir |man )?vorfahrt|\b(?:j'ai|nous avons|on a) (?:la )?priorite\b(?! a)|"
+    r"\b(?:tengo|tenemos) (?:la )?(?:prioridad|preferencia)(?! a)|\b(?:ho|abbiamo) (?:la )?precedenza(?! a)"
+)
+"""Words for a route that has priority."""
+GIVES_WAY = re.compile(
+    r"\byield|giv\w+ way|main road|\bgewahr|wartepflicht|\bced\w+|\bdare\b|"
+    r"\bd(?:o|a|ai|iamo) (?:la )?precedenza"
 )
 LANES = re.compile(r"\blanes?\b|spur|streifen|\bvoies?\b|carril|corsi[ae]\b")
 OF_LANES = ("lanes", "against", "divided")
@@ -119,17 +139,20 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
     - The first road gets a median if it is a dual carriageway, and no road of the Brief has one.
     - If the words say that all roads have the same lanes or centre line, roads without them get those of the
       other roads.
-    - Junctions with priority to the right get no give-way signs.
+    - If the words begin with the lanes of both directions, the first road has them.
+    - Junctions with priority to the right get no give-way signs; those where the words say that the route has
+      priority get none either, unless some words tell of giving way.
     - A junction at the end of a side street is a T-junction.
     - If the route takes a one-way road at a junction, the road behind the junction is one-way.
     """
     if not brief.junctions and brief.map is None:
         return brief
+    brief = _with_own_priority(brief, words)
     brief = _out_of_side_street(_with_one_way_behind(_without_signs(brief, words)), words)
     line = None if any(each.centre for each in brief.stretches) else _line_said(words)
     roads = tuple(
         each.model_copy(update={"centre": line}) if line and _has_centre_line(each) else each
-        for each in _with_dual_carriageway(brief.stretches, words)
+        for each in _with_lanes_each_way(_with_dual_carriageway(brief.stretches, words), words)
     )
     roads = _without_bends_between(roads) if says(NO_BENDS_BETWEEN, plain(words)) else roads
     roads = _with_shared(roads, ("slope",), lambda road: True) if ALL_FLAT.search(plain(words)) else roads
@@ -150,6 +173,30 @@ def _out_of_side_street(brief: Brief, words: str) -> Brief:
         return brief
     known = first.model_copy(update={"kind": "t_junction"})
     return brief.model_copy(update={"junctions": (known, *brief.junctions[1:])})
+
+
+def _with_own_priority(brief: Brief, words: str) -> Brief:
+    """Returns the Brief with priority instead of give-way signs, if the words tell of priority only."""
+    said = plain(words)
+    if not OWN_PRIORITY.search(said) or GIVES_WAY.search(said) or NEGATED.search(said):
+        return brief
+    junctions = tuple(
+        each.model_copy(update={"control": "priority"}) if each.control == "yield" else each
+        for each in brief.junctions
+    )
+    return brief.model_copy(update={"junctions": junctions})
+
+
+def _with_lanes_each_way(roads: tuple[Brief, ...], words: str) -> tuple[Brief, ...]:
+    """Returns the roads; if none has lanes, the first gets those of both directions that the words give."""
+    parts = [part for part in _parts(words)[:2] if LANES_EACH_WAY.search(part)]
+    has_lanes = any(road.lanes or road.against or road.divided or road.motorway for road in roads)
+    if not roads or has_lanes or len(parts) != 1 or PLACED.search(parts[0]):
+        return roads
+    found = LANES_EACH_WAY.search(parts[0])
+    assert found is not None
+    number = exactly(COUNTS[found[1]])
+    return (roads[0].model_copy(update={"lanes": number, "against": number}), *roads[1:])
 
 
 def _with_one_way_behind(brief: Brief) -> Brief:
@@ -186,7 +233,7 @@ def _alike(brief: Brief, roads: tuple[Brief, ...], words: str) -> tuple[Brief, .
     has_changes = any(each.kind in (*RAMPS, *LANE_KINDS) for each in brief.junctions)
     if not has_changes and any(LANES.search(part) for part in whole):
         roads = _with_shared(roads, OF_LANES, lambda road: not road.motorway)
-    if any(pattern.search(part) for part in whole for pattern in LINES.values()):
+    if any(_lines_in(part) for part in whole):
         roads = _with_shared(roads, ("centre",), _has_centre_line)
     return roads
 
@@ -246,11 +293,15 @@ def _uncontrolled(junction: JunctionClause, is_open: bool) -> JunctionClause:
 def _line_said(words: str) -> CentreLine | None:
     found = set[CentreLine]()
     for part in _parts(words):
-        kinds = [line for line, pattern in LINES.items() if pattern.search(part)]
+        kinds = _lines_in(part)
         if kinds and PLACED.search(part):
             return None
         found.update(kinds[:1])
     return found.pop() if len(found) == 1 else None
+
+
+def _lines_in(part: str) -> list[CentreLine]:
+    return [line for line, pattern in LINES.items() if pattern.search(part)]
 
 
 def _parts(words: str) -> list[str]:
