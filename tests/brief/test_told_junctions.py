@@ -215,6 +215,7 @@ def test_a_junction_has_the_letter_of_its_noun(words: str, line: str, wanted: st
          "crossroads straight // y_junction left // crossroads", None),
         ("two crossroads, left at the last crossroads", "crossroads left", None),
         ("two crossroads, straight over, no, three", "crossroads straight", None),
+        ("straight over two crossroads, left at the third", "crossroads straight // junction left", None),
         ("straight over seven crossroads", "crossroads straight", None),
     ],
 )  # fmt: skip

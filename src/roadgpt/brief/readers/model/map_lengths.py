@@ -36,7 +36,7 @@ WHOLE = re.compile(
 ROUTE = re.compile(
     rf"\b(?:{DRIVE}) (?:(?:of|is|about|around|roughly|some|von|ist|etwa|rund|circa|ca|de|d '|environ|fait|"
     rf"mesure|mide|unos|es|di|misura|lunga?|long|lang|total|length) )*{METRES}"
-    r"(?= (?:[.,;:]|in all|long|lang)|$)"
+    r"(?= (?:[.,;:]|in all|long|lang|(?:and|und|et|y|e)\b)|$)"
 )
 """The length of a whole route."""
 

@@ -23,6 +23,7 @@ from roadgpt.brief.readers.model.map_words import (
     one_number,
     with_counted_map,
 )
+from roadgpt.brief.readers.model.ordinals import PLACE, place_of
 from roadgpt.brief.readers.model.ramp_lengths import INEXACT, LANE
 from roadgpt.brief.readers.model.slots import SlottedText
 
@@ -196,13 +197,18 @@ def with_told_number(brief: Brief, text: SlottedText) -> Brief:
 
 
 def _told_once(text: SlottedText) -> dict[JunctionKind, int]:
-    """Returns the numbers of junctions of those kinds that the words name only once, behind a number."""
+    """Returns the numbers of junctions of those kinds that the words name once, behind a number, unless an
+    ordinal goes beyond this number.
+    """
+    farthest = max((place_of(word) or 0 for word in re.findall(rf"\b{PLACE}\b", text.text)), default=0)
     counted = {kind: noun.findall(text.text) for kind, noun in KINDS_IN_PLURAL.items()}
     counted["crossroads"] += EITHER_COUNTED.findall(text.text)
     said = reduce(
         lambda rest, noun: noun.sub("", rest), (*KINDS_IN_PLURAL.values(), EITHER_COUNTED), text.text
     )
-    return {} if AGAIN.search(said) or TAKEN_BACK.search(said) else _named_once(counted, said)
+    if AGAIN.search(said) or TAKEN_BACK.search(said):
+        return {}
+    return {kind: number for kind, number in _named_once(counted, said).items() if number >= farthest}
 
 
 def names_kinds(brief: Brief, text: SlottedText) -> bool:
