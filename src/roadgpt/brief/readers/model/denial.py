@@ -3,10 +3,15 @@
 import re
 from collections.abc import Sequence
 
-DENIED = re.compile(
-    r"(?:\b(?:no|not|without|never|cannot|neither|nor|nicht|nie|kein\w*|ohne|pas|ni|aucune?|sans|jamais|sin|"
-    r"ningun[ao]?|tampoco|non|nessun[ao]?|ne|senza)|n['’]t)\b[^.,;:!?]*$"
+WITHOUT = r"(?:no|without(?: any)?|kein\w*|ohne|aucune?|pas d '|sans|ningun\w*|sin|nessun\w*|senza)"
+"""Words before a noun that say that there is none, in a text without accents."""
+NOT = (
+    r"(?:not|none|nothing|never|cannot|neither|nor|nicht|nie|niemals|pas|ni|jamais|nunca|tampoco|nada|non|ne|"
+    r"mai|niente)"
 )
+"""Other words that deny something."""
+DENIAL = rf"(?:{WITHOUT}|{NOT})"
+DENIED = re.compile(rf"(?:\b{DENIAL}|n['’]t)\b[^.,;:!?]*$")
 
 ENDS = frozenset([*".,;:!?()", "but", "aber", "sondern", "dafur", "mais", "pero", "sino", "ma"])
 """What ends the words that a negation reaches."""

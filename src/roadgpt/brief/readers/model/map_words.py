@@ -11,7 +11,7 @@ from roadgpt.brief.junction_check import has_fixed_arms, least_ends, most_ends
 from roadgpt.brief.junctions import MapJunctionKind
 from roadgpt.brief.map_clause import JunctionCount, MapClause
 from roadgpt.brief.model import Brief
-from roadgpt.brief.readers.model.denial import says
+from roadgpt.brief.readers.model.denial import DENIAL, WITHOUT, says
 from roadgpt.brief.readers.model.slots import SlottedText
 
 ONLY_A_MAP = re.compile(
@@ -22,12 +22,11 @@ ONLY_A_MAP = re.compile(
     r"mappa senza (?:percorso|itinerario)|solo (?:una|la) mappa)\b"
 )
 ONE = r"one|single|ein(?:e[nm]?|zige\w*)?|une?|seul|un[ao]?|solo"
-NONE = r"no|without(?: any)?|kein\w*|ohne|aucune?|pas d '|sans|ningun\w*|sin|nessun\w*|senza"
 DEAD_END = (
     r"(?:dead(?: -)? ends?|cul - de - sacs?|sackgassen?|impasses?|(?:callejon\w*|calles?) sin salida|"
     r"vicol[io] ciec(?:o|hi)|strad[ae] senza uscita)"
 )
-DEAD_ENDS = re.compile(rf"\b(\d+|{NONE}|{ONE}) (?:\w+ )?{DEAD_END}\b")
+DEAD_ENDS = re.compile(rf"\b(\d+|{WITHOUT}|{ONE}) (?:\w+ )?{DEAD_END}\b")
 NO_ENDS = re.compile(
     r"\bno (?:roads?|streets?) (?:that |which )?(?:just |simply )?ends?\b(?! (?:at|in|on)\b)|"
     r"\bkeine stra(?:ss|ß)e endet\b"
@@ -45,7 +44,7 @@ ROAD_OUT = (
     r"(?:strad[ae]|vi[ae]) (?:che )?(?:portano?|porta|conduc\w+|escono|esce) fuori)"
 )
 """A road that leads out of a map, which counts as a dead end."""
-ROADS_OUT = re.compile(rf"\b(\d+|{NONE}) (?:\w+ )?{ROAD_OUT}\b")
+ROADS_OUT = re.compile(rf"\b(\d+|{WITHOUT}) (?:\w+ )?{ROAD_OUT}\b")
 ENDS = rf"(?:\w+ )?(?:{DEAD_END}|{ROAD_OUT})\b"
 LEAST_ENDS = re.compile(rf"\b(?:at least|mindestens|au moins|al menos|almeno) (\d+) {ENDS}")
 MOST_ENDS = re.compile(
@@ -55,7 +54,7 @@ RANGE_OF_ENDS = re.compile(
     rf"\b(?:(\d+) (?:to|bis|a|-) (\d+)|(?:between|zwischen|entre|tra) (\d+) (?:and|und|et|y|e) (\d+)) {ENDS}"
 )
 BLOCKS = re.compile(
-    rf"\b(\d+|{NONE}|{ONE}) (?:\w+ )?(?:blocks?|(?:hauser)?blocke?|ilots?|manzanas?|isolat[oi])\b"
+    rf"\b(\d+|{WITHOUT}|{ONE}) (?:\w+ )?(?:blocks?|(?:hauser)?blocke?|ilots?|manzanas?|isolat[oi])\b"
 )
 BY = re.compile(
     r"\b(\d+) (?:blocks? |(?:hauser)?blocke? |ilots? |manzanas? |isolati )?"
@@ -154,9 +153,7 @@ MORE_KINDS = re.compile(
     r"incroc|rotatori|fork|gabel|abzweig|bifurc|bivi|at least|at most|up to|total|in all|each|mindestens|"
     r"hochstens|insgesamt|bis zu|au moins|al menos|almeno|square|loop|ring|platz|place\b|plaza|piazza"
 )
-NOT_A_TREE = re.compile(
-    rf"\b(?:none|not|nicht|pas|nessuna|ninguna?|keine[rs]?|aucune)\b[^.;]{{0,25}}{DEAD_END}\b"
-)
+NOT_A_TREE = re.compile(rf"\b{DENIAL}\b[^.;]{{0,25}}{DEAD_END}\b")
 
 
 def asks_for_map(text: SlottedText) -> bool:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from roadgpt.brief.model import OTHER_SIDE, Brief, Clause, Side, exactly
 from roadgpt.brief.normal import STRAIGHT
-from roadgpt.brief.readers.model.denial import is_denied
+from roadgpt.brief.readers.model.denial import DENIAL, is_denied
 from roadgpt.brief.readers.model.nouns import COUNTED, LEFT, ONE_TURN, RIGHT
 from roadgpt.brief.readers.model.numbered_junctions import CORRECTED
 from roadgpt.brief.readers.model.ordinals import DETERMINER, EXCEPT, ORDINAL, OTHERS, WHICH, places_in
@@ -32,14 +32,13 @@ TO = (
     r"gehen|ist|sind|eine|vont|va|van|tourne|tournent|est|sont|a|la|hacia|gira|giran|son|es|e|sono|vanno|piega|"
     r"piegano|verso|al?l?e?|einzige|only|one) )*"
 )
-NONE = r"(?:none|no|not|never|nothing|kein\w*|nicht|nie|aucune?|pas|ningun\w*|no|nessun\w*|non|nada)"
 FROM = (
     rf"(?:from (?:{DETERMINER} )*{ORDINAL}(?: {NOUN}| one)? on(?:wards?)?|"
     rf"(?:ab|a partir|desde) (?:d ' |de )?(?:{DETERMINER} )*{ORDINAL}(?: {NOUN})?|"
     rf"dalla {ORDINAL}(?: {NOUN})? in poi)"
 )
 """All turns from one on: "from the third on"."""
-FROM_ON = re.compile(rf"\b({FROM})\b ?,?(?: (?!{NONE}\b)\w+){{0,4}}?( {NONE}\b(?: \w+){{0,4}}?)? {SIDE}")
+FROM_ON = re.compile(rf"\b({FROM})\b ?,?(?: (?!{DENIAL}\b)\w+){{0,4}}?( {DENIAL}\b(?: \w+){{0,4}}?)? {SIDE}")
 EARLIER = re.compile(
     r"\b(?:before (?:that|it|then)|until then|davor|vorher|zuvor|avant|antes|prima di|first|erste[nr]?|"
     r"primer[ao]?s?|premi(?:er|ere)s?|prim[aeio])\b"
@@ -60,12 +59,12 @@ NOT_SO = re.compile(
 """Turns that do not lead to the side that was said: "the first goes left, the second does not"."""
 FEW = re.compile(
     rf"\b(?:only|just|nur|seulement|solo|soltanto|solamente|of which|davon|dont) (?:{ONLY})?"
-    rf"(\d+|one|ein\w*|une?|un[ao]?)(?: {OF_THEM})?(?: (?!{NONE}\b)\w+)?? {TO}{SIDE}(?! ?[:(,-] ?{WHICH})"
+    rf"(\d+|one|ein\w*|une?|un[ao]?)(?: {OF_THEM})?(?: (?!{DENIAL}\b)\w+)?? {TO}{SIDE}(?! ?[:(,-] ?{WHICH})"
 )
 """A number of turns to one side, without their places: "only one of them to the right"."""
 BUT = re.compile(
-    rf"\b(?:({NONE})|{ALL})\b(?: \w+){{0,6}}? {SIDE} ,? ?{EXCEPT} (?:{DETERMINER} )*({WHICH})|"
-    rf"\b{EXCEPT} ({WHICH})(?: ,)? (?:({NONE})|{ALL})\b(?: \w+){{0,5}}? {SIDE}"
+    rf"\b(?:({DENIAL})|{ALL})\b(?: \w+){{0,6}}? {SIDE} ,? ?{EXCEPT} (?:{DETERMINER} )*({WHICH})|"
+    rf"\b{EXCEPT} ({WHICH})(?: ,)? (?:({DENIAL})|{ALL})\b(?: \w+){{0,5}}? {SIDE}"
 )
 """A side that no turns have but some, or all but some."""
 

@@ -11,6 +11,7 @@ from functools import cache
 from roadgpt.brief.amount import Amount, exactly
 from roadgpt.brief.junctions import Control
 from roadgpt.brief.readers.model.alike_junctions import NOUN
+from roadgpt.brief.readers.model.denial import DENIAL
 from roadgpt.brief.readers.model.map_words import ANY_KIND, TAKEN_BACK
 from roadgpt.brief.readers.model.ordinals import EXCEPT, REST
 
@@ -74,14 +75,13 @@ EVERY_STREET = re.compile(
     r"rues?|calles?|carreteras?|strad[ae]|vie)\b"
 )
 """Words for all streets, which say nothing of the signs at all junctions."""
-NONE = r"(?:no|none|not|without|kein\w*|ohne|sans|pas|aucun\w*|sin|ningun\w*|non|senza|nessun\w*)"
 LEAST = re.compile(r"\b(?:at least|mindestens|au moins|al menos|por lo menos|almeno)$")
 MOST = re.compile(
     r"\b(?:at most|no more than|up to|hochstens|maximal|bis zu|au plus|como mucho|a lo sumo|al massimo)$"
 )
 NO_NUMBER = re.compile(rf"(?<!, )\b(?:{EXCEPT}(?: (?:{AT}|the))?|x|by|mal|sur|por|per)$")
 """Words before a number with which it does not count the junctions that have a sign."""
-OTHERS_HAVE_NONE = re.compile(rf"\b{REST}\b(?: \w+){{0,3}} {NONE}\b[^.;]*")
+OTHERS_HAVE_NONE = re.compile(rf"\b{REST}\b(?: \w+){{0,3}} {DENIAL}\b[^.;]*")
 
 LIMITED = (
     rf"(?:only|just|nur|lediglich|seulement|uniquement|solo|solamente|soltanto|"
@@ -169,7 +169,7 @@ def limited_signs(said: str) -> frozenset[Control]:
 def _without_double_denial(said: str) -> str:
     """Returns "lights at two of them" for "no lights except at two of them"."""
     for sign in SIGN_WORDS.values():
-        denied = rf"\b{NONE} (?:\w+ )?({sign}) ?,? {EXCEPT} (?={AT} )"
+        denied = rf"\b{DENIAL} (?:\w+ )?({sign}) ?,? {EXCEPT} (?={AT} )"
         said = re.sub(denied, r"\1 ", said)
     return said
 
@@ -279,4 +279,4 @@ def _of(control: Control, number: str, nouns: str, before: str) -> CountedSigns:
 
 
 def _is_denied(control: Control, said: str) -> bool:
-    return re.search(rf"\b{NONE} (?:\w+ )?{SIGN_WORDS[control]}\b", said) is not None
+    return re.search(rf"\b{DENIAL} (?:\w+ )?{SIGN_WORDS[control]}\b", said) is not None

@@ -9,6 +9,7 @@ from roadgpt.brief.junction_check import has_fixed_arms, most_ends
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind, MapJunctionKind
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.alike_junctions import NOUN as PLURAL
+from roadgpt.brief.readers.model.denial import WITHOUT
 from roadgpt.brief.readers.model.exit_words import EXIT
 from roadgpt.brief.readers.model.map_words import (
     ALL_KINDS,
@@ -18,7 +19,6 @@ from roadgpt.brief.readers.model.map_words import (
     IS_TOTAL,
     KINDS_IN_PLURAL,
     KINDS_IN_SINGULAR,
-    NONE,
     TAKEN_BACK,
     one_number,
     with_counted_map,
@@ -123,7 +123,7 @@ def most_of_kinds(text: SlottedText) -> dict[JunctionKind, int]:
     """
     counted = {kind: noun.findall(text.text) for kind, noun in KINDS_IN_PLURAL.items()}
     said = reduce(lambda rest, noun: noun.sub("", rest), KINDS_IN_PLURAL.values(), text.text)
-    said = re.sub(rf"\b(?:{NONE}) (?:\w+ )?(?:{PLURAL})\b", "", said)
+    said = re.sub(rf"\b{WITHOUT} (?:\w+ )?(?:{PLURAL})\b", "", said)
     if ANY_PLURAL.search(_without_crossroads(said)):
         return {}
     if MORE.search(NUMBERED_EXIT.sub("", said)):
