@@ -49,6 +49,17 @@ def test_lengths_of_the_ends_are_added(words: str, read: str, meant: str | None)
             f"| motorway len=1200 // {CHANGE}",
             f"| motorway // {CHANGE} || len=1200",
         ),
+        (
+            "Motorway, two lanes, 1500 m. An entry joins, later an exit leaves.",
+            "| motorway lanes=2 len=1500 // merge main // diverge main",
+            "| motorway lanes=2 // merge main // diverge main || len=1500",
+        ),
+        (
+            "Motorway, 800 m, then the exit. The ramp bends.",
+            "| motorway len=800 // diverge ramp",
+            None,
+        ),
+        ("Motorway, 800 m, exit.", "| motorway len=800 // diverge ramp", None),
         ("after 200 m change to the right", f"| len=200 // {CHANGE}", None),
         ("two lanes, 200 m, then change to the right", f"| lanes=2 len=200 // {CHANGE}", None),
         ("two lanes, 200 m and the right one ends", "| lanes=2 len=200 // lane_drop side=right", None),

@@ -32,6 +32,7 @@ def test_traffic_on_the_left_is_heard_in_five_languages(words: str) -> None:
 @pytest.mark.parametrize(
     "words",
     [
+        "turn into the second street, which is also on the left",
         "a T-junction, turn left",
         "no left-hand traffic please, a fork, keep left",
         "change to the left lane, then a crossroads",

@@ -88,6 +88,21 @@ def corrected(words: str, written: str) -> str:
         ),
         ("a town with five blocks and no lights", "map columns=5 rows=5", "map columns=5 rows=1"),
         ("una ciudad de seis manzanas", "map columns=6 rows=6", "map columns=3 rows=2"),
+        (
+            "a town with exactly four blocks and three dead ends, lights at two of the junctions",
+            "map columns=4 rows=3 dead_ends=3; junction x2 lights",
+            "map columns=2 rows=2 dead_ends=3; junction x2 lights",
+        ),
+        (
+            "a town with nine blocks, in which exactly four junctions have lights",
+            "map columns=9 rows=9; junction x4 lights",
+            "map columns=3 rows=3; junction x4 lights",
+        ),
+        (
+            "trois carrefours en T, un carrefour en croix et trois impasses",
+            "map t_junction x3; crossroads; t_junction x3",
+            "map t_junction x3; crossroads dead_ends=3",
+        ),
         ("a town five blocks wide", "map columns=5 rows=5", "map columns=5 rows=5"),
         ("a town of nine blocks", "map columns=3 rows=3", "map columns=3 rows=3"),
         (

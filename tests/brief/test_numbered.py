@@ -211,6 +211,16 @@ def test_turns_get_the_values_of_a_list(words: str, read: str, meant: str | None
             "t_junction straight priority // t_junction straight priority // roundabout",
         ),
         (
+            "Four T-junctions, priority at all of them except the last, where there is a stop sign for me",
+            " // ".join(["t_junction priority"] * 4),
+            "t_junction priority // t_junction priority // t_junction priority // t_junction stop",
+        ),
+        (
+            "A T, crossroads, a T and crossroads. Left at both T-junctions, straight on at both crossroads.",
+            "t_junction left // crossroads left // t_junction left // crossroads straight",
+            "t_junction left // crossroads straight // t_junction left // crossroads straight",
+        ),
+        (
             "Three crossroads, all with traffic lights but the last, which has a stop sign for me.",
             "crossroads lights // crossroads stop // crossroads",
             "crossroads lights // crossroads lights // crossroads stop",

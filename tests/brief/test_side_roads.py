@@ -71,6 +71,17 @@ def test_the_road_that_is_left_goes_straight_on(words: str, line: str, expected:
     assert corrected(line, words) == plan(read_plan(expected or line))
 
 
+def test_the_numbered_street_may_be_followed_by_other_junctions() -> None:
+    passed, taken = (f"t_junction {take} ways=left+straight" for take in ("straight", "left"))
+    words = "pass a side road on the left, turn into the second one, then right at the crossroads"
+    assert (
+        corrected(f"{passed} // {passed} // crossroads right", words)
+        == f"{passed} // {taken} // crossroads right"
+    )
+    further = f"{passed} // {passed} // junction left"
+    assert corrected(further, words) == further
+
+
 @pytest.mark.parametrize(
     ("words", "read", "sides"),
     [

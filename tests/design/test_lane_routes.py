@@ -394,6 +394,24 @@ def test_lanes_go_on_over_a_roundabout_and_behind_a_change_of_lanes(
     assert inspect(route, read_plan(line), WIDE) == ()
 
 
+@pytest.mark.parametrize(
+    ("line", "side"),
+    [
+        ("| lanes=1 // lane_gain // | lanes=2 // lane_change left", "left"),
+        ("| lanes=1 // lane_gain // | lanes=2 // lane_change right", "right"),
+        ("| lanes=1 // lane_gain side=right // | lanes=2 // lane_change left", "right"),
+        ("| lanes=2 // lane_change right // lane_drop // | lanes=1", "left"),
+        ("| lanes=2 // lane_change left // lane_drop // | lanes=1", "right"),
+        ("| lanes=2 // lane_drop // | lanes=1", "right"),
+    ],
+)
+def test_a_lane_begins_or_ends_where_the_lane_change_beside_it_says(line: str, side: str) -> None:
+    design = draft(read_plan(line), WIDE, seed=2)
+    assert isinstance(design, NetworkDesign)
+    places = [place for place in design.junctions if place.kind in ("lane_gain", "lane_drop")]
+    assert [getattr(place, "side", None) for place in places] == [side]
+
+
 def test_a_motorway_with_a_median_has_tighter_turns_where_the_map_is_small() -> None:
     brief, small = read_plan("turn left | motorway lanes=2 against=2 divided"), World()
     design = Planner().draft(brief, small, (), (), 1)

@@ -13,7 +13,7 @@ COUNTRIES = (
 )
 SAYS = re.compile(
     r"left[- ]?hand traffic|\blht\b|traffic (?:(?:is|keeps|drives|goes) )?(?:on the )?left\b(?! lane)|"
-    r"\bdriv(?:e|es|ing) (?:on|to) the left\b(?! lane)|so on the left|"
+    r"\bdriv(?:e|es|ing) (?:on|to) the left\b(?! lane)|\bso on the left|"
     r"on the left(?:-hand)? side of the road like|wrong side,? ie the left|"
     r"linksverkehr|\bfahr(?:en|t) (?:sie |wir |man )?(?:links,|auf der linken (?:strassen)?seite)|"
     r"\b(?:conduite|circulation) a gauche|\b(?:roul|condui|circul)\w* a gauche|\btient la gauche|"

@@ -65,6 +65,26 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
     )
 
 
+def with_side_of_change(places: Sequence[JunctionClause], number: int) -> JunctionClause:
+    """Returns what is required of a lane that begins or ends, with its side if a lane change beside it says
+    that: the car changes into the lane that begins, and has left the side on which a lane ends.
+
+    Args:
+        places: what the route passes.
+        number: which of these places is meant.
+    """
+    place = places[number]
+    before = places[number - 1] if number else None
+    behind = places[number + 1] if number + 1 < len(places) else None
+    if place.side is not None:
+        return place
+    if place.kind == "lane_gain" and behind is not None and behind.kind == "lane_change":
+        return place.model_copy(update={"side": behind.take})
+    if place.kind == "lane_drop" and before is not None and before.kind == "lane_change" and before.take:
+        return place.model_copy(update={"side": "left" if before.take == "right" else "right"})
+    return place
+
+
 def drawn_change(asked: JunctionClause, around: Sequence[Brief]) -> LanesChangeDesign:
     """Returns a place where a lane ends, begins or is changed, which meets its requirements.
 

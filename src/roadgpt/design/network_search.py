@@ -27,6 +27,7 @@ from roadgpt.design.lane_draft import (
     drawn_ramp,
     lanes_of_roads,
     main_roads,
+    with_side_of_change,
 )
 from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, place
 from roadgpt.design.network_heights import climbing
@@ -157,6 +158,7 @@ class NetworkSearch:
             lanes = None if self._has_usual_lanes else self.lanes[number + 1]
             if clause.kind in LANE_KINDS:
                 around = self.brief.roads[number : number + 2]
+                clause = with_side_of_change(self.brief.junctions, number)
                 found.append(drawn_change(clause, around).model_copy(update={"lanes": lanes}))
                 continue
             if clause.kind in RAMPS:

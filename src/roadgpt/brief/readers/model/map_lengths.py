@@ -8,9 +8,10 @@ length of routes that are told in many words.
 import re
 
 from roadgpt.brief.amount import Amount, exactly
-from roadgpt.brief.junctions import LANE_KINDS
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.end_lengths import ABOUT
+from roadgpt.brief.readers.model.exit_words import EXIT
 from roadgpt.brief.readers.model.map_words import IN_ALL, TAKEN_BACK
 from roadgpt.brief.readers.model.sign_words import LEAST, MOST
 from roadgpt.brief.readers.model.slots import SlottedText
@@ -41,6 +42,10 @@ ROUTE = re.compile(
 """The length of a whole route."""
 
 
+ON_A_RAMP = re.compile(
+    rf"\b(?:{EXIT}|ramps?|entr\w+|merg\w+|join\w*|leav\w+|auffahrt|einfahrt|rampe|bretelle|entree|acceso|entrada|"
+    r"ingresso|rampa)\b"
+)
 OF_ALL = (
     r"(?: (?:long|dead|straight|in length|lang|gerade(?:aus)?|de long|tout droit|de largo|rect[ao]|lung[ao]|"
     r"dritt[ao])){0,2}"
@@ -77,32 +82,35 @@ def with_length_of_route(brief: Brief, text: SlottedText) -> Brief:
 
 
 def with_length_past_lanes(brief: Brief, text: SlottedText) -> Brief:
-    """Returns the Brief of a route without junctions, on which lanes only end, begin or are changed, with the
-    only length in the words as the length of the whole route.
+    """Returns the Brief of a route on which lanes only end, begin or are changed, or of a motorway, with the
+    length that a sentence before its places gives alone as the length of the whole route.
 
-    The Brief is returned unchanged if the length is not that of its first road, if it does not stand
-    alone between commas, or if a word near it may limit it to a part of the route: "then 200 m".
+    The Brief is returned unchanged if the length is not that of its first road, if it does not stand alone
+    between commas, if a word near it may limit it to a part of the route: "then 200 m", or if the sentence
+    also tells of a ramp.
     """
-    lengths = [n for n, slot in enumerate(text.slots, 1) if slot.unit == "metres"]
-    first = brief.stretches[0] if brief.junctions else None
-    if first is None or len(lengths) != 1 or any(each.kind not in LANE_KINDS for each in brief.junctions):
+    kinds = {each.kind for each in brief.junctions}
+    lengths = [road.length for road in (brief, *brief.stretches[1:])]
+    if not kinds or not kinds <= {*LANE_KINDS, *RAMPS} or any(lengths):
         return brief
-    said = next(part for part in re.split(r"[.;]", text.text) if f"[unused{lengths[0]}]" in part)
-    alone = rf"(?:^|,) {ABOUT}\[unused{lengths[0]}\] metres{OF_ALL}(?: ?,|$)"
-    is_alone = re.search(alone, f" {said.strip()}") is not None
-    length, metres = first.length, exactly(text.slots[lengths[0] - 1].value)
-    clauses = first.clauses
+    first = brief.stretches[0]
+    length, clauses = first.length, first.clauses
     if len(clauses) == 1 and clauses[0].kind == "straight" and length is None:
         length, clauses = clauses[0].length, (clauses[0].model_copy(update={"length": None}),)
-    if (
-        not is_alone
-        or length != metres
-        or PLACED.search(said)
-        or any(each.length for each in brief.junctions)
-    ):
+    said = next((part.strip() for part in text.text.split(".") if _stands_alone(length, part, text)), None)
+    has_ramp = said is None or ON_A_RAMP.search(said) is not None
+    if said is None or PLACED.search(said) or (has_ramp and kinds & {*RAMPS}):
         return brief
     bare = first.model_copy(update={"length": None, "clauses": clauses})
-    return brief.model_copy(update={"length": metres, "stretches": (bare, *brief.stretches[1:])})
+    return brief.model_copy(update={"length": length, "stretches": (bare, *brief.stretches[1:])})
+
+
+def _stands_alone(length: Amount | None, part: str, text: SlottedText) -> bool:
+    """Returns whether a part of the text gives a length alone between commas."""
+    numbers = map(
+        int, re.findall(rf"(?:^|,) {ABOUT}\[unused(\d+)\] metres{OF_ALL}(?: ?,|$)", f" {part.strip()}")
+    )
+    return any(n <= len(text.slots) and length == exactly(text.slots[n - 1].value) for n in numbers)
 
 
 def with_whole_length(brief: Brief, text: SlottedText) -> Brief:

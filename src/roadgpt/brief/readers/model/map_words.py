@@ -101,6 +101,10 @@ EITHER_NOUNS = "(?:crossings|intersections|kreuzungen|carrefours|croisements|cru
 EITHER = re.compile(rf"\b{EITHER_NOUNS}\b")
 """Nouns that mean crossroads, or junctions of any kind."""
 NUMBER = rf"\b(\d+) (?:{OF_THESE}(?: (?:are|being|sind|son|sean|sont|sono|siano))? )?"
+OF_JUNCTIONS = re.compile(
+    rf"\b\d+ (?:{OF_THESE}|of the|der|des|de las|de los|degli|delle|dei) |\b\d+ (?:\w+ )?(?:{CROSSINGS})\b"
+)
+"""A number of junctions."""
 OTHERS = re.compile(
     r"\b(?:more|others?|further|another|each|per|weitere[nrs]?|noch|andere[nrs]?|je|autres?|otr[oa]s?|altr[eio])\b"
 )
@@ -258,7 +262,8 @@ def _told_once(junctions: Sequence[JunctionCount], said: str) -> list[JunctionCo
         is_again = any(other.kind == each.kind and other.control == each.control for other in out)
         number = one_number(noun.findall(said)) if noun and is_again else None
         single = KINDS_IN_SINGULAR.get(each.kind, SINGLE_T)
-        if not number or single.search(said) or len(re.findall(rf"\b{number}\b", said)) > 1:
+        rest = DEAD_ENDS.sub("", said)
+        if not number or single.search(said) or len(re.findall(rf"\b{number}\b", rest)) > 1:
             out.append(each)
     return out
 
@@ -330,10 +335,11 @@ def _blocks(asked: MapClause, said: str) -> dict[str, Amount]:
 
 
 def _is_total(blocks: int, said: str) -> bool:
-    """Returns whether words that count blocks have no number of other things but dead ends, and speak of no
-    side of a grid.
+    """Returns whether words that count blocks have no number of other things but junctions and dead ends, and
+    speak of no side of a grid.
     """
-    return re.findall(r"\b\d+\b", DEAD_ENDS.sub("", said)) == [str(blocks)] and WIDE.search(said) is None
+    rest = OF_JUNCTIONS.sub("", DEAD_ENDS.sub("", said))
+    return re.findall(r"\b\d+\b", rest) == [str(blocks)] and WIDE.search(said) is None
 
 
 def _product(asked: MapClause) -> float:

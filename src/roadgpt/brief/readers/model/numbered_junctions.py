@@ -86,7 +86,7 @@ OWN = re.compile(rf" , {RELATIVE} ")
 BUT = re.compile(rf"\b{EXCEPT} (?:{AT} )*$")
 ALL_BUT = re.compile(rf"\b{EVERY}(?: \w+){{0,4}}? ,? ?{EXCEPT} (?:{AT} )*$")
 EXCEPTED = re.compile(
-    rf"\b{EXCEPT} (?:{AT} )*{WHICH}(?: {NOUN})?(?: {OF_THEM})? ?,? (?:where|wo|ou|donde|dove) ([^.;:]*)"
+    rf"\b{EXCEPT} (?:{AT} )*({WHICH})(?: ({NOUN}))?(?: {OF_THEM})? ?,? (?:where|wo|ou|donde|dove) ([^.;:]*)"
 )
 """What is said of a junction that is excepted: "except the second, where the car turns left"."""
 ANY_NOUN = re.compile(rf"(?:{ANY_KIND}|junction|intersection|crossing|knoten(?:punkt)?)")
@@ -125,7 +125,7 @@ def with_numbered_junctions(brief: Brief, text: SlottedText) -> Brief:
     junctions = _signed(
         brief.junctions, controls, {sign for sign in SIGNS if _is_complete(sign, signs, said)}
     )
-    ways |= _other_ways(brief.junctions, takes, ways, said)
+    ways |= _other_ways(brief.junctions, takes, ways)
     junctions = tuple(
         each.model_copy(update={"take": ways[n]}) if n in ways and not _goes(each, ways[n]) else each
         for n, each in enumerate(junctions)
@@ -134,18 +134,16 @@ def with_numbered_junctions(brief: Brief, text: SlottedText) -> Brief:
 
 
 def _other_ways(
-    junctions: Sequence[JunctionClause], takes: Sequence[Placed], ways: Mapping[int, str], said: str
+    junctions: Sequence[JunctionClause], takes: Sequence[Placed], ways: Mapping[int, str]
 ) -> dict[int, str]:
     """Returns a way for each junction that is excepted from another one: after "straight over all but the
-    last", the route turns there, to the side that the words name.
+    last", the route turns there.
     """
     excepted = {each.value for each in takes if each.is_exception} if ways else set()
     if len(excepted) != 1:
         return {}
     (way,) = excepted
-    told = " ".join(EXCEPTED.findall(said))
-    named = [take for take, words in TAKES.items() if take != way and re.search(rf"\b{words}\b", told)]
-    other = named[0] if len(named) == 1 else "left" if way == "right" else "right"
+    other = "left" if way == "right" else "right"
     return {n: other for n, each in enumerate(junctions) if n not in ways and _goes(each, way)}
 
 
@@ -161,6 +159,16 @@ def placed_signs(said: str) -> Iterator[Placed]:
             if not is_given and not OF_OTHERS.search(before):
                 yield each
         yield from _of_first(control, said)
+        yield from _of_excepted(control, sign, said)
+
+
+def _of_excepted(value: str, words: str, said: str) -> Iterator[Placed]:
+    """Yields what is said of an excepted junction: "straight over all but the last, where I turn left"."""
+    for where, noun, told in EXCEPTED.findall(said):
+        found = re.search(rf"\b{words}\b", told)
+        before = told[: found.start()] if found else ""
+        if found and not is_denied(before) and not OF_OTHERS.search(before) and not NO_WAY.search(before):
+            yield Placed(value, where, noun, is_exception=False)
 
 
 def _of_first(control: Control, said: str) -> Iterator[Placed]:
@@ -187,6 +195,7 @@ def placed_takes(said: str) -> Iterator[Placed]:
         for each, before in _found(take, (*_forms(way), *_forms_of_way(way)), said):
             if not NO_WAY.search(before):
                 yield each
+        yield from _of_excepted(take, way, said)
 
 
 def _found(value: str, forms: Sequence[re.Pattern[str]], said: str) -> Iterator[tuple[Placed, str]]:
@@ -227,7 +236,11 @@ def _forms_of_sign(sign: str) -> tuple[re.Pattern[str], ...]:
 @cache
 def _forms_of_way(way: str) -> tuple[re.Pattern[str], ...]:
     """Returns the forms in which the places stand before a way."""
-    return (re.compile(rf"\b(?:{AT} )+(?:{ONLY})?{PLACES}(?: ({NOUN}))? ,? ?{GOING}{way}\b(?! {AT} ){ENDS}"),)
+    at_all = rf"(?:{AT} )*({EVERY}) (?:of )?(?:{DETERMINER} )*((?:{PLURAL}|{SIDE_STREETS.pattern})\b)"
+    return (
+        re.compile(rf"\b(?:{AT} )+(?:{ONLY})?{PLACES}(?: ({NOUN}))? ,? ?{GOING}{way}\b(?! {AT} ){ENDS}"),
+        re.compile(rf"\b{way} {at_all}{ENDS}(?! ?,? ?{EXCEPT})"),
+    )
 
 
 def _signed(

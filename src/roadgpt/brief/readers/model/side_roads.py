@@ -155,14 +155,19 @@ def _into_numbered(brief: Brief, text: SlottedText) -> Brief:
     are four side streets on the left, turn into the fourth".
     """
     found = TURNS_INTO.findall(text.text)
-    last = brief.junctions[-1] if brief.junctions else None
-    if last is None or len(found) != 1 or place_of(found[0]) not in (-1, len(brief.junctions)):
+    row = [n for n, each in enumerate(brief.junctions) if each.ways and _is_passed(each)]
+    if len(row) < 2 or len(found) != 1 or place_of(found[0]) not in (-1, len(row)):
         return brief
-    sides = [side for side in SIDES if {*last.ways} == {side, "straight"}]
-    if not sides or any(each.take != "straight" or not each.ways for each in brief.junctions):
+    junctions = list(brief.junctions)
+    last, behind = junctions[row[-1]], junctions[row[-1] + 1 :]
+    side = "left" if "left" in last.ways else "right"
+    # the street that is taken may be a further one
+    if any(each.kind == "junction" and each.ways for each in behind) or [e.take for e in behind[:1]] == [
+        side
+    ]:
         return brief
-    taken = last.model_copy(update={"take": sides[0]})
-    return brief.model_copy(update={"junctions": (*brief.junctions[:-1], taken)})
+    junctions[row[-1]] = last.model_copy(update={"take": side})
+    return brief.model_copy(update={"junctions": tuple(junctions)})
 
 
 def _taken_behind_others(junctions: Sequence[JunctionClause]) -> dict[int, Side]:
