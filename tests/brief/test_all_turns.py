@@ -107,6 +107,32 @@ def test_other_words_change_nothing(words: str, written: str) -> None:
     assert corrected(words, written) == written
 
 
+@pytest.mark.parametrize(
+    ("words", "written", "right"),
+    [
+        ("a slalom of six turns, left one first", "slalom left", "slalom x6 left"),
+        ("ein Slalom mit acht Kurven", "slalom", "slalom x8"),
+        ("six slaloms", "slalom", "slalom"),
+        ("a slalom and six bends", "slalom; turn x6", "slalom; turn x6"),
+        (
+            "a chicane, 40 degrees each turn, after a straight of 60 m",
+            "turn left; turn right; straight len=60",
+            "straight len=60; turn left; turn right",
+        ),
+        (
+            "una chicane izquierda-derecha después de una recta de 60 m",
+            "turn left; turn right; straight len=60",
+            "straight len=60; turn left; turn right",
+        ),
+        ("two bends; after a straight, done", "turn x2; straight", "turn x2; straight"),
+        ("a bend after a straight, and a straight", "turn; straight", "turn; straight"),
+        ("four bends, dopo un rettilineo", "turn x4; straight", "turn x4; straight"),
+    ],
+)
+def test_kinds_have_their_number_and_a_straight_its_place(words: str, written: str, right: str) -> None:
+    assert corrected(words, written) == right
+
+
 def test_turns_of_so_much_each_stay_as_they_are() -> None:
     words = "three curves of 1.5 km each"
     assert plan(brief_of("turn x3 len=1500", slotted(words), words)) == "turn x3 len=1500"

@@ -4,6 +4,7 @@ import pytest
 
 from roadgpt.brief import read
 from roadgpt.brief.plan import plan
+from roadgpt.brief.readers.model.multiples import tells_a_difference
 from roadgpt.brief.readers.model.slots import slotted
 
 SAID = [
@@ -85,3 +86,17 @@ def test_change_requests_have_multiples_of_their_own() -> None:
 )  # fmt: skip
 def test_the_reader_copies_the_figure(text: str, wanted: str) -> None:
     assert plan(read(text)) == wanted
+
+
+@pytest.mark.parametrize(
+    ("words", "tells"),
+    [
+        ("the first turns by 50 degrees, the second by 40 degrees more than that", True),
+        ("die zweite Gerade 20 m länger als die erste", True),
+        ("deux virages, le second de 20 degrés de plus que le premier", True),
+        ("a straight of more than 40 m", False),
+        ("40 m more, then a bend", False),
+    ],
+)
+def test_a_difference_that_is_not_computed_is_noticed(words: str, tells: bool) -> None:
+    assert tells_a_difference(slotted(words).text) == tells

@@ -348,3 +348,10 @@ def test_a_slope_of_so_many_metres_gains_about_the_height_that_it_should(plan: s
     roads = [build(Planner().draft(read_plan(plan), World(), (), (), seed)) for seed in range(12)]
     gained = [float(road.at(road.length)[2] - road.at(0.0)[2]) for road in roads]
     assert sum(gained) / len(gained) == pytest.approx(climb, rel=0.15)
+
+
+def test_hairpins_turn_as_far_as_most_people_expect_of_them() -> None:
+    brief = read_plan("hairpin left; straight len=60; hairpin right")
+    for seed in range(12):
+        found = measure(build(draft(brief, WORLD, seed=seed)).sample().points)
+        assert all(145 < abs(turn.degrees) < 212 for turn in found.turns)

@@ -111,8 +111,11 @@ KINDS: Mapping[Kind, Meaning] = {
     "crest": Meaning(("crest", "hump", "hilltop"), degrees=NO_TURN, length=Range(LEAST_STRAIGHT)),
     "dip": Meaning(("dip", "hollow"), degrees=NO_TURN, length=Range(LEAST_STRAIGHT)),
     "turn": Meaning(("turn", "bend", "curve"), ONE, degrees=Range(25, 120)),
-    "hairpin": Meaning(("hairpin",), ONE, degrees=Range(140, 210), radius=Range(0, 35)),
-    "switchback": Meaning(("switchback",), ONE, alternating=True, degrees=Range(100, 210)),
+    # many people do not call less than 145 degrees a hairpin
+    "hairpin": Meaning(("hairpin",), ONE, degrees=Range(140, 210), radius=Range(0, 35), aim=Range(150, 207)),
+    "switchback": Meaning(
+        ("switchback",), ONE, alternating=True, degrees=Range(100, 210), aim=Range(145, 207)
+    ),
     "u_turn": Meaning(("U-turn",), ONE, degrees=Range(150, 210), aim=Range(165, 195)),
     "s_bend": Meaning(("S-bend", "S-curve"), Range(2, 2), alternating=True, degrees=Range(25, 120)),
     "chicane": Meaning(

@@ -27,6 +27,7 @@ from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
 from roadgpt.brief.readers.model.height_words import is_doubtful_climb, with_sign
 from roadgpt.brief.readers.model.map_signs import has_unlimited_signs
 from roadgpt.brief.readers.model.mirror import is_of_junctions
+from roadgpt.brief.readers.model.multiples import tells_a_difference
 from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.numerals import plain
@@ -137,7 +138,7 @@ class ModelReader:
             raise refused("!impossible loop")
         brief = self._brief(words, text, draft, ensemble)
         is_unclear = is_of_junctions(draft.line) and not can_be_kept(found[0].line)
-        if is_unclear or has_unlimited_signs(brief, text):
+        if is_unclear or has_unlimited_signs(brief, text) or tells_a_difference(text.text):
             brief = brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
         return brief if brief.confidence >= SURE else brief.model_copy(update={"other": _other(found, brief)})
 

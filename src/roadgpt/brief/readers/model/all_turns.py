@@ -45,6 +45,17 @@ ONE_OF_ALL = word_set(
     "vierte vierten letzte letzten mittlere mittleren eine einer einen premier premiere deuxieme troisieme",
     "dernier derniere un une primera primero segunda tercera ultima ultimo una prima primo seconda terza",
 )
+OF_SEVERAL = ("slalom", "serpentine", "zigzag")
+STRAIGHTS = re.compile(r"\b(?:straights?|geraden?|lignes? droites?|rectas?|rettiline[oi]|rettifil[oi])\b")
+AFTER_A_STRAIGHT = re.compile(
+    rf"\b(?:after|following|nach|apres|despues de|tras) (?:an?|one|einer|une|un|una) "
+    rf"(?:\S+ ){{0,3}}?{STRAIGHTS.pattern}"
+)
+"""A straight that comes before what is named first."""
+NAMED = frozenset(
+    ["chicane", "schikane", "chicana", "hairpin", "slalom", "haarnadel", "epingle", "horquilla", "tornante"]
+)
+"""Nouns for turns of a kind."""
 NEAR = 6
 """The largest number of words from "all" to "but" of "all bends to the left but the last"."""
 
@@ -55,8 +66,42 @@ def with_words_of_all_turns(brief: Brief, text: SlottedText) -> Brief:
         return brief
     brief = _with_limit_of_all(_with_whole_alternation(brief, text), text)
     brief = _with_limit_of_others(brief, text)
-    brief = _with_measure_of_all(brief, text)
+    brief = _with_straight_before(_with_number_of_kind(_with_measure_of_all(brief, text), text), text)
     return _with_unlike_parts(_with_other_exception(brief, text), text)
+
+
+def _with_number_of_kind(brief: Brief, text: SlottedText) -> Brief:
+    """Gives a slalom, a serpentine or a zig-zag as many turns as the words say, if it is all of the road."""
+    clause = brief.clauses[0] if len(brief.clauses) == 1 else None
+    counts = _counts(text) - measured_values(brief)
+    if clause is None or clause.kind not in OF_SEVERAL or clause.count != exactly(1) or len(counts) != 1:
+        return brief
+    number = counts.pop()
+    has_noun = any(
+        word.text == f"{number:g}" and after.text in COUNTED for word, after in pairwise(text.words)
+    )
+    if not has_noun or brief.turns is not None:
+        return brief
+    return brief.model_copy(update={"clauses": (clause.model_copy(update={"count": exactly(number)}),)})
+
+
+def _with_straight_before(brief: Brief, text: SlottedText) -> Brief:
+    """Moves the only straight before the turns where the words say so at their end: "a chicane after a
+    straight of 60 m".
+    """
+    found = [*AFTER_A_STRAIGHT.finditer(text.text)]
+    *turns, last = brief.clauses or (None,)
+    before = text.text[: found[0].start()] if found else ""
+    is_behind = last is not None and last.kind == "straight" and last.count == exactly(1) and bool(turns)
+    if not is_behind or len(found) != 1 or len(STRAIGHTS.findall(text.text)) != 1:
+        return brief
+    if before.rstrip().endswith((".", ";", ":", ">")):  # it may be "afterwards"
+        return brief
+    if any(turn is None or turn.kind in STRAIGHT for turn in turns):
+        return brief
+    if not any(word in COUNTED | ONE_TURN or word in NAMED for word in before.split()):
+        return brief
+    return brief.model_copy(update={"clauses": (last, *turns)})
 
 
 def _with_unlike_parts(brief: Brief, text: SlottedText) -> Brief:

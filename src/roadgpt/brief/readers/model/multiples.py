@@ -72,6 +72,7 @@ KNOWN = frozenset(
         "premier",
     ]
     + ["precedente", "primera", "primero", "anterior", "prima", "primo"]
+    + ["initial", "initiale", "inicial", "iniziale", "opening", "anfangliche", "anfanglichen"]
 )
 """What a multiple may be compared with: the part that was named before it."""
 ROAD = frozenset(
@@ -97,6 +98,19 @@ DENIED = 4  # words
 """How far before a multiple it may be denied: "not really twice as long"."""
 EXPLAINED = 8  # words
 """How far behind a multiple its figure may be said: "twice as long as the first one, that is 80 m"."""
+
+
+SUM = re.compile(
+    r"\[unused\d+\] (?:degrees|metres|percent) (?:more|less|longer|shorter|steeper|tighter|mehr|weniger|"
+    r"langer|kurzer|de plus|de moins|mas|menos|in piu|in meno|di piu|di meno) (?:than|als|que|che|di) "
+    r"(?:that|this|it|the|der|die|das|dem|ce|cela|la|le|el|los?|eso|quel\w*|il)\b"
+)
+"""A difference from another part, "40 degrees more than that", in a text of slots. It is not computed."""
+
+
+def tells_a_difference(said: str) -> bool:
+    """Returns whether a text, as networks read it, gives a number only by its difference from another one."""
+    return SUM.search(said) is not None
 
 
 class Multiple(NamedTuple):
