@@ -4,11 +4,11 @@ import pytest
 
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.armed_junctions import with_told_arms
+from roadgpt.brief.readers.model.junction_nouns import names_a_junction
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.told_junctions import (
     has_told_kinds,
     most_of_kinds,
-    names_a_junction,
     number_of_listed,
     with_told_letter,
     with_told_number,

@@ -5,10 +5,11 @@ import pytest
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
-from roadgpt.brief.readers.model.map_words import asks_for_map, with_counted_map
+from roadgpt.brief.readers.model.map_words import with_counted_map
 from roadgpt.brief.readers.model.other_roads import with_other_roads
 from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lane
 from roadgpt.brief.readers.model.plan_choice import brief_of
+from roadgpt.brief.readers.model.route_words import asks_for_map
 from roadgpt.brief.readers.model.slots import slotted
 
 

@@ -11,12 +11,7 @@ from learn.covering import covering
 from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import WEIGHTS
-from roadgpt.brief.readers.model.mirror import (
-    in_mirror_plan,
-    in_mirror_tokens,
-    is_of_junctions,
-    mirrored,
-)
+from roadgpt.brief.readers.model.mirror import in_mirror_plan, in_mirror_tokens, is_of_junctions, mirrored
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import OF_ROADS, TOKENS, plan_of, tokens_of
 from roadgpt.brief.readers.model.wordpiece import WordPieces

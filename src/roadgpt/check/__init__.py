@@ -20,8 +20,6 @@ from typing import Protocol, cast
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
-from roadgpt.check.map_promises import broken_map
-from roadgpt.check.route_promises import broken_promises
 from roadgpt.check.sbft import sbft_verdict
 from roadgpt.errors import UsageError
 from roadgpt.network import Network, Route
@@ -109,9 +107,9 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
         found_there = inspect_network(road.network, road, world)
         if brief is None:
             return found_there
-        if brief.map is not None:
-            return (*found_there, *broken_map(road, brief.map, brief.length))
-        return (*found_there, *broken_promises(road, brief, world.site.map_size))
+        from roadgpt.check.network_promises import broken_network  # a single road does not need it
+
+        return (*found_there, *broken_network(road, brief, world.site.map_size))
     road, found = world.lay(road), list[Finding]()
     for _, rule in rules_of(rules):
         found += rule(road, brief, world)

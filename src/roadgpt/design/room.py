@@ -6,9 +6,7 @@ from collections.abc import Iterator
 
 from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
-from roadgpt.design.map_search import room_for_map
 from roadgpt.design.road_search import sufficient_map
-from roadgpt.design.route_room import room_for_route
 from roadgpt.road import World
 
 
@@ -25,10 +23,12 @@ def world_for(brief: Brief | None, world: World) -> World:
         return found
     if brief.map_size is not None:
         return found.changed(map_size=brief.map_size)
-    if brief.map is not None:
-        size = room_for_map(brief, found)
+    if brief.is_of_network:
+        from roadgpt.design.network_draft import room_for_network  # a single road does not need it
+
+        size = room_for_network(brief, found)
     else:
-        size = (room_for_route if brief.is_of_network else sufficient_map)(brief, found)
+        size = sufficient_map(brief, found)
     return found if size is None else found.changed(map_size=size)
 
 

@@ -1,17 +1,14 @@
 """The default designer: finds roads, routes through junctions, and maps by random drafts.
 
-See ``design.road_search`` for roads, ``design.network_search`` for routes, and ``design.map_search`` for
-maps.
+See ``design.road_search`` for roads, and ``design.network_draft`` for routes and maps; the latter is imported
+only where it is used.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from roadgpt.brief.mirror import mirrored
 from roadgpt.brief.model import Brief
-from roadgpt.design.map_search import MapSearch
-from roadgpt.design.network_search import NetworkSearch
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
 from roadgpt.network import AnyDesign
@@ -46,11 +43,9 @@ class Planner:
         """
         rng = np.random.default_rng([seed, len(notes)])
         if brief.is_of_network:
-            search = NetworkSearch if brief.map is None else MapSearch
-            if not brief.left_hand:
-                return search(brief, world, rng).run()
-            # traffic on the left is the mirror image of traffic on the right
-            return search(mirrored(brief), world, rng).run().mirrored(world.site.map_size / 2)
+            from roadgpt.design.network_draft import draft_network
+
+            return draft_network(brief, world, rng)
         design, road = DraftSearch(brief, world, self._shapes.of(earlier), rng).run()
         self._shapes.remember(design, road)
         return design

@@ -25,7 +25,7 @@ from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, 
 from roadgpt.brief.readers.model.denied_words import without_denials
 from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
 from roadgpt.brief.readers.model.height_words import is_doubtful_climb, with_sign
-from roadgpt.brief.readers.model.map_signs import has_unlimited_signs
+from roadgpt.brief.readers.model.junction_nouns import names_a_junction
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.multiples import tells_a_difference
 from roadgpt.brief.readers.model.negative_numbers import negative_number
@@ -38,7 +38,6 @@ from roadgpt.brief.readers.model.ring_sizes import with_diameters
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
-from roadgpt.brief.readers.model.told_junctions import names_a_junction
 from roadgpt.brief.readers.model.total_turning import total_turning
 from roadgpt.brief.readers.model.vocabulary import plan_of
 from roadgpt.brief.readers.model.word_meanings import read_meanings
@@ -138,7 +137,7 @@ class ModelReader:
             raise refused("!impossible loop")
         brief = self._brief(words, text, draft, ensemble)
         is_unclear = is_of_junctions(draft.line) and not can_be_kept(found[0].line)
-        if is_unclear or has_unlimited_signs(brief, text) or tells_a_difference(text.text):
+        if is_unclear or _has_unlimited_signs(brief, text) or tells_a_difference(text.text):
             brief = brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
         return brief if brief.confidence >= SURE else brief.model_copy(update={"other": _other(found, brief)})
 
@@ -370,6 +369,14 @@ def _other(found: Sequence[ScoredPlan], brief: Brief) -> str:
         if line != plan(said):
             return line
     return ""
+
+
+def _has_unlimited_signs(brief: Brief, text: SlottedText) -> bool:
+    if brief.map is None:
+        return False
+    from roadgpt.brief.readers.model.map_signs import has_unlimited_signs  # only for maps
+
+    return has_unlimited_signs(brief, text)
 
 
 def _text(words: str) -> SlottedText:

@@ -4,20 +4,15 @@ import re
 
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS
 from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.junction_nouns import PLURAL
 from roadgpt.brief.readers.model.slots import SlottedText
 
 MOST = 9  # junctions of a route that a reader writes
-NOUN = (
-    r"(?:(?:[ty] - )?(?:junctions|crossings|intersections)|cross ?- ?roads|crossroads|forks|roundabouts|"
-    r"traffic circles|kreuzungen|kreisverkehren?|kreisel|einmundungen|abzweigungen|gabelungen|carrefours|"
-    r"croisements|ronds - points|giratoires|bifurcations|cruces|intersecciones|rotondas|glorietas|"
-    r"bifurcaciones|incroci|rotonde|rotatorie|bivi)"
-)
 OTHERS = r"more|other|further|weiteren?|andere|autres|otr[ao]s|altr[ei]|mas|piu|de plus"
 APART = r"(?:and|und|et|y|e|between|way|lane|arm|turns?|bends?|curves?|kurven|virages|curvas|curve|blocks?)\b"
 """Words that part a number from junctions named behind them, as in "3 bends and roundabouts"."""
 COUNT = re.compile(
-    rf"(?<!(?:altre|altri|otras|otros) )\b(\d+) (?!{OTHERS})(?:(?!{APART})[^\W\d]\w* ){{0,2}}?{NOUN}\b"
+    rf"(?<!(?:altre|altri|otras|otros) )\b(\d+) (?!{OTHERS})(?:(?!{APART})[^\W\d]\w* ){{0,2}}?{PLURAL}\b"
 )
 """A number before the plural of a word for junctions, in a text without accents."""
 

@@ -4,7 +4,7 @@ import re
 
 from roadgpt.brief.amount import exactly
 from roadgpt.brief.model import Brief
-from roadgpt.brief.readers.model.map_words import KINDS_IN_SINGULAR
+from roadgpt.brief.readers.model.junction_nouns import KINDS_IN_SINGULAR
 from roadgpt.brief.readers.model.slots import SlottedText
 
 OF_ANY_KIND = r"\b(?:junction|turning|einmundung|knoten(?:punkt)?|intersezione)\b"

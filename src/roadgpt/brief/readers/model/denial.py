@@ -15,6 +15,16 @@ DENIED = re.compile(rf"(?:\b{DENIAL}|n['’]t)\b[^.,;:!?]*$")
 
 ENDS = frozenset([*".,;:!?()", "but", "aber", "sondern", "dafur", "mais", "pero", "sino", "ma"])
 """What ends the words that a negation reaches."""
+TAKEN_BACK = re.compile(
+    r"\bno ,|\bnein ,|\bnot\b(?! more\b(?! than))|\brather\b|\binstead\b|\bsondern\b|\bmake that\b|"
+    r"\btoo many\b|\? (?:no|non|nein)\b"
+)
+"""Words with which a number may be taken back."""
+CORRECTED = re.compile(
+    r"\b(?:sorry|i mean|wait|oops|correction|actually|pardon|ich meine|entschuldigung|quatsch|besser gesagt|"
+    r"je veux dire|ou plutot|perdon|quiero decir|mejor dicho|scusa\w*|anzi|volevo dire)\b"
+)
+"""Words with which something said before is replaced."""
 
 
 def places_reached(words: Sequence[str], at: int, most: int) -> range:

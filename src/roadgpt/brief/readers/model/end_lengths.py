@@ -7,9 +7,9 @@ import re
 from roadgpt.brief.amount import exactly
 from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.model import Brief, Clause
-from roadgpt.brief.readers.model.map_words import KINDS_IN_SINGULAR, TAKEN_BACK
+from roadgpt.brief.readers.model.denial import TAKEN_BACK
+from roadgpt.brief.readers.model.junction_nouns import KINDS_IN_SINGULAR, names_a_junction
 from roadgpt.brief.readers.model.slots import SlottedText
-from roadgpt.brief.readers.model.told_junctions import names_a_junction
 
 ABOUT = (
     r"(?:(?:about|around|roughly|some|approximately|etwa|ungefahr|rund|environ|unos|aproximadamente|circa|"

@@ -4,12 +4,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from roadgpt.brief.readers.model.confidence import confidence, features
-from roadgpt.brief.readers.model.map_words import asks_for_map
+from roadgpt.brief.readers.model.junction_nouns import names_a_junction
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
-from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES, may_tell_a_route
+from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES, asks_for_map, may_tell_a_route
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
-from roadgpt.brief.readers.model.told_junctions import names_a_junction
 from roadgpt.brief.readers.model.used_words import unused_words
 from roadgpt.brief.words import SURE
 

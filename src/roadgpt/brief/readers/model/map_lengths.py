@@ -10,9 +10,10 @@ import re
 from roadgpt.brief.amount import Amount, exactly
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS
 from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.denial import TAKEN_BACK
 from roadgpt.brief.readers.model.end_lengths import ABOUT
 from roadgpt.brief.readers.model.exit_words import EXIT
-from roadgpt.brief.readers.model.map_words import IN_ALL, TAKEN_BACK
+from roadgpt.brief.readers.model.map_words import IN_ALL
 from roadgpt.brief.readers.model.sign_words import LEAST, MOST
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.told_junctions import DRIVE

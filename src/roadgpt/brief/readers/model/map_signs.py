@@ -12,19 +12,12 @@ from roadgpt.brief.amount import Amount, exactly
 from roadgpt.brief.junctions import Control, MapJunctionKind
 from roadgpt.brief.map_clause import JunctionCount, MapClause
 from roadgpt.brief.model import Brief
-from roadgpt.brief.readers.model.map_words import (
-    ALL_KINDS,
-    ANY_KIND,
-    KINDS_IN_PLURAL,
-    KINDS_IN_SINGULAR,
-    TAKEN_BACK,
-    counted_kinds,
-    is_counted,
-    one_number,
-    said_of,
-)
+from roadgpt.brief.readers.model.denial import TAKEN_BACK
+from roadgpt.brief.readers.model.junction_nouns import ANY_KIND, KINDS_IN_PLURAL, KINDS_IN_SINGULAR
+from roadgpt.brief.readers.model.map_words import ALL_KINDS, counted_kinds, is_counted, one_number
+from roadgpt.brief.readers.model.ordinals import ALL
+from roadgpt.brief.readers.model.route_words import said_of
 from roadgpt.brief.readers.model.sign_words import (
-    ALL,
     EVERYWHERE,
     OF,
     PLURALS,

@@ -3,24 +3,27 @@ ends or blocks the map has.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from math import isqrt
 
 from roadgpt.brief.amount import Amount, exactly, span
 from roadgpt.brief.junction_check import has_fixed_arms, least_ends, most_ends
-from roadgpt.brief.junctions import MapJunctionKind
 from roadgpt.brief.map_clause import JunctionCount, MapClause
 from roadgpt.brief.model import Brief
-from roadgpt.brief.readers.model.denial import DENIAL, WITHOUT, says
+from roadgpt.brief.readers.model.denial import DENIAL, TAKEN_BACK, WITHOUT, says
+from roadgpt.brief.readers.model.junction_nouns import (
+    ANY_KIND,
+    CROSSING_NOUNS,
+    EITHER,
+    KINDS_IN_PLURAL,
+    KINDS_IN_SINGULAR,
+    OF_THESE,
+    SIDE_STREETS,
+    SINGLE_T,
+)
+from roadgpt.brief.readers.model.route_words import said_of
 from roadgpt.brief.readers.model.slots import SlottedText
 
-ONLY_A_MAP = re.compile(
-    r"\b(?:map only|(?:only|just) (?:a|the) map|maps? (?:without|with no) (?:a |any )?routes?|"
-    r"nur (?:eine |die )?karte|karten? ohne (?:route|strecke)|"
-    r"carte sans (?:itineraire|parcours|trajet|route)|(?:seulement|juste) (?:une|la) carte|"
-    r"mapa sin (?:ruta|recorrido|itinerario)|solo (?:un|el) mapa|"
-    r"mappa senza (?:percorso|itinerario)|solo (?:una|la) mappa)\b"
-)
 ONE = r"one|single|ein(?:e[nm]?|zige\w*)?|une?|seul|un[ao]?|solo"
 DEAD_END = (
     r"(?:dead(?: -)? ends?|cul - de - sacs?|sackgassen?|impasses?|(?:callejon\w*|calles?) sin salida|"
@@ -75,78 +78,26 @@ WIDE = re.compile(
     r"\b(?:wide|width|side|square|breit\w*|seite\w*|quadrat\w*|larg\w+|cote|carre\w*|anch\w+|lad[oi])\b"
 )
 """Words with which the number of blocks may be that of one side of a grid."""
-EIGHT = re.compile(r"\b(?:acht|huit|ocho|otto)\b(?= \w+[sni]\b)")
-"""The number 8 before a plural; the networks read these words themselves."""
-ANY_KIND = (
-    r"junctions|intersections|nodes|knoten(?:punkte?n?)?|jonctions|noeuds|intersecciones|nudos|nodos|"
-    r"intersezioni|nodi"
-)
-CROSSINGS = rf"{ANY_KIND}|crossings|cross ?-? ?roads|kreuzungen|carrefours|croisements|cruces|incroci"
 IN_ALL = r"in all|in total|all told|altogether|insgesamt|en tout|au total|en total|in tutto|in totale"
-OF_THESE = (
-    r"(?:of (?:them|which|these)|davon|dont|de (?:ellos|ellas|los cuales|las cuales)|d(?:ei|elle) quali|"
-    r"di quest[ie])"
-)
 ONE_OF_THESE = rf"\b(?:(?:{ONE}) {OF_THESE}|{OF_THESE} (?:{ONE})) (?:\w+ ){{0,3}}?"
 IS_TOTAL = re.compile(rf"\b(?:{IN_ALL})\b|\b{OF_THESE}\b|\binsgesamt \d+\b")
 """Words with which a number of junctions is that of all of them."""
 ALL_KINDS = re.compile(
     rf"(?<!more )(?<!other )(?<!further )\b(\d+) (?:\w+ )?(?:(?:{ANY_KIND})\b|"
-    rf"(?:{CROSSINGS})(?: ,)? (?:(?:{IN_ALL})\b|(?:\d+ )?{OF_THESE}\b))"
+    rf"(?:{CROSSING_NOUNS})(?: ,)? (?:(?:{IN_ALL})\b|(?:\d+ )?{OF_THESE}\b))"
 )
 """A number before a word for junctions of any kind."""
 ARMED = re.compile(r"\b(\d+) (?:- )?(?:arm\w*|leg\w*|branch\w*|brazos|bracci|way)\b")
 """A number of arms."""
-EITHER_NOUNS = "(?:crossings|intersections|kreuzungen|carrefours|croisements|cruces|incroci)"
-EITHER = re.compile(rf"\b{EITHER_NOUNS}\b")
-"""Nouns that mean crossroads, or junctions of any kind."""
-NUMBER = rf"\b(\d+) (?:{OF_THESE}(?: (?:are|being|sind|son|sean|sont|sono|siano))? )?"
 OF_JUNCTIONS = re.compile(
-    rf"\b\d+ (?:{OF_THESE}|of the|der|des|de las|de los|degli|delle|dei) |\b\d+ (?:\w+ )?(?:{CROSSINGS})\b"
+    rf"\b\d+ (?:{OF_THESE}|of the|der|des|de las|de los|degli|delle|dei) |"
+    rf"\b\d+ (?:\w+ )?(?:{CROSSING_NOUNS})\b"
 )
 """A number of junctions."""
 OTHERS = re.compile(
     r"\b(?:more|others?|further|another|each|per|weitere[nrs]?|noch|andere[nrs]?|je|autres?|otr[oa]s?|altr[eio])\b"
 )
 """Words with which the number before a noun may not be the number of all."""
-KINDS_IN_PLURAL: Mapping[MapJunctionKind, re.Pattern[str]] = {
-    "roundabout": re.compile(
-        NUMBER + r"(?:small |large |big |mini - ?)?(?:roundabouts|kreisverkehren?|kreisel|rotatorie|rotonde|"
-        r"glorietas|rotondas|ronds - points|giratoires)\b"
-    ),
-    "crossroads": re.compile(NUMBER + r"(?:cross ?-? ?roads|kreuzungen)\b"),
-    "t_junction": re.compile(
-        NUMBER + r"(?:t (?:- )?(?:junctions|crossings|intersections|kreuzungen|einmundungen)|einmundungen|"
-        r"(?:cruces|intersecciones) en t|(?:incroci|intersezioni) a t|"
-        r"(?:carrefours|intersections|croisements) en t)\b"
-    ),
-    "y_junction": re.compile(NUMBER + r"(?:forks|gabelungen|fourches|bifurcations|bifurcaciones|bivi)\b"),
-    "star": re.compile(NUMBER + r"(?:stars|sterne|etoiles|estrellas|stelle)\b"),
-}
-"""A number before the plural noun of a kind of junction."""
-KINDS_IN_SINGULAR: Mapping[MapJunctionKind, re.Pattern[str]] = {
-    "crossroads": re.compile(
-        r"\b(?:cross ?-? ?roads?|intersection|crossing(?! roads?| streets?| traffic)|kreuzung|carrefour|"
-        r"croisement|cruce|interseccion|incrocio)\b"
-    ),
-    "roundabout": re.compile(
-        r"\b(?:(?:mini)?roundabout|rotary|traffic circle|(?:mini)?kreisverkehr|(?:mini)?kreisel|rond - point|"
-        r"giratoire|glorieta|rotonda|rotatoria)\b"
-    ),
-    "y_junction": re.compile(r"\b(?:fork|y - junction|gabelung|bifurcation|fourche|bifurcacion|bivio)\b"),
-    "star": re.compile(r"\bstar\b"),
-}
-"""The singular nouns for junctions of each kind, in a text without accents."""
-SINGLE_T = re.compile(r"\b(?:t - (?:junction|crossing|intersection|kreuzung|einmundung)|einmundung)\b")
-TAKEN_BACK = re.compile(
-    r"\bno ,|\bnein ,|\bnot\b(?! more\b(?! than))|\brather\b|\binstead\b|\bsondern\b|\bmake that\b|"
-    r"\btoo many\b|\? (?:no|non|nein)\b"
-)
-"""Words with which a number may be taken back."""
-SIDE_STREETS = re.compile(
-    r"side (?:streets?|roads?)|(?:seiten|neben)stra(?:ss|ß)en?|rues? (?:laterale|secondaire|transversale)s?|"
-    r"calles? (?:lateral|secundaria)(?:e?s)?|(?:strad[ae]|vi[ae]) (?:lateral|secondari)[aei]|laterali"
-)
 MAIN_STREET = re.compile(
     r"\b(?:(?:main|through|high) (?:street|road)|(?:haupt|durchgangs)stra(?:ss|ß)e|"
     r"rue principale|grand - rue|calle (?:principal|mayor)|(?:strada|via) principale)\b"
@@ -158,11 +109,6 @@ MORE_KINDS = re.compile(
     r"hochstens|insgesamt|bis zu|au moins|al menos|almeno|square|loop|ring|platz|place\b|plaza|piazza"
 )
 NOT_A_TREE = re.compile(rf"\b{DENIAL}\b[^.;]{{0,25}}{DEAD_END}\b")
-
-
-def asks_for_map(text: SlottedText) -> bool:
-    """Returns whether a description says that it wants a map without a route."""
-    return says(ONLY_A_MAP, said_of(text))
 
 
 def asks_for_grid(text: SlottedText) -> bool:
@@ -386,9 +332,3 @@ def one_number(found: Sequence[str]) -> int | None:
     if len(found) != 1:
         return None
     return int(found[0]) if found[0].isdecimal() else int(re.fullmatch(ONE, found[0]) is not None)
-
-
-def said_of(text: SlottedText) -> str:
-    """Returns the words in lower case without accents, with small numbers as figures."""
-    said = " ".join(word.text for word in text.words)
-    return EIGHT.sub("8", said)

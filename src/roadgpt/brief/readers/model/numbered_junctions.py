@@ -10,27 +10,26 @@ from typing import NamedTuple
 
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, JunctionClause, JunctionKind, Take
 from roadgpt.brief.model import Brief
-from roadgpt.brief.readers.model.alike_junctions import NOUN as PLURAL
-from roadgpt.brief.readers.model.denial import is_denied
-from roadgpt.brief.readers.model.map_words import (
+from roadgpt.brief.readers.model.denial import CORRECTED, TAKEN_BACK, is_denied
+from roadgpt.brief.readers.model.junction_nouns import (
     ANY_KIND,
     EITHER,
     KINDS_IN_PLURAL,
     KINDS_IN_SINGULAR,
+    PLURAL,
     SIDE_STREETS,
-    TAKEN_BACK,
 )
-from roadgpt.brief.readers.model.ordinals import DETERMINER, EXCEPT, OTHERS, WHICH, places_in
-from roadgpt.brief.readers.model.sign_words import (
+from roadgpt.brief.readers.model.ordinals import (
     ALL,
-    ARE,
-    ARTICLE,
-    HAVE,
+    DETERMINER,
+    EXCEPT,
     OF_THEM,
     ONLY,
-    SIGN_WORDS,
-    SINGULARS,
+    OTHERS,
+    WHICH,
+    places_in,
 )
+from roadgpt.brief.readers.model.sign_words import ARE, ARTICLE, HAVE, SIGN_WORDS, SINGULARS
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.told_junctions import CROSSINGS
 from roadgpt.brief.readers.model.told_takes import TO, WAYS
@@ -75,11 +74,6 @@ GOING = (
     r"(?:(?:turn|go|head|i|we|you|it|then|carry on|drive|wir|ich|fahre?n?|geht es|biegen|abbiegen|je|on|nous|"
     r"tourne[rz]?|prend|voy|vamos|giro|gira|giriamo|vado|andiamo|si|sigo|seguimos) ){0,3}"
 )
-CORRECTED = re.compile(
-    r"\b(?:sorry|i mean|wait|oops|correction|actually|pardon|ich meine|entschuldigung|quatsch|besser gesagt|"
-    r"je veux dire|ou plutot|perdon|quiero decir|mejor dicho|scusa\w*|anzi|volevo dire)\b"
-)
-"""Words with which something said before is replaced."""
 RELATIVE = r"(?:which|that|der|die|das|qui|que|che)"
 OWN = re.compile(rf" , {RELATIVE} ")
 """What is said of an excepted junction itself: "all but the last, which has a stop sign"."""

@@ -8,11 +8,19 @@ from typing import NamedTuple
 
 from roadgpt.brief.model import OTHER_SIDE, Brief, Clause, Side, exactly
 from roadgpt.brief.normal import STRAIGHT
-from roadgpt.brief.readers.model.denial import DENIAL, is_denied
+from roadgpt.brief.readers.model.denial import CORRECTED, DENIAL, is_denied
 from roadgpt.brief.readers.model.nouns import COUNTED, LEFT, ONE_TURN, RIGHT
-from roadgpt.brief.readers.model.numbered_junctions import CORRECTED
-from roadgpt.brief.readers.model.ordinals import DETERMINER, EXCEPT, ORDINAL, OTHERS, WHICH, places_in
-from roadgpt.brief.readers.model.sign_words import ALL, OF_THEM, ONLY
+from roadgpt.brief.readers.model.ordinals import (
+    ALL,
+    DETERMINER,
+    EXCEPT,
+    OF_THEM,
+    ONLY,
+    ORDINAL,
+    OTHERS,
+    WHICH,
+    places_in,
+)
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.turn_list import joined, one_by_one
 

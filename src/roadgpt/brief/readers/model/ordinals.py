@@ -50,6 +50,18 @@ EXCEPT = (
 _PLURAL = re.compile(r"(?:premi|derni)(?:er|ere)s|primer[oa]s|prim[ie]|ultim(?:[oa]s|[ie])")
 _PLACE = {number: re.compile(rf"(?:{words})") for number, words in PLACES.items()}
 _ITEM = re.compile(rf"(?:(\d+) )?({ORDINAL})\b(?: ({BOTH})\b)?")
+OF_THEM = (
+    r"(?:of (?:them|these|which)|davon|d ' (?:entre )?(?:eux|elles)|de (?:ell[oa]s|l[oa]s cuales)|"
+    r"di (?:ess[ie]|loro))"
+)
+ONLY = (
+    r"(?:just |only |exactly |nur |genau |seulement |exactement |solo |solamente |exactamente |esattamente |"
+    r"soltanto )"
+)
+ALL = (
+    r"(?:all|every|everywhere|alle[nr]?|samtliche[nr]?|jede[rnms]?|uberall|tous|toutes|partout|tod[oa]s|"
+    r"en todas partes|tutt[ie]|ogni|dappertutto|ovunque)"
+)
 
 
 def place_of(word: str) -> int | None:

@@ -4,61 +4,22 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TypeVar
 
-from roadgpt.brief.amount import meets
 from roadgpt.brief.feasible import check
-from roadgpt.brief.junctions import BENDS
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.normal import STRAIGHT, normal, total
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
-from roadgpt.brief.readers.model.armed_junctions import with_told_arms
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.denied_slopes import with_denied_slope
-from roadgpt.brief.readers.model.end_lengths import with_lengths_of_ends
-from roadgpt.brief.readers.model.exit_words import (
-    with_motorway_behind_ramp,
-    with_passed_exits,
-    with_stay_on_motorway,
-)
-from roadgpt.brief.readers.model.from_start import with_distances_from_start
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.listed_values import with_listed_values
-from roadgpt.brief.readers.model.map_lengths import (
-    with_length_of_route,
-    with_length_past_lanes,
-    with_whole_length,
-)
-from roadgpt.brief.readers.model.map_signs import with_counted_signs
-from roadgpt.brief.readers.model.map_words import asks_for_grid, with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
-from roadgpt.brief.readers.model.numbered_junctions import with_numbered_junctions
 from roadgpt.brief.readers.model.numbered_sides import told_turns, with_numbered_sides
-from roadgpt.brief.readers.model.other_roads import with_other_roads
-from roadgpt.brief.readers.model.own_lane import with_each_lane, with_told_lane, without_own_lane
-from roadgpt.brief.readers.model.ramp_lengths import with_distances_to_exits, with_ramp_lengths
 from roadgpt.brief.readers.model.ring_sizes import used_diameters
-from roadgpt.brief.readers.model.sharp_sides import with_sharp_side
-from roadgpt.brief.readers.model.side_roads import with_sides_of_side_roads
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
-from roadgpt.brief.readers.model.told_junctions import (
-    has_all_told,
-    has_told_ends,
-    has_told_kinds,
-    lacks_ends_as_junctions,
-    most_of_kinds,
-    names_kinds,
-    number_of_listed,
-    with_told_letter,
-    with_told_number,
-    with_told_total,
-)
-from roadgpt.brief.readers.model.told_takes import with_told_takes
 from roadgpt.brief.readers.model.used_words import left_out
-from roadgpt.brief.readers.model.whole_drive import with_whole_drive
 from roadgpt.brief.readers.model.word_set import word_set
-from roadgpt.brief.words import Range
 from roadgpt.errors import BriefError
 
 Sloped = TypeVar("Sloped", Brief, Clause)
@@ -88,7 +49,10 @@ def most_plausible(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan
     if not is_of_junctions(first.line):
         return _with_told_turns(found, text) or first
     if can_be_kept(first.line):
-        return _as_counted(found, text) or first
+        from roadgpt.brief.readers.model.route_rules import as_counted  # only for networks
+
+        kept = (draft for draft in found if not draft.is_refusal and draft.score > first.score - LIKELY)
+        return as_counted([draft for draft in kept if can_be_kept(draft.line)], text) or first
     near = [draft for draft in found if not draft.is_refusal and draft.score > first.score - NEARLY]
     return next((draft for draft in near if can_be_kept(draft.line)), first)
 
@@ -117,27 +81,6 @@ def _turns(line: str) -> Amount:
     return brief.turns or total(brief.clauses)
 
 
-def _as_counted(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
-    """Returns the likeliest plan without more junctions of a kind than the words can mean, and with a grid if
-    the words can only mean one as a map; None if there is none that is likely. Maps of kinds that the words
-    mention, and with as many dead ends as they count, are preferred.
-    """
-    most, listed = most_of_kinds(text), number_of_listed(text)
-    near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - LIKELY)
-    kept = (draft for draft in near if is_of_junctions(draft.line) and can_be_kept(draft.line))
-    no_village = asks_for_grid(text)
-    plans = [
-        (draft, brief)
-        for draft, brief in ((draft, read_plan(draft.line)) for draft in kept)
-        if has_told_kinds(brief, most)
-        and listed in (None, len(brief.junctions))
-        and not (no_village and brief.map is not None and brief.map.junctions)
-    ]
-    for is_preferred in (has_all_told, names_kinds, has_told_ends, lacks_ends_as_junctions):
-        plans = [each for each in plans if is_preferred(each[1], text)] or plans
-    return plans[0][0] if plans else None
-
-
 def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
     """Returns the likeliest plan whose turns have the sides listed in the words; None if there is no list or
     no such plan.
@@ -159,17 +102,11 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line)), text), text)
     brief = with_denied_slope(brief, text)
     brief = with_numbered_sides(with_listed_values(with_checked_counts(brief, text), text), text)
-    brief = with_told_takes(with_told_number(with_told_total(brief, text), text), text)
-    brief = with_ramp_lengths(with_distances_to_exits(with_counted_junctions(brief, text), text), text)
-    brief = with_lengths_of_ends(with_length_past_lanes(with_length_of_route(brief, text), text), text)
-    brief = with_whole_length(with_counted_signs(with_counted_map(brief, text), text), text)
-    brief = _with_listed_hills(with_each_lane(with_told_lane(_into_new_lane(brief), words)))
-    brief = _with_turns_by_degrees(with_sharp_side(with_told_arms(brief, text), words))
-    brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)
-    brief = with_numbered_junctions(with_motorway_behind_ramp(with_passed_exits(brief, words), words), text)
-    brief = with_distances_from_start(brief, words)
-    brief = with_sides_of_side_roads(brief, text, words)
-    return with_other_roads(with_whole_drive(brief, words), words)
+    if brief.junctions or brief.map is not None:
+        from roadgpt.brief.readers.model.route_rules import with_words_of_network  # only for networks
+
+        brief = with_words_of_network(brief, text, words)
+    return _with_listed_hills(brief)
 
 
 def _level_at_zero(brief: Brief) -> Brief:
@@ -182,28 +119,6 @@ def _level_at_zero(brief: Brief) -> Brief:
 def _at_zero(said: Sloped) -> Sloped:
     is_level = said.slope is not None and said.incline == exactly(0)
     return said.model_copy(update={"slope": "flat", "incline": None}) if is_level else said
-
-
-def _into_new_lane(brief: Brief) -> Brief:
-    """Returns a route that changes into the lane that begins, if the side of the change is not said."""
-    places = list(brief.junctions)
-    for n, (before, place) in enumerate(pairwise(brief.junctions), 1):
-        if before.kind == "lane_gain" and place.kind == "lane_change" and before.side and place.take is None:
-            places[n] = place.model_copy(update={"take": before.side})
-    return brief.model_copy(update={"junctions": tuple(places)})
-
-
-def _with_turns_by_degrees(brief: Brief) -> Brief:
-    """Returns a route that goes left or right where the degrees are too few for "sharply", or too many or
-    too few for "slightly".
-    """
-    junctions = tuple(
-        each.model_copy(update={"take": (each.take or "").rpartition("_")[2]})
-        if not meets(each.degrees, BENDS.get((each.take or "").partition("_")[0], Range()))
-        else each
-        for each in brief.junctions
-    )
-    return brief.model_copy(update={"junctions": junctions})
 
 
 def _with_length_of_road(brief: Brief, text: SlottedText) -> Brief:

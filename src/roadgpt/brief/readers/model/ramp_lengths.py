@@ -10,19 +10,13 @@ from collections.abc import Collection
 from roadgpt.brief.amount import Amount, exactly
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.brief.model import Brief
-from roadgpt.brief.readers.model.map_words import TAKEN_BACK
+from roadgpt.brief.readers.model.denial import TAKEN_BACK
+from roadgpt.brief.readers.model.junction_nouns import LANE
 from roadgpt.brief.readers.model.slots import SlottedText
 
 TAPERED = ("lane_drop", "lane_gain")
 """The kinds that are a taper and nothing else."""
 SLOT = r"\[unused(\d+)\] metres"
-LANE = (
-    r"(?:(?:acceleration|deceleration|accel|decel|merging|merge|speed - change) lanes?|"
-    r"(?:einfadel|ausfadel|beschleunigungs|verzogerungs)(?:ungs)?(?:spur|streifen)|"
-    r"voie d ' (?:insertion|acceleration)|voie de deceleration|"
-    r"carril(?:es)? de (?:aceleracion|deceleracion|desaceleracion|incorporacion)|"
-    r"corsia di (?:accelerazione|decelerazione|immissione))"
-)
 TAPER = (
     r"(?:tapers?(?: (?:out|off|away))?(?: over)?(?: another| a further)?|"
     r"verziehung|biseau|cuna|rastremazione)"

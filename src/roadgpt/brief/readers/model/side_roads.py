@@ -7,9 +7,9 @@ from itertools import pairwise
 from roadgpt.brief.junctions import JunctionClause, Side
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan
-from roadgpt.brief.readers.model.denial import says
+from roadgpt.brief.readers.model.denial import TAKEN_BACK, says
 from roadgpt.brief.readers.model.exit_words import EXIT
-from roadgpt.brief.readers.model.map_words import SIDE_STREETS, TAKEN_BACK
+from roadgpt.brief.readers.model.junction_nouns import SIDE_STREETS
 from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.ordinals import OTHERS, PLACE, WHICH, place_of, places_in

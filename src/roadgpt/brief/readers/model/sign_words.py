@@ -10,10 +10,9 @@ from functools import cache
 
 from roadgpt.brief.amount import Amount, exactly
 from roadgpt.brief.junctions import Control
-from roadgpt.brief.readers.model.alike_junctions import NOUN
-from roadgpt.brief.readers.model.denial import DENIAL
-from roadgpt.brief.readers.model.map_words import ANY_KIND, TAKEN_BACK
-from roadgpt.brief.readers.model.ordinals import EXCEPT, REST
+from roadgpt.brief.readers.model.denial import DENIAL, TAKEN_BACK
+from roadgpt.brief.readers.model.junction_nouns import ANY_KIND, PLURAL
+from roadgpt.brief.readers.model.ordinals import ALL, EXCEPT, OF_THEM, ONLY, REST
 
 SIGN_WORDS: Mapping[Control, str] = {
     "lights": (
@@ -30,7 +29,7 @@ SIGN_WORDS: Mapping[Control, str] = {
     ),
 }
 """What stands at a junction, in a text in lower case without accents."""
-PLURALS = rf"(?:{NOUN}|{ANY_KIND}|stars|sterne|etoiles|estrellas|stelle)"
+PLURALS = rf"(?:{PLURAL}|{ANY_KIND}|stars|sterne|etoiles|estrellas|stelle)"
 SINGULARS = (
     r"(?:cross ?-? ?roads?|(?:[ty] - )?(?:junction|crossing|intersection)|corner|node|fork|roundabout|"
     r"kreuzung|einmundung|knoten(?:punkt)?|ecke|gabelung|kreisverkehr|kreisel|carrefour|croisement|intersection|"
@@ -52,23 +51,11 @@ ARTICLE = (
 )
 ONE = r"(?:(?:one|a single|an?|ein(?:e[rnms]?)?|une?|un seul|une seule|un[oa]|un solo|una sola)\b)"
 ARTICLES = ("a", "an", "ein", "eine", "einer", "einem", "un", "une", "uno", "una")
-OF_THEM = (
-    r"(?:of (?:them|these|which)|davon|d ' (?:entre )?(?:eux|elles)|de (?:ell[oa]s|l[oa]s cuales)|"
-    r"di (?:ess[ie]|loro))"
-)
 SOLE = r"(?:un seul|une seule|un solo|uno solo|una sola)"
 SIGNALLED = r"(?:signalled|signalised|signalized|semaforizad\w+)"
 EACH = r"(?<!every )(?<!each )(?<!any )(?<!only )(?<!more )"
-ONLY = (
-    r"(?:just |only |exactly |nur |genau |seulement |exactement |solo |solamente |exactamente |esattamente |"
-    r"soltanto )"
-)
 AT = r"(?:at|on|an|bei|aux?|a|en|in)"
 ARE = r"(?:there (?:is|are)|stehen|steht|gibt es|hangen|hangt|il y a|hay|ci sono|c ' e)"
-ALL = (
-    r"(?:all|every|everywhere|alle[nr]?|samtliche[nr]?|jede[rnms]?|uberall|tous|toutes|partout|tod[oa]s|"
-    r"en todas partes|tutt[ie]|ogni|dappertutto|ovunque)"
-)
 EVERYWHERE = re.compile(rf"\b(?:{ALL}|each|throughout|both|beide\w*|chaque|chacune?|cada|ciascun\w*)\b")
 EVERY_STREET = re.compile(
     rf"\b{ALL} (?:the |of the |die |les |las |los |le )?(?:roads?|streets?|stra(?:ss|ß)en?|wege?|routes?|"

@@ -13,10 +13,10 @@ from roadgpt.brief.map_clause import MAP
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.bounds import bounded
-from roadgpt.brief.readers.model.map_words import asks_for_map
 from roadgpt.brief.readers.model.mirror import in_mirror, in_mirror_tokens
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork, WrittenPlan
 from roadgpt.brief.readers.model.ring_sizes import with_ring_sizes
+from roadgpt.brief.readers.model.route_words import asks_for_map
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.vocabulary import REFUSALS, TOKENS, plan_of
 from roadgpt.errors import RoadGPTError

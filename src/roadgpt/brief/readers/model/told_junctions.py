@@ -8,32 +8,21 @@ from roadgpt.brief.amount import exactly, meets, span
 from roadgpt.brief.junction_check import has_fixed_arms, most_ends
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind, MapJunctionKind
 from roadgpt.brief.model import Brief
-from roadgpt.brief.readers.model.alike_junctions import NOUN as PLURAL
-from roadgpt.brief.readers.model.denial import WITHOUT
+from roadgpt.brief.readers.model.denial import TAKEN_BACK, WITHOUT
 from roadgpt.brief.readers.model.exit_words import EXIT
-from roadgpt.brief.readers.model.map_words import (
-    ALL_KINDS,
+from roadgpt.brief.readers.model.junction_nouns import (
     ANY_KIND,
-    DEAD_ENDS,
+    ANY_PLURAL,
     EITHER_NOUNS,
-    IS_TOTAL,
     KINDS_IN_PLURAL,
     KINDS_IN_SINGULAR,
-    TAKEN_BACK,
-    one_number,
-    with_counted_map,
+    PLURAL,
 )
+from roadgpt.brief.readers.model.map_words import ALL_KINDS, DEAD_ENDS, IS_TOTAL, one_number, with_counted_map
 from roadgpt.brief.readers.model.ordinals import PLACE, place_of
-from roadgpt.brief.readers.model.ramp_lengths import INEXACT, LANE
+from roadgpt.brief.readers.model.ramp_lengths import INEXACT
 from roadgpt.brief.readers.model.slots import SlottedText
 
-SIDE_ROAD = re.compile(
-    r"\b(?:side (?:road|street)|t - junction|(?:neben|seiten)stra(?:ss|ß)e|einmundung|rue laterale|"
-    r"calle lateral|strada laterale)\b"
-)
-RAMP_LANE = re.compile(rf"\b{LANE}\b")
-"""A lane that only merges and exits have."""
-ANY_PLURAL = re.compile(rf"\b{PLURAL}\b")
 MORE = re.compile(
     r"\b(?:one (?:that|beyond|behind|after)|"
     r"another|again|second|next|twice|same|each|both|more|further|every|third|last|other|"
@@ -149,18 +138,6 @@ def _named_once(counted: Mapping[MapJunctionKind, Sequence[str]], rest: str) -> 
 def _without_crossroads(said: str) -> str:
     """Returns the words without "crossroads", which is singular and plural."""
     return re.sub(r"\bcross ?-? ?roads\b", "", said)
-
-
-def names_a_junction(said: str) -> bool:
-    """Returns whether a noun of some words can only mean a junction, a merge or an exit."""
-    nouns = (
-        KINDS_IN_SINGULAR["crossroads"],
-        KINDS_IN_SINGULAR["roundabout"],
-        SIDE_ROAD,
-        RAMP_LANE,
-        ANY_PLURAL,
-    )
-    return any(noun.search(said) for noun in nouns)
 
 
 def has_told_kinds(brief: Brief, most: Mapping[JunctionKind, int]) -> bool:

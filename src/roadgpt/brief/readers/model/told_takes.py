@@ -7,8 +7,8 @@ from collections.abc import Mapping
 
 from roadgpt.brief.junctions import JunctionClause, Take
 from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.denial import TAKEN_BACK
 from roadgpt.brief.readers.model.exit_words import COUNTS
-from roadgpt.brief.readers.model.map_words import TAKEN_BACK
 from roadgpt.brief.readers.model.ordinals import OTHERS
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.told_junctions import CROSSINGS
