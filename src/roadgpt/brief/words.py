@@ -135,7 +135,7 @@ KINDS: Mapping[Kind, Meaning] = {
 
 SHARPNESS: Mapping[Sharpness, Meaning] = {
     "gentle": Meaning(
-        ("gentle", "easy", "lazy", "slight"), degrees=Range(15, 90), aim=Range(18, 45), radius=Range(40)
+        ("gentle", "easy", "lazy", "slight"), degrees=Range(15, 90), aim=Range(22, 48), radius=Range(40)
     ),
     "sweeping": Meaning(("sweeping", "wide"), degrees=Range(15, 120), aim=Range(22, 80), radius=Range(60)),
     "sharp": Meaning(
