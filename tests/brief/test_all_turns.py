@@ -138,22 +138,6 @@ def test_turns_of_so_much_each_stay_as_they_are() -> None:
     assert plan(brief_of("turn x3 len=1500", slotted(words), words)) == "turn x3 len=1500"
 
 
-@pytest.mark.parametrize(
-    ("written", "right"),
-    [
-        ("turn x3 len=6000", "turn x3 | len=6000"),
-        ("turn left; turn x3 len=2000..", "turn left; turn x3 | len=2000.."),
-        ("turn x3 len=60", "turn x3 len=60"),
-        ("turn len=1200", "turn len=1200"),
-        ("straight x2 len=1500; turn", "straight x2 len=1500; turn"),
-        ("turn x3 len=6000 | len=900", "turn x3 len=6000 | len=900"),
-    ],
-)
-def test_turns_of_kilometres_tell_the_length_of_the_road(written: str, right: str) -> None:
-    words = "a road with 3 turns of 6 km"
-    assert plan(brief_of(written, slotted(words), words)) == right
-
-
 def test_uphill_at_nothing_is_level() -> None:
     words = "70 m straight and a left turn, longitudinal gradient 0 %"
     brief = brief_of("straight len=70; turn left | up pct=0", slotted(words), words)

@@ -11,7 +11,6 @@ from roadgpt.brief.readers.model.told_junctions import (
     most_of_kinds,
     number_of_listed,
     with_told_letter,
-    with_told_number,
     with_told_total,
 )
 
@@ -202,22 +201,3 @@ def test_some_nouns_can_only_mean_a_junction(words: str, is_named: bool) -> None
 )
 def test_a_junction_has_the_letter_of_its_noun(words: str, line: str, wanted: str) -> None:
     assert plan(with_told_letter(read_plan(line), slotted(words))) == plan(read_plan(wanted))
-
-
-@pytest.mark.parametrize(
-    ("words", "line", "wanted"),
-    [
-        ("al bivio a sinistra, poi dritto a due incroci", "y_junction left // crossroads straight",
-         "y_junction left // crossroads straight // crossroads straight"),
-        ("straight over three crossroads, then left at a fork", "crossroads straight // y_junction left",
-         "crossroads straight // crossroads straight // crossroads straight // y_junction left"),
-        ("straight over two crossroads, left at the fork, then another crossroads",
-         "crossroads straight // y_junction left // crossroads", None),
-        ("two crossroads, left at the last crossroads", "crossroads left", None),
-        ("two crossroads, straight over, no, three", "crossroads straight", None),
-        ("straight over two crossroads, left at the third", "crossroads straight // junction left", None),
-        ("straight over seven crossroads", "crossroads straight", None),
-    ],
-)  # fmt: skip
-def test_junctions_that_are_crossed_are_as_many_as_counted(words: str, line: str, wanted: str | None) -> None:
-    assert plan(with_told_number(read_plan(line), slotted(words))) == (wanted or line)

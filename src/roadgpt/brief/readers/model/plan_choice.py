@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
-from roadgpt.brief.normal import STRAIGHT, normal, total
+from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
@@ -19,15 +19,11 @@ from roadgpt.brief.readers.model.ring_sizes import used_diameters
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.used_words import left_out
-from roadgpt.brief.readers.model.word_set import word_set
 from roadgpt.errors import BriefError
 
 Sloped = TypeVar("Sloped", Brief, Clause)
 LEVEL = ("flat", "nearly_flat")
 NEARLY = 0.7  # difference of score
-EACH = word_set("each apiece every je jeweils jede chacun chacune chaque cada ciascuno ciascuna ogni")
-LONGEST_TURN = 1000.0
-"""Length in metres from which no length is that of each of several turns."""
 ALMOST = 1.0  # difference of score
 FAIRLY = 1.5  # difference of score
 LIKELY = 2.5
@@ -99,7 +95,7 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
 
 def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, corrected by rules where the words of the description are clear."""
-    brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line)), text), text)
+    brief = with_words_of_all_turns(_level_at_zero(read_plan(line)), text)
     brief = with_denied_slope(brief, text)
     brief = with_numbered_sides(with_listed_values(with_checked_counts(brief, text), text), text)
     if brief.junctions or brief.map is not None:
@@ -119,29 +115,6 @@ def _level_at_zero(brief: Brief) -> Brief:
 def _at_zero(said: Sloped) -> Sloped:
     is_level = said.slope is not None and said.incline == exactly(0)
     return said.model_copy(update={"slope": "flat", "incline": None}) if is_level else said
-
-
-def _with_length_of_road(brief: Brief, text: SlottedText) -> Brief:
-    """Returns the Brief with a length of the road instead of several turns of a kilometre or more each.
-
-    "3 turns of 6 km" tells the length of the road, since no turns are so long, unless a word such as "each"
-    says that they are.
-    """
-    lengths = [clause for clause in brief.clauses if clause.length is not None]
-    long = [clause for clause in lengths if _is_too_long(clause)]
-    is_each = any(word.text in EACH for word in text.words)
-    if len(long) != 1 or len(lengths) > 1 or brief.length is not None or brief.junctions or is_each:
-        return brief
-    clauses = tuple(
-        clause.model_copy(update={"length": None}) if clause in long else clause for clause in brief.clauses
-    )
-    return brief.model_copy(update={"clauses": clauses, "length": long[0].length})
-
-
-def _is_too_long(clause: Clause) -> bool:
-    """True for several turns that are each at least a kilometre long."""
-    several = (clause.count.lo or 0) > 1 and clause.kind not in STRAIGHT
-    return several and clause.length is not None and (clause.length.lo or 0.0) >= LONGEST_TURN
 
 
 def _with_listed_hills(brief: Brief) -> Brief:

@@ -47,28 +47,6 @@ LANES, TAPERS = _places(LANE), _places(TAPER)
 ANY_LANE, ANY_TAPER = re.compile(rf"\b{LANE}\b"), re.compile(rf"\b{TAPER}\b")
 
 
-BEHIND = re.compile(
-    rf"{SLOT} (?:after|behind|past|beyond|later|farther|further|from|hinter|nach|weiter|spater|apres|"
-    r"plus loin|despues|mas (?:alla|adelante)|dopo|piu avanti)\b"
-)
-"""A length with which it is said how far something lies behind a place."""
-
-
-def with_distances_to_exits(brief: Brief, text: SlottedText) -> Brief:
-    """Returns the Brief of a route in which "the exit, 500 m after the entry" gives the length of the road to
-    the exit, where the plan gives it to the exit's deceleration lane.
-    """
-    numbers = [int(one) - 1 for one in BEHIND.findall(text.text)]
-    slots = [text.slots[n] for n in numbers if n < len(text.slots)]
-    told = [exactly(slot.value) for slot in slots if slot.unit == "metres"]
-    junctions, roads = list(brief.junctions), list(brief.stretches)
-    for n, place in enumerate(brief.junctions):
-        if place.kind == "diverge" and place.length in told and roads[n].length is None:
-            roads[n] = roads[n].model_copy(update={"length": place.length})
-            junctions[n] = place.model_copy(update={"length": None})
-    return brief.model_copy(update={"junctions": tuple(junctions), "stretches": tuple(roads)})
-
-
 def with_ramp_lengths(brief: Brief, text: SlottedText) -> Brief:
     """Returns the Brief of a route with the lengths that the words give to its only ramp, or to the taper of
     its only lane that ends or begins.

@@ -19,18 +19,17 @@ from roadgpt.brief.readers.model.exit_words import (
     with_stay_on_motorway,
 )
 from roadgpt.brief.readers.model.from_start import with_distances_from_start
-from roadgpt.brief.readers.model.map_lengths import (
-    with_length_of_route,
-    with_length_past_lanes,
-    with_whole_length,
-)
 from roadgpt.brief.readers.model.map_signs import with_counted_signs
 from roadgpt.brief.readers.model.map_words import asks_for_grid, with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.numbered_junctions import with_numbered_junctions
 from roadgpt.brief.readers.model.other_roads import with_other_roads
 from roadgpt.brief.readers.model.own_lane import with_each_lane, with_told_lane, without_own_lane
-from roadgpt.brief.readers.model.ramp_lengths import with_distances_to_exits, with_ramp_lengths
+from roadgpt.brief.readers.model.ramp_lengths import with_ramp_lengths
+from roadgpt.brief.readers.model.route_lengths import (
+    with_length_of_route,
+    with_length_past_lanes,
+)
 from roadgpt.brief.readers.model.sharp_sides import with_sharp_side
 from roadgpt.brief.readers.model.side_roads import with_sides_of_side_roads
 from roadgpt.brief.readers.model.slots import SlottedText
@@ -44,7 +43,6 @@ from roadgpt.brief.readers.model.told_junctions import (
     names_kinds,
     number_of_listed,
     with_told_letter,
-    with_told_number,
     with_told_total,
 )
 from roadgpt.brief.readers.model.told_takes import with_told_takes
@@ -80,10 +78,10 @@ def with_words_of_network(brief: Brief, text: SlottedText, words: str) -> Brief:
         text: the description, as the network read it.
         words: the same, as it was written.
     """
-    brief = with_told_takes(with_told_number(with_told_total(brief, text), text), text)
-    brief = with_ramp_lengths(with_distances_to_exits(with_counted_junctions(brief, text), text), text)
+    brief = with_told_takes(with_told_total(brief, text), text)
+    brief = with_ramp_lengths(with_counted_junctions(brief, text), text)
     brief = with_lengths_of_ends(with_length_past_lanes(with_length_of_route(brief, text), text), text)
-    brief = with_whole_length(with_counted_signs(with_counted_map(brief, text), text), text)
+    brief = with_counted_signs(with_counted_map(brief, text), text)
     brief = with_each_lane(with_told_lane(_into_new_lane(brief), words))
     brief = _with_turns_by_degrees(with_sharp_side(with_told_arms(brief, text), words))
     brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)

@@ -39,7 +39,6 @@ NUMBERED_EXIT = re.compile(
     rf"{EXIT}\b"
 )
 """An exit with its number, which is no further junction."""
-MOST_CROSSED = 4  # junctions that are written again
 EITHER_COUNTED = re.compile(rf"\b(\d+) {EITHER_NOUNS}\b(?! (?:en|a) [ty]\b)")
 """A number before a plural noun that means crossroads or junctions of any kind."""
 AGAIN = re.compile(
@@ -152,25 +151,6 @@ def has_all_told(brief: Brief, text: SlottedText) -> bool:
     """
     kinds = [junction.kind for junction in brief.junctions]
     return not kinds or all(kinds.count(kind) == number for kind, number in _told_once(text).items())
-
-
-def with_told_number(brief: Brief, text: SlottedText) -> Brief:
-    """Returns a route that crosses as many junctions as the words count, where it has only one of them and
-    the words name the kind only once: "left at the fork, then straight over two crossroads".
-    """
-    for kind, number in _told_once(text).items():
-        of_kind = {kind, "junction"} if kind == "crossroads" else {kind}
-        found = [n for n, each in enumerate(brief.junctions) if each.kind in of_kind]
-        if len(found) != 1 or not 1 < number <= MOST_CROSSED or brief.junctions[found[0]].take != "straight":
-            continue
-        at = found[0]
-        more, road = [brief.junctions[at]] * (number - 1), brief.stretches[at + 1 : at + 2]
-        if any(not each.has_free_shape for each in road):
-            continue
-        junctions = (*brief.junctions[:at], *more, *brief.junctions[at:])
-        roads = (*brief.stretches[: at + 1], *road * (number - 1), *brief.stretches[at + 1 :])
-        return brief.model_copy(update={"junctions": junctions, "stretches": roads})
-    return brief
 
 
 def _told_once(text: SlottedText) -> dict[JunctionKind, int]:

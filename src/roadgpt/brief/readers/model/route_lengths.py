@@ -1,8 +1,5 @@
-"""Finds how long all roads of a map are together, "a village with 2 km of streets", or how long a route is:
-"route about 500 m".
-
-The network knows one length of a map only, the distance from a junction to the next, and leaves out the
-length of routes that are told in many words.
+"""Finds how long a route is: "route about 500 m". The network leaves out the length of routes that are told
+in many words, or takes it for that of the first road.
 """
 
 import re
@@ -13,26 +10,11 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.denial import TAKEN_BACK
 from roadgpt.brief.readers.model.end_lengths import ABOUT
 from roadgpt.brief.readers.model.exit_words import EXIT
-from roadgpt.brief.readers.model.map_words import IN_ALL
-from roadgpt.brief.readers.model.sign_words import LEAST, MOST
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.told_junctions import DRIVE
 from roadgpt.brief.readers.model.whole_drive import PLACED
 
-ROADS = (
-    r"(?:roads?|streets?|stra(?:ss|ß)en?(?:netz\w*)?|wegen?|rues?|routes?|voirie|calles?|carreteras?|strad[ae]|"
-    r"vie)"
-)
-TOTAL = r"(?:total length|length in all|gesamtlange|longueur totale|longitud total|lunghezza totale)"
 METRES = r"\[unused(\d+)\] metres(?: \[unused\d+\])?"
-WHOLE = re.compile(
-    rf"{METRES} (?:(?:of|an|von|de|di) (?:(?:its|the|all) )?{ROADS}|stra(?:ss|ß)en(?:netz)?)\b"
-    r"(?! (?:between|zwischen|entre|tra|from|before|behind|to|from|each|per|je|bis|vor|nach)\b)|"
-    rf"\b{TOTAL} (?:\w+ )?{METRES}\b|"
-    rf"{METRES} (?:long |lang |de long |largo |lungh\w+ )?(?:{IN_ALL})\b|"
-    rf"\b(?:{IN_ALL}) {METRES}\b"
-)
-"""The length of all roads."""
 
 
 ROUTE = re.compile(
@@ -112,23 +94,3 @@ def _stands_alone(length: Amount | None, part: str, text: SlottedText) -> bool:
         int, re.findall(rf"(?:^|,) {ABOUT}\[unused(\d+)\] metres{OF_ALL}(?: ?,|$)", f" {part.strip()}")
     )
     return any(n <= len(text.slots) and length == exactly(text.slots[n - 1].value) for n in numbers)
-
-
-def with_whole_length(brief: Brief, text: SlottedText) -> Brief:
-    """Returns the Brief of a map with the length that the words give to all its roads.
-
-    The Brief is returned unchanged if it has no map, or if the words give no such length, or several.
-    """
-    found = [*WHOLE.finditer(text.text)]
-    numbers = {int(group) for match in found for group in match.groups() if group}
-    if brief.map is None or len(numbers) != 1 or TAKEN_BACK.search(text.text):
-        return brief
-    number = numbers.pop()
-    if number > len(text.slots):
-        return brief
-    metres, before = text.slots[number - 1].value, text.text[: found[0].start()].strip()
-    bounds = Amount(lo=metres) if LEAST.search(before) else Amount(hi=metres) if MOST.search(before) else None
-    spacing = brief.map.length
-    is_whole = spacing is not None and metres in (spacing.lo, spacing.hi)
-    asked = brief.map.model_copy(update={"length": None}) if is_whole else brief.map
-    return brief.model_copy(update={"map": asked, "length": bounds or exactly(metres)})
