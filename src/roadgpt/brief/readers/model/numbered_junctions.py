@@ -178,7 +178,7 @@ def _of_first(control: Control, said: str) -> Iterator[Placed]:
 @cache
 def _counted(sign: str) -> re.Pattern[str]:
     noun = rf"({PLURAL}|{SIDE_STREETS.pattern})"
-    on_side = r"(?: (?:on|to) the (?:left|right)| (?:rechts|links)| (?:a|à) (?:droite|gauche))?"
+    on_side = r"(?: (?:on|to) the (?:left|right)| (?:rechts|links)| a (?:droite|gauche))?"
     with_it = rf"(?:{HAVE}|(?:where|at which|wo|an denen|ou|donde|dove) (?:\S+ ){{1,4}}?)"
     return re.compile(rf"\b([2-9]) {noun}{on_side}(?: ,)? {with_it} ?{ARTICLE}{sign}\b(?! {AT} )")
 
@@ -243,10 +243,8 @@ def _signed(
     """Returns the junctions with their signs; all others lose those signs that have all of their places."""
     if not controls:
         return tuple(junctions)
-    rest, moved = (
-        [each for n, each in enumerate(junctions) if n not in controls],
-        complete & {*controls.values()},
-    )
+    moved = complete & {*controls.values()}
+    rest = [each for n, each in enumerate(junctions) if n not in controls]
     flags = {
         name: True for name in FLAGS if any(getattr(each, name) for each in rest if each.control in moved)
     }

@@ -58,8 +58,8 @@ def with_sides_of_side_roads(brief: Brief, text: SlottedText, words: str) -> Bri
     """Returns the Brief of a route with the ways on at its T-junctions as far as the words tell them.
 
     The side roads that the route passes are on the sides that the words tell by their places. A street that
-    the words number is taken. A street that is taken behind others on its side, which the route
-    passes, leaves a road that goes straight on, as theirs does.
+    the words number is taken. A street that is taken behind others on its side, which the route passes,
+    leaves a road that goes straight on, as theirs does.
 
     A T-junction that the route passes gets its side road on the side that is named, if the words name as many
     sides as there are such T-junctions and the plan uses no side. At the only T-junction, where the route
@@ -107,12 +107,12 @@ def _on_told_sides(brief: Brief, text: SlottedText) -> Brief:
     The Brief is returned unchanged if the words leave one of these sides open, or if the route passes more
     side roads, or none.
     """
-    told = COUNTED.findall(text.text)
+    told = [*COUNTED.finditer(text.text)]
     passed = [n for n, each in enumerate(brief.junctions) if _is_passed(each)]
-    number = int(told[0]) if len(told) == 1 else 0
+    number = int(told[0][1]) if len(told) == 1 else 0
     if not 1 <= len(passed) <= number or TAKEN_BACK.search(text.text):
         return brief
-    sides = _sides_by_place(text.text[text.text.index(told[0]) :], number)
+    sides = _sides_by_place(text.text[told[0].end() :], number)
     if sides is None:
         return brief
     junctions, roads, last = list(brief.junctions), list(brief.stretches), passed[-1]
@@ -160,11 +160,9 @@ def _into_numbered(brief: Brief, text: SlottedText) -> Brief:
         return brief
     junctions = list(brief.junctions)
     last, behind = junctions[row[-1]], junctions[row[-1] + 1 :]
-    side = "left" if "left" in last.ways else "right"
-    # the street that is taken may be a further one
-    if any(each.kind == "junction" and each.ways for each in behind) or [e.take for e in behind[:1]] == [
-        side
-    ]:
+    side: Side = "left" if "left" in last.ways else "right"
+    is_further = bool(behind) and behind[0].take == side  # the street that is taken
+    if is_further or any(each.kind == "junction" and each.ways for each in behind):
         return brief
     junctions[row[-1]] = last.model_copy(update={"take": side})
     return brief.model_copy(update={"junctions": tuple(junctions)})

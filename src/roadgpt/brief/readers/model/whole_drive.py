@@ -178,7 +178,7 @@ def _out_of_side_street(brief: Brief, words: str) -> Brief:
 def _with_own_priority(brief: Brief, words: str) -> Brief:
     """Returns the Brief with priority instead of give-way signs, if the words tell of priority only."""
     said = plain(words)
-    if not OWN_PRIORITY.search(said) or GIVES_WAY.search(said) or NEGATED.search(said):
+    if not says(OWN_PRIORITY, said) or GIVES_WAY.search(said):
         return brief
     junctions = tuple(
         each.model_copy(update={"control": "priority"}) if each.control == "yield" else each
