@@ -471,6 +471,10 @@ def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:
             "| lanes=3 // roundabout",
             "a roundabout with fewer lanes than the 3 of a road that it joins cannot .*",
         ),
+        (
+            "| lanes=2 // roundabout mini",
+            "a mini roundabout on a road with several lanes in one direction .*",
+        ),
         ("| lanes=2 // roundabout lanes=1", "a roundabout with fewer lanes than the 2 of a road .*"),
         ("| lanes=4 // lane_gain", "junction 1: a lane_gain leaves 5 lanes, and a road has 1 to 4; .*"),
         ("lane_change left // merge ramp", "junction 2: the route comes or goes by the ramp, which has .*"),

@@ -293,6 +293,14 @@ def test_the_most_frequent_reason_is_named_without_a_place() -> None:
         NetworkSearch(brief, USUAL, np.random.default_rng(1)).run(100)
 
 
+def test_too_short_a_route_is_refused_by_its_length() -> None:
+    brief = read_plan(
+        "| divided lanes=2 // crossroads straight // | turns=0 // crossroads straight || len=60"
+    )
+    with pytest.raises(DesignError, match=r"the length .* leaves too little .*; ask for a longer route$"):
+        NetworkSearch(brief, USUAL, np.random.default_rng(1)).run(60)
+
+
 def test_a_larger_map_holds_what_a_small_one_does_not() -> None:
     line = "// roundabout large // // roundabout large // // roundabout large //"
     route = drafted(line, 1, World(site=Site(map_size=600)))

@@ -66,6 +66,7 @@ PARTS = 250.0  # m, side of the usual map
 ROOM_TO_TURN = 20.0  # m of a road of required length that must remain beyond the lane of a ramp
 STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of the first road
 TOO_LARGE, OVERLAPS, UNDRAFTED = "too large", "its roads would overlap", "one of its roads cannot be drafted"
+NO_LENGTH = "the length that was asked for leaves too little for the roads between the junctions"
 FOR_ROOM = (TOO_LARGE, OVERLAPS, UNDRAFTED)
 """Reasons for failure that may disappear on a larger map."""
 
@@ -229,6 +230,9 @@ class NetworkSearch:
             if rest is not None and n in free:
                 left = rest - sum(drafted.line.s[-1] for _, drafted in found.values())
                 share = left / sum(each not in found for each in free)
+                if share < SHORTEST:
+                    self.failed[NO_LENGTH] += 1
+                    return None
             draft = self._stretch(_without_ramps(briefs[n], n, junctions), n, haste, share)
             if draft is None:
                 self.failed[UNDRAFTED] += 1
@@ -273,8 +277,6 @@ class NetworkSearch:
         """
         wanted, shortest = brief, self._shortest(n, haste)
         if length is not None:
-            if length < SHORTEST:
-                return None
             is_straight = brief.motorway and not brief.clauses and brief.turns is None
             turns = exactly(0) if is_straight else brief.turns
             long = between(0.97 * length, 1.03 * length)
@@ -351,9 +353,11 @@ class NetworkSearch:
                 f"{count} and the roads between them found no place on a map of {size:g} m; ask for fewer or "
                 "shorter roads, or give a larger map with --map-size"
             )
-        what = (
-            "give the roads at each junction as many lanes" if why == LANES_DIFFER else "leave something out"
-        )
+        advice = {
+            LANES_DIFFER: "give the roads at each junction as many lanes",
+            NO_LENGTH: "ask for a longer route",
+        }
+        what = advice.get(why, "leave something out")
         return f"no draft of this route was accepted: {why}; {what}"
 
 

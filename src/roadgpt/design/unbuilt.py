@@ -82,5 +82,7 @@ def _of_junction(junction: JunctionClause, before: Brief, after: Brief) -> Itera
             yield "a ramp with several lanes or oncoming traffic"
     if junction.kind == "roundabout":
         lanes = [span(each).lo for road in (before, after) for each in (road.lanes, road.against)]
-        if max(lanes) > min(span(junction.lanes).hi, MOST_RING_LANES):
+        if junction.size == "mini" and max(lanes) > 1:
+            yield "a mini roundabout on a road with several lanes in one direction"
+        elif max(lanes) > min(span(junction.lanes).hi, MOST_RING_LANES):
             yield f"a roundabout with fewer lanes than the {max(lanes):g} of a road that it joins"

@@ -188,7 +188,7 @@ def counted_kinds(asked: MapClause, said: str) -> tuple[JunctionCount, ...]:
     """Returns the junctions of a map, with the number before the only plural noun of each kind."""
     if OTHERS.search(said) or TAKEN_BACK.search(said):
         return asked.junctions
-    out, junctions = [], _told_once(asked.junctions, said)
+    out, junctions = [], _without_repeated(asked.junctions, said)
     kinds = [each.kind for each in junctions]
     for each in junctions:
         noun, single = KINDS_IN_PLURAL.get(each.kind), KINDS_IN_SINGULAR.get(each.kind)
@@ -200,7 +200,7 @@ def counted_kinds(asked: MapClause, said: str) -> tuple[JunctionCount, ...]:
     return tuple(out)
 
 
-def _told_once(junctions: Sequence[JunctionCount], said: str) -> list[JunctionCount]:
+def _without_repeated(junctions: Sequence[JunctionCount], said: str) -> list[JunctionCount]:
     """Returns the junctions of a map, only once for a kind that the words name once."""
     out: list[JunctionCount] = []
     for each in junctions:

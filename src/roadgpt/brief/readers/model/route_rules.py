@@ -12,7 +12,6 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.armed_junctions import with_told_arms
-from roadgpt.brief.readers.model.end_lengths import with_lengths_of_ends
 from roadgpt.brief.readers.model.exit_words import (
     with_motorway_behind_ramp,
     with_passed_exits,
@@ -29,6 +28,7 @@ from roadgpt.brief.readers.model.ramp_lengths import with_ramp_lengths
 from roadgpt.brief.readers.model.route_lengths import (
     with_length_of_route,
     with_length_past_lanes,
+    with_lengths_of_ends,
 )
 from roadgpt.brief.readers.model.sharp_sides import with_sharp_side
 from roadgpt.brief.readers.model.side_roads import with_sides_of_side_roads

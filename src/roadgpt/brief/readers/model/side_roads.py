@@ -30,7 +30,7 @@ TURNS_INTO = re.compile(
     rf"(?:the |die |la |le )?({PLACE})\b(?! (?:\w+ )?{EXIT}\b)"
 )
 """The place of the street that the route takes."""
-COUNTED = re.compile(
+NUMBER_OF_SIDE_ROADS = re.compile(
     rf"\b(\d) (?:\w+ )?(?:{SIDE_STREETS.pattern}|t - (?:junctions|crossings|intersections|einmundungen)|"
     r"einmundungen)"
 )
@@ -107,7 +107,7 @@ def _on_told_sides(brief: Brief, text: SlottedText) -> Brief:
     The Brief is returned unchanged if the words leave one of these sides open, or if the route passes more
     side roads, or none.
     """
-    told = [*COUNTED.finditer(text.text)]
+    told = [*NUMBER_OF_SIDE_ROADS.finditer(text.text)]
     passed = [n for n, each in enumerate(brief.junctions) if _is_passed(each)]
     number = int(told[0][1]) if len(told) == 1 else 0
     if not 1 <= len(passed) <= number or TAKEN_BACK.search(text.text):

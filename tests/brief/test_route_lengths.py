@@ -3,8 +3,11 @@
 import pytest
 
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.end_lengths import with_lengths_of_ends
-from roadgpt.brief.readers.model.route_lengths import with_length_of_route, with_length_past_lanes
+from roadgpt.brief.readers.model.route_lengths import (
+    with_length_of_route,
+    with_length_past_lanes,
+    with_lengths_of_ends,
+)
 from roadgpt.brief.readers.model.slots import slotted
 
 CHANGE = "lane_change right"
