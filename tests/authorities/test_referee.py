@@ -17,7 +17,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from roadgpt.brief.outline import Feature, Group, Outline
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.check.measures import LEAST_TURN, Measures, measure
 from roadgpt.check.rules.promises import complaints
 from roadgpt.design.designers.planner import Planner

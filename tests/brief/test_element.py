@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.brief.element import Element
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 
 
 @given(

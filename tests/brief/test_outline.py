@@ -6,7 +6,7 @@ import pytest
 
 from roadgpt.brief.model import Brief, Clause, at_least, at_most, between, exactly
 from roadgpt.brief.outline import Outline, outline
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 
 
 def of(*clauses: Clause, **wishes: object) -> Outline:

@@ -6,6 +6,7 @@ from typing import get_args
 import pytest
 
 from roadgpt.brief.model import Kind, Sharpness, Size, Slope
+from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import (
     KINDS,
     LENGTH_SLACK,
@@ -14,7 +15,6 @@ from roadgpt.brief.words import (
     SHARPNESS,
     SIZES,
     SLOPES,
-    Range,
     degrees_slack,
     table,
 )

@@ -70,7 +70,7 @@ def test_what_changed_is_told_of_the_stretch() -> None:
     told = edited(STRAIGHT, "end len=80: slope down =5").changes
     length = build(STRAIGHT).length
     before = grades(STRAIGHT, 1 - 80 / length, 1.0).mean()
-    assert told[0].startswith(f"from {length - 80:.0f} to {length:.0f} m: grade {before:.1f} -> -4.")
+    assert told[0].startswith(f"from {length - 80:.0f} to {length:.0f} m: grade {before:+.1f} -> -4.")
 
 
 def test_both_halves_of_a_straight_change_at_once() -> None:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from roadgpt import check
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.fit import Look, Requirements, fit

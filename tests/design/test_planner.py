@@ -13,12 +13,13 @@ from roadgpt.brief.element import Element
 from roadgpt.brief.model import Brief, Clause, Slope, at_least, at_most, exactly
 from roadgpt.brief.outline import outline
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.designers.planner import Planner
-from roadgpt.design.heights import Windows, drawn_heights
+from roadgpt.design.heights import drawn_heights
 from roadgpt.design.vertical import Pace
+from roadgpt.design.windows import Windows
 from roadgpt.errors import DesignError, PartError
 from roadgpt.road import CrossSection, Design, Limits, Site, World, build, read_design
 from strategies import briefs, sensible_briefs, worlds

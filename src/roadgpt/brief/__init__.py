@@ -38,6 +38,7 @@ from roadgpt.brief.motorway import says_motorway
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.ranges import Range
 from roadgpt.brief.refusal import (
     AnotherRoadError,
     ContradictionError,
@@ -46,7 +47,7 @@ from roadgpt.brief.refusal import (
     TooMuchError,
 )
 from roadgpt.brief.sentence import sentence
-from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP, Range
+from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP
 from roadgpt.chat import ChatSettings, instantiate, settings_for
 from roadgpt.errors import PartError
 

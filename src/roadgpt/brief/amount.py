@@ -6,7 +6,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 
 
 class Frozen(BaseModel):

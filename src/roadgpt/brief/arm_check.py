@@ -8,7 +8,7 @@ from itertools import product
 
 from roadgpt.brief.amount import meets, span
 from roadgpt.brief.junctions import ARMS, BENDS, SKEW, JunctionClause, JunctionKind, is_about
-from roadgpt.brief.words import Range, overlap
+from roadgpt.brief.ranges import Range, overlap
 from roadgpt.errors import BriefError
 
 WITH_ONE_WAY_ARMS: tuple[JunctionKind, ...] = ("t_junction", "crossroads")

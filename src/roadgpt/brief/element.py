@@ -3,7 +3,7 @@
 from math import inf, radians
 from typing import NamedTuple
 
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 
 
 class Element(NamedTuple):

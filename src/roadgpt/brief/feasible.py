@@ -11,6 +11,7 @@ from roadgpt.brief.map_fit import ROAD_WIDTH, check_room
 from roadgpt.brief.minimum_length import least_length
 from roadgpt.brief.model import Amount, Brief, Clause, Slope, exactly, span
 from roadgpt.brief.normal import BUMPS, SINGLE, STRAIGHT, clauses_turn, normal, total, turns_of
+from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import (
     COUNTS,
     FIGURE_WINS,
@@ -25,8 +26,6 @@ from roadgpt.brief.words import (
     STEEPEST,
     TURNING_SLACK,
     USUAL_MAP,
-    Range,
-    overlap,
 )
 from roadgpt.errors import BriefError
 

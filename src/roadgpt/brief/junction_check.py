@@ -18,7 +18,8 @@ from roadgpt.brief.junctions import (
     Way,
 )
 from roadgpt.brief.map_clause import SIGNS, MapClause
-from roadgpt.brief.words import MOST_LANES, Range, overlap
+from roadgpt.brief.ranges import Range, overlap
+from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import BriefError
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import Literal, get_args
 from pydantic import field_validator
 
 from roadgpt.brief.amount import Amount, Frozen, span
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 
 PlainKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
 """The named kinds of junctions that have no ramps."""

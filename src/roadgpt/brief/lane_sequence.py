@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from roadgpt.brief.amount import meets, span
 from roadgpt.brief.junctions import RAMPS, JunctionClause
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.errors import BriefError
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from pydantic import Field, ValidationError, model_validator
 from roadgpt.brief.amount import Amount, Frozen, exactly, span
 from roadgpt.brief.junctions import Control, MapJunctionKind, Way
 from roadgpt.brief.plan_amount import amount_text, read_amount
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.errors import BriefError
 
 MAP = "map"

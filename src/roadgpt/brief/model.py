@@ -11,7 +11,8 @@ from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exa
 from roadgpt.brief.beside import BESIDE, friction_of
 from roadgpt.brief.junctions import JunctionClause, Side
 from roadgpt.brief.map_clause import MapClause
-from roadgpt.brief.words import MOST_LANES, Kind, Range, Sharpness, Size, Slope, nearest
+from roadgpt.brief.ranges import Range, nearest
+from roadgpt.brief.words import MOST_LANES, Kind, Sharpness, Size, Slope
 
 __all__ = [
     "OTHER_SIDE",

@@ -14,6 +14,7 @@ from roadgpt.brief.like_numbers import with_like_numbers
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
 from roadgpt.brief.motorway import has_low_grades, has_wide_turns
 from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of
+from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import (
     FEATURE,
     FIGURE_WINS,
@@ -27,8 +28,6 @@ from roadgpt.brief.words import (
     SLOPES,
     STEEPEST,
     Quantity,
-    Range,
-    overlap,
 )
 
 SMALLEST_TURN = 12.0  # degrees; a bend of less than 10 is not measured as a turn
@@ -318,8 +317,10 @@ def _grade(slope: Slope | None, incline: Amount | None) -> Range | None:
     if incline is None:
         return SLOPES[slope].grade if slope else None
     size = _near(incline, FEATURE["grade"]) or NO_LIMIT
-    low, high = max(size.lo, LEAST_GRADE), min(size.hi, STEEPEST)
-    return Range(-high, -low) if slope and slope.endswith("down") else Range(low, high)
+    size = overlap(size, Range(LEAST_GRADE, STEEPEST)) or size
+    if not (slope and slope.endswith("down")):
+        return size
+    return Range(-size.hi, -size.lo, number=None if size.number is None else -size.number)
 
 
 def _whole_grade(brief: Brief) -> tuple[Literal["up", "down", "flat"] | None, Range | None]:
@@ -361,12 +362,14 @@ def _angle(amount: Amount) -> Range:
     """Returns the range of a turn's angle in degrees; an open end gets the limit of what can be driven."""
     near = _near(amount, FEATURE["degrees"]) or NO_LIMIT
     low = near.lo if near.lo > -inf else max(SMALLEST_TURN, SMALLEST_OF_MOST * near.hi)
-    return Range(low, near.hi if near.hi < inf else max(LARGEST_TURN, near.lo))
+    return Range(low, near.hi if near.hi < inf else max(LARGEST_TURN, near.lo), near.number)
 
 
 def _near(amount: Amount | None, quantity: Quantity) -> Range | None:
     """Returns an exact number with its tolerance, and a bound or a range unchanged."""
     if amount is None:
         return None
-    slack = quantity.slack(amount.lo) if amount.exact and amount.lo is not None else 0.0
-    return Range(span(amount).lo - slack, span(amount).hi + slack)
+    if amount.exact and amount.lo is not None:
+        slack = quantity.slack(amount.lo)
+        return Range(amount.lo - slack, amount.lo + slack, number=amount.lo)
+    return Range(span(amount).lo, span(amount).hi)

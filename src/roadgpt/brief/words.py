@@ -5,7 +5,8 @@ Everything takes these meanings and numbers from here: the readers, the Outline,
 
 Every number is in everyday units (degrees, metres, percent with uphill positive) and applies to a measurement
 on the finished geometry: the angle and the tightest radius of a turn, the length of a straight, the mean
-grade of a feature. Designers aim well inside these ranges; measured curvature is averaged over 5 m.
+grade of a feature. Designers aim well inside these ranges, and close to a number that was given; measured
+curvature is averaged over 5 m.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from math import inf
 from typing import Literal, NamedTuple
+
+from roadgpt.brief.ranges import Range
 
 Sharpness = Literal["gentle", "sweeping", "sharp"]
 Size = Literal["long", "short"]
@@ -36,47 +38,7 @@ Kind = Literal[
 ]
 
 
-@dataclass(frozen=True, slots=True)
-class Range:
-    """A closed interval from ``lo`` to ``hi``; either end may be infinite."""
-
-    lo: float = -inf
-    hi: float = inf
-
-    def __contains__(self, number: float) -> bool:
-        return self.lo <= number <= self.hi
-
-    def __str__(self) -> str:
-        if self.lo == self.hi:
-            return f"{self.lo:g}"
-        if self.lo == -inf:
-            return f"{self.hi:g} or less"
-        return f"{self.lo:g} or more" if self.hi == inf else f"{self.lo:g} to {self.hi:g}"
-
-    def drawn_in(self, margin: float, share: float) -> Range:
-        """Returns the range narrowed at both ends by ``margin``, or by the fraction ``share`` (0 to 1) of
-        its width if that is less.
-        """
-        edge = min(margin, share * (self.hi - self.lo))
-        return Range(self.lo + edge, self.hi - edge)
-
-
 MOST_LANES = 4  # in one direction
-
-
-def nearest(number: float, *ranges: Range) -> float:
-    """Returns the number nearest to ``number`` that lies in all of the ranges, which must overlap."""
-    low, high = max(each.lo for each in ranges), min(each.hi for each in ranges)
-    return min(max(number, low), high)
-
-
-def overlap(one: Range | None, other: Range | None) -> Range | None:
-    """Returns the intersection of two ranges; None means no limit, and an empty intersection has ``lo`` >
-    ``hi``.
-    """
-    if one is None or other is None:
-        return one or other
-    return Range(max(one.lo, other.lo), min(one.hi, other.hi))
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +115,7 @@ SIZES: Mapping[Size, Meaning] = {
 SLOPES: Mapping[Slope, Meaning] = {
     "up": Meaning(("uphill", "climbing", "rising"), grade=Range(3, 12)),
     "down": Meaning(("downhill", "descending", "dropping"), grade=Range(-12, -3)),
-    "flat": Meaning(("flat", "level"), grade=Range(-1, 1)),
+    "flat": Meaning(("flat", "level"), grade=Range(-1, 1, number=0.0)),
     "nearly_flat": Meaning(("nearly flat", "almost level"), grade=Range(-3.5, 3.5)),
     "gently_up": Meaning(("gently uphill", "a gentle incline"), grade=Range(2, 5)),
     "gently_down": Meaning(("gently downhill", "a gentle decline"), grade=Range(-5, -2)),

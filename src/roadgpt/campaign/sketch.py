@@ -14,7 +14,7 @@ import numpy as np
 from roadgpt.brief.element import Elements
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.campaign.behaviour import behaviour_of_line
 from roadgpt.campaign.departure import RoadStations, stations_of
 from roadgpt.campaign.mutation import redrawn, varied

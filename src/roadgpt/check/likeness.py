@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from roadgpt.brief.outline import Feature, Outline, both
-from roadgpt.brief.words import overlap
+from roadgpt.brief.ranges import overlap
 from roadgpt.check.matching import Complaint
 from roadgpt.check.measures import MeasuredFeature, Measures
 

@@ -10,7 +10,8 @@ from collections.abc import Iterator, Sequence
 from roadgpt.brief.amount import Amount, span
 from roadgpt.brief.junctions import NAMES, Control, MapJunctionKind
 from roadgpt.brief.map_clause import SIGNS, JunctionCount, MapClause
-from roadgpt.brief.words import ROAD, Range
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.words import ROAD
 from roadgpt.check.finding import Finding
 from roadgpt.check.junction_measures import measured_junctions
 from roadgpt.check.map_measures import MeasuredMap, MeasuredNode, measured_map

@@ -13,7 +13,8 @@ from typing import Generic, NamedTuple, TypeVar
 
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature, Group, Outline
-from roadgpt.brief.words import FEATURE, Range
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.words import FEATURE
 from roadgpt.check.measures import MeasuredFeature, Measures
 
 

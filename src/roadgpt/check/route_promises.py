@@ -24,7 +24,8 @@ from roadgpt.brief.junctions import (
 )
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
-from roadgpt.brief.words import ROAD, Range
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.words import ROAD
 from roadgpt.check.finding import Finding
 from roadgpt.check.junction_measures import (
     MeasuredJunction,

@@ -8,8 +8,9 @@ import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline, outline
+from roadgpt.brief.ranges import Range
 from roadgpt.brief.sentence import sentence
-from roadgpt.brief.words import COUNTS, ROAD, WHOLE_SLOPES, Range
+from roadgpt.brief.words import COUNTS, ROAD, WHOLE_SLOPES
 from roadgpt.design.objections import OF_DEFAULT_ARC
 from roadgpt.road import Design, World
 

@@ -11,8 +11,9 @@ import numpy as np
 
 from roadgpt.brief.element import Element
 from roadgpt.brief.map_fit import longest_straight
-from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.words import LEAST_STRAIGHT, Range
+from roadgpt.brief.outline import USUALLY_WIDEST, Feature, Outline
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.words import LEAST_STRAIGHT
 from roadgpt.design.draw import (
     LEAD,
     SEPARATE,
@@ -22,8 +23,8 @@ from roadgpt.design.draw import (
     inside,
     narrowed_turns,
 )
-from roadgpt.design.heights import Windows
 from roadgpt.design.sequence import TurnSequence, is_hairpin
+from roadgpt.design.windows import Windows
 from roadgpt.road import World
 
 LEAD_MEAN = 26.0  # m by which a lead-in or lead-out exceeds its least length on average
@@ -46,8 +47,7 @@ HILL = 42.0  # m of one climb or fall of a hilly road
 CLIMBS_AT = 12.0  # percent at most, where a road must be long enough for its climb
 EASE = 0.85  # of that grade, on average
 SHORT_LEAD = 5.0  # m, of a lead-in or lead-out of a road that must be short
-NARROW = 1.25  # ratio of the ends of a range that was given as one number
-OFF_CORE = 0.3  # share of such a range at either end that is avoided where possible
+NEAR_NUMBER = 0.1  # share of the tolerance of a length that is used where possible
 ROUNDING = 0.1  # m by which a straight from corner to corner is shorter than the diagonal
 FEWEST_METRES = 1.0  # m, of a straight that is shortened so that the whole length is right
 
@@ -70,7 +70,7 @@ def composed(
         rng: random number generator.
         haste: from 0 to 1; the larger it is, the smaller the lengths, angles and radii.
     """
-    narrowed = narrowed_turns(order.turns, outline, windows, world)
+    narrowed = narrowed_turns(order.turns, outline, windows, world, haste)
     turns: list[Element | None] = list(drawn_turns(narrowed, outline, world, rng, haste))
     elements: list[Element] = []
     between = [is_hairpin(a) and is_hairpin(b) for a, b in pairwise(order.turns)]
@@ -186,10 +186,19 @@ def _asked_gap(
         if number and windows.alike(grades[number - 1], grade):
             out.append(_ledge(grades[number - 1], grade, windows))
         length = drawn_straight(wish, rng, haste, least, mean)
+        if wish.length and wish.length.number is not None:
+            # the straight alone is then a little short, and with what looks straight a little long
+            beside = (before if number == 0 else None, after if number == len(wishes) - 1 else None)
+            length = max(length - sum(map(_looks_straight, beside)) / 2, min(least, length))
         out.append(Element(length, required_length=wish.length or OPEN, required_grade=grade))
     if after and windows.part(grades[-1], after.required_grade):
         out.append(Element(STEP_ASIDE, required_grade=after.required_grade))
     return out
+
+
+def _looks_straight(turn: Element | None) -> float:
+    """Returns how many metres of the transition at either end of a turn bend too little to be seen."""
+    return turn.transition * min(turn.radius / USUALLY_WIDEST, 1.0) if turn else 0.0
 
 
 def _ledge(before: Range | None, after: Range | None, windows: Windows) -> Element:
@@ -229,7 +238,7 @@ def _with_length(
     Returns None if they cannot be shortened enough.
     """
     now = sum(element.length for element in elements)
-    core = _core(asked)
+    core = asked.around(NEAR_NUMBER)
     if core.lo + 1 < now < core.hi - 1:
         return elements
     low = core.lo if core.lo > 0 else 0.7 * asked.hi
@@ -253,14 +262,6 @@ def _with_length(
     for i, length in zip(free, lengths, strict=True):
         out[i] = out[i]._replace(straight=length)
     return out
-
-
-def _core(asked: Range) -> Range:
-    """Returns the middle part of a range that was given as one number; any other range is unchanged."""
-    if asked.lo <= 0 or asked.hi > NARROW * asked.lo:
-        return asked
-    edge = OFF_CORE * (asked.hi - asked.lo)
-    return Range(asked.lo + edge, asked.hi - edge)
 
 
 def _least(elements: Sequence[Element], index: int, lead: float) -> float:

@@ -10,10 +10,11 @@ import numpy as np
 
 from roadgpt.brief.element import Element
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.words import KINDS, SHARPNESS, Range, overlap
+from roadgpt.brief.ranges import Range, overlap
+from roadgpt.brief.words import KINDS, SHARPNESS
 from roadgpt.check.measures import LEAST_TURN
 from roadgpt.design.elements import MOST_TRANSITION, segments_of_turn, turn_element
-from roadgpt.design.heights import Windows
+from roadgpt.design.windows import Windows
 from roadgpt.errors import DesignError
 from roadgpt.road import World
 
@@ -30,32 +31,34 @@ RADII_OF_TRANSITION = 9.0  # of wide turns: RAS-L 1995 asks for a parameter A >=
 WIDE_ANGLE = 80.0  # degrees: a turn of a large required radius may be long enough for this angle
 LEAD = 16.5  # m: a straight of this length before the first or after the last turn is measured as 10 m
 SEPARATE = 17.5  # m between two turns to the same side, so that they are measured as two
-NEAR_NUMBER = 0.3  # share of the tolerance of a radius, at either end, that is not used
-OF_NUMBER = 1.36  # greatest ratio of the ends of a range of metres at which it may be that of one number
+NEAR_RADIUS, NEAR_ANGLE, NEAR_SUM = 0.2, 0.1, 0.1  # shares of the tolerance of a number that are used
+NEAR_LENGTH = 0.2  # the same for straights
+OF_TOLERANCE = 0.6  # the share of angles and radii that is used in the greatest haste
 KEPT = 0.5  # degrees by which a turn may differ from its share of a required sum
 OFF_TOP, UP_TO = 0.6, 0.97  # share of its range to which a straight may grow: without haste, and at most
 TIGHTER = 1.35  # ratio of the widest radius of a hard road to its least
 
 
 def narrowed_turns(
-    turns: Sequence[Feature], outline: Outline, windows: Windows, world: World
+    turns: Sequence[Feature], outline: Outline, windows: Windows, world: World, haste: float
 ) -> list[Feature]:
     """Returns the turns with the ranges from which their angle, radius, length and grade are chosen.
 
-    The ranges lie a little inside the required ones.
+    The ranges lie a little inside the required ones. Where a number is required, they lie close around it,
+    less close as ``haste`` grows from 0 to 1.
 
     Raises:
         DesignError: a range is empty, for example because the rules forbid a radius as too tight.
     """
-    narrowed = [_narrowed(turn, outline, world) for turn in turns]
+    narrowed = [_narrowed(turn, outline, world, haste) for turn in turns]
     return [replace(turn, grade=windows.of(turn)) for turn in narrowed]
 
 
-def _narrowed(turn: Feature, outline: Outline, world: World) -> Feature:
+def _narrowed(turn: Feature, outline: Outline, world: World, haste: float) -> Feature:
     least = max(world.limits.design_radius, 0.8 * world.section.road_width)
     promised = overlap(turn.radius, outline.each_turn.radius)
-    share = NEAR_NUMBER if promised and promised.hi <= OF_NUMBER * promised.lo else 0.04
-    radius = overlap(_inside(promised, share), Range(least, inf)) if promised else Range(least, inf)
+    own = _inside(promised, 0.04).around(_loosened(NEAR_RADIUS, haste)) if promised else Range()
+    radius = overlap(own, Range(least, inf))
     assert radius is not None
     if promised and promised.lo > promised.hi:
         raise DesignError(f"the radius asked for does not go with a {turn.name}; leave one of them out")
@@ -72,13 +75,19 @@ def _narrowed(turn: Feature, outline: Outline, world: World) -> Feature:
             f"a {turn.name} of {angle} degrees is not seen as a turn; ask for {LEAST_TURN + 5:g} or more"
         )
     length = overlap(turn.length, outline.each_turn.length)
-    return replace(turn, degrees=_angles(turn, angle), radius=radius, length=length)
+    return replace(turn, degrees=_angles(turn, angle, haste), radius=radius, length=length)
 
 
-def _angles(turn: Feature, promised: Range) -> Range:
+def _loosened(share: float, haste: float) -> float:
+    """Returns the share of a tolerance that is used if ``share`` of it is used without haste."""
+    return share + haste * (OF_TOLERANCE - share)
+
+
+def _angles(turn: Feature, promised: Range, haste: float) -> Range:
     """Returns the degrees to choose from: near a given number, usual for a word, or nearly all allowed."""
-    width = promised.hi - promised.lo
-    if width <= 24:
+    if promised.number is not None:
+        return promised.around(_loosened(NEAR_ANGLE, haste))
+    if promised.hi - promised.lo <= 24:
         return _inside(promised, 0.25)
     span = overlap(SHARPNESS_AIMS.get(promised) or AIMS.get(turn.name), promised) or promised
     if span.lo > span.hi:
@@ -152,8 +161,9 @@ def _uncoiled(angles: list[float], ranges: Sequence[Range], hands: Sequence[int]
 
 def drawn_target(asked: Range, rng: np.random.Generator) -> float:
     """Chooses the sum of the angles of all turns at random, in degrees, within the required range."""
-    low = asked.lo if asked.lo > 0 else 0.6 * asked.hi
-    high = asked.hi if asked.hi < inf else 1.3 * asked.lo
+    near = asked.around(NEAR_SUM)
+    low = near.lo if near.lo > 0 else 0.6 * near.hi
+    high = near.hi if near.hi < inf else 1.3 * near.lo
     return low + (high - low) * (0.3 + 0.4 * float(rng.random()))
 
 
@@ -241,7 +251,7 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
         low = max(inside(low), 22.0, least)
         return free_straight(rng, haste, low, mean)
     low = max(low, 0.0)
-    share = 0.5 + (0.2 if high <= OF_NUMBER * low else 0.4) * (rng.random() - 0.5)
+    share = 0.5 + (0.4 if span.number is None else NEAR_LENGTH) * (rng.random() - 0.5)
     most = low + min(OFF_TOP + 3 * haste, UP_TO) * (high - low)
     return max(low + share * (high - low), min(least, most))
 

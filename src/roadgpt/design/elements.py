@@ -10,7 +10,7 @@ from itertools import pairwise
 from math import ceil, floor, radians
 
 from roadgpt.brief.element import Element
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.road import Segment
 from roadgpt.road.alignment import LONGEST_TRANSITION, TRANSITION_SHARE
 from roadgpt.road.design import MAX_TURN

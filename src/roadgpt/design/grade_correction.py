@@ -17,7 +17,7 @@ import numpy as np
 
 from roadgpt.brief.element import Element
 from roadgpt.brief.outline import Outline
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.check.matching import Complaint
 from roadgpt.check.measures import MeasuredFeature, Measures, measure, way
 from roadgpt.check.rules.promises import complaints

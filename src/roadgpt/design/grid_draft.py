@@ -12,7 +12,7 @@ import numpy as np
 
 from roadgpt.brief.amount import Amount, span
 from roadgpt.brief.map_clause import JunctionCount, MapClause
-from roadgpt.brief.words import Range, overlap
+from roadgpt.brief.ranges import Range, overlap
 from roadgpt.design.map_draft import DraftNode, MapDraft, Rng, drawn_bend, drawn_kerb, drawn_stub, kind_of
 from roadgpt.network.turning import tangent_length
 

@@ -16,12 +16,12 @@ import numpy as np
 from roadgpt.brief.element import Element, Elements
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.words import Range
-from roadgpt.design.compose import asked_length, gap_between
+from roadgpt.brief.ranges import Range
+from roadgpt.design.compose import NEAR_NUMBER, asked_length, gap_between
 from roadgpt.design.draw import ANY_TURN, drawn_turn, hand_of, longest_turn, narrowed_turns
-from roadgpt.design.heights import Windows
 from roadgpt.design.layout import COARSENESS, NEIGHBOURS, SPARE, MapPose, PlacedPlan, PlanLine, walk
 from roadgpt.design.sequence import TurnSequence
+from roadgpt.design.windows import Windows
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.nearness import Complex, meeting
 from roadgpt.road import World
@@ -84,7 +84,8 @@ def grown(
     asked = asked_length(outline, windows)
     if asked is None or asked.lo <= 0 or not order.turns or outline.turning:
         return None
-    low, high = asked.lo + 1, min(asked.hi - 1, 1.3 * asked.lo)
+    near = asked.around(NEAR_NUMBER)
+    low, high = near.lo + 1, min(near.hi - 1, 1.3 * near.lo)
     target = low + (high - low) * (0.3 + 0.4 * rng.random())
     return _Growth(order, outline, windows, world, rng, target, asked).run()
 
@@ -106,7 +107,7 @@ class _Growth:
         self.target, self.asked = target, asked
         self.more = _repeated(outline)
         self.has_open_sides = _has_open_sides(outline)
-        turns = narrowed_turns(order.turns, outline, windows, world)
+        turns = narrowed_turns(order.turns, outline, windows, world, haste=0.5)
         self.turns = [_roomy(turn, target) for turn in turns]
         self.longest = longest_turn(len(turns), outline, world)
         low, high = EXTRA.get(order.turns[-1].name, EXTRA_OF_OTHERS)

@@ -7,22 +7,17 @@ from math import inf
 import numpy as np
 
 from roadgpt.brief.element import Element
-from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.words import STEEPEST, Range, overlap
+from roadgpt.brief.outline import Outline
+from roadgpt.brief.ranges import Range, overlap
+from roadgpt.brief.words import STEEPEST
 from roadgpt.check.measures import LEVEL
-from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.elements import TENTH, required_hills
 from roadgpt.design.sequence import is_hairpin
-from roadgpt.design.vertical import COMFORT, Pace, softened
-from roadgpt.errors import DesignError
+from roadgpt.design.vertical import Pace, softened
+from roadgpt.design.windows import Windows
 from roadgpt.geometry.curve import Array
-from roadgpt.road import World
 
-UNDER_LIMIT = 0.4  # percentage points kept off the steepest grade allowed
-MARGIN, MARGIN_SHARE = (
-    0.5,
-    0.2,
-)  # percentage points kept off a required grade, and at most as a share of it
+NEAR_CLIMB = 0.1  # share of the tolerance of a climb that is used
 LEVEL_SHARE, SLOPE_SHARE = 0.22, 0.3  # of roads without required heights: level, of one slope; others roll
 GENTLE, STEEP = 1.5, 9.0  # percent, of such roads
 STEADY = 0.5  # probability that an element keeps the grade of the one before, if it may
@@ -36,95 +31,6 @@ HELD = 0.5  # percentage points by which the grade of a straight of required len
 LEAST_SLOPE = 1.8  # percent: the least slope that is clearly a climb or a fall
 MOST_SHIFT = 40.0  # percentage points
 BISECTIONS = 50
-
-
-class Windows:
-    """The ranges of grade, in percent, that the road and each of its features may have."""
-
-    def __init__(self, outline: Outline, world: World) -> None:
-        limit = min(100 * world.limits.max_grade, STEEPEST) - UNDER_LIMIT
-        if outline.steepest:
-            limit = min(limit, outline.steepest.hi - min(UNDER_LIMIT, 0.2 * outline.steepest.hi))
-        self.limit = Range(-limit, limit)
-        """The grades that are allowed anywhere."""
-        self.comfort = world.limits.speed_limit**2 / COMFORT
-        """The vertical radius in metres that is comfortable at the speed limit."""
-        self.least = world.limits.speed_limit**2 / MOST
-        """The least vertical radius in metres that the rule ``too_abrupt`` allows at the speed limit."""
-        self.base: Range | None = None
-        """The grades of features without a requirement of their own; None if they are free."""
-        self.way = {"up": "uphill", "down": "downhill"}.get(outline.grade or "", "flat")
-        self.allowed = {"up": Range(-1, inf), "down": Range(-inf, 1), "flat": Range(-1, 1)}.get(
-            outline.grade or "", self.limit
-        )
-        if outline.grade == "flat":
-            self.base = Range(-0.4, 0.4)
-        elif outline.grade or outline.grade_range:
-            usual = Range(-12, -3) if outline.grade == "down" else Range(3, 12)
-            self.base = (outline.grade_range or usual).drawn_in(MARGIN, MARGIN_SHARE)
-        if self.base:
-            self.base = overlap(self.base, self.limit) or self.base
-            if self.base.lo > self.base.hi:
-                most = f"the {self.limit.hi + UNDER_LIMIT:.3g} % that it may have"
-                raise DesignError(
-                    f"a road of {outline.grade_range} % is steeper than {most}; change one of them"
-                )
-
-    def of(self, feature: Feature) -> Range | None:
-        """Returns the range of grades for the design of a feature, a little inside its required range.
-
-        If no grade is required of the feature, returns the range for the whole road; None if it is open.
-
-        Raises:
-            DesignError: the required grade is steeper than allowed, or contradicts that of the whole road.
-        """
-        if feature.grade is None:
-            return self.base
-        own = overlap(feature.grade.drawn_in(MARGIN, MARGIN_SHARE), self.limit) or self.limit
-        if own.lo > own.hi:
-            most = f"the {self.limit.hi + UNDER_LIMIT:.3g} % that the road may have"
-            raise DesignError(
-                f"a {feature.name} of {feature.grade} % is steeper than {most}; change one of them"
-            )
-        meets = overlap(own, self.base) or own
-        if meets.lo <= meets.hi:
-            return meets
-        if own.hi <= self.allowed.lo or own.lo >= self.allowed.hi:
-            whole = f"a road that is {self.way} all the way"
-            raise DesignError(
-                f"a {feature.name} of {feature.grade} % contradicts {whole}; change one of them"
-            )
-        return own
-
-    def row(self, straights: Sequence[Feature]) -> list[Range | None]:
-        """Returns a range of grades per straight; where none is required, one unlike the neighbour's."""
-        out = [self.of(straight) for straight in straights]
-        for i, straight in enumerate(straights):
-            known = out[i - 1] if i else (out[i + 1] if i + 1 < len(out) else None)
-            if straight.grade is None and self.base is None and known:
-                out[i] = self.other(known)
-        return out
-
-    def other(self, grade: Range | None) -> Range:
-        """Returns a range of grades that measurements can distinguish from the range ``grade``."""
-        if self.base and not (self.base.lo <= 0 <= self.base.hi):
-            return Range(0, 0)
-        return Range(0, 0) if grade is None or grade.lo > 1 or grade.hi < -1 else Range(3.5, 6)
-
-    @staticmethod
-    def between(one: Range | None, other: Range | None) -> float:
-        """Returns the least change of grade between two ranges, in percentage points; 0 if they overlap."""
-        return max(one.lo - other.hi, other.lo - one.hi, 0.0) if one and other else 0.0
-
-    def part(self, one: Range | None, other: Range | None) -> bool:
-        """Returns whether the grade must change between two features with these ranges of grade."""
-        return self.between(one, other) > 0
-
-    def alike(self, one: Range | None, other: Range | None) -> bool:
-        """Returns whether two consecutive straights with these ranges of grade are measured as one."""
-        if not one or not other or not self.part(one, other):
-            return True
-        return min(one.lo, other.lo) >= LEVEL or max(one.hi, other.hi) <= -LEVEL
 
 
 def drawn_heights(
@@ -170,8 +76,12 @@ def drawn_heights(
         limits = [_one_way(value, room) for value, room in zip(values, limits, strict=True)]
     values = _softened(values, lengths, limits, pace, ease, bumps)
     if outline.climb:
-        values = _with_climb(values, lengths, limits, outline.climb, rng)
+        metres = _drawn_climb(outline.climb, rng)
+        values = _with_climb(values, lengths, limits, metres)
         values = _softened(values, lengths, limits, pace, ease, bumps)
+        values = _with_climb(
+            values, lengths, limits, metres
+        )  # one shift of all leaves the joints as they are
     final = iter(rounded(values).tolist())
     drawn = [[element._replace(incline=next(final)) for element in own] for own in drawn]
     return [element for own in _joining(drawn) for element in own]
@@ -201,8 +111,9 @@ def _grades(
         if window is None:
             out.append(np.nan)
             continue
-        keeps = last[0] is not None and last[1] in window and rng.random() < STEADY
-        value = last[1] if keeps else _between(window, rng)
+        near = window.around(0.0)
+        keeps = last[0] is not None and last[1] in near and rng.random() < STEADY
+        value = last[1] if keeps else _between(near, rng)
         out.append(value)
         last = (window, value)
     return out
@@ -275,7 +186,7 @@ def _hilly(plan: Sequence[Element], hills: Range, rng: np.random.Generator) -> l
             elif so_far >= HILL and wanted < most:
                 wanted, sign, so_far = wanted + 1, -sign, 0.0
             so_far += length
-            size = abs(_between(asked, rng)) if asked and 0 not in asked else None
+            size = abs(_between(asked.around(0.0), rng)) if asked and 0 not in asked else None
             low, high = HILL_GRADES
             incline = sign * (size or low + rng.random() * (high - low))
             own.append(element._replace(straight=element.straight / parts, incline=incline))
@@ -308,15 +219,18 @@ def _with_steepest(
     return out
 
 
-def _with_climb(
-    values: Array, lengths: Array, limits: Sequence[Range], climb: Range, rng: np.random.Generator
-) -> Array:
+def _drawn_climb(climb: Range, rng: np.random.Generator) -> float:
+    """Chooses how many metres the road climbs at random, within the required range."""
+    near = climb.around(NEAR_CLIMB)
+    low = near.lo if near.lo > -inf else near.hi - max(0.3 * abs(near.hi), 2.0)
+    high = near.hi if near.hi < inf else near.lo + max(0.3 * abs(near.lo), 2.0)
+    return low + (0.3 + 0.4 * float(rng.random())) * (high - low)
+
+
+def _with_climb(values: Array, lengths: Array, limits: Sequence[Range], metres: float) -> Array:
     """Returns grades, shifted by one amount within their limits so that the road climbs as required."""
     known = np.where(np.isnan(values), np.nanmean(values) if np.isfinite(values).any() else 0.0, values)
-    low = climb.lo if climb.lo > -inf else climb.hi - max(0.3 * abs(climb.hi), 2.0)
-    high = climb.hi if climb.hi < inf else climb.lo + max(0.3 * abs(climb.lo), 2.0)
-    target = low + (0.3 + 0.4 * rng.random()) * (high - low)
-    return climbing(known, lengths, limits, target)
+    return climbing(known, lengths, limits, metres)
 
 
 def _joining(drawn: Sequence[list[Element]]) -> list[list[Element]]:

@@ -21,7 +21,7 @@ from roadgpt.brief.junctions import (
     is_about,
     side_of,
 )
-from roadgpt.brief.words import Range, overlap
+from roadgpt.brief.ranges import Range, overlap
 from roadgpt.network import JunctionDesign
 from roadgpt.network.design import ASTERN, ArmDesign
 from roadgpt.network.growing import controls_of

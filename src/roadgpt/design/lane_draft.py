@@ -7,7 +7,8 @@ from roadgpt.brief.amount import Amount, at_least, between, span
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.lane_sequence import LEAST_BESIDE_RAMP, LEAST_LANE, WIDE_IN_TAPER
 from roadgpt.brief.model import Brief
-from roadgpt.brief.words import MOST_LANES, ROAD, Range, nearest
+from roadgpt.brief.ranges import Range, nearest
+from roadgpt.brief.words import MOST_LANES, ROAD
 from roadgpt.design.continuing import is_one_road, leads_straight_on
 from roadgpt.network.crossing_lanes import USUALLY_FED
 from roadgpt.network.design import PlaceDesign

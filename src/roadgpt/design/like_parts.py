@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.words import LEAST_STRAIGHT, Range
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.words import LEAST_STRAIGHT
 from roadgpt.check.likeness import LikeGroup, like_groups, like_straights
 from roadgpt.design.draw import (
     ANY_TURN,
@@ -22,8 +23,8 @@ from roadgpt.design.draw import (
     longest_turn,
     narrowed_turns,
 )
-from roadgpt.design.heights import Windows
 from roadgpt.design.sequence import TurnSequence
+from roadgpt.design.windows import Windows
 from roadgpt.road import World
 
 ANGLE_SPREAD = 0.4  # degrees by which the angles of like turns may differ from the one that was drawn
@@ -71,7 +72,7 @@ def with_like_parts(order: TurnSequence, given: LikePartDraw) -> TurnSequence:
 
 def _like_turn(group: LikeGroup, turns: int, given: LikePartDraw) -> tuple[Range, Range]:
     """Returns the narrow ranges of angle and radius of a group of like turns."""
-    (turn,) = narrowed_turns([group.common], given.outline, given.windows, given.world)
+    (turn,) = narrowed_turns([group.common], given.outline, given.windows, given.world, given.haste)
     span = turn.degrees or ANY_TURN
     if given.outline.turning and len(group) == turns:
         share = drawn_target(given.outline.turning, given.rng) / turns

@@ -19,7 +19,7 @@ import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Feature, Group, Outline, both, outline
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.check.matching import Match, best_match, fits, sides_of
 from roadgpt.check.measures import MeasuredFeature
 from roadgpt.design.differences import changes_between

@@ -12,6 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from roadgpt import check
+from roadgpt.brief.element import Element
 from roadgpt.brief.map_fit import check_room
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
@@ -31,12 +32,13 @@ from roadgpt.design.advice import (
 from roadgpt.design.compose import composed
 from roadgpt.design.grade_correction import corrected_draft
 from roadgpt.design.growth import grown, is_long
-from roadgpt.design.heights import Windows, drawn_heights
+from roadgpt.design.heights import drawn_heights
 from roadgpt.design.layout import MapPose, PlacedPlan, keeps_clear, place, smallest_box, walk
 from roadgpt.design.like_parts import LikePartDraw, with_like_parts
 from roadgpt.design.sequence import TurnSequence, drawn_sequence
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
 from roadgpt.design.vertical import EASES, Pace
+from roadgpt.design.windows import Windows
 from roadgpt.design.writing import design_at
 from roadgpt.errors import DesignError, RoadGPTError
 from roadgpt.road import Design, Road, Segment, World, build
@@ -258,7 +260,9 @@ class DraftSearch:
     def with_heights(self, drafted: PlacedPlan) -> tuple[Segment, ...] | None:
         """Returns the segments of a plan with slopes that meet all requirements; None if none were found."""
         pace = Pace.along(drafted.elements, self.world)
-        tries = [(ease, False) for ease in (*EASES, EASES[-1])]
+        # shorter parabolas leave more of a straight at the grade and the length that were said
+        eases = EASES[1:] if any(map(_has_exact_slope, drafted.elements)) else EASES
+        tries = [(ease, False) for ease in (*eases, EASES[-1])]
         tries += [(ease, True) for ease in EASES_OF_BUMPS] if self.bumps else []
         for ease, bumps in tries:
             sloped = drawn_heights(drafted.elements, self.outline, self.windows, self.rng, pace, ease, bumps)
@@ -273,3 +277,9 @@ class DraftSearch:
                     return None
                 self.failed_on_heights += 1
         return None
+
+
+def _has_exact_slope(element: Element) -> bool:
+    """Returns whether numbers were given for both the length and the grade of a straight."""
+    length, grade = element.required_length, element.required_grade
+    return bool(length and length.number and grade and grade.number)

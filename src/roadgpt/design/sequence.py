@@ -9,7 +9,7 @@ import numpy as np
 
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature, Outline, both
-from roadgpt.brief.words import Range, overlap
+from roadgpt.brief.ranges import Range, overlap
 from roadgpt.errors import DesignError
 
 HAIRPINS = ("hairpin", "switchback")  # names of turns with which a road climbs or descends a slope

@@ -19,7 +19,7 @@ from math import floor
 import numpy as np
 
 from roadgpt.brief.element import Element
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.layout import bends_of
 from roadgpt.geometry.curve import Array

@@ -14,7 +14,7 @@ from roadgpt.brief.amount import exactly, span
 from roadgpt.brief.junction_check import MOST_OF_KIND
 from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.map_clause import JunctionCount, MapClause
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.design.clearance import Disc, Line, is_clear
 from roadgpt.design.grid_draft import drawn_count
 from roadgpt.design.junction_draft import drawn_junction

@@ -6,7 +6,7 @@ from math import ceil
 import numpy as np
 
 from roadgpt.brief.element import Element
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.check.extremes import lowest
 from roadgpt.design.elements import as_written, cut
 from roadgpt.design.heights import rounded

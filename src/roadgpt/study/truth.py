@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field
 
 from roadgpt.brief.model import Frozen
 from roadgpt.brief.outline import Feature, Group, Outline
-from roadgpt.brief.words import Range, overlap
+from roadgpt.brief.ranges import Range, overlap
 from roadgpt.check.measures import Measures
 from roadgpt.check.rules.promises import complaints
 

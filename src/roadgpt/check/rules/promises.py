@@ -11,7 +11,8 @@ from itertools import pairwise
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline, outline
-from roadgpt.brief.words import COUNTS, NO_TURN, ROAD, WHOLE_SLOPES, Range
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.words import COUNTS, NO_TURN, ROAD, WHOLE_SLOPES
 from roadgpt.check.finding import Finding
 from roadgpt.check.likeness import likeness_complaints
 from roadgpt.check.matching import Complaint, fits, sequence_complaints, turn_complaints

@@ -13,7 +13,8 @@ from typing import NamedTuple
 from roadgpt.brief.change.clashes import clash
 from roadgpt.brief.change.request import REORDERS, Change, What
 from roadgpt.brief.model import OTHER_SIDE
-from roadgpt.brief.words import KINDS, Range
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import Measures, way
 from roadgpt.design.edit.hills import hill_candidates, hill_sentence
 from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates

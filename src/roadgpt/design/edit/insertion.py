@@ -7,7 +7,8 @@ from math import radians
 from roadgpt.brief.change.request import Change
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
-from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES
 from roadgpt.design.edit.placing import PlacedChange
 from roadgpt.design.edit.slopes import AIMS
 from roadgpt.design.edit.steps import (

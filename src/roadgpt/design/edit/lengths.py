@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 
 from roadgpt.brief.change.request import Change
-from roadgpt.brief.words import LEAST_STRAIGHT, Range
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.words import LEAST_STRAIGHT
 from roadgpt.design.edit.steps import (
     WIDEST,
     Adjust,

@@ -16,7 +16,8 @@ from typing import NamedTuple
 from roadgpt.brief.change.clashes import clash
 from roadgpt.brief.change.request import NUMBERING
 from roadgpt.brief.outline import Feature
-from roadgpt.brief.words import LEAST_STRAIGHT, Range
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.words import LEAST_STRAIGHT
 from roadgpt.design.edit.candidates import ChangeCandidates, is_beyond
 from roadgpt.design.edit.reordering import Reverse
 from roadgpt.design.edit.slopes import SlopeOfAll

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.brief.change.request import Change, Steepness, Way
-from roadgpt.brief.words import PERCENT_SLACK, Range
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.words import PERCENT_SLACK
 from roadgpt.check.measures import Measures, way
 from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Wanted
 from roadgpt.design.edit.stretches import RoadStretch, pieces, within

@@ -15,7 +15,7 @@ import numpy as np
 
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature, both
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.design.elements import turn_segments
 from roadgpt.design.road_elements import FREE_STRAIGHT, RoadElement, RoadElements, gap, joined, with_inclines
 from roadgpt.errors import UsageError

@@ -17,10 +17,10 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.brief.outline import Outline
-from roadgpt.brief.words import Range, overlap
+from roadgpt.brief.ranges import Range, overlap
 from roadgpt.check.measures import LEVEL, Measures, measure, way
 from roadgpt.check.rules.too_abrupt import inspect as abrupt_places
-from roadgpt.design.heights import Windows, climbing
+from roadgpt.design.heights import climbing
 from roadgpt.design.road_elements import (
     RoadElements,
     features_of,
@@ -36,6 +36,7 @@ from roadgpt.design.vertical import (
     widened,
     with_new_parabolas,
 )
+from roadgpt.design.windows import Windows
 from roadgpt.errors import DesignError
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, World, build

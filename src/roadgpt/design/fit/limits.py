@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.words import Range
+from roadgpt.brief.ranges import Range
 from roadgpt.check.measures import LEAST_TURN, MeasuredFeature
 from roadgpt.design.fit.look import Look
 from roadgpt.design.road_elements import RoadElement, RoadElements

@@ -7,7 +7,8 @@ from typing import NamedTuple
 from roadgpt import check
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline
-from roadgpt.brief.words import LEAST_STRAIGHT, Range
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.words import LEAST_STRAIGHT
 from roadgpt.check.matching import fits, turn_complaints
 from roadgpt.check.measures import MeasuredFeature, Measures, measure
 from roadgpt.check.rules.promises import complaints

@@ -10,6 +10,7 @@ from roadgpt.brief.amount import meets
 from roadgpt.brief.junctions import BENDS
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import read_plan
+from roadgpt.brief.ranges import Range
 from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.armed_junctions import with_told_arms
 from roadgpt.brief.readers.model.exit_words import (
@@ -47,7 +48,6 @@ from roadgpt.brief.readers.model.told_junctions import (
 )
 from roadgpt.brief.readers.model.told_takes import with_told_takes
 from roadgpt.brief.readers.model.whole_drive import with_whole_drive
-from roadgpt.brief.words import Range
 
 
 def as_counted(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
