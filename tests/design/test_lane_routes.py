@@ -52,6 +52,15 @@ CASES: dict[str, dict[str, Any]] = {
         "sequence": [{"kind": "merge", "take": "ramp"}, {"kind": "diverge", "take": "exit", "after": 120}],
         "between": [None, {"lanes": 2}, None],
     },
+    "merge ramp len=180 // | len=300 motorway // diverge ramp side=right": {
+        "sequence": [
+            {"kind": "merge", "take": "ramp", "accel": 180},
+            {"kind": "diverge", "take": "exit", "side": "right", "after": 300},
+        ],
+    },
+    "merge ramp // | len=300 motorway // diverge ramp len=150": {
+        "sequence": [{"kind": "merge", "take": "ramp"}, {"kind": "diverge", "after": 300, "decel": 150}],
+    },
     "| lanes=3 len=120 motorway // diverge ramp side=right len=70": {
         "sequence": [{"kind": "diverge", "take": "exit", "side": "right", "after": 120, "decel": 70}],
         "between": [{"lanes": 3}, None],
@@ -530,3 +539,12 @@ def test_lanes_that_contradict_each_other_are_refused_in_one_sentence(line: str,
     with pytest.raises((UsageError, DesignError), match=word) as error:
         checked_draft(line)
     assert "\n" not in str(error.value)
+
+
+def test_a_map_is_not_blamed_if_no_map_would_help() -> None:
+    """The two lanes beside the road are longer than the road."""
+    brief = read_plan("merge ramp len=180 // | len=260 motorway // diverge ramp len=150")
+    with pytest.raises(
+        DesignError, match=r"asked for a length of 234 to 286 m, has \d+ m; leave something out$"
+    ):
+        draft(brief, World(), seed=1)

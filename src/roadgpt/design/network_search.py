@@ -15,6 +15,7 @@ import numpy as np
 from roadgpt.brief.amount import at_least, between, exactly, span
 from roadgpt.brief.junction_check import check_junction
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
+from roadgpt.brief.map_fit import LARGEST_MAP
 from roadgpt.brief.model import Brief
 from roadgpt.check.route_promises import length_range
 from roadgpt.design.continuing import with_roads_continued
@@ -58,6 +59,7 @@ HURRIED = 1 / 8  # least haste for each junction beyond the second
 CURVED = 0.4  # share of roads without requirements that have a turn
 SHORTEST = 30.0  # m, least length of a road without requirements
 SHORTEST_WITH_LANES = 80.0  # m, where lanes end, begin or are changed
+TRIED_LARGER = 40  # drafts on the largest map, which show whether only room is missing
 SHORTEST_BETWEEN_RAMPS = 2 * BESIDE + 40.0  # m, where a ramp that leaves lies before one that joins
 ROOM = 360.0  # m of roads without requirements on the usual map, all together
 MOST = 130.0  # m, greatest length of one such road
@@ -207,7 +209,10 @@ class NetworkSearch:
             return inf
         is_shared = 0 < n < len(places) and (places[n - 1].kind, places[n].kind) == ("merge", "diverge")
         room = span(asked).hi - SHORT_ROAD - ROOM_TO_TURN
-        return room / 2 if is_shared else room
+        other = places[n - 1 if number == n else n] if is_shared else None
+        if other is None or other.length is None:
+            return room / 2 if is_shared else room
+        return room - length_beside(drawn_ramp(other, room / 2))
 
     def _profiles(self, places: Sequence[PlaceDesign], lengths: Sequence[float]) -> list[Profile]:
         return profiles_between(self.lanes[0], places, lengths, self.world.section.shoulder)
@@ -347,11 +352,18 @@ class NetworkSearch:
         """Returns why most drafts failed and what to do, as one sentence."""
         why, _ = max(self.failed.items(), key=lambda item: item[1], default=("nothing could be drafted", 0))
         size = self.world.site.map_size
+        if why in FOR_ROOM and size < LARGEST_MAP:
+            larger = self.world.changed(map_size=LARGEST_MAP)
+            try:
+                NetworkSearch(self.brief, larger, self.rng).run(TRIED_LARGER)
+            except DesignError as error:  # room is not what it lacks
+                return str(error)
         if why in (TOO_LARGE, OVERLAPS):
             count = plural(len(self.brief.junctions), "junction")
+            larger = ", or give a larger map with --map-size" if size < LARGEST_MAP else ""
             return (
                 f"{count} and the roads between them found no place on a map of {size:g} m; ask for fewer or "
-                "shorter roads, or give a larger map with --map-size"
+                f"shorter roads{larger}"
             )
         advice = {
             LANES_DIFFER: "give the roads at each junction as many lanes",
