@@ -61,22 +61,28 @@ def drive_all(them: Sequence[tuple[Route, World]], driver: str, limit: float, fr
     """Prints how many routes a driver keeps under one speed limit and friction."""
     causes: Counter[str] = Counter()
     incidents: Counter[str] = Counter()
-    speeds = []
+    speeds, rings = [], []
     for n, (route, usual) in enumerate(them):
         world = usual.changed(speed_limit=limit / 3.6, friction=friction)
         begun = time.process_time()
         drive = simulate(route, world, driver)
         speeds.append(drive.duration / (time.process_time() - begun))
+        for way in route.passages:
+            inside = (drive["s"] > way.start) & (drive["s"] < way.end)
+            if way.entered.kind == "roundabout" and inside.any():
+                rings.append(3.6 * drive["speed"][inside].min())
         verdict = judge(route, drive, world)
         causes[verdict.cause or "kept"] += 1
         incidents.update({each.kind for each in verdict.incidents or ()})
         if verdict.cause and "-v" in sys.argv:
             print(f"  {n}: {route}: {verdict.description}")
     kept = causes.pop("kept", 0)
+    least, usual_least = (min(rings), np.median(rings)) if rings else (np.nan, np.nan)
     print(
         f"{driver}, {limit:g} km/h, friction {friction:g}: {kept} of {len(them)} kept "
         f"({100 * kept / len(them):.1f} %), fails: {dict(causes)}; routes with incidents: "
-        f"{dict(sorted(incidents.items()))}; {np.median(speeds):.0f} times real time per core",
+        f"{dict(sorted(incidents.items()))}; least speed in {len(rings)} rings {least:.1f} km/h (median "
+        f"{usual_least:.1f}); {np.median(speeds):.0f} times real time per core",
         flush=True,
     )
 

@@ -16,9 +16,11 @@ from planned import planned
 from roadgpt import check
 from roadgpt.brief import Brief
 from roadgpt.chat import ChatSettings
+from roadgpt.design import draft
 from roadgpt.design.designers.chat import ChatDesigner
 from roadgpt.design.designers.thesis import ThesisDesigner
 from roadgpt.errors import RoadGPTError
+from roadgpt.network import made_from
 from roadgpt.road import Road, World, build
 
 WORLD = World()
@@ -26,6 +28,11 @@ BRIEFS = (
     planned("| turns=1..", "a road"),
     planned("turn x3", "a road with 3 turns"),
     planned("| up turns=1..", "an uphill road"),
+)
+ROUTES = (
+    planned("straight 60 // crossroads left lights // roundabout exit=2"),
+    planned("// t_junction left // | turns=1 || left_hand"),
+    planned("| lanes=2 // lane_drop // "),
 )
 ODD = (
     *(
@@ -187,6 +194,21 @@ def outcome(seed: int) -> str:
     return "valid"
 
 
+def route_outcome(seed: int) -> str:
+    """What comes of one spoilt reply for a route through junctions, as in ``outcome``."""
+    rng = np.random.default_rng(seed)
+    brief = ROUTES[rng.integers(len(ROUTES))]
+    sound = draft(brief, WORLD, seed=int(rng.integers(3))).to_json()
+    settings = ChatSettings(rounds=1, repair=str(rng.choice(["none", "place", "full"])))
+    designer = ChatDesigner(settings, FakeChat(mutated(rng, json.dumps(sound))))
+    try:
+        design = designer.draft(brief, WORLD, (), (), seed)
+    except RoadGPTError as error:
+        return "sentence" if str(error) and "\n" not in str(error) else f"no sentence: {error}"
+    json.dumps([design.to_json(), designer.report.model_dump()], allow_nan=False)
+    return "invalid" if check.inspect(made_from(design, WORLD), brief, WORLD) else "valid"
+
+
 def assert_keeps_the_rules(road: Road, by_all_pairs: bool) -> None:
     """Looked at without the rules: by the published algorithm, which takes long, and on the finished road."""
     verdict = slow.verdict if by_all_pairs else check.sbft_verdict
@@ -203,13 +225,13 @@ def assert_keeps_the_rules(road: Road, by_all_pairs: bool) -> None:
     assert math.isfinite(road.length)
 
 
-def outcomes(seeds: range) -> Counter[str]:
+def outcomes(seeds: range, of: Callable[[int], str] = outcome) -> Counter[str]:
     """How many of each there are; a seed that breaks anything is named."""
     found: Counter[str] = Counter()
     for seed in seeds:
         try:
-            found[outcome(seed)] += 1
+            found[of(seed)] += 1
         except Exception as error:
-            error.add_note(f"reply of seed {seed}: tests/mutated_replies.py, outcome({seed})")
+            error.add_note(f"reply of seed {seed}: tests/mutated_replies.py, {of.__name__}({seed})")
             raise
     return found

@@ -12,6 +12,7 @@ from roadgpt.brief.readers.chat import PlanAnswer
 from roadgpt.chat.json_schema import schema_of
 from roadgpt.design.answer import AnswerRoad, AnswerStart, AnswerStep
 from roadgpt.design.edit.chatting import EditedRoad
+from roadgpt.design.network_answer import AnswerNetwork
 
 TAKEN = {"type", "enum", "description", "properties", "required", "additionalProperties", "items", "anyOf"}
 
@@ -64,7 +65,7 @@ def objects(schema: dict[str, Any]) -> list[dict[str, Any]]:
     return ([schema] if schema.get("type") == "object" else []) + [o for one in inner for o in objects(one)]
 
 
-@pytest.mark.parametrize("model", [Outer, Inner, PlanAnswer])
+@pytest.mark.parametrize("model", [Outer, Inner, PlanAnswer, AnswerNetwork])
 def test_only_keywords_that_every_server_takes_are_sent(model: type[BaseModel]) -> None:
     schema = schema_of(model)
     assert keywords(schema) <= TAKEN

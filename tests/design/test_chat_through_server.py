@@ -121,6 +121,22 @@ def test_the_run_tells_rounds_changes_and_what_was_proposed(stub: StubServer) ->
     assert run.designing.tokens.prompt == 200
 
 
+def test_a_route_is_read_from_words_asked_for_and_mended(stub: StubServer) -> None:
+    def route(take: str) -> str:
+        straight = {"distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0}
+        place = {"after": 1, "kind": "t_junction", "take": take}
+        return json.dumps(road(segments=[straight, straight], junctions=[place]))
+
+    stub.play(says(route("right")), says(route("left")))
+    made = setup(stub, rounds=4).model_copy(update={"reader": "model"})  # 4: a designer of its own
+    run = perform("a T-junction, turn left", seed=3, setup=made)
+    assert (run.is_valid, run.designing.rounds) == (True, 2)
+    assert run.design.junctions[0].take == "left"
+    assert "asked to turn left" in stub.requests[1].last
+    form = stub.requests[0].body["response_format"]["json_schema"]["schema"]["properties"]
+    assert {"segments", "junctions", "lanes"} <= {*form}
+
+
 def test_the_thesis_method_asks_once_and_its_invalid_road_counts_as_invalid(stub: StubServer) -> None:
     outside = numbered() | {"starting_point": [245, 9, 0]}
     stub.play(says(json.dumps(outside)))

@@ -9,12 +9,16 @@ import numpy as np
 import pytest
 
 from roadgpt import plugins
+from roadgpt.brief.plan import read_plan
+from roadgpt.design import draft
+from roadgpt.design.room import world_for
 from roadgpt.drive import Command, Drive, JunctionAhead, View, simulate
+from roadgpt.drive.driving_line import line_along, stations
 from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.simulators.beamng import BeamngSimulator
 from roadgpt.drive.turning import StopSigns, highest_speeds, kept_in_lane, turning_speed
 from roadgpt.errors import UsageError
-from roadgpt.network import Route, build_route, read_network_design
+from roadgpt.network import Route, build_route, made_from, read_network_design
 from roadgpt.road import CrossSection, Limits, Road, World
 from roadgpt.verdict import judge
 
@@ -203,6 +207,56 @@ def test_lines_in_junctions_keep_one_and_a_half_metres_from_the_edges() -> None:
     single = Road.through([[0, 0], [50, 0], [100, 0]])
     assert kept_in_lane(single, WORLD, s, line, line) is line
     assert highest_speeds(single, None) is None  # type: ignore[arg-type]
+
+
+def designed(plan: str, left_hand: bool = False) -> tuple[Route, World]:
+    brief = read_plan(plan).model_copy(update={"left_hand": left_hand})
+    world = world_for(brief, WORLD)
+    made = made_from(draft(brief, world, seed=3), world)
+    assert isinstance(made, Route)
+    return made.on_ground(), world
+
+
+@pytest.mark.parametrize("arms", [3, 4, 5])
+@pytest.mark.parametrize("radius", [14, 16, 22, 32])
+def test_lines_through_roundabouts_have_no_kinks(arms: int, radius: int) -> None:
+    for leave in range(1, arms + 1):
+        way, world = designed(f"roundabout exit={leave} arms={arms} r={radius}", leave == 2)
+        offset = plugins.find("drivers", "beamng_like")().offsets(way, world)
+        middle = world.profile_of(way).middle(stations(way))
+        planned, connection = (max(map(abs, line_along(way, t).curvature)) for t in (offset, middle))
+        assert 1 / planned > 0.8 / connection  # its radius, against that of the tightest connection
+
+
+@pytest.mark.parametrize("leave", [1, 2, 3, 4])
+def test_they_do_not_crawl_through_a_ring_of_16_m(leave: int) -> None:
+    way, world = designed(f"roundabout exit={leave} arms=4 r=16")
+    (ring,) = way.passages
+    for name in ("beamng_like", "reference"):
+        drive = simulate(way, world, name)
+        inside = (drive["s"] > ring.start) & (drive["s"] < ring.end)
+        assert 3.6 * drive["speed"][inside].min() > 17
+
+
+def test_speeds_before_a_junction_fall_no_faster_than_asked() -> None:
+    way = route(ROUND)
+    line = line_along(way, -2.0)
+    free, eased = highest_speeds(way, line), highest_speeds(way, line, 3.4)
+    assert free is not None
+    assert eased is not None
+    squares, lengths = np.square(eased), line.step * np.array(line.stretch[:-1])
+    slowing = [(a - b) / 2 / d for (a, b), d in zip(pairwise(squares), lengths, strict=True) if a < math.inf]
+    assert max(slowing) == pytest.approx(3.4)
+    assert all(gentle <= most for gentle, most in zip(eased, free, strict=True))
+    assert min(eased) == min(free)
+
+
+@pytest.mark.parametrize("leave", [2, 3])
+def test_on_a_wet_road_beamng_like_brakes_in_time_for_a_ring(leave: int) -> None:
+    way, usual = designed(f"straight 150 // roundabout exit={leave} arms=4 r=16 // straight 60")
+    world = usual.changed(speed_limit=70 / 3.6, friction=0.6)
+    verdict = judge(way, simulate(way, world, "beamng_like"), world)
+    assert verdict.kept, verdict.description
 
 
 def test_beamng_refuses_routes_in_one_sentence() -> None:

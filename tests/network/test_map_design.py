@@ -11,8 +11,18 @@ import pytest
 
 from network.random_maps import random_map
 from network.shared_laws import sentence_of
+from roadgpt.check import inspect
+from roadgpt.drive import simulate
 from roadgpt.errors import UsageError
-from roadgpt.network import MapDesign, Route, build_map, read_any_design, read_blueprint, read_road
+from roadgpt.network import (
+    MapDesign,
+    Route,
+    build_map,
+    read_any_design,
+    read_blueprint,
+    read_road,
+    road_from_json,
+)
 from roadgpt.network.map_design import has_nodes, read_map_design
 from roadgpt.road import CrossSection, World
 
@@ -60,6 +70,38 @@ def test_a_map_is_built_with_its_route() -> None:
     assert route.at(route.length) == pytest.approx([220, 150, 1], abs=1e-9)
 
 
+@pytest.mark.parametrize("left_hand", [False, True])
+@pytest.mark.parametrize("route", [None, []])
+def test_a_map_may_have_no_route(route: list[int] | None, left_hand: bool) -> None:
+    data = changed(route=route, left_hand=left_hand)
+    design = read_map_design(data)[0]
+    assert "route" not in design.to_json()
+    assert read_map_design(design.to_json())[0] == design
+    found, whole = build_map(design, World()).on_ground(), built(changed(left_hand=left_hand))
+    assert found.to_route_json() == {"route": []}
+    assert found.network.junctions == whole.network.junctions  # the map itself is the same
+    assert [each.road.length for each in found.network.roads] == [
+        each.road.length for each in whole.network.roads
+    ]
+    assert inspect(found, None, World()) == inspect(whole, None, World()) == ()
+    again = road_from_json(json.loads(json.dumps(found.to_json())))
+    assert isinstance(again, Route)
+    assert again.legs == ()
+    assert again.to_json() == found.to_json()
+
+
+def test_the_rules_check_a_map_without_a_route() -> None:
+    steep = changed(route=None, node6={"at": [220, 150, 40]})
+    found = inspect(built(steep).on_ground(), None, World())
+    assert "too_steep" in {finding.rule for finding in found}
+    assert {finding.s for finding in found} == {None}  # there is no route on which they could lie
+
+
+def test_a_map_without_a_route_is_not_driven() -> None:
+    with pytest.raises(UsageError, match=r'a map without a route cannot be driven; .* "route": \[1, 2, 4\]$'):
+        simulate(built(changed(route=None)).on_ground(), World(), "reference")
+
+
 def test_a_road_may_lead_back_to_its_junction_and_a_route_back_at_a_roundabout() -> None:
     loop = changed(route=[1, 2, 3, 4, 5, 2, 1])
     assert [each.entered.kind for each in built(loop).passages] == ["t_junction", "roundabout", "t_junction"]
@@ -105,7 +147,7 @@ def test_a_road_may_lead_back_to_its_junction_and_a_route_back_at_a_roundabout()
         ({"roads": [[1, 9]]}, "road 1 names node 9, and there are nodes 1 to 6"),
         ({"roads": [[1, 1]]}, "road 1 joins node 1 to itself; give two different nodes"),
         ({"roads": [*GOOD["roads"], [2, 1]]}, "two roads join nodes 2 and 1; leave one out"),
-        ({"route": None}, "the route is a list of two or more numbers of nodes, such as [1, 2]"),
+        ({"route": 5}, "the route is a list of two or more numbers of nodes, such as [1, 2]"),
         ({"route": [1]}, "the route is a list of two or more numbers"),
         ({"route": [1, True]}, "the route is a list of two or more numbers"),
         ({"route": [1, 3]}, "the route goes from node 1 to node 3, and no road joins them"),

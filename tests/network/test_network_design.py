@@ -50,6 +50,23 @@ def test_the_order_of_the_fields_is_no_matter() -> None:
     assert read_network_design(dict(reversed(data.items())))[0] == read_network_design(data)[0]
 
 
+def test_junctions_that_are_not_numbered_as_they_follow() -> None:
+    one = {key: value for key, value in GOOD.items() if key != "junction1"}
+    _, remarks = read_network_design({**one, "junction2": GOOD["junction1"]})
+    assert remarks == ("junctions are numbered 2 instead of 1, 2, 3, ...; they are taken in this order",)
+    segment = GOOD["road_segment1"]
+    turned = {
+        **GOOD,
+        "road_segment2": segment,
+        "road_segment3": segment,
+        "junction1": {"after": 2, "kind": "crossroads", "take": "left"},
+        "junction2": {"after": 1, "kind": "t_junction", "take": "right"},
+    }
+    design, remarks = read_network_design(turned)
+    assert [each.kind for each in design.junctions] == ["t_junction", "crossroads"]
+    assert remarks == ("junctions are numbered 2, 1 instead of 1, 2, 3, ...; they are taken in this order",)
+
+
 def test_what_is_a_network_design() -> None:
     assert is_network_design(GOOD)
     road = {key: value for key, value in GOOD.items() if key not in ("junction1", "lanes", "left_hand")}
@@ -70,12 +87,15 @@ def test_a_missing_field(name: str) -> None:
     ("fields", "wanted"),
     [
         ({"kind": "motorway"}, "kind: is unknown; give 't_junction'"),
+        ({"kind": "exit"}, "'roundabout', 'merge', 'diverge', 'lane_drop', 'lane_gain', 'lane_change'"),
         ({"kind": 3}, "kind: is unknown"),
+        ({"kind": ["merge"]}, "kind: is unknown"),
         ({"take": "back"}, "take: is unknown; give 'left', 'right', 'straight' or the number of the exit"),
         ({"take": 0}, "take: is unknown; give 'left'"),
         ({"take": 1.5}, "take: is unknown; give 'left'"),
         ({"take": math.nan}, "take: is unknown; give 'left'"),
         ({"take": True}, "take: is not a number"),
+        ({"kind": "roundabout", "take": 9}, "take 9 is more than the number of exits; give 1 to 4"),
         ({"take": 4}, "take 4 is more than the number of exits; give 1 to 3"),
         ({"after": True}, "after: is not a number"),
         ({"after": 0}, "after: is out of range; give 1 or more"),
@@ -138,6 +158,7 @@ def test_a_junction_that_is_no_object(value: Any) -> None:
         ({"forward": 0}, "forward: is out of range; give 1 or more"),
         ({"backward": -1}, "backward: is out of range; give 0 or more"),
         ({"centre": "dotted"}, "centre: is unknown"),
+        ({"edge": "double"}, "edge: is unknown; give 'solid', 'broken' or 'none'"),
         ({"wide": 3}, "wide: is not a field"),
     ],
 )

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from network.changing import built, design, passing
 from network.random_designs import random_design
 from roadgpt.errors import UsageError
-from roadgpt.network import Leg, Route, build_route, read_network_design
+from roadgpt.network import Leg, Network, Route, build_route, has_no_route, read_network_design
 from roadgpt.road import World
 
 settled = settings(max_examples=30, deadline=None)
@@ -140,8 +140,16 @@ class TestRefusals:
         against = Route.along(self.route.network, [Leg(1, 1)])
         assert against.at(0.0) == pytest.approx(self.route.at(60.0), abs=1e-9)
 
-    def test_no_leg(self) -> None:
-        assert self.refused() == "a route has no road; give one or more [road, lane]"
+    def test_no_leg_means_that_no_route_was_asked_for(self) -> None:
+        none = Route.along(self.route.network, [])
+        assert has_no_route(none)
+        assert not has_no_route(self.route)
+        assert none.to_route_json() == {"route": []}
+        assert none.passages == ()
+        assert none.mirrored.to_route_json() == {"route": []}
+        assert repr(none) == "Route(none asked for, 4 roads)"
+        with pytest.raises(UsageError, match="the network has no road outside junctions"):
+            Route.along(Network((), (), ()), [])
 
     def test_a_road_that_does_not_exist(self) -> None:
         assert self.refused((999, -1)) == "the route names road 999, which is not in the network"

@@ -146,3 +146,20 @@ def test_a_browser_draws_the_network(page: chromium.BrowserTab, tmp_path: Path, 
     # between the stop line and the car, where the lane has no other paint
     ahead = picture[int(0.53 * high) : int(0.75 * high), int(0.42 * wide) : int(0.58 * wide)]
     assert 0.05 < (ahead.min(axis=2) > 0.7).mean() < 0.5
+
+
+def test_a_browser_draws_a_map_without_a_route(page: chromium.BrowserTab, tmp_path: Path) -> None:
+    road = run_of().road
+    assert isinstance(road, Route)
+    shares = []
+    for legs in (road.legs, ()):
+        shown = prove(Route.along(road.network, legs).on_ground(), setup=Setup(drives=False))
+        page.open(view.write([shown], tmp_path / "page.html"))
+        plan = page.picture(".plan canvas")[..., :3]
+        page.run("roadgpt.player.choose('free')")
+        page.settle()
+        assert page.told == []
+        tint = np.abs(plan - np.array([0x4F, 0x86, 0xB5]) / 255).max(axis=2) < 0.02
+        shares.append(tint.mean())
+    assert shares[0] > 0.005
+    assert shares[1] == 0

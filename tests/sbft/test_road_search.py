@@ -125,7 +125,7 @@ generator.description, generator.reader, generator.seed = sys.argv[2], "plan", 4
 roads = []
 for points in generator.roads():
     roads.append(points)
-    if len(roads) == 12:  # the last two are chosen by outcomes and places
+    if len(roads) == 16:  # the last six are chosen by outcomes and places
         break
     x, y = points[len(points) // 2]
     size, outcome = 10.0 * (1 + len(roads) % 5), "FAIL" if len(roads) % 3 else "PASS"
@@ -141,18 +141,18 @@ def test_outcomes_reach_it_from_another_interpreter(tmp_path: Path) -> None:
     env = {**os.environ, "ROADGPT_PYTHON": sys.executable}
     done = subprocess.run(words, env=env, capture_output=True, text=True, check=False, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    told, untold = (roads_of_12(with_place) for with_place in (True, False))
+    told, untold = (roads_of_16(with_place) for with_place in (True, False))
     assert json.loads(done.stdout) == told
     assert told[:10] == untold[:10]
     assert told[10:] != untold[10:]  # where the car left its lane is learnt, too
 
 
-def roads_of_12(with_place: bool) -> list[list[list[float]]]:
+def roads_of_16(with_place: bool) -> list[list[list[float]]]:
     """Roads of a generator here that is told what CLIENT tells, with or without the places."""
     generator = RoadGPTTestGenerator(None, 200)
     generator.description, generator.reader, generator.seed = FLAT, "plan", 4
     roads = []
-    for points in islice(generator.roads(), 12):
+    for points in islice(generator.roads(), 16):
         roads.append([[x, y] for x, y in points])
         x, y = points[len(points) // 2]
         size, outcome = 10.0 * (1 + len(roads) % 5), "FAIL" if len(roads) % 3 else "PASS"

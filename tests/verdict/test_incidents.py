@@ -86,6 +86,16 @@ def test_straight_on_where_the_route_turns_left_is_a_wrong_turn() -> None:
     assert "took a wrong turn after" in verdict.description
 
 
+def test_a_wrong_turn_lasts_until_the_car_is_back_on_its_route() -> None:
+    route = crossroads("left")
+    x = np.arange(3, 100, 0.5)
+    # on the left half of the junction only roads of the other direction lead on
+    over = np.where((x > 72) & (x < 75), 2.0, -2.0)
+    assert judge(route, driven(route, x, over), WORLD).counts == {"wrong turn": 1}
+    twice = np.concatenate([x, x])
+    assert judge(route, driven(route, twice, -2.0), WORLD).counts == {"wrong turn": 2}
+
+
 def test_cutting_a_corner_is_no_wrong_turn() -> None:
     route = crossroads("left")
     middle = np.arange(50.0, 75.0, 0.2)
@@ -161,6 +171,17 @@ def test_a_stop_counts_within_four_metres_before_the_line(stop: float, speed: fl
         assert verdict.sbft_description == "Successful test"
 
 
+def test_the_sentence_counts_all_that_the_cause_is_one_of() -> None:
+    route = crossroads("left")
+    x = np.arange(3, 100, 0.5)
+    verdict = judge(route, driven(route, np.concatenate([x, x, x]), -2.0), WORLD)
+    assert verdict.cause == "wrong turn"
+    assert verdict.description.startswith("took a wrong turn after ")
+    assert verdict.description.endswith(" km/h; 3 times in all")
+    once = judge(route, driven(route, x, -2.0), WORLD)
+    assert "in all" not in once.description
+
+
 def test_only_a_stop_sign_asks_for_a_stop() -> None:
     for control in ("none", "yield", "priority", "lights"):
         route = crossroads("straight", control)
@@ -176,6 +197,8 @@ def test_out_of_lane_remains_the_cause_and_the_rest_is_counted() -> None:
     assert verdict.side == "right"
     assert verdict.counts == {"stop line": 1, "wrong turn": 1, "out of lane": 1}
     assert kinds(verdict)[0] == "stop line"  # in the order of time
+    assert "; no stop at a stop sign once, after 48 m; on a wrong road once, after " in verdict.description
+    assert "in all" not in verdict.description
     assert verdict.oob_counter == 1
 
 

@@ -22,7 +22,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
 from roadgpt.check.sbft import sbft_verdict
 from roadgpt.errors import UsageError
-from roadgpt.network import Network, Route
+from roadgpt.network import Network, Route, has_no_route
 from roadgpt.road import Road, World
 
 RULE_SETS = {
@@ -104,7 +104,7 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
     """
     rules_of(rules)
     if isinstance(road, Route) and rules == "strict":
-        found_there = inspect_network(road.network, road, world)
+        found_there = inspect_network(road.network, None if has_no_route(road) else road, world)
         if brief is None:
             return found_there
         from roadgpt.check.network_promises import broken_network  # a single road does not need it

@@ -3,6 +3,7 @@
 import os
 import webbrowser
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
@@ -12,7 +13,7 @@ from roadgpt.cli.options import WORLD
 from roadgpt.cli.result_row import Row, unreadable
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
-from roadgpt.errors import PartError, UsageError, explained
+from roadgpt.errors import ExportError, PartError, UsageError, explained
 
 if TYPE_CHECKING:
     from roadgpt.campaign.selection import Choice, Selection
@@ -226,8 +227,27 @@ def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
     blueprint, remarks = blueprint_of(named.said, world)
     for remark in remarks:
         warn(f"{named.said}: {remark}")
-    run = prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))
+    with named_in_errors(named.said):
+        run = prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))
     return replace(run, source=Path(named.said).name)
+
+
+@contextmanager
+def named_in_errors(file: str) -> Iterator[None]:
+    """Puts the name of a file before the sentence that says what is wrong with its road, unless it is there.
+
+    Raises:
+        UsageError, ExportError: What was raised inside, with the name.
+    """
+    try:
+        yield
+    except PartError:
+        raise
+    except (UsageError, ExportError) as error:
+        if str(Path(file)) in str(error):
+            raise
+        kind = ExportError if isinstance(error, ExportError) else UsageError
+        raise kind(f"{file}: {error}") from error
 
 
 def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) -> None:
@@ -242,7 +262,8 @@ def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) 
     with screen:
         for file in files:
             try:
-                row = look(file)
+                with named_in_errors(file):
+                    row = look(file)
             except PartError:
                 raise
             except UsageError as error:

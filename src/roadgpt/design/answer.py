@@ -5,13 +5,14 @@ road_segment2, ...). Answers are only validated as data and never executed.
 """
 
 import re
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, Field, model_validator
 
 from roadgpt.chat.json_schema import fixed_description
 from roadgpt.errors import UsageError
-from roadgpt.road import Design, read_design
+from roadgpt.road import Design, Segment, read_design
 from roadgpt.road.design import KEY, MAX_SEGMENTS
 
 FARTHEST = 100_000.0  # m, of a coordinate of a start; no map is larger
@@ -52,7 +53,7 @@ class AnswerRoad(AnswerStart):
 
     model_config = fixed_description("A whole road.")
 
-    segments: list[AnswerSegment] = Field(description="In driving order.")
+    segments: Sequence[AnswerSegment] = Field(description="In driving order.")
 
     @model_validator(mode="before")
     @classmethod
@@ -72,7 +73,7 @@ class AnswerStep(AnswerSegment):
     last: bool = Field(description="Is the road finished with this segment?")
 
 
-def design_of(start: AnswerStart, segments: list[AnswerSegment]) -> tuple[Design, tuple[str, ...]]:
+def design_of(start: AnswerStart, segments: Sequence[AnswerSegment]) -> tuple[Design, tuple[str, ...]]:
     """Returns the Design of an answer, and one sentence for each correction that was made to it.
 
     Args:
@@ -82,16 +83,33 @@ def design_of(start: AnswerStart, segments: list[AnswerSegment]) -> tuple[Design
     Raises:
         UsageError: the answer is not a design; the message can be shown to the model.
     """
+    return read_design(in_file_format(start, segments))
+
+
+def in_file_format(start: AnswerStart, segments: Sequence[AnswerSegment]) -> dict[str, Any]:
+    """Returns the start and the segments of an answer as they stand in a design file.
+
+    Raises:
+        UsageError: there are too many segments, or the start is not a place on any map.
+    """
     if len(segments) > MAX_SEGMENTS:
         raise UsageError(f"the road has {len(segments):,} segments; {MAX_SEGMENTS} is the limit")
     point = [*start.starting_point, 0.0] if len(start.starting_point) == 2 else start.starting_point
     if len(point) != 3 or max(abs(v) for v in point) > FARTHEST:
         raise UsageError("starting_point is not a place on the map; give x, y and z in metres")
     numbered = {
-        f"road_segment{number}": segment.model_dump(include=set(AnswerSegment.model_fields))
+        f"road_segment{number}": segment.model_dump(include=set(Segment.model_fields))
         for number, segment in enumerate(segments, 1)
     }
-    return read_design({"starting_point": point, "theta": start.theta % 360, **numbered})
+    return {"starting_point": point, "theta": start.theta % 360, **numbered}
 
 
-__all__ = ["AnswerRoad", "AnswerSegment", "AnswerStart", "AnswerStep", "design_of"]
+__all__ = [
+    "AnswerRoad",
+    "AnswerSegment",
+    "AnswerStart",
+    "AnswerStep",
+    "Number",
+    "design_of",
+    "in_file_format",
+]

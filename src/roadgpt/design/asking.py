@@ -1,11 +1,12 @@
 """Writes the prompt for a language model: rules of the map, requirements, and earlier roads to avoid."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from importlib.resources import files
 from math import radians
 
 import numpy as np
 
+from roadgpt.brief.junction_sentence import junction_text
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.ranges import Range
@@ -58,7 +59,8 @@ def request(brief: Brief, world: World, notes: Sequence[str], earlier: Sequence[
         earlier: designs of the campaign so far; the last six are listed.
         seed: determines the start that is suggested.
     """
-    demanded = demands(outline(brief, world.site.map_size))
+    size = world.site.map_size
+    demanded = [*route_demands(brief, size)] if brief.is_of_network else demands(outline(brief, size))
     parts = [
         f"Description: {words_of(brief)}",
         f"Understood as: {sentence(brief)}",
@@ -106,6 +108,25 @@ def demands(asked: Outline) -> list[str]:
     for end, feature in (("starts", asked.starts), ("ends", asked.ends)):
         out.append(f"it {end} with a {feature.name}{feature.limits()}" if feature else "")
     return [line for line in out if line]
+
+
+def route_demands(brief: Brief, map_size: float) -> Iterator[str]:
+    """Yields one line for each road and each junction of a route in driving order, and for the whole route.
+
+    Args:
+        brief: the requirements for the route.
+        map_size: the side of the map in metres.
+    """
+    for number, road in enumerate(brief.roads, 1):
+        if not road.is_open:
+            numbers = "; ".join(demands(outline(road.as_stretch, map_size)))
+            yield f"road {number}: {sentence(road).removesuffix('.')}{numbers and f' ({numbers})'}"
+        if number <= len(brief.junctions):
+            yield f"junction {number}: {junction_text(brief.junctions[number - 1])}"
+    if brief.junctions and brief.length is not None:
+        yield f"{brief.length} m of route in all, with its ways through junctions"
+    if brief.left_hand:
+        yield "traffic drives on the left: exits are counted clockwise, beginning on the left"
 
 
 def _told(design: Design) -> str:

@@ -6,7 +6,7 @@ wrong are sent back to the model. Every request to the model is counted.
 
 import json
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from pydantic import BaseModel
 
@@ -17,16 +17,18 @@ from roadgpt.design.asking import USUAL_HEIGHT, drawn_start
 from roadgpt.design.objections import objections
 from roadgpt.design.repair import How, repair
 from roadgpt.errors import DesignError, UsageError
+from roadgpt.network import NetworkDesign
 from roadgpt.road import Design, World, build
 
 MOST_SHOWN = 6000  # characters of its own answer that a model gets again
 MOST_SEGMENTS = 40  # of a road that is designed segment by segment
 MOST_MENDED = 4  # segments for which others may be changed; more are not tried
 MOST_LEFT_OUT = 2  # consecutive segments that could not be placed, after which the road ends
+Answer = TypeVar("Answer", bound=BaseModel)
 
 
 class DesignTask(NamedTuple):
-    """The design of one road, as a task for a language model."""
+    """The design of one road or route, as a task for a language model."""
 
     brief: Brief
     world: World
@@ -44,10 +46,10 @@ class DesignTask(NamedTuple):
 class Outcome(NamedTuple):
     """The result of a dialogue with a language model."""
 
-    design: Design
-    """The road, after repairs."""
-    proposed: Design
-    """The road as the model proposed it."""
+    design: Design | NetworkDesign
+    """The road or route, after repairs."""
+    proposed: Design | NetworkDesign
+    """The road or route as the model proposed it."""
     questions: int
     """Number of requests to the model."""
     objections: tuple[str, ...]
@@ -58,12 +60,19 @@ class Outcome(NamedTuple):
     """Name of the model as reported by its server."""
 
 
-def whole(chat: Chat, task: DesignTask) -> Outcome:
+Judge = Callable[[Answer, DesignTask, int, str], Outcome]
+"""A function that makes and checks the design of an answer. It gets the answer, the task, the number of
+requests so far, and the name of the model; it raises UsageError if the answer is not a design."""
+
+
+def whole(chat: Chat, task: DesignTask, form: type[Answer], judge: Judge[Answer]) -> Outcome:
     """Asks for whole roads until one is free of errors or all rounds are used up; returns the best one.
 
     Args:
         chat: the language model.
         task: the road to design.
+        form: the form of an answer.
+        judge: makes and checks the design of an answer, such as ``judged_road``.
 
     Raises:
         DesignError: no answer was a road.
@@ -76,8 +85,8 @@ def whole(chat: Chat, task: DesignTask) -> Outcome:
     wrong: tuple[str, ...]
     for number in range(1, task.settings.rounds + 1):
         try:
-            reply = chat.ask(messages, AnswerRoad)
-            outcome = _outcome(reply.data, task, number, reply.model)
+            reply = chat.ask(messages, form)
+            outcome = judge(reply.data, task, number, reply.model)
         except UnparsableError as error:
             problem, said, wrong = error, error.text, (f"it could not be read: {error}",)
         except UsageError as error:
@@ -100,7 +109,12 @@ def whole(chat: Chat, task: DesignTask) -> Outcome:
     raise DesignError(f"no answer of the model was a road: {problem}; try again, or use another model")
 
 
-def _outcome(answer: AnswerRoad, task: DesignTask, number: int, model: str) -> Outcome:
+def judged_road(answer: AnswerRoad, task: DesignTask, number: int, model: str) -> Outcome:
+    """Returns the road of an answer, repaired, and what is still wrong with it.
+
+    Raises:
+        UsageError: the answer is not a road.
+    """
     proposed, remarks = design_of(answer, answer.segments)
     build(proposed)  # raises UsageError if the road is too long
     design = repair(proposed, task.brief, task.world, task.settings.repair).design
@@ -116,7 +130,7 @@ def _objecting(wrong: Sequence[str]) -> Message:
 
 
 def _compact(answer: BaseModel) -> str:
-    return json.dumps(answer.model_dump(), separators=(",", ":"))[:MOST_SHOWN]
+    return json.dumps(answer.model_dump(exclude_none=True), separators=(",", ":"))[:MOST_SHOWN]
 
 
 def stepwise(chat: Chat, task: DesignTask) -> Outcome:
@@ -292,4 +306,4 @@ class _Steps:
         return Outcome(design, proposed, self.questions, wrong, (*remarks, *self.remarks), self.model)
 
 
-__all__ = ["DesignTask", "Outcome", "stepwise", "whole"]
+__all__ = ["DesignTask", "Outcome", "judged_road", "stepwise", "whole"]

@@ -9,8 +9,11 @@ from collections.abc import Iterator, Sequence
 from roadgpt.check.measures import MeasuredFeature, Measures
 from roadgpt.design.fit import Look
 from roadgpt.design.road_elements import RoadElement, RoadElements, features_of
+from roadgpt.network import NetworkDesign
 from roadgpt.road import Design, Geometry, Segment, build
 
+AnyRoute = Design | NetworkDesign
+"""The design of a road or of a route with junctions."""
 ALL_LISTED = 60  # changed segments; of more, only the number is given
 MOVED = 0.005  # m
 FADING = 12.0  # m that a straight gains at most from turns that fade into it
@@ -143,8 +146,9 @@ def _other(element: RoadElement, now: RoadElement, name: str, seen: MeasuredFeat
         yield f"{name}: {', '.join(said)}"
 
 
-def changes_between(before: Design, after: Design) -> tuple[str, ...]:
-    """Returns one sentence each for a changed start, a changed heading and each changed segment.
+def changes_between(before: AnyRoute, after: AnyRoute) -> tuple[str, ...]:
+    """Returns one sentence each for a changed start, a changed heading and each changed segment. Junctions
+    are not compared.
 
     Both designs must have the same number of segments. If more than 60 segments changed, one sentence gives
     their number.
@@ -152,7 +156,7 @@ def changes_between(before: Design, after: Design) -> tuple[str, ...]:
     return (*_placing(before, after), *_changed_segments(before, after))
 
 
-def _placing(before: Design, after: Design) -> Iterator[str]:
+def _placing(before: AnyRoute, after: AnyRoute) -> Iterator[str]:
     (x, y, z), (x1, y1, z1) = before.starting_point, after.starting_point
     if abs(x - x1) > MOVED or abs(y - y1) > MOVED:
         yield f"start moved from ({x:g}, {y:g}) to ({x1:g}, {y1:g})"
@@ -163,7 +167,7 @@ def _placing(before: Design, after: Design) -> Iterator[str]:
         yield f"turned by {turned:+.4g} degrees, theta {before.theta:g} -> {after.theta:g}"
 
 
-def _changed_segments(before: Design, after: Design) -> list[str]:
+def _changed_segments(before: AnyRoute, after: AnyRoute) -> list[str]:
     pairs = zip(before.segments, after.segments, strict=True)
     told = [said for number, (one, other) in enumerate(pairs, 1) if (said := _segment(number, one, other))]
     return told if len(told) <= ALL_LISTED else [f"{len(told)} segments changed"]

@@ -353,17 +353,17 @@ class NetworkSearch:
         why, _ = max(self.failed.items(), key=lambda item: item[1], default=("nothing could be drafted", 0))
         size = self.world.site.map_size
         if why in FOR_ROOM and size < LARGEST_MAP:
-            larger = self.world.changed(map_size=LARGEST_MAP)
+            largest = self.world.changed(map_size=LARGEST_MAP)
             try:
-                NetworkSearch(self.brief, larger, self.rng).run(TRIED_LARGER)
+                NetworkSearch(self.brief, largest, self.rng).run(TRIED_LARGER)
             except DesignError as error:  # room is not what it lacks
                 return str(error)
         if why in (TOO_LARGE, OVERLAPS):
             count = plural(len(self.brief.junctions), "junction")
-            larger = ", or give a larger map with --map-size" if size < LARGEST_MAP else ""
+            or_else = ", or give a larger map with --map-size" if size < LARGEST_MAP else ""
             return (
                 f"{count} and the roads between them found no place on a map of {size:g} m; ask for fewer or "
-                f"shorter roads{larger}"
+                f"shorter roads{or_else}"
             )
         advice = {
             LANES_DIFFER: "give the roads at each junction as many lanes",

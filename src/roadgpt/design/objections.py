@@ -8,6 +8,7 @@ Examples of such sentences:
 """
 
 import re
+from collections.abc import Iterable
 from math import radians
 
 from roadgpt import check
@@ -46,8 +47,13 @@ def objections(design: Design, brief: Brief | None, world: World, partly: bool =
         if (finding.rule == "too_steep" and steep) or (finding.rule == "too_short" and partly):
             continue
         said.append(_said(finding, design, world))
-    said = list(dict.fromkeys(said))
-    return (*said[:MOST], *([f"and {len(said) - MOST} more"] if len(said) > MOST else []))
+    return the_first(said)
+
+
+def the_first(said: Iterable[str]) -> tuple[str, ...]:
+    """Returns the first 12 different sentences, and how many more there are."""
+    kept = list(dict.fromkeys(said))
+    return (*kept[:MOST], *([f"and {len(kept) - MOST} more"] if len(kept) > MOST else []))
 
 
 def _said(finding: Finding, design: Design, world: World) -> str:

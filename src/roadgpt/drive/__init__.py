@@ -22,6 +22,7 @@ from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.outlook import route_of
 from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, View
 from roadgpt.errors import UsageError
+from roadgpt.network import refuse_without_route
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -114,8 +115,9 @@ def simulate(
 
     Raises:
         PartError: there is no simulator or driver of that name.
-        UsageError: the user's file does not define a driver, or the simulator cannot apply a setting of the
-            world, the superelevation of the road, or the junctions of a route.
+        UsageError: the user's file does not define a driver, the road is a map without a route, or the
+            simulator cannot apply a setting of the world, the superelevation of the road, or the junctions of
+            a route.
         DriverError: the driver raised an exception, returned something that is not a command, or hung.
         SimulatorError: the simulator itself failed.
         SimulationError: the physics became unstable, or the recorded motion is impossible for a car.
@@ -126,6 +128,7 @@ def simulate(
     engine: Any = plugins.find("simulators", simulator) if isinstance(simulator, str) else simulator
     if isinstance(engine, type):
         engine = engine()
+    refuse_without_route(road, "driven")
     refuse_ignored(engine, world, road)
     drive: Drive = engine.simulate(world.lay(road), world, made, seed, keep_driving)
     check_motion(drive)

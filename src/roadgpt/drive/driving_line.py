@@ -84,6 +84,20 @@ def stations(road: "Road") -> FloatArray:
     return np.linspace(0.0, road.length, max(2, math.ceil(road.length / STEP)) + 1)
 
 
+def smoothed(values: FloatArray, step: float, half_width: float) -> FloatArray:
+    """Returns values, shape ``(n,)``, smoothed with a Hann window; beyond each end the end value is repeated.
+
+    Args:
+        values: one value per station.
+        step: distance between stations in metres.
+        half_width: half of the width of the window in metres.
+    """
+    half = max(1, round(half_width / step))
+    window = np.hanning(2 * half + 1 + 2)[1:-1]
+    held = np.pad(values, half, mode="edge")
+    return np.convolve(held, window / window.sum(), mode="valid")
+
+
 def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
     """Returns the driving line at an offset to the left of the centre line.
 

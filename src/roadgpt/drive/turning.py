@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.drive.driving_line import FULL_BRAKE, DrivingLine, FloatArray, pedals_for
+from roadgpt.drive.driving_line import FULL_BRAKE, DrivingLine, FloatArray, pedals_for, smoothed
 from roadgpt.drive.outlook import passages
 from roadgpt.drive.view import Command, View
 
@@ -24,13 +24,15 @@ drivers accept at low speeds: 0.31 at 20 mph and less (Texas, Procedures for Est
 """
 GENTLE = 200.0  # m, radius from which on nobody slows down inside a junction
 EDGE = 1.5  # m, from the middle of a car to the edge of its lane on the fastest path: NCHRP 672, 6.7.2
-BLEND = 10.0  # m before and behind a junction, over which the line of the road becomes that of the junction
+BLEND = 10.0
+"""Metres before and behind a junction, over which the line of the road becomes that of the junction; and half
+of the metres over which a line inside a junction moves from one side of its lane to the other."""
 
 FRONT = 2.25  # m, from the centre of gravity to the front of RoadGPT's saloon
 BEFORE_LINE = 1.0  # m, from the front of the stopped car to the stop line
 CREEP = 1.0  # m/s, planned speed at the stopping place: the lowest that is planned
 BEHIND = 3  # stations from the stopping place on that keep this speed: drivers look up their plan ahead
-BRAKING = 3.4  # m/s^2, with which most drivers brake without effort: AASHTO Green Book, stopping distance
+EASY_BRAKING = 3.4  # m/s^2, with which most drivers brake easily: AASHTO Green Book, stopping distance
 HALTED = 0.05  # m/s, below which the car counts as standing; a verdict asks for less than 0.1
 REACH = 4.0  # m before the line, within which the car has to stand, as in CARLA's test of stop signs
 LEAST_BRAKE = 0.25  # brake pedal, 0 to 1
@@ -51,10 +53,16 @@ def turning_speed(curvature: float) -> float:
     return SPEED / 3.6 / math.pow(abs(curvature), EXPONENT)
 
 
-def highest_speeds(road: "Road", line: DrivingLine) -> list[float] | None:
+def highest_speeds(road: "Road", line: DrivingLine, braking: float = math.inf) -> list[float] | None:
     """Returns the speed in m/s that stop signs and the bends of junctions allow, at each station of a line.
 
     Where nothing limits the speed, it is infinite. The result is None on a road without junctions.
+
+    Args:
+        road: The road or route.
+        line: The driven line.
+        braking: Largest deceleration in m/s^2 before and inside junctions; by default that of the driver's
+            own plan.
     """
     ways = passages(road)
     if not ways:
@@ -66,8 +74,11 @@ def highest_speeds(road: "Road", line: DrivingLine) -> list[float] | None:
         if way.stop_line is not None:
             stop = line.place(way.stop_line - FRONT - BEFORE_LINE)[0]
             for i in range(min(stop + BEHIND, len(found))):
-                braking = math.sqrt(CREEP**2 + 2 * BRAKING * max(stop - i, 0) * line.step)
-                found[i] = min(found[i], braking)
+                stopping = math.sqrt(CREEP**2 + 2 * EASY_BRAKING * max(stop - i, 0) * line.step)
+                found[i] = min(found[i], stopping)
+    for i in range(len(found) - 2, -1, -1):
+        slowing = math.sqrt(found[i + 1] ** 2 + 2 * braking * line.step * line.stretch[i])
+        found[i] = min(found[i], slowing)
     return found
 
 
@@ -89,7 +100,9 @@ def kept_in_lane(
     """Returns the offsets of a planned line, changed in junctions so that the car keeps to its lane.
 
     In a junction the middle of the car stays at least ``EDGE`` metres from both edges of its lane; in a lane
-    narrower than ``2 * EDGE``, it stays in the middle of the lane.
+    narrower than ``2 * EDGE``, it stays in the middle of the lane. The line moves sideways over ``2 * BLEND``
+    metres, also where the bends of a ring and of the way into it follow each other at once: a line without
+    kinks, whose curvature stays near that of the road.
 
     Args:
         road: The road or route; without junctions, the offsets are returned unchanged.
@@ -103,8 +116,9 @@ def kept_in_lane(
         return offset
     profile = world.profile_of(road)
     middle, room = profile.middle(s), np.maximum(profile.width(s) / 2 - EDGE, 0.0)
-    driven = middle + np.clip(offset + inwards - middle, -room, room)
-    kept: FloatArray = offset + share_of_junction(road, s) * (driven - inwards - offset)
+    aside = np.clip(offset + inwards - middle, -room, room) - inwards
+    planned = middle + smoothed(aside, float(s[1] - s[0]), BLEND)
+    kept: FloatArray = offset + share_of_junction(road, s) * (planned - offset)
     return kept
 
 

@@ -6,6 +6,7 @@ Each format is a plug-in, for example:
         name = "opendrive"                                     # name of the format
         suffix = ".xodr"                                       # suffix of the exported file
         holds_junctions = True                                 # optional: the format can hold networks
+        needs_route = True                                     # optional: a map without a route is refused
         def save(self, road, path, world, poses=None) -> None
 
 An exporter writes ``path``, and may write further files with the same stem to the same folder. The same
@@ -21,7 +22,7 @@ from typing import Any, Protocol, runtime_checkable
 from roadgpt import plugins
 from roadgpt.errors import ExportError, UsageError
 from roadgpt.export.poses import Poses
-from roadgpt.network import Route
+from roadgpt.network import Route, has_no_route
 from roadgpt.road import Road, World
 
 __all__ = ["Exporter", "Poses", "exporter_of", "save"]
@@ -32,7 +33,8 @@ class Exporter(Protocol):
     """Writes roads in one format.
 
     An exporter whose attribute ``holds_junctions`` is True also gets routes through junctions
-    (``roadgpt.network.Route``). An exporter without this attribute gets single roads only.
+    (``roadgpt.network.Route``). An exporter without this attribute gets single roads only. One that also has
+    an attribute ``needs_route`` that is True gets no maps without a route (``roadgpt.network.has_no_route``).
     """
 
     name: str
@@ -95,14 +97,15 @@ def save(
         PartError: A format is unknown.
         UsageError: ``name`` cannot be the name of a file.
         ExportError: A format cannot hold this road, a program that an exporter needs is missing or fails, or
-            a file cannot be written. For a Route, if one format cannot hold junctions, no file is written.
+            a file cannot be written. For a Route, if one format cannot hold junctions, or needs a route where
+            there is none, no file is written.
     """
     parts = [exporter_of(format_) for format_ in dict.fromkeys(formats)]
     if not name or name == ".." or Path(name).name != name:
         raise UsageError(f"'{name}' cannot name a file; give a name without a folder")
     if isinstance(road, Route):
         for part in parts:
-            _check_holds_junctions(part)
+            _check_holds(road, part)
     road, folder = world.lay(road), Path(folder)
     written: list[Path] = []
     try:
@@ -118,9 +121,16 @@ def save(
     return tuple(dict.fromkeys(written))
 
 
-def _check_holds_junctions(part: Exporter) -> None:
-    """Raises ExportError if a format would hold only the route, without the junctions beside it."""
+def _check_holds(road: Route, part: Exporter) -> None:
+    """Raises ExportError if a format would hold only the route, without the junctions beside it, or if it
+    needs a route and there is none.
+    """
     if getattr(part, "holds_junctions", False):
+        if has_no_route(road) and getattr(part, "needs_route", False):
+            raise ExportError(
+                f'{part.name} holds a way to drive, and this map has no route; give it one, such as "route": '
+                "[1, 2, 4], or write opendrive"
+            )
         return
     reads = ", and netconvert reads it" if part.name == "sumo" else ""
     raise ExportError(f"{part.name} cannot hold junctions yet; opendrive can{reads}")

@@ -1,9 +1,9 @@
 """Joins roads to networks, with junctions, roundabouts and routes. Main function: ``build_route``.
 
 A NetworkDesign describes a route with the junctions that it passes; ``build_route`` makes a Route from it. A
-MapDesign describes a whole map and one route through the map; ``build_map`` makes a Route from it. A Route is
-a Road whose centre line follows the reference lines of its roads, one after another. ``route.network`` is the
-Network, with all roads, connecting roads, junctions and roundabouts.
+MapDesign describes a whole map and a route through the map, or none; ``build_map`` makes a Route from it. A
+Route is a Road whose centre line follows the reference lines of its roads, one after another.
+``route.network`` is the Network, with all roads, connecting roads, junctions and roundabouts.
 """
 
 from roadgpt.network.design import JunctionDesign, NetworkDesign, is_network_design, read_network_design
@@ -23,7 +23,7 @@ from roadgpt.network.network import (
     Roundabout,
 )
 from roadgpt.network.passages import Passage
-from roadgpt.network.route import Route
+from roadgpt.network.route import Route, has_no_route, refuse_without_route
 from roadgpt.network.source import (
     AnyDesign,
     Blueprint,
@@ -56,6 +56,7 @@ __all__ = [
     "Route",
     "build_map",
     "build_route",
+    "has_no_route",
     "is_network_design",
     "made_from",
     "network_made_from",
@@ -65,5 +66,6 @@ __all__ = [
     "read_map_design",
     "read_network_design",
     "read_road",
+    "refuse_without_route",
     "road_from_json",
 ]

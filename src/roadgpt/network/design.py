@@ -18,15 +18,15 @@ clockwise, and ramps lie on the left.
 import re
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, Field, StrictBool, ValidationError
 
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, PlainKind, side_of
 from roadgpt.errors import UsageError
-from roadgpt.network.lane_design import RAMP_TAPER, LanesChangeDesign, LanesDesign, RampDesign
+from roadgpt.network.lane_design import RAMP_TAPER, RARE, LanesChangeDesign, LanesDesign, RampDesign
 from roadgpt.network.pose import mirrored_point
-from roadgpt.road import Design, Segment, read_design
+from roadgpt.road import Segment, read_design
 from roadgpt.road.design import (
     OTHER_DIRECTION,
     Finite,
@@ -34,6 +34,7 @@ from roadgpt.road.design import (
     Length,
     as_written,
     first_error,
+    misnumbered,
     no_truths,
 )
 from roadgpt.road.road import FARTHEST
@@ -41,6 +42,7 @@ from roadgpt.road.road import FARTHEST
 KEY = re.compile(r"junction(\d{1,4})")
 OWN = ("lanes", "left_hand")
 """The fields, besides the junctions, that a NetworkDesign has and the Design of a single road has not."""
+OF_A_ROAD = "forward, backward and width"
 KERB = 10.0  # m, CD 123 Geometric design of at-grade priority junctions: corner radius of rural junctions
 ISLAND = 16.0  # m, usual radius of the central island
 STUB = 25.0  # m, length of an arm whose length is not given
@@ -65,7 +67,8 @@ COUNTS: dict[PlainKind, tuple[int, int]] = {
 }
 """The smallest and the largest number of arms, without the road of arrival."""
 
-Take = Literal["left", "right", "straight"] | Annotated[int, Field(ge=1, le=MOST_ARMS + 1)]
+Take = Literal["left", "right", "straight"] | Annotated[int, Field(ge=1)]
+Part = TypeVar("Part", bound=BaseModel)
 
 
 class ArmDesign(FrozenFields):
@@ -237,7 +240,7 @@ class NetworkDesign(FrozenFields):
 
 
 def _plain_lanes(lanes: LanesDesign) -> dict[str, Any]:
-    return _plain(lanes, exclude=set() if lanes.divided else {"divided"})
+    return _plain(lanes, exclude={name for name, usual in RARE.items() if getattr(lanes, name) == usual})
 
 
 def _plain(value: BaseModel, exclude: set[str] | None = None) -> dict[str, Any]:
@@ -262,24 +265,19 @@ def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[s
     """
     rest = {key: each for key, each in data.items() if key not in OWN and not KEY.fullmatch(str(key))}
     design, remarks = read_design(rest)
-    numbered = sorted((int(KEY.fullmatch(key)[1]), data[key]) for key in data if KEY.fullmatch(str(key)))  # type: ignore[index]
-    if len(numbered) > MOST_JUNCTIONS:
-        raise UsageError(f"the design has {len(numbered)} junctions; give {MOST_JUNCTIONS} at most")
+    found = [(int(match[1]), raw) for key, raw in data.items() if (match := KEY.fullmatch(str(key)))]
+    if len(found) > MOST_JUNCTIONS:
+        raise UsageError(f"the design has {len(found)} junctions; give {MOST_JUNCTIONS} at most")
     left_hand = is_left_hand(data)
-    junctions = [_place(number, raw, left_hand) for number, raw in numbered]
-    junctions.sort(key=lambda each: each.after)
-    lanes = None if data.get("lanes") is None else _lanes(data["lanes"])
+    numbered = sorted(((_place(n, raw, left_hand), n) for n, raw in found), key=lambda pair: pair[0].after)
+    junctions = [place for place, _ in numbered]
+    raw = data.get("lanes")
+    lanes = None if raw is None else read_part(LanesDesign, "the lanes of the design", raw, OF_A_ROAD)
     _check_order(junctions, len(design.segments))
-    _check_start(design)
-    made = NetworkDesign(
-        starting_point=design.starting_point,
-        theta=design.theta,
-        segments=design.segments,
-        junctions=tuple(junctions),
-        lanes=lanes,
-        left_hand=left_hand,
-    )
-    return made, remarks
+    if max(map(abs, (*design.starting_point, design.theta))) > FARTHEST:  # the digits would not suffice
+        raise UsageError(f"starting_point or theta is beyond {FARTHEST:,.0f}; give smaller numbers")
+    made = NetworkDesign(**dict(design), junctions=tuple(junctions), lanes=lanes, left_hand=left_hand)
+    return made, (*remarks, *misnumbered("junctions", [number for _, number in numbered]))
 
 
 def is_left_hand(data: Mapping[str, Any]) -> bool:
@@ -293,17 +291,15 @@ def is_left_hand(data: Mapping[str, Any]) -> bool:
     return found
 
 
-def _check_start(design: Design) -> None:
-    """Raises UsageError if the route starts too far away for the digits of its coordinates."""
-    if max(map(abs, (*design.starting_point, design.theta))) > FARTHEST:
-        raise UsageError(f"starting_point or theta is beyond {FARTHEST:,.0f}; give smaller numbers")
+def read_part(model: type[Part], what: str, raw: Any, fields: str) -> Part:
+    """Returns a part of a design, such as a junction, from parsed JSON.
 
-
-def _lanes(raw: Any) -> LanesDesign:
-    what = "the lanes of the design"
-    _check_object(what, raw, "forward, backward and width")
+    Raises:
+        UsageError: The part cannot be read. The message names the part, ``what``, and its ``fields``.
+    """
+    _check_object(what, raw, fields)
     try:
-        return LanesDesign.model_validate(raw)
+        return model.model_validate(raw)
     except ValidationError as error:
         raise UsageError(f"{what} cannot be read: {first_error(error)}") from error
 
@@ -344,17 +340,15 @@ OF_LANES: dict[str, type[RampDesign] | type[LanesChangeDesign]] = {
 
 
 def _place(number: int, raw: Any, left_hand: bool) -> PlaceDesign:
-    what = f"junction {number}"
-    _check_object(what, raw, "after, kind and take")
+    what, fields = f"junction {number}", "after, kind and take"
+    _check_object(what, raw, fields)
     if raw.get("lanes") is not None:
-        _check_object(f"the lanes of {what}", raw["lanes"], "forward, backward and width")
-    made = OF_LANES.get(str(raw.get("kind")))
-    if made is None:
-        return _junction(what, raw, left_hand)
-    try:
-        return made.model_validate(raw)
-    except ValidationError as error:
-        raise UsageError(f"{what} cannot be read: {first_error(error)}") from error
+        _check_object(f"the lanes of {what}", raw["lanes"], OF_A_ROAD)
+    kinds = (*USUAL_ARMS, *OF_LANES)
+    if "kind" in raw and raw["kind"] not in kinds:
+        raise UsageError(f"{what} cannot be read: kind: is unknown; give {', '.join(map(repr, kinds))}")
+    made = OF_LANES.get(raw.get("kind", ""))
+    return _junction(what, raw, left_hand) if made is None else read_part(made, what, raw, fields)
 
 
 def _junction(what: str, raw: Mapping[str, Any], left_hand: bool) -> JunctionDesign:
@@ -368,7 +362,7 @@ def _junction(what: str, raw: Mapping[str, Any], left_hand: bool) -> JunctionDes
     except ValidationError as error:
         said = first_error(error)
         if error.errors()[0]["loc"][:1] == ("take",) and "take" in raw:
-            said = "take: is unknown; give 'left', 'right', 'straight' or the number of the exit"
+            said = "take: is unknown; give 'left', 'right', 'straight' or the number of the exit, from 1 on"
         raise UsageError(f"{what} cannot be read: {said}") from error
     try:
         _check_arms(made)

@@ -189,7 +189,7 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
       the road of arrival, if that road has more than two in a direction and no arm is straight ahead; but at
       a fork not more than the arm taken.
     - An arm straight ahead has as many lanes as the road of arrival.
-    - Any other arm has one lane. A one-way arm has only the lanes of its direction.
+    - Any other arm has one lane. A one-way arm has only the lanes of its direction, and at least one.
 
     Args:
         junction: The junction.
@@ -224,7 +224,7 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
                     'with "backward": 0'
                 )
             out, into = found[n].count
-            found[n] = Profile.of(into if arm.one_way == "in" else out, 0, width, shoulder)
+            found[n] = Profile.of(max(1, into if arm.one_way == "in" else out), 0, width, shoulder)
     return found
 
 

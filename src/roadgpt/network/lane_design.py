@@ -1,6 +1,6 @@
 """Defines the parts of a NetworkDesign that say how many lanes there are, and where this changes.
 
-    "lanes": {"forward": 2, "backward": 0, "width": 3.5, "centre": "solid"}
+    "lanes": {"forward": 2, "backward": 0, "width": 3.5, "centre": "solid", "edge": "broken"}
     "junction1": {"after": 1, "kind": "merge", "take": "ramp", "length": 150,
                   "lanes": {"forward": 2, "backward": 0}}
     "junction2": {"after": 2, "kind": "lane_drop", "length": 60}
@@ -24,6 +24,8 @@ MEDIAN = 2.0  # m, width of a median
 TAPER = 60.0  # m, length of the taper of a lane that ends or begins
 LEAST_WIDTH = 1.5  # m; where a lane is narrower than this, no car can drive in it
 
+RARE = {"divided": False, "edge": "solid"}
+"""Fields of a LanesDesign that are written only if they differ from these values."""
 After = Annotated[int, Field(ge=1, le=500)]
 LaneLength = Annotated[float, Field(ge=10, le=2000, allow_inf_nan=False)]
 
@@ -41,6 +43,8 @@ class LanesDesign(FrozenFields):
     """The line between the directions; None for a broken line with one lane each way, else a solid one."""
     divided: StrictBool = False
     """Whether a median separates the directions."""
+    edge: Literal["solid", "broken", "none"] = "solid"
+    """The line at the outer edge of the lanes of each direction."""
 
 
 class RampDesign(FrozenFields):

@@ -1,4 +1,4 @@
-"""Defines the MapDesign: the design of a map of roads and of one route through the map.
+"""Defines the MapDesign: the design of a map of roads and, if it has one, of a route through the map.
 
 In JSON, the map is a graph: the nodes are junctions, bends and ends of roads, and roads join the nodes.
 
@@ -11,24 +11,24 @@ In JSON, the map is a graph: the nodes are junctions, bends and ends of roads, a
 
 ``at`` is x, y and the height in metres. Each pair in ``roads`` is a straight between two nodes; at a bend, a
 curve leads from one straight to the next, so that several straights and bends may join two junctions.
-``route`` lists the nodes that the tested car passes, in driving order. With ``"left_hand": true``, traffic
-drives on the left.
+``route`` lists the nodes that the tested car passes, in driving order; it may be left out. With
+``"left_hand": true``, traffic drives on the left.
 """
 
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field, StrictBool, ValidationError
+from pydantic import Field, StrictBool
 
 from roadgpt.brief.junctions import Control, PlainKind
 from roadgpt.errors import UsageError
-from roadgpt.network.design import KERB, is_left_hand
+from roadgpt.network.design import KERB, is_left_hand, read_part
 from roadgpt.network.map_check import check_graph, check_route
 from roadgpt.network.pose import mirrored_point
-from roadgpt.road.design import Finite, FrozenFields, as_written, first_error, no_truths
+from roadgpt.road.design import Finite, FrozenFields, as_written
 from roadgpt.road.road import FARTHEST
 
 KEY = re.compile(r"node([1-9][0-9]{0,5})")
@@ -39,7 +39,6 @@ MOST_PASSED = 1000
 BEND = 20.0  # m, radius of a bend whose design gives none
 
 NodeKind = Literal[PlainKind, "bend", "end"]
-Model = TypeVar("Model", bound=BaseModel)
 
 
 class MapLanes(FrozenFields):
@@ -73,12 +72,13 @@ class MapNode(FrozenFields):
 
 
 class MapDesign(FrozenFields):
-    """Nodes, the roads between them, and a route along nodes. Nodes are numbered from 1."""
+    """Nodes, the roads between them, and a route along nodes, or none. Nodes are numbered from 1."""
 
     nodes: Annotated[tuple[MapNode, ...], Field(min_length=2, max_length=MOST_NODES)]
     roads: Annotated[tuple[tuple[int, int], ...], Field(min_length=1, max_length=MOST_ROADS)]
     """The two nodes that each road joins."""
-    route: Annotated[tuple[int, ...], Field(min_length=2, max_length=MOST_PASSED)]
+    route: Annotated[tuple[int, ...], Field(max_length=MOST_PASSED)] = ()
+    """Two or more nodes in driving order; empty for a map without a route."""
     lanes: MapLanes | None = None
     """The lanes of all roads; None for the lane width of the World."""
     left_hand: StrictBool = False
@@ -157,7 +157,8 @@ class MapDesign(FrozenFields):
             written = {key: as_written(value) for key, value in fields.items()}
             out[f"node{number}"] = {**written, "at": [as_written(each) for each in node.at]}
         out["roads"] = [list(pair) for pair in self.roads]
-        out["route"] = list(self.route)
+        if self.route:
+            out["route"] = list(self.route)
         return out
 
 
@@ -184,42 +185,28 @@ def read_map_design(data: Mapping[str, Any]) -> tuple[MapDesign, tuple[str, ...]
         raise UsageError(f"the nodes of a map are numbered node1, node2 and so on, 2 to {MOST_NODES} of them")
     nodes = [_node(number, numbered[number]) for number in sorted(numbered)]
     roads = tuple((pair[0], pair[1]) for pair in _pairs(data.get("roads")))
-    lanes = data.get("lanes")
+    lanes, route = data.get("lanes"), data.get("route")
     made = MapDesign(
         nodes=tuple(nodes),
         roads=roads,
-        route=tuple(_numbers(data.get("route"), "the route", MOST_PASSED)),
-        lanes=None if lanes is None else _value(MapLanes, "the lanes of the map", lanes, "width"),
+        route=() if route in (None, [], ()) else tuple(_numbers(route, "the route", MOST_PASSED)),
+        lanes=None if lanes is None else read_part(MapLanes, "the lanes of the map", lanes, "width"),
         left_hand=is_left_hand(data),
     )
     check_graph([node.kind for node in nodes], [node.at for node in nodes], made.roads)
-    check_route([node.kind for node in nodes], made.roads, made.route)
+    if made.route:
+        check_route([node.kind for node in nodes], made.roads, made.route)
     return made, ()
 
 
 def _node(number: int, raw: Any) -> MapNode:
-    node = _value(MapNode, f"node {number}", raw, "at and kind")
-    if max(map(abs, node.at)) > FARTHEST:
-        raise UsageError(f"node {number} is beyond {FARTHEST:,.0f}; give smaller numbers")
-    return node
-
-
-def _value(model: type[Model], what: str, raw: Any, fields: str) -> Model:
-    """Returns a part of the map as an instance of ``model``.
-
-    Raises:
-        UsageError: The part cannot be read. The message names the part, ``what``, and its ``fields``.
-    """
-    if not isinstance(raw, Mapping):
-        raise UsageError(f"{what} cannot be read: give an object with {fields}")
-    no_truths(what, raw)
-    at = raw.get("at")
-    if "at" in raw and (not isinstance(at, (list, tuple)) or len(at) != 3):
+    what, at = f"node {number}", raw.get("at", ...) if isinstance(raw, Mapping) else ...
+    if at is not ... and (not isinstance(at, (list, tuple)) or len(at) != 3):
         raise UsageError(f"{what} cannot be read: at: give x, y and the height, as in [20, 80, 0]")
-    try:
-        return model.model_validate(raw)
-    except ValidationError as error:
-        raise UsageError(f"{what} cannot be read: {first_error(error)}") from error
+    node = read_part(MapNode, what, raw, "at and kind")
+    if max(map(abs, node.at)) > FARTHEST:
+        raise UsageError(f"{what} is beyond {FARTHEST:,.0f}; give smaller numbers")
+    return node
 
 
 def _pairs(raw: Any) -> list[Sequence[int]]:

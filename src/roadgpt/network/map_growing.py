@@ -31,7 +31,8 @@ NO_TURN = 1e-6  # rad; a bend with a smaller turn has no curve
 
 
 def build_map(design: MapDesign, world: World) -> Route:
-    """Returns the route of a map, with the network of the whole map.
+    """Returns the route of a map, with the network of the whole map. Without a route in the design, the
+    result has no legs; see ``Route``.
 
     Args:
         design: The nodes, the roads and the route.
@@ -198,7 +199,9 @@ class _MapGrowth:
             )
 
     def legs(self, network: Network) -> list[Leg]:
-        """Returns the legs of the route through the finished network."""
+        """Returns the legs of the route through the finished network; none for a map without a route."""
+        if not self.design.route:
+            return []
         driven = list(self.design.driven)
         if len(driven) == 1:
             is_along = driven[0] in self._roads

@@ -78,9 +78,10 @@ def _of_road(network: Network, member: NetworkRoad) -> Iterator[PaintedStroke]:
     road, profile = member.road, member.profile
     s = stations_of(road)
     first, last = between_crosswalks(network, member)
-    for number, line in enumerate(profile.markings(s)):
-        is_outer = line.marking == "solid" and number in (0, len(profile.markings(s)) - 1)
-        if is_outer:
+    painted, boundaries = profile.markings(s), profile.boundaries(s)
+    outer = {n for n, at in ((0, 0), (len(painted) - 1, -1)) if boundaries[at][0] == "solid"}
+    for number, line in enumerate(painted):
+        if number in outer:
             yield PaintedStroke("edge", LINE, road.at(s, (line.edges.left + line.edges.right) / 2), member.id)
             continue
         is_broken = line.marking == "broken"

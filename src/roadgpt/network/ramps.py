@@ -254,5 +254,6 @@ def _with_lane(profile: Profile, width: CubicProfile, is_left: bool) -> Profile:
         offset = added([(1, profile.offset), (1, width)], FAR)
         return replace(profile, right=(lane, *profile.right), offset=offset)
     count = profile.count[0]
-    inner = [*profile.right[: count - 1], replace(profile.right[count - 1], marking="broken")]
-    return replace(profile, right=(*inner, Lane("driving", width, "solid"), *profile.right[count:]))
+    outer = profile.right[count - 1]
+    inner = [*profile.right[: count - 1], replace(outer, marking="broken")]
+    return replace(profile, right=(*inner, replace(outer, width=width), *profile.right[count:]))

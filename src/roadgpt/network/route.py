@@ -31,6 +31,9 @@ class Route(Road):
     Its profile has the lane that the route follows, and on each side of this lane a single lane that is as
     wide as all lanes of that side together. Inside junctions the profile has no oncoming lanes, and no
     shoulders until ``on_ground`` adds them.
+
+    A network through which no route was asked for is a Route without legs; see ``has_no_route``. Nothing can
+    drive it. What needs a centre line all the same gets that of the network's first road.
     """
 
     network: Network
@@ -38,14 +41,12 @@ class Route(Road):
 
     @classmethod
     def along(cls, network: Network, legs: Sequence[Leg]) -> Self:
-        """Returns the route that follows these legs through a network, in this order.
+        """Returns the route that follows these legs through a network, in this order; there may be none.
 
         Raises:
-            UsageError: There is no leg, a road or a lane does not exist, two legs that follow each other are
-                not joined, or the route begins or ends inside a junction.
+            UsageError: The network has no road outside junctions, a road or a lane does not exist, two legs
+                that follow each other are not joined, or the route begins or ends inside a junction.
         """
-        if not legs:
-            raise UsageError("a route has no road; give one or more [road, lane]")
         legs = tuple(map(Leg._make, legs))
         for leg in legs:
             _check_leg(network, leg)
@@ -53,9 +54,10 @@ class Route(Road):
             _check_joint(network, one, two)
         if network.left_hand:
             return cls.along(network.mirrored, _mirrored_legs(legs)).mirrored
-        if any(network.road(legs[n].road).junction is not None for n in (0, -1)):
+        followed = legs or (_first_leg(network),)
+        if any(network.road(followed[n].road).junction is not None for n in (0, -1)):
             raise UsageError("a route begins and ends on a road outside junctions")
-        parts = _parts(network, legs)
+        parts = _parts(network, followed)
         roads = [part.road for part in parts]
         first = roads[0].plan
         assert isinstance(first, PieceCurve)
@@ -70,6 +72,8 @@ class Route(Road):
         )
 
     def __repr__(self) -> str:
+        if not self.legs:
+            return f"Route(none asked for, {len(self.network.roads_outside)} roads)"
         kinds = ", ".join(each.entered.kind.replace("_", "-") for each in self.passages)
         return f"Route({self.length:.1f} m, junctions: {kinds or 'none'})"
 
@@ -77,7 +81,8 @@ class Route(Road):
     def starts(self) -> tuple[float, ...]:
         """The stations in metres of the start of each leg and, as the last one, of the end of the route.
 
-        A leg on the same road as the leg before begins in the middle of the lane change between them.
+        A leg on the same road as the leg before begins in the middle of the lane change between them. Without
+        legs, this is only the station 0.
         """
         found, start = [], 0.0
         for number, group in groupby(self.legs, key=lambda leg: leg.road):
@@ -128,8 +133,35 @@ class Route(Road):
         return {**self.to_route_json(), "network": network_to_json(self.network)}
 
     def to_route_json(self) -> dict[str, list[list[int]]]:
-        """Returns the content of a route file: ``{"route": [[road, lane], ...]}`` in driving order."""
+        """Returns the content of a route file: ``{"route": [[road, lane], ...]}`` in driving order; without a
+        route, the list is empty.
+        """
         return {"route": [list(leg) for leg in self.legs]}
+
+
+def has_no_route(road: Road) -> bool:
+    """Returns whether a road is a network through which no route was asked for."""
+    return isinstance(road, Route) and not road.legs
+
+
+def refuse_without_route(road: Road, what: str) -> None:
+    """Raises UsageError if no route was asked for; ``what`` says what cannot be done then, as in "driven"."""
+    if has_no_route(road):
+        raise UsageError(
+            f"a map without a route cannot be {what}; give it one, the nodes in driving order, such as "
+            '"route": [1, 2, 4]'
+        )
+
+
+def _first_leg(network: Network) -> Leg:
+    """Returns a leg along the first road outside junctions; traffic drives on the right.
+
+    Raises:
+        UsageError: There is no such road.
+    """
+    if not network.roads_outside:
+        raise UsageError("the network has no road outside junctions; make the road again")
+    return Leg(network.roads_outside[0].id, -1)
 
 
 def _mirrored_legs(legs: Sequence[Leg]) -> tuple[Leg, ...]:
@@ -243,11 +275,12 @@ def _profile(parts: Sequence[_Part]) -> Profile:
     left_shoulder, left, offset, width, right, right_shoulder = (
         _joined_widths(column, roads, starts) for column in zip(*rows, strict=True)
     )
-    marking = next(road.profile.centre_marking for road in roads if road.profile is not None)
-    outer = () if right == 0 else (Lane("driving", right, "solid"),)
-    own: Marking = "broken" if outer else "solid"
+    first = next(road.profile for road in roads if road.profile is not None)
+    marking, edge = first.centre_marking, first.right[first.count[0] - 1].marking
+    outer = () if right == 0 else (Lane("driving", right, edge),)
+    own: Marking = "broken" if outer else edge
     return Profile(
-        (Lane("driving", left, "solid"), Lane("shoulder", left_shoulder)),
+        (Lane("driving", left, edge), Lane("shoulder", left_shoulder)),
         (Lane("driving", width, own), *outer, Lane("shoulder", right_shoulder)),
         0,
         marking,

@@ -17,6 +17,7 @@ from roadgpt.network.lane_design import MEDIAN, LanesChangeDesign, LanesDesign, 
 from roadgpt.network.ramps import is_on_left
 from roadgpt.plural import plural
 from roadgpt.road import Profile, World
+from roadgpt.road.profile import Lane, Marking
 from roadgpt.road.world import OWN
 
 MAIN = LanesDesign(forward=2, backward=0)
@@ -170,9 +171,16 @@ def _behind(number: int, place: PlaceDesign, before: LanesDesign) -> LanesDesign
 
 def _profile(lanes: LanesDesign, shoulder: float) -> Profile:
     made = Profile.of(lanes.forward, lanes.backward, lanes.width, shoulder)
+    if lanes.edge != "solid":
+        made = replace(made, left=_edged(made.left, lanes.edge), right=_edged(made.right, lanes.edge))
     if lanes.divided:
         made = replace(made, median=MEDIAN, centre_marking="solid")
     return made if lanes.centre is None else replace(made, centre_marking=lanes.centre)
+
+
+def _edged(side: Sequence[Lane], marking: Marking) -> tuple[Lane, ...]:
+    """Returns the lanes of one side with another marking at their outer edge, the only one that is solid."""
+    return tuple(replace(lane, marking=marking) if lane.marking == "solid" else lane for lane in side)
 
 
 def _tapered(

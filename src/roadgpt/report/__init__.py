@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from roadgpt.network import has_no_route
 from roadgpt.report.birds_eye import Scale, birds_eye
 from roadgpt.report.canvas import FORMATS, PNG, Format, in_our_style, save_all
 from roadgpt.report.height import height_profile
@@ -38,7 +39,8 @@ __all__ = [
 def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[Format] = PNG) -> list[Path]:
     """Draws all pictures of a Run into an existing folder, and returns their paths.
 
-    A Run without a road has no pictures, so the list of paths is then empty.
+    A Run without a road has no pictures, so the list of paths is then empty. A map without a route is drawn
+    from above only.
 
     Args:
         run: the Run; it may be invalid, and it need not have a drive.
@@ -50,11 +52,9 @@ def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[
     if run.road is None:
         return []
     folder = Path(folder)
-    pictures = {
-        "birds_eye.png": birds_eye(run, axes),
-        "height.png": height_profile(run, axes),
-        "curvature_grade.png": strip(run),
-    }
+    pictures = {"birds_eye.png": birds_eye(run, axes)}
+    if not has_no_route(run.road):
+        pictures |= {"height.png": height_profile(run, axes), "curvature_grade.png": strip(run)}
     return [path for name, figure in pictures.items() for path in save_all(figure, folder / name, formats)]
 
 

@@ -17,11 +17,12 @@ from matplotlib.ticker import MultipleLocator
 from roadgpt.campaign.faults.reason import FailureReason
 from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Route
+from roadgpt.network import Route, has_no_route
+from roadgpt.plural import plural
 from roadgpt.report.canvas import HALO, INK, SEVERE, SOFT, Header, add_axes, in_our_style, new_figure, save
 from roadgpt.report.labels import Labels
 from roadgpt.report.network_view import FAR_ROUTE, SIGN_NAMES, TINT, sign_style, signs_shown
-from roadgpt.report.places import MarkedPlace, places_of
+from roadgpt.report.places import MarkedPlace, minor_places_of, places_of
 from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, is_far, plan_points
 from roadgpt.report.text_width import inches
 from roadgpt.road import Road, World
@@ -38,6 +39,7 @@ MARGIN, LEAST = 16.0, 60.0  # m, around the road and across the picture
 SLOWEST = 10.0  # km/h; the scale of colours reaches at least this speed
 
 RIM = 8.0  # points, width of the rim around the path
+MINOR = 6.5  # points, marker of an incident that did not cause the failure
 KEY_SIZE, FOOT = 9, 0.14  # points; inches above the foot of the figure
 SWATCH, DOT, GAP = 0.25, 0.06, 0.11  # inches
 OUTSIDE: tuple[Severity, ...] = SEVERITIES[1:]
@@ -79,23 +81,46 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     draw_ends(axes, road, world)
     if run.drive is not None:
         _path(figure, axes, run)
-    labels = Labels(axes, frame, frame.width / across, centre, world.profile_of(road).paved_reach + 1.0)
-    labels.name_border(world.site.map_size)
-    places = places_of(run)
-    for place in places:
-        mark(axes, run, place)
-        labels.put((place.x, place.y), place.text, place.letters)
-    for s, text, sign in ((0.0, "start", -1.0), (road.length, "end", 1.0)):
-        heading = float(road.heading(s))
-        x, y, _ = road.at(s, float(world.profile_of(road).middle(s)))
-        if frame.holds(x, y):
-            labels.put((x, y), text, INK, sign * np.array([np.cos(heading), np.sin(heading)]))
+    _mark_and_label(axes, run, frame, centre)
     if not is_part and not all(frame.holds(x, y) for x, y in centre):
         axes.text(
             0.98, 0.98, "the road goes on beyond these axes", transform=axes.transAxes, ha="right", va="top",
             size=9.5, color=SOFT, path_effects=HALO, zorder=12,
         )  # fmt: skip
     return figure
+
+
+def _mark_and_label(axes: Axes, run: Run, frame: Frame, centre: Array) -> None:
+    """Draws and labels the marked places of a Run, and labels the border of the map and the ends of the road.
+
+    The places of incidents that did not cause the failure are labelled last and in smaller letters.
+    """
+    road, world = run.road, run.world
+    assert road is not None
+    minor, places = minor_places_of(run), places_of(run)
+    per_inch = frame.width / (SIDE * min(1.0, frame.width / frame.height))
+    clear_of = np.concatenate([centre, [(each.x, each.y) for each in minor]]) if minor else centre
+    labels = Labels(axes, frame, per_inch, clear_of, world.profile_of(road).paved_reach + 1.0)
+    labels.name_border(world.site.map_size)
+    for place in [*minor, *places]:
+        mark(axes, run, place)
+    for place in places:
+        labels.put((place.x, place.y), place.text, place.letters)
+    ends = () if has_no_route(road) else ((0.0, "start", -1.0), (road.length, "end", 1.0))
+    for s, text, sign in ends:
+        heading = float(road.heading(s))
+        x, y, _ = road.at(s, float(world.profile_of(road).middle(s)))
+        if frame.holds(x, y):
+            labels.put((x, y), text, INK, sign * np.array([np.cos(heading), np.sin(heading)]))
+    put = [
+        labels.put((each.x, each.y), each.text, each.letters, is_minor=True) for each in minor if each.text
+    ]
+    if not all(put):
+        said = f"no room for {plural(put.count(False), 'label')} of black crosses"
+        axes.annotate(
+            said, (1, 0), (0, -24), xycoords="axes fraction", textcoords="offset points",
+            ha="right", va="top", size=KEY_SIZE, color=SOFT,
+        )  # fmt: skip
 
 
 def _frame(run: Run, centre: Array) -> Frame:
@@ -154,7 +179,11 @@ def driven_path(axes: Axes, drive: Drive) -> LineCollection:
 
 
 def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
-    """Draws a marker at a place, and the outline of the car if the place comes from a drive."""
+    """Draws a marker at a place, and the outline of the car if the place comes from a drive; the place of an
+    incident that did not cause the failure has a small marker only."""
+    if place.is_minor:
+        axes.plot(place.x, place.y, place.sign, ms=MINOR, mfc=place.colour, mec="white", mew=0.8, zorder=9.5)
+        return
     if place.step is not None and run.drive is not None:
         car = Polygon(
             run.drive.corners(place.step), closed=True, fc="none", ec=place.letters, lw=1.6, zorder=9
@@ -200,8 +229,10 @@ def _outside_key(drive: Drive | None) -> list[KeyEntry]:
 
 
 def _route_key(road: Road, world: World, per_inch: float) -> list[KeyEntry]:
-    """Returns the key to the tint of the route's lane; none for a road without junctions."""
-    if not isinstance(road, Route):
+    """Returns the key to the tint of the route's lane; none for a road without junctions or a map without a
+    route.
+    """
+    if not isinstance(road, Route) or has_no_route(road):
         return []
     colour = FAR_ROUTE if is_far(road, world, per_inch) else TINT
     return [KeyEntry("lane of the route", SWATCH, {"lw": RIM, "color": colour})]

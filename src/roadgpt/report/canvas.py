@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from roadgpt.errors import UsageError
+from roadgpt.network import has_no_route
 from roadgpt.report.text_width import fitted, inches
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
@@ -150,10 +151,12 @@ def _badge(run: Run) -> float:
 
 
 def origin(run: Run) -> str:
-    """Returns one line of text with the seed, number and length of the road, the driver and the simulator."""
+    """Returns one line of text with the seed, number and length of the road, the driver and the simulator; a
+    map without a route has no length.
+    """
     seed = f"seed {run.request.seed}"
     said = [f"{seed}, road {run.index}"] if run.words else [seed] if run.drive is not None else []
-    said.append(f"{run.length:.0f} m")
+    said.append("no route" if run.road and has_no_route(run.road) else f"{run.length:.0f} m")
     if run.drive is not None:
         said.append(f"driven by {run.drive.driver} in {run.drive.simulator}")
     return "   ·   ".join(said)

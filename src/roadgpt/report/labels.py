@@ -12,10 +12,12 @@ from roadgpt.report.canvas import HALO, INK, SOFT
 from roadgpt.report.plan_view import Frame
 from roadgpt.report.text_width import inches
 
-SIZE, LINE = 10, 0.19  # points; inches
+SIZE, MINOR_SIZE, LINE = 10, 8.5, 0.19  # points, points, inches
 Box = tuple[float, float, float, float]
 """Left, right, lower and upper border, metres."""
 REACHES = (0.34, 0.5, 0.72, 1.0, 1.4)  # inches from the place to the label
+FAR_REACHES = (1.9, 2.5, 3.2)  # inches, for minor labels only
+COVERED = 16.0  # cost of covering another label
 WAYS = 16
 
 BORDER = "border of the map"
@@ -55,37 +57,51 @@ class Labels:
             )  # fmt: skip
 
     def put(
-        self, place: tuple[float, float], text: str, colour: str = INK, away: Array | None = None
-    ) -> None:
-        """Labels a place.
+        self,
+        place: tuple[float, float],
+        text: str,
+        colour: str = INK,
+        away: Array | None = None,
+        is_minor: bool = False,
+    ) -> bool:
+        """Labels a place, and returns whether there was room; only minor labels are left out for lack of it.
 
         Args:
             place: x and y in metres; a place outside the frame gets no label.
             text: the text of the label, in one or more lines.
             colour: colour of the text.
             away: preferred direction ``(2,)`` from the place to the label, of length 1.
+            is_minor: whether the label has smaller letters, and may be farther away.
         """
         if not self.frame.holds(*place):
-            return
+            return True
         rows = text.split("\n")
-        wide = (inches(text, SIZE) + 0.1) * self.per_inch
-        high = (len(rows) * LINE + 0.04) * self.per_inch
-        best = min(self._offers(place, wide, high, away), key=lambda offer: offer[0])
-        _, x, y = best
+        size, reaches = (MINOR_SIZE, REACHES + FAR_REACHES) if is_minor else (SIZE, REACHES)
+        wide = (inches(text, size) + 0.1) * self.per_inch
+        high = (len(rows) * LINE * size / SIZE + 0.04) * self.per_inch
+        cost, x, y = min(self._offers(place, wide, high, away, reaches), key=lambda offer: offer[0])
+        if is_minor and cost >= COVERED:
+            return False
         self._boxes.append(_box(x, y, wide, high))
         self._leaders.append(_leader(place, x, y, self._boxes[-1]))
         self.axes.annotate(
-            text, place, (x, y), ha="center", va="center", size=SIZE, color=colour, zorder=12,
+            text, place, (x, y), ha="center", va="center", size=size, color=colour, zorder=12,
             path_effects=HALO, linespacing=1.15,
             arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.9, "shrinkA": 0, "shrinkB": 5},
         )  # fmt: skip
+        return True
 
     def _offers(
-        self, place: tuple[float, float], wide: float, high: float, away: Array | None
+        self,
+        place: tuple[float, float],
+        wide: float,
+        high: float,
+        away: Array | None,
+        reaches: tuple[float, ...],
     ) -> list[tuple[float, float, float]]:
         """Returns cost and centre of every place that a label could take."""
         offers = []
-        for reach in REACHES:
+        for reach in reaches:
             for angle in np.arange(WAYS) * (2 * np.pi / WAYS):
                 way = np.array([np.cos(angle), np.sin(angle)])
                 # ``reach`` is the distance to the near side of the label, not to its middle
@@ -103,7 +119,7 @@ class Labels:
         dy = np.maximum(np.abs(self.clear_of[:, 1] - y) - high / 2, 0)
         cost = 10.0 * float((np.hypot(dx, dy) < self.radius).mean())
         cost += 2.0 * bool((np.hypot(dx, dy) < self.radius).any())
-        cost += 8.0 * sum(x0 < b and a < x1 and y0 < d and c < y1 for a, b, c, d in self._boxes)
+        cost += COVERED * sum(x0 < b and a < x1 and y0 < d and c < y1 for a, b, c, d in self._boxes)
         frame = self.frame
         return cost + 20.0 * (x0 < frame.x0 or x1 > frame.x1 or y0 < frame.y0 or y1 > frame.y1)
 

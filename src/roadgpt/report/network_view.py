@@ -40,8 +40,8 @@ STEP = 0.5  # m between the points of the edges of the route
 
 
 def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
-    """Draws the network of a route, and the lane that the route follows; ``per_inch`` is the number of metres
-    per inch of the picture.
+    """Draws the network of a route, and the lane that the route follows, if there is a route; ``per_inch`` is
+    the number of metres per inch of the picture.
     """
     network = route.network
     surface = NetworkSurface.of(network)
@@ -56,7 +56,8 @@ def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
     for member in network.roads_outside:
         if member.profile.median:
             axes.add_patch(Polygon(_median(network, member), fc=GRASS, ec="none", zorder=2.1))
-    _draw_route(axes, route, per_inch)
+    if route.legs:
+        _draw_route(axes, route, per_inch)
     painted = strokes(network)
     least = ((("edge", "lane"), LINE_POINTS), (("stop", "give_way"), STOP_POINTS), (("crosswalk",), 0.0))
     for kinds, width in least:
@@ -86,7 +87,7 @@ def draw_network_from_far(axes: Axes, route: Route, points: float) -> None:
     """Draws the roads of a network as lines that are ``points`` wide, and the route as a darker line."""
     lines = [each.road.centreline()[:, :2] for each in route.network.roads]
     axes.add_collection(LineCollection(lines, colors=FAR_ASPHALT, linewidths=points, zorder=2))
-    line = route.centreline()
+    line = route.centreline() if route.legs else np.empty((0, 3))
     axes.plot(line[:, 0], line[:, 1], color=FAR_ROUTE, lw=points, zorder=2.2)
 
 

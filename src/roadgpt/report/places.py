@@ -1,7 +1,8 @@
-"""Finds the places of a Run to mark in pictures: those of failures and findings and, for a drive that passed,
-the place where the largest share of the car was outside its lane.
+"""Finds the places of a Run to mark in pictures: those of failures, other incidents and findings and, for a
+drive that passed, the place where the largest share of the car was outside its lane.
 """
 
+import math
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,10 +12,10 @@ from matplotlib.axes import Axes
 
 from roadgpt.check import Finding
 from roadgpt.drive import Drive
-from roadgpt.report.canvas import DARKER, HALO, SEVERE, VERMILLION
+from roadgpt.report.canvas import DARKER, HALO, INK, SEVERE, VERMILLION
 from roadgpt.report.text_width import fitted, plain
 from roadgpt.run import Run
-from roadgpt.verdict import Verdict, percent
+from roadgpt.verdict import Incident, Verdict, percent
 from roadgpt.verdict.judging import far_beyond
 
 MOST = 3  # findings; more would cover the road
@@ -28,7 +29,9 @@ WORDS = {
     "wrong turn": "took a wrong turn",
     "wrong way": "drove the wrong way",
     "stop line": "did not stop",
+    "off road": "a wheel off the road",
 }
+NEAR = 15.0  # m, from an incident to the next one of its kind; they share a label
 RULES = {
     "inside_map": "leaves the map",
     "no_overlap": "overlaps itself",
@@ -48,16 +51,20 @@ class MarkedPlace:
     y: float
     s: float
     text: str
+    """The label; empty if the place has only a marker."""
     step: int | None = None
     """Index of the step of the drive at which the car was there; None if the place does not come from a
     drive.
     """
     colour: str = VERMILLION
+    is_minor: bool = False
+    """Whether the place is that of an incident that did not cause the failure; it has a smaller marker."""
 
     @property
     def sign(self) -> str:
-        """The marker for matplotlib: a cross for a failure or finding, a diamond for a drive that passed."""
-        return "X" if self.colour == VERMILLION else "d"
+        """The marker for matplotlib: a cross for a failure, an incident or a finding, a diamond for the place
+        where most of the car was outside in a drive that passed."""
+        return "X" if self.colour == VERMILLION or self.is_minor else "d"
 
     @property
     def letters(self) -> str:
@@ -66,7 +73,7 @@ class MarkedPlace:
 
 
 def places_of(run: Run) -> list[MarkedPlace]:
-    """Returns the places to mark.
+    """Returns the places to mark, except those of incidents that did not cause the failure.
 
     For a failed drive, this is the place of the failure. For a drive that passed, it is the place where the
     largest share of the car was outside its lane; if the car stayed inside, there is no such place. For an
@@ -75,8 +82,10 @@ def places_of(run: Run) -> list[MarkedPlace]:
     verdict = run.verdict
     if verdict is not None and verdict.cause is not None and verdict.at_xy is not None:
         side = f"\nto the {verdict.side}" if verdict.side else ""
-        text = f"{WORDS.get(verdict.cause, verdict.cause)}{side}"
-        return [MarkedPlace(*verdict.at_xy, verdict.at_s or 0.0, text, _step(run))]
+        s = verdict.at_s or 0.0
+        station = "" if verdict.incidents is None else f", {s:.0f} m"
+        text = f"{WORDS.get(verdict.cause, verdict.cause)}{side}{station}"
+        return [MarkedPlace(*verdict.at_xy, s, text, _step(run, verdict.at_time))]
     if verdict is not None and verdict.kept and verdict.max_oob and run.drive is not None:
         return [_farthest(run.drive, verdict)]
     places = []
@@ -85,6 +94,42 @@ def places_of(run: Run) -> list[MarkedPlace]:
         if where is not None:
             places.append(MarkedPlace(*where, _said(finding)))
     return places[:MOST]
+
+
+def minor_places_of(run: Run) -> list[MarkedPlace]:
+    """Returns the places of all incidents on a route, in order of time, without the cause of the failure.
+
+    An incident less than 15 m from the previous one of its kind has no label of its own: the label of the
+    first one gives the number of incidents and their stations.
+    """
+    verdict = run.verdict
+    incidents = () if verdict is None else verdict.incidents or ()
+    groups: list[list[Incident]] = []
+    latest: dict[str, list[Incident]] = {}
+    for each in incidents:
+        if verdict is not None and (each.kind, each.at_time) == (verdict.cause, verdict.at_time):
+            continue
+        group = latest.get(each.kind)
+        if group is None or math.dist(group[-1].at_xy, each.at_xy) > NEAR:
+            group = latest[each.kind] = []
+            groups.append(group)
+        group.append(each)
+    places = []
+    for group in groups:
+        texts = [_named(group), *[""] * (len(group) - 1)]
+        places += [
+            MarkedPlace(*each.at_xy, each.at_s, text, _step(run, each.at_time), INK, is_minor=True)
+            for each, text in zip(group, texts, strict=True)
+        ]
+    return places
+
+
+def _named(group: Sequence[Incident]) -> str:
+    """Returns the kind, number and stations of incidents of one kind."""
+    first, last = (f"{limit(each.at_s for each in group):.0f}" for limit in (min, max))
+    where = f"{first} m" if first == last else f"{first} to {last} m"
+    often = f"\n{len(group)} times" if len(group) > 1 else ""
+    return f"{WORDS[group[0].kind]}{often}, {where}"
 
 
 def _farthest(drive: Drive, verdict: Verdict) -> MarkedPlace:
@@ -129,12 +174,11 @@ def name_places(axes: Axes, places: Sequence[MarkedPlace], length: float, at_top
         )  # fmt: skip
 
 
-def _step(run: Run) -> int | None:
-    """Returns the index of the step of the drive at which it failed."""
-    assert run.verdict is not None
-    if run.drive is None or run.verdict.at_time is None:
+def _step(run: Run, time: float | None) -> int | None:
+    """Returns the index of the step of the drive that is nearest to a time in seconds."""
+    if run.drive is None or time is None:
         return None
-    return int(np.abs(run.drive["time"] - run.verdict.at_time).argmin())
+    return int(np.abs(run.drive["time"] - time).argmin())
 
 
 def _where(run: Run, s: float | None, x: float | None, y: float | None) -> tuple[float, float, float] | None:

@@ -8,7 +8,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon
 
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Route
+from roadgpt.network import Route, has_no_route
 from roadgpt.report.network_view import GRASS, draw_network, draw_network_from_far, lines_of
 from roadgpt.report.text_width import POINTS
 from roadgpt.road import Edges, Road, World
@@ -125,7 +125,9 @@ def _ribbon(axes: Axes, road: Road, s: Array, edges: Edges, colour: str, layer: 
 
 def draw_ends(axes: Axes, road: Road, world: World) -> None:
     """Draws a black bar at the start of the road and a chequered bar at the end, over the lanes in the
-    direction of the drive."""
+    direction of the drive; nothing for a map without a route."""
+    if has_no_route(road):
+        return
     profile = world.profile_of(road)
     for s, colours in ((0.0, ("#1b1e23",)), (road.length, ("#1b1e23", "white"))):
         outer, inner = profile.edges(s), profile.sides(s)

@@ -123,12 +123,9 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
         raise UsageError("a design is a JSON object with starting_point, theta and road_segment1, ...")
     if data.get("left_hand", False) is not False:
         raise UsageError(f"{ONLY_NETWORKS}; leave left_hand out")
-    segments, remarks = [], []
+    segments, remarks = [], list[str]()
     numbered = _numbered(data)
-    numbers = [number for number, _ in numbered]
-    if numbers != [*range(1, len(numbers) + 1)]:
-        told = ", ".join([*map(str, numbers[:12]), *(["..."] if len(numbers) > 12 else [])])
-        remarks.append(f"segments are numbered {told} instead of 1, 2, 3, ...; they are taken in this order")
+    remarks += misnumbered("segments", [number for number, _ in numbered])
     for number, raw in numbered:
         segment, said = _segment(number, raw)
         segments.append(segment)
@@ -171,6 +168,16 @@ def _numbered(data: Mapping[str, Any]) -> list[tuple[int, Any]]:
             "the design has no segment; add road_segment1 with distance, direction, incline, turn_degrees"
         )
     return found
+
+
+def misnumbered(what: str, numbers: Sequence[int]) -> tuple[str, ...]:
+    """Returns a remark if the numbers of ``what``, in the order in which they are taken, are not 1, 2, 3,
+    and so on; else none.
+    """
+    if [*numbers] == [*range(1, len(numbers) + 1)]:
+        return ()
+    told = ", ".join([*map(str, numbers[:12]), *(["..."] if len(numbers) > 12 else [])])
+    return (f"{what} are numbered {told} instead of 1, 2, 3, ...; they are taken in this order",)
 
 
 def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:

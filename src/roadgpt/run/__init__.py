@@ -27,7 +27,7 @@ from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored, simulate
 from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
-from roadgpt.network import AnyDesign, Blueprint, made_from
+from roadgpt.network import AnyDesign, Blueprint, made_from, refuse_without_route
 from roadgpt.road import Design, Geometry, Road, World, in_short_segments
 from roadgpt.run.card import seed_in
 from roadgpt.run.folder import Draw, read_run, write_run
@@ -161,7 +161,8 @@ def prove(
 
     Raises:
         UsageError: a plug-in is not installed, the driver's file does not define a driver, the simulator
-            cannot apply a setting of the world, or no road can be built from the design.
+            cannot apply a setting of the world, no road can be built from the design, or a map without a
+            route is to be driven.
         DriverError: the driver hung while it was created.
     """
     world = world.on_surface_of(brief)
@@ -169,6 +170,8 @@ def prove(
     begun = time.perf_counter()
     design = None if isinstance(blueprint, Road) else blueprint
     road = made_from(blueprint, world, setup.geometry)
+    if setup.drives:
+        refuse_without_route(road, "driven")
     findings = inspect(road, brief, world, setup.rules)
     request = Request(words=brief.words if brief else "", seed=seed, world=world, setup=setup)
     checking = time.perf_counter() - begun

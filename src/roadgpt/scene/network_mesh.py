@@ -13,7 +13,7 @@ import numpy as np
 
 from roadgpt.export.embankments import FOOT, OUTSIDE, RUN, embankments
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Network, NetworkRoad, RoadEnd, Route
+from roadgpt.network import Network, NetworkRoad, RoadEnd, Route, has_no_route
 from roadgpt.network.arrows import arrows
 from roadgpt.network.markings import between_crosswalks, signs, strokes
 from roadgpt.network.polygon import Area
@@ -259,7 +259,11 @@ def _painted(points: Array, width: float, kind: int = WHITE) -> Patch:
 
 
 def _start_and_goal(route: Route) -> list[Patch]:
-    """Returns a white line where the lane of the route begins, and a chequered band where it ends."""
+    """Returns a white line where the lane of the route begins, and a chequered band where it ends; nothing
+    without a route.
+    """
+    if has_no_route(route):
+        return []
     assert route.profile is not None
     left, right = (float(t) for t in route.profile.lane(0.0))
     out = [_painted(route.at(np.full(2, 0.5), np.array([right + 0.25, left - 0.08])), LINE + 2 * INSET)]

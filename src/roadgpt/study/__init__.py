@@ -10,6 +10,7 @@ statistics        computes statistical tests and confidence intervals for report
 survey            asks people to rate roads
 """
 
+from roadgpt.network import refuse_without_route
 from roadgpt.road import Road
 from roadgpt.study.similarity import Similarity, likeness, similarity
 
@@ -25,6 +26,8 @@ def compare(one: Road, other: Road, mirror: bool = False) -> Similarity:
         mirror: True if a road and its mirror image count as the same.
 
     Raises:
-        UsageError: a road has fewer than two different points.
+        UsageError: a road has fewer than two different points, or is a map without a route.
     """
+    for road in (one, other):
+        refuse_without_route(road, "compared")
     return similarity(likeness(one), likeness(other), mirror)

@@ -13,7 +13,7 @@ The kinds of incidents:
 
 The rule for stop signs is that of CARLA (leaderboard and scenario_runner). The other kinds resemble CARLA's
 criteria, with stricter limits. An incident begins at the first step at which its condition holds, and ends
-when the condition no longer holds.
+when the condition no longer holds; a wrong turn ends when the car is back on the road of the route.
 """
 
 import math
@@ -88,8 +88,8 @@ def _is_on_wrong_road(route: Route, drive: "Drive") -> BoolArray:
 
     from roadgpt.network.paved import ribbon
 
-    wrong = np.zeros(len(drive), bool)
-    steps = np.flatnonzero(_is_beside(route, drive) & (drive["outside"] > GONE))
+    wrong, beside = np.zeros(len(drive), bool), _is_beside(route, drive)
+    steps = np.flatnonzero(beside & (drive["outside"] > GONE))
     own = {leg.road for leg in route.legs}
     for member in route.network.roads if len(steps) else ():
         if member.id in own:
@@ -106,6 +106,9 @@ def _is_on_wrong_road(route: Route, drive: "Drive") -> BoolArray:
         if member.junction is None:  # an arm, on which one may drive either way
             turned = np.minimum(turned, math.pi - turned)
         wrong[steps[on][turned < ALONG]] = True
+    for first in begins(wrong):
+        back = np.flatnonzero(~beside[first:])
+        wrong[first : first + back[0] if len(back) else None] = True
     return wrong
 
 

@@ -1,5 +1,6 @@
 """Turns a Drive into a Verdict."""
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -144,12 +145,16 @@ def _first_of(incidents: Sequence[Incident], drive: "Drive", step: int) -> tuple
 
 
 def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
-    """Returns the incidents other than the cause as words that follow a description."""
-    words = []
-    for kind in dict.fromkeys(each.kind for each in incidents if each.kind not in (cause, "out of lane")):
-        own = [each for each in incidents if each.kind == kind]
-        often = "once" if len(own) == 1 else f"{len(own)} times"
-        words.append(f"{INCIDENTS[kind]} {often}, first after {own[0].at_s:.0f} m")
+    """Returns the number of incidents of each kind as words that follow a description, which has already
+    named the first incident of the cause's kind.
+    """
+    of_kind: Counter[str | None] = Counter(each.kind for each in incidents)
+    same = of_kind.pop(cause, 0)
+    words = [f"{same} times in all"] if same > 1 else []
+    for kind, count in of_kind.items():
+        first = next(each.at_s for each in incidents if each.kind == kind)
+        often = "once," if count == 1 else f"{count} times, first"
+        words.append(f"{INCIDENTS[str(kind)]} {often} after {first:.0f} m")
     return "".join(f"; {each}" for each in words)
 
 

@@ -5,11 +5,17 @@ nothing is executed. If the answer is not a valid plan, the model is asked again
 the error.
 """
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
+from itertools import groupby
 
 from pydantic import BaseModel, Field
 
 from roadgpt.brief.feasible import check
+from roadgpt.brief.junction_plan import BETWEEN, WHOLE, is_junction
+from roadgpt.brief.junction_plan import KINDS as JUNCTIONS
+from roadgpt.brief.junctions import NAMES
+from roadgpt.brief.map_clause import MAP, is_map
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import KINDS, read_plan
@@ -43,6 +49,22 @@ those of slopes, and
 
 A number is exact (3), at least (3..), at most (..3) or between (3..5); no units. If anything along the road
 turns, all turns of the road must be named there. A number of turns without more stands under "road".
+
+Lanes stand under "road", too: lanes=2 (in the direction of the drive) against=1 oneway divided centre=solid
+
+If the description names junctions, they are lines of "along", too, in driving order. Such a line begins with
+one of t_junction, y_junction (a fork), crossroads, star, roundabout, or junction (the kind is not said).
+What the route does there stands behind it, and is no turn of its own:
+  left, right, straight, back, sharp_left, sharp_right, slight_left or slight_right; deg=60 (it turns so much)
+  exit=3     of a roundabout; mini, normal or large; r=16 (of its island); outer=42 (its whole width); lanes=2
+  arms=5     how many roads meet
+  ways=left+straight     the ways on that there are: here a side road on the left
+  priority, yield, stop, lights or none     what the driver meets; all_way, others_stop; crosswalk
+Ramps and lanes are such lines, too: merge or diverge, with ramp (the route uses it) or main (it passes it);
+lane_drop or lane_gain, with side=left or side=right; lane_change, with left or right.
+What holds for one of the roads between them is a line that begins with road: road up len=80 lanes=2
+The field "road" then has only the length of the whole route: len=400
+A map of roads is one line of "along": map columns=3 rows=2 lights (a grid), or map with its junctions.
 """
 
 # Sent as turns of the conversation: small models follow examples better than rules.
@@ -60,6 +82,27 @@ EXAMPLES = (
         "a gently climbing road: an S-bend, then a 90 degree right",
         '{"along": ["s_bend", "turn right deg=90"], "road": "gently_up", "unused": []}',
     ),
+    (
+        "80 m straight, at the T-junction turn left, then uphill to a roundabout, third exit",
+        '{"along": ["straight len=80", "t_junction left", "road up", "roundabout exit=3"], "road": "", '
+        '"unused": []}',
+    ),
+    (
+        "two lanes each way, straight on at a crossroads with traffic lights, then two bends, 400 m in all",
+        '{"along": ["road lanes=2 against=2", "crossroads straight lights", "turn x2"], "road": "len=400", '
+        '"unused": []}',
+    ),
+    (
+        "a village with three crossroads and a roundabout",
+        '{"along": ["map crossroads x3; roundabout"], "road": "", "unused": []}',
+    ),
+)
+
+ROAD = "road"
+"""The word with which a line of "along" begins that holds for a whole road."""
+ON_LINES = (
+    " In your answer, what a plan has behind | is a line that begins with road, and what it has behind || is "
+    'under "road"'
 )
 
 # Words that models write instead of those of the plan language, in spite of the rules.
@@ -72,6 +115,9 @@ SAID = {
     "u-turn": "u_turn",
     "zig-zag": "zigzag",
     "hairpins": "hairpin",
+    **{name.lower().replace(" ", "_"): kind for kind, names in NAMES.items() for name in names},
+    **dict.fromkeys(("traffic_light", "traffic_lights"), "lights"),
+    "give_way": "yield",
 }
 
 
@@ -117,7 +163,7 @@ class ChatReader:
                 asked = [
                     *opening,
                     Message(role="assistant", text=reply.data.model_dump_json()[:MOST_PLAN]),
-                    Message(role="user", text=f"{error}. Write the plan again, for the description above."),
+                    Message(role="user", text=_objection(error, reply.data)),
                 ]
         assert problem is not None
         raise problem
@@ -137,9 +183,8 @@ def _brief(answer: PlanAnswer, words: str) -> Brief:
     Raises:
         BriefError: the answer is not a valid plan.
     """
-    things = "; ".join(_in_our_words(thing) for thing in answer.along if thing.strip())
-    line = f"{things} | {_in_our_words(answer.road)}"
-    if not line.strip("| ") or len(line) > MOST_PLAN:
+    line = _line(answer)
+    if not line.strip("|/ ") or len(line) > MOST_PLAN:
         start = " ".join(words.split())[:40]
         raise BriefError(f"no road could be read out of '{start}'; {EXAMPLE}")
     brief = read_plan(line)
@@ -150,10 +195,48 @@ def _brief(answer: PlanAnswer, words: str) -> Brief:
     return normal(brief).model_copy(update=told)
 
 
+def _objection(error: BriefError, answer: PlanAnswer) -> str:
+    """Returns the message to a model whose answer is not a valid plan."""
+    where = ON_LINES if "|" in str(error) and any(map(is_junction, _things(answer))) else ""
+    return f"{error}.{where and f'{where}.'} Write the plan again, for the description above."
+
+
+def _line(answer: PlanAnswer) -> str:
+    """Returns the plan that an answer gives in its fields, on one line."""
+    things, whole = [*_things(answer)], _in_our_words(answer.road)
+    if things and is_map(things[0]):
+        return f"{'; '.join(things)} {WHOLE} {whole}"
+    if not any(map(is_junction, things)):
+        return _road([*things, f"{ROAD} {whole}"])
+    parts = [
+        part
+        for is_place, lines in groupby(things, is_junction)
+        for part in (lines if is_place else (_road([*lines]),))
+    ]
+    return f"{f' {BETWEEN} '.join(parts)} {WHOLE} {whole}"
+
+
+def _things(answer: PlanAnswer) -> Iterator[str]:
+    """Yields the lines of an answer in the words of plans; several on one line are taken apart."""
+    for line in answer.along:
+        yield from filter(None, map(_in_our_words, re.split(rf";|{BETWEEN}", line)))
+
+
+def _road(lines: Sequence[str]) -> str:
+    """Returns the plan of one road: its clauses, and what holds for all of it."""
+    clauses = [line for line in lines if line.split()[0] != ROAD]
+    wishes = [line.removeprefix(ROAD) for line in lines if line.split()[0] == ROAD]
+    return f"{'; '.join(clauses)} | {' '.join(wishes)}"
+
+
 def _in_our_words(text: str) -> str:
-    """Returns one feature of a plan with its kind first and common synonyms replaced; other words stay."""
+    """Returns one line of a plan with its kind first and common synonyms replaced; other words stay."""
     words = [SAID.get(word.lower(), word) for word in text.replace("|", " ").replace(",", " ").split()]
-    kind = [word for word in words if word in KINDS and "(" not in text][:1]
+    if words[:1] in ([MAP], [ROAD]):
+        return " ".join(words)
+    # the way straight on at a junction is not a straight
+    kinds = JUNCTIONS if any(word in JUNCTIONS for word in words) else KINDS
+    kind = [word for word in words if word in kinds and "(" not in text][:1]
     return " ".join([*kind, *(word for word in words if word not in kind)])
 
 

@@ -41,13 +41,15 @@ def command(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **
 
 def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -> Row:
     from roadgpt.check import inspect
-    from roadgpt.network import made_from
+    from roadgpt.network import has_no_route, made_from
 
     begun = time.perf_counter()
     blueprint, remarks = blueprint_of(file, world)
     road = made_from(blueprint, world, geometry)
     findings = inspect(road, None, world, rules)
     seconds = time.perf_counter() - begun
+    if is_only_map := has_no_route(road):
+        remarks = (*remarks, "the map has no route, so only its roads and junctions are checked")
     for remark in remarks:
         screen.say(f"{file}: {remark}")
     for finding in findings[1:]:
@@ -60,6 +62,6 @@ def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -
         is_valid=not findings,
         validation_message=sentence,
         findings=tuple(finding.sentence for finding in findings),
-        length_m=road.length,
+        length_m=None if is_only_map else road.length,
         seconds=seconds,
     )

@@ -11,7 +11,7 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
-from roadgpt.cli.roads import check_file, shown_runs
+from roadgpt.cli.roads import check_file, named_in_errors, shown_runs
 from roadgpt.errors import RoadGPTError, UsageError, explained
 
 if TYPE_CHECKING:
@@ -58,6 +58,7 @@ def command(
     roadgpt compare DIR/runs/0001 DIR/runs/0002
     roadgpt compare a.json b.json --axes thesis --mirror
     """
+    from roadgpt.network import refuse_without_route
     from roadgpt.report.canvas import format_of
     from roadgpt.study import compare
 
@@ -69,6 +70,9 @@ def command(
     if len(roads) < 2:
         missing = one if runs[0].road is None else other
         raise UsageError(f"there is no road in {missing}; give a run that has one")
+    for file, road in zip((one, other), roads, strict=True):
+        with named_in_errors(file):
+            refuse_without_route(road, "compared")
     found = compare(roads[0], roads[1], mirror)
     if as_json:
         click.echo(json.dumps({**asdict(found), "general": found.general, "duplicate": found.is_duplicate}))

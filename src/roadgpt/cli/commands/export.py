@@ -10,7 +10,7 @@ from click.core import ParameterSource
 from roadgpt.cli import options
 from roadgpt.cli.option import Argument, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.roads import NamedRoad, blueprint_of, numbered, roads_named
+from roadgpt.cli.roads import NamedRoad, blueprint_of, named_in_errors, numbered, roads_named
 from roadgpt.cli.streams import warn
 from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError
 
@@ -70,7 +70,8 @@ def command(
     for each in roads_named(files, choice, takes_all=True, complain=complain):
         taken.add(name := next(name for name in numbered(each.stem) if name not in taken))
         try:
-            written = export(source.run_of(each), out, formats, name)
+            with named_in_errors(each.said):
+                written = export(source.run_of(each), out, formats, name)
         except PartError:
             raise
         except (ExportError, UsageError) as error:

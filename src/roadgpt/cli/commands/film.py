@@ -11,7 +11,7 @@ from roadgpt.cli.option import Argument, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
 from roadgpt.cli.progress import watched
-from roadgpt.cli.roads import NamedRoad, check_file, made, roads_named, run_of, shown_runs
+from roadgpt.cli.roads import NamedRoad, check_file, made, named_in_errors, roads_named, run_of, shown_runs
 from roadgpt.cli.streams import warn
 from roadgpt.errors import UsageError
 
@@ -147,8 +147,12 @@ def _films(
 
 
 def _make(runs: list[Any], out: Path, view: str, settings: "Settings", quiet: bool) -> None:
+    from roadgpt.network import refuse_without_route
     from roadgpt.report.film import write
 
+    for run in runs:
+        with named_in_errors(run.source or run.title):
+            refuse_without_route(run.road, "filmed")
     write(runs, out, MOUNTS.get(view, view), settings, lambda them, n: watched(them, n, "frames", quiet))
     if not quiet:
         click.echo(str(out))

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.drive.driving_line import FloatArray, line_along, pursuit_curvature, stations
-from roadgpt.drive.turning import StopSigns, highest_speeds, kept_in_lane
+from roadgpt.drive.driving_line import FloatArray, line_along, pursuit_curvature, smoothed, stations
+from roadgpt.drive.turning import EASY_BRAKING, StopSigns, highest_speeds, kept_in_lane
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
@@ -43,7 +43,8 @@ class BeamngLike:
 
     No recording has a junction. Inside junctions and roundabouts the driver drives as people do
     (``roadgpt.drive.turning``): the middle of the car keeps 1.5 m from both edges of the lane, the car is as
-    fast as people drive on a line of the same radius, and it stops at stop signs.
+    fast as people drive on a line of the same radius, and brakes for it with at most 3.4 m/s^2; and it stops
+    at stop signs.
 
     Args:
         cut: largest shift towards the inside of a bend, in metres, at a speed limit of 70 km/h.
@@ -104,7 +105,7 @@ class BeamngLike:
         )
         # Like BeamNG's plan, this one considers slopes but not crests. Superelevation is an assumption.
         level = replace(line, crest=[0.0] * len(line.crest))
-        self._line, self._speed = line, plan_speed(level, limits, highest_speeds(road, line))
+        self._line, self._speed = line, plan_speed(level, limits, highest_speeds(road, line, EASY_BRAKING))
         self._signs = StopSigns(road)
 
     def bend(self, road: "Road", world: "World") -> FloatArray:
@@ -115,7 +116,7 @@ class BeamngLike:
         s = stations(road)
         bend = road.curvature(s)
         stretch = np.maximum(1 - world.profile_of(road).middle(s) * bend, TIGHTEST)
-        return _smoothed(bend / stretch, float(s[1]))
+        return smoothed(bend / stretch, float(s[1]), SMOOTHING)
 
     def offsets(self, road: "Road", world: "World") -> FloatArray:
         """Returns the offsets of the planned line at ``stations(road)``, shape ``(n,)``.
@@ -161,11 +162,3 @@ class BeamngLike:
         else:
             command = Command(steer, 0.0, min(-self.brake * error, 1.0))
         return self._signs.obeyed(view, command)
-
-
-def _smoothed(values: FloatArray, step: float) -> FloatArray:
-    """Returns the values smoothed with a Hann window; beyond each end, the end value is repeated."""
-    half = max(1, round(SMOOTHING / step))
-    window = np.hanning(2 * half + 1 + 2)[1:-1]
-    held = np.pad(values, half, mode="edge")
-    return np.convolve(held, window / window.sum(), mode="valid")

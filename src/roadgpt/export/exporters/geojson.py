@@ -11,7 +11,7 @@ from roadgpt.export.finite import finite
 from roadgpt.export.georeference import degrees
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Route
+from roadgpt.network import Route, has_no_route
 from roadgpt.road import Road, World
 
 STEP = 1.0  # m
@@ -31,12 +31,14 @@ class GeoJson:
         """Writes one feature collection.
 
         ``roadgpt.export.georeference`` defines the geographic position of the map. For a route through
-        junctions, the paved area of the whole network takes the place of the lanes.
+        junctions, the paved area of the whole network takes the place of the lanes. A map without a route has
+        no centre line.
         """
         s = road.sample(STEP).s
         about = {"length_m": road.length, "speed_kmh": world.limits.speed_limit * 3.6}
         beside = _paved(road, world) if isinstance(road, Route) else _lanes(road, world, s)
-        features = [_line("centre line", road.at(s), about), *beside]
+        lines = [] if has_no_route(road) else [_line("centre line", road.at(s), about)]
+        features = [*lines, *beside]
         if poses is not None:
             way = np.stack([poses.x, poses.y, poses.z], axis=-1)
             seconds = (np.round(poses.time, 3) + 0.0).tolist()

@@ -38,6 +38,7 @@ class OpenScenario:
     name = "openscenario"
     suffix = ".xosc"
     holds_junctions = True
+    needs_route = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the scenario, and beside it NAME.xodr (the road) and NAME.route.json (the lanes to drive).

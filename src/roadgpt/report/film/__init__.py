@@ -17,6 +17,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from roadgpt.errors import UsageError
+from roadgpt.network import refuse_without_route
 from roadgpt.report.film.encoding import encoder, write_film
 from roadgpt.report.film.glyphs import Frame
 from roadgpt.report.film.overlay import Overlay
@@ -190,6 +191,8 @@ def write(
     to show progress.
     """
     encoder()  # before anything is drawn
+    for road in (run.road for run in runs if run.road is not None):
+        refuse_without_route(road, "filmed")
     film = Film.of(runs, view, settings)  # type: ignore[arg-type]
     title = " and ".join(dict.fromkeys(run.title for run in runs))
     with closing(film.frames()) as frames:

@@ -76,6 +76,7 @@ def network_values(route: Route) -> dict[str, Any]:
             {"from": round(each.start, MILLIMETRES), "to": round(each.end, MILLIMETRES), "name": each.name}
             for each in junction_stretches(route)
         ],
+        "hasRoute": bool(route.legs),
         "shoulder": round(parts.shoulder, MILLIMETRES),
         "reach": round(parts.reach, MILLIMETRES),
     }

@@ -7,9 +7,9 @@ import numpy as np
 from roadgpt.brief import sentence
 from roadgpt.check.describing import describe
 from roadgpt.errors import UsageError
-from roadgpt.network import Route
+from roadgpt.network import Route, has_no_route
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
-from roadgpt.report.places import places_of
+from roadgpt.report.places import minor_places_of, places_of
 from roadgpt.report.view.columns import FINE, MILLIMETRES, road_columns, rounded
 from roadgpt.report.view.network import network_values
 from roadgpt.road import Road, World
@@ -42,6 +42,8 @@ SCALE = {"mostly": MOSTLY, "colours": [SEVERE[name] for name in SEVERITIES[1:]],
 """The colours that show how far the car is outside its lane, and the share of the car outside from which the
 page says "mostly".
 """
+OF_FIRST_ROAD = "; height and curvature are those of the first road of the map"
+"""What a page says of a map without a route."""
 
 
 def scene(run: Run) -> dict[str, Any]:
@@ -59,7 +61,7 @@ def scene(run: Run) -> dict[str, Any]:
         "colour": OUTCOMES.get(outcome_of(run), INK),
         "letters": LETTERS.get(OUTCOMES.get(outcome_of(run), INK), "#ffffff"),
         "description": run.description,
-        "about": origin(run),
+        "about": origin(run) + (OF_FIRST_ROAD if has_no_route(run.road) else ""),
         "words": _words(run.road),
         "road": _road(run.road, run.world),
         "world": {name: run.world.values()[name] for name in WORLD},
@@ -72,7 +74,9 @@ def scene(run: Run) -> dict[str, Any]:
 
 
 def _words(road: Road) -> str:
-    """Returns the geometry in words; empty for a road that cannot be measured."""
+    """Returns the geometry in words; empty for a road that cannot be measured or a map without a route."""
+    if has_no_route(road):
+        return ""
     try:
         return sentence(describe(road))
     except UsageError:
@@ -111,8 +115,8 @@ def _drive(run: Run) -> dict[str, Any] | None:
 
 def _places(run: Run) -> list[dict[str, Any]]:
     found = []
-    for place in places_of(run):
+    for place in [*minor_places_of(run), *places_of(run)]:  # the last one is drawn on top
         time = None if run.drive is None or place.step is None else float(run.drive["time"][place.step])
         named = {name: getattr(place, name) for name in ("x", "y", "s", "text", "colour", "letters")}
-        found.append({**named, "time": time})
+        found.append({**named, "time": time, "isMinor": place.is_minor})
     return found

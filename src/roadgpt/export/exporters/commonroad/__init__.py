@@ -36,6 +36,7 @@ class CommonRoad:
     name = "commonroad"
     suffix = ".cr.xml"
     holds_junctions = True
+    needs_route = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the scenario.

@@ -28,7 +28,8 @@ class OpenDrive:
     holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the file, and beside it ``NAME.route.json`` with the roads and lanes to drive.
+        """Writes the file, and beside it ``NAME.route.json`` with the roads and lanes to drive. For a map
+        without a route, this is an empty list.
 
         ``poses`` is ignored, because OpenDRIVE cannot hold a drive.
         """

@@ -83,7 +83,7 @@ function networkMarkings(scene, origin) {
   }
   const tint = new Shape3(origin);
   const { bounds, driven } = scene.road.lanes;
-  band(tint, scene.road, scene.road.s, [bounds[driven].t, 0.006], [bounds[driven + 1].t, 0.006], colourOf(ON_ROUTE));
+  if (scene.network.hasRoute) band(tint, scene.road, scene.road.s, [bounds[driven].t, 0.006], [bounds[driven + 1].t, 0.006], colourOf(ON_ROUTE));
   const group = new THREE.Group();
   group.add(tint.mesh(THREE.MeshLambertMaterial, ABOVE_ROAD(1)), lines.mesh(THREE.MeshLambertMaterial, ABOVE_ROAD(2)));
   return group;
@@ -118,7 +118,7 @@ function paintNetwork(pen, { network, road }, px, py, scale) {
   const sides = [bounds[driven].t, bounds[driven + 1].t].map((t) => road.s.map((s) => beside(road, s, offsetAt(road, t, s))));
   pen.fillStyle = pen.strokeStyle = "#4f86b5";
   pen.lineWidth = 0.6;
-  for (let i = 1; i < road.s.length; i++) {
+  for (let i = 1; network.hasRoute && i < road.s.length; i++) {
     pen.beginPath();
     [sides[0][i - 1], sides[0][i], sides[1][i], sides[1][i - 1]].forEach(([x, y], k) => (k ? pen.lineTo(px(x), py(y)) : pen.moveTo(px(x), py(y))));
     pen.fill();

@@ -107,9 +107,11 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
     if (scene.network) paintNetwork(pen, scene, px, py, view.scale);
     else single(pen);
     if (columns) path(pen);
-    label(pen, size, 0, "start", LOOK.paper);
-    label(pen, size, road.length, isLoop(view.scale) ? "" : "goal", LOOK.ink);
-    scene.places.forEach((place) => cross(pen, px(place.x), py(place.y), 6, place.colour));
+    if (hasEnds(scene)) {
+      label(pen, size, 0, "start", LOOK.paper);
+      label(pen, size, road.length, isLoop(view.scale) ? "" : "goal", LOOK.ink);
+    }
+    scene.places.forEach((place) => cross(pen, px(place.x), py(place.y), place.isMinor ? 3.5 : 6, place.colour));
     scaleBar(pen, size, step);
   }
 
@@ -206,7 +208,8 @@ function said(pen, text, x, y, align, colour = LOOK.ink) {
 }
 
 function cross(pen, x, y, r, colour = MARK) {
-  for (const [style, width] of [["#fff", 5], [colour, 2.6]]) {
+  const thick = r < 4 ? 0.7 : 1;
+  for (const [style, width] of [["#fff", 5 * thick], [colour, 2.6 * thick]]) {
     pen.beginPath();
     pen.moveTo(x - r, y - r);
     pen.lineTo(x + r, y + r);

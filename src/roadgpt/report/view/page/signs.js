@@ -1,7 +1,8 @@
-// Signs: start and goal, posts beside the road, and pins where the car failed or a rule objects.
+// Signs: start and goal, posts beside the road, and pins where the car did wrong or a rule objects.
 
 const POST_EVERY = 25; // m; half of what German rules ask for on straights, so that speed is seen
 const PLATE = 0.00082; // of the height of the picture, per pixel of text
+const MINOR = 0.75; // size of a plate whose place caused no failure, of the others'
 
 function posts(road, origin) {
   const { left, right } = road.lanes.rims;
@@ -25,6 +26,9 @@ function posts(road, origin) {
   return group;
 }
 
+// A map without a route has neither start nor goal.
+const hasEnds = ({ network }) => !network || network.hasRoute;
+
 // A white line at the start, a chequered band at the goal, both over the driven lane.
 function startAndGoal(scene, origin) {
   const { road } = scene;
@@ -47,8 +51,9 @@ function startAndGoal(scene, origin) {
   return shape.mesh(THREE.MeshLambertMaterial, { polygonOffset: true, polygonOffsetFactor: -3, polygonOffsetUnits: -3 });
 }
 
-// A pole with a ball and a plate of text over a place.
-function pin(x, y, z, text, colour, high = 3.4) {
+// A pole with a ball and, if there is text, a plate over a place; lower and smaller where it caused no failure.
+function pin(x, y, z, text, colour, isMinor) {
+  const high = isMinor ? 2.4 : 3.4;
   const group = new THREE.Group();
   const paint = new THREE.MeshLambertMaterial({ color: colour });
   const pole = new THREE.Mesh(new THREE.CylinderGeometry(0.045, 0.045, high, 8), paint);
@@ -56,9 +61,11 @@ function pin(x, y, z, text, colour, high = 3.4) {
   pole.position.set(x, y, z + high / 2);
   const ball = new THREE.Mesh(new THREE.SphereGeometry(0.2, 16, 12), paint);
   ball.position.set(x, y, z + high);
-  const sprite = plate(text, css(rgbOf(colour)));
+  group.add(pole, ball);
+  if (!text) return { group };
+  const sprite = plate(text, css(rgbOf(colour)), isMinor ? MINOR : 1);
   sprite.position.set(x, y, z + high + 0.35);
-  group.add(pole, ball, sprite);
+  group.add(sprite);
   return { group, sprite };
 }
 
@@ -111,7 +118,7 @@ function onScreen(canvas) {
 
 const rgbOf = (hex) => [(hex >> 16) & 255, (hex >> 8) & 255, hex & 255];
 
-function plate(text, colour) {
+function plate(text, colour, size) {
   const canvas = document.createElement("canvas");
   const pen = canvas.getContext("2d");
   const rows = text.split("\n").slice(0, 4);
@@ -130,7 +137,7 @@ function plate(text, colour) {
   pen.textBaseline = "middle";
   rows.forEach((row, i) => pen.fillText(row, 16, 29 + i * 36));
   const sprite = onScreen(canvas);
-  sprite.scale.set(wide * PLATE, high * PLATE, 1);
+  sprite.scale.set(wide * PLATE * size, high * PLATE * size, 1);
   sprite.center.set(0.5, 0);
   sprite.renderOrder = 10;
   return sprite;

@@ -24,16 +24,18 @@ function makeStage(canvas, scene, trip, fastest) {
   const net = landOf(scene);
   const grid = landGrid(net, scene.world, origin);
   world.add(landMesh(net, origin, meadowGrain(renderer)), grid);
-  world.add(pavement(scene, origin, net.bank, asphaltGrain(renderer)), startAndGoal(scene, origin));
+  world.add(pavement(scene, origin, net.bank, asphaltGrain(renderer)));
+  if (hasEnds(scene)) world.add(startAndGoal(scene, origin));
   if (scene.network) world.add(networkMarkings(scene, origin), networkSigns(scene.network, origin));
   else world.add(markings(scene, origin));
   for (const road of roads) if (road.lanes.shoulder > 0.5) world.add(posts(road, origin));
   const line = scene.drive ? drivenLine(scene, origin, fastest) : new THREE.Group();
   world.add(line);
   const pins = scene.places.map((place) => {
-    const z = onRoad(scene.road, place.s, 0).z;
+    // a car that took a wrong turn stands on another road, which may be higher
+    const z = place.isMinor && trip.isDriven ? trip.at(place.time).z - trip.car.height : onRoad(scene.road, place.s, 0).z;
     const colour = place.colour === scene.severe.failed ? 0xc04f00 : parseInt(place.letters.slice(1), 16);
-    return pin(place.x - origin.x, place.y - origin.y, z - origin.z, place.text, colour);
+    return pin(place.x - origin.x, place.y - origin.y, z - origin.z, place.text, colour, place.isMinor);
   });
   pins.forEach(({ group }) => world.add(group));
   const car = trip.isDriven ? makeCar(trip.car) : makePointer();
@@ -64,7 +66,7 @@ function makeStage(canvas, scene, trip, fastest) {
     draw() {
       dome.position.copy(camera.position);
       dot.visible = camera.position.distanceTo(dot.position) > SMALL;
-      this.plates = keepApart(pins, camera);
+      this.plates = keepApart(pins.filter(({ sprite }) => sprite), camera);
       renderer.render(world, camera);
     },
   };

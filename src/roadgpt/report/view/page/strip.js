@@ -117,7 +117,7 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
       said(pen, what.limit.name, LEFT + view.wide - 2, py(what.limit.value) + 12, "right", LOOK.soft);
     }
     const level = what.names ? TOP + view.tall - 6 : TOP + 5; // names of junctions are at the top
-    for (const place of scene.places) cross(pen, px(clamp(place.s, 0, road.length)), level, 4, place.colour);
+    for (const place of scene.places) cross(pen, px(clamp(place.s, 0, road.length)), level, place.isMinor ? 2.8 : 4, place.colour);
   }
 
   function over(pen, size, pose) {
