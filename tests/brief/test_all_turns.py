@@ -147,21 +147,6 @@ def test_uphill_at_nothing_is_level() -> None:
 
 
 @pytest.mark.parametrize(
-    ("written", "right"),
-    [
-        ("star sharp_right deg=60 arms=6", "star right deg=60 arms=6"),
-        ("star sharp_right deg=110", "star sharp_right deg=110"),
-        ("y_junction slight_left deg=40", "y_junction slight_left deg=40"),
-        ("y_junction slight_left deg=85", "y_junction left deg=85"),
-        ("star sharp_left", "star sharp_left"),
-    ],
-)
-def test_degrees_decide_how_sharply_a_route_turns(written: str, right: str) -> None:
-    words = "six roads meet in a star"
-    assert read_plan(plan(brief_of(written, slotted(words), words))) == read_plan(right)
-
-
-@pytest.mark.parametrize(
     ("words", "asks"),
     [
         ("a closed circuit of 600 m", True),

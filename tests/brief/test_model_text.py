@@ -11,7 +11,6 @@ from roadgpt.brief import model
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import vocabulary
-from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.numerals import spell
 from roadgpt.brief.readers.model.slots import NumberSlot, slotted
 from roadgpt.brief.readers.model.vocabulary import TOKENS, plan_of, tokens_of
@@ -147,27 +146,3 @@ def test_a_radius_does_not_take_the_unit_of_what_follows() -> None:
         (30, "degrees"),
         (50, "degrees"),
     ]
-
-
-@pytest.mark.parametrize(
-    ("text", "sides"),
-    [
-        ("R L R R downhill", "right left right right"),
-        ("uphill: left, then right and right", "left right right"),
-        ("links, rechts, links", "left right left"),
-        ("left, right", ""),
-        ("left, right, left, and the last left is sharp", ""),
-        ("two lefts and a right", ""),
-        ("two left, right, right", ""),
-        ("three turns: left, right, right", "left right right"),
-        ("left, right, left, twice", ""),
-    ],
-)
-def test_sides_in_one_list_are_found(text: str, sides: str) -> None:
-    assert listed_sides(slotted(text)) == tuple(sides.split())
-
-
-def test_plans_are_held_against_listed_sides() -> None:
-    assert sides_of(read_plan("turn x2 left; straight; hairpin right")) == ("left", "left", "right")
-    assert sides_of(read_plan("turn x3 left alternating")) == ("left", "right", "left")
-    assert sides_of(read_plan("turn x2.. left")) == ()

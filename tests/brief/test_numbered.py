@@ -3,7 +3,6 @@
 import pytest
 
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.listed_values import with_listed_values
 from roadgpt.brief.readers.model.numbered_junctions import with_numbered_junctions
 from roadgpt.brief.readers.model.numbered_sides import with_numbered_sides
 from roadgpt.brief.readers.model.ordinals import place_of, places_in
@@ -127,26 +126,6 @@ def test_turns_lead_to_the_sides_that_are_told(words: str, read: str, meant: str
 )
 def test_sides_that_are_not_clear_stay(words: str, read: str) -> None:
     assert with_numbered_sides(read_plan(read), slotted(words)) == read_plan(read)
-
-
-@pytest.mark.parametrize(
-    ("words", "read", "meant"),
-    [
-        (
-            "six turns right left right left right left, angles 30, 45, 60, 60, 45, 30",
-            "turn right deg=45; turn left deg=60; turn right deg=60; turn left deg=60; turn right deg=45;"
-            " turn left deg=30",
-            "turn right deg=30; turn left deg=45; turn right deg=60; turn left deg=60; turn right deg=45;"
-            " turn left deg=30",
-        ),
-        ("three bends, radii 20, 30 and 20 m", "turn x2 r=20; turn r=30", "turn r=20; turn r=30; turn r=20"),
-        ("angles 80, 60, 40 m", "turn deg=40; turn deg=60; turn deg=80", None),  # a unit of lengths
-        ("three bends: 20, 30 and 40 degrees", "turn deg=20; turn x2 deg=90", None),  # 90 is not of the list
-        ("three bends, 20, 30 and 40 degrees", "turn deg=40; turn deg=20", None),
-    ],
-)
-def test_turns_get_the_values_of_a_list(words: str, read: str, meant: str | None) -> None:
-    assert plan(with_listed_values(read_plan(read), slotted(words))) == plan(read_plan(meant or read))
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 import pytest
 
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.denied_slopes import with_denied_slope
 from roadgpt.brief.readers.model.plan_choice import brief_of, most_plausible
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
@@ -22,7 +21,7 @@ def plans(*scored: tuple[str, float]) -> list[ScoredPlan]:
 
 
 @pytest.mark.parametrize(
-    ("behind", "chosen"), [(0.7, f"{ROUTE} len=120 || len=1000"), (1.3, f"{ROUTE} len=120")]
+    ("behind", "chosen"), [(1.7, f"{ROUTE} len=120 || len=1000"), (2.3, f"{ROUTE} len=120")]
 )
 def test_a_plan_with_every_number_is_preferred_if_it_is_almost_as_likely(behind: float, chosen: str) -> None:
     text = slotted("Route of 1 km on a motorway: past an exit, leave at the next, deceleration lane 120 m")
@@ -68,24 +67,6 @@ def test_a_kind_that_is_counted_once_has_no_more_junctions() -> None:
 def test_refusals_stay() -> None:
     found = plans(("!contradiction length", -0.1), ("turn | len=[1]", -0.2))
     assert most_plausible(found, slotted("a bend on a road of 1 km")).line == "!contradiction length"
-
-
-@pytest.mark.parametrize(
-    ("words", "read", "meant"),
-    [
-        ("it never goes down and gains 14 m", "| down climb=14", "| up climb=14"),
-        ("elle ne descend jamais et gagne 14 m", "| down climb=14", "| up climb=14"),
-        ("kein Stück führt bergauf, am Ende 6 m tiefer", "| up climb=-6", "| down climb=-6"),
-        (
-            "a downhill road without turns that gains 14 m",
-            "| down climb=14",
-            "| down climb=14",
-        ),  # contradicts itself
-        ("it never goes down", "| down", "| down"),  # what it does is not said
-    ],
-)
-def test_a_slope_that_is_denied_gives_way_to_that_of_the_height(words: str, read: str, meant: str) -> None:
-    assert plan(with_denied_slope(read_plan(read), slotted(words))) == plan(read_plan(meant))
 
 
 @pytest.mark.parametrize(

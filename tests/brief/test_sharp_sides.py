@@ -2,8 +2,9 @@
 
 import pytest
 
+from roadgpt.brief.plan import plan as plan_of
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model.exit_words import with_motorway_behind_ramp
+from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.readers.model.sharp_sides import with_sharp_side
 
 
@@ -38,10 +39,5 @@ def test_a_sharp_side_at_a_skew_crossroads(words: str, plan: str, wanted: str) -
     ],
 )
 def test_the_lanes_of_the_motorway_that_is_joined(words: str, lanes: int) -> None:
-    wanted = read_plan(f"merge ramp // | motorway lanes={lanes}")
-    assert with_motorway_behind_ramp(read_plan("merge ramp"), words) == wanted
-
-
-def test_lanes_that_the_plan_has_are_kept() -> None:
-    brief = read_plan("merge ramp // | motorway lanes=2")
-    assert with_motorway_behind_ramp(brief, "a ramp onto a three-lane motorway") == brief
+    brief = ModelReader().read(words)
+    assert plan_of(brief) == f"merge ramp // | motorway lanes={lanes}"

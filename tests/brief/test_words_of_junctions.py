@@ -7,7 +7,7 @@ from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.map_words import with_counted_map
 from roadgpt.brief.readers.model.other_roads import with_other_roads
-from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lane
+from roadgpt.brief.readers.model.own_lane import without_own_lane
 from roadgpt.brief.readers.model.plan_choice import brief_of
 from roadgpt.brief.readers.model.route_words import asks_for_map
 from roadgpt.brief.readers.model.slots import slotted
@@ -284,26 +284,6 @@ def test_roads_between_alike_junctions_are_alike_too() -> None:
     assert [each.length.lo for each in brief.stretches if each.length] == [100, 100, 100]
     uneven = read_plan("crossroads // | len=100 // crossroads // | len=50 // crossroads")
     assert with_counted_junctions(uneven, slotted("four crossroads, 100 m and 50 m apart")) == uneven
-
-
-@pytest.mark.parametrize(
-    ("asked", "line"),
-    [
-        (
-            "| lanes=3 oneway // lane_drop // | lanes=1 oneway",
-            "| lanes=3 oneway // lane_drop // | lanes=2 oneway // lane_drop // | lanes=1 oneway",
-        ),
-        (
-            "| lanes=1 // lane_gain side=left // | lanes=3",
-            "| lanes=1 // lane_gain side=left // | lanes=2 // lane_gain side=left // | lanes=3",
-        ),
-        ("| lanes=2 // lane_drop // | lanes=1", "| lanes=2 // lane_drop // | lanes=1"),
-        ("| lanes=1 // lane_gain // | lanes=4", "| lanes=1 // lane_gain // | lanes=4"),  # refused elsewhere
-        ("| lanes=3 // lane_change left // | lanes=1", "| lanes=3 // lane_change left // | lanes=1"),
-    ],
-)
-def test_one_lane_ends_or_begins_at_a_time(asked: str, line: str) -> None:
-    assert plan(with_each_lane(read_plan(asked))) == line
 
 
 @pytest.mark.parametrize(

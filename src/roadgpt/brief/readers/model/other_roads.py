@@ -4,12 +4,14 @@ network left it out.
 
 import re
 
+from roadgpt.brief.amount import exactly
 from roadgpt.brief.junctions import JunctionClause, Way
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.denial import says
 from roadgpt.brief.readers.model.numerals import plain
-from roadgpt.brief.readers.model.own_lane import ONE_WAY
 
+ONE_WAY = exactly(0)
+"""The number of oncoming lanes of a one-way road."""
 ONE_WAY_ONLY = re.compile(
     r"\bone[- ]?way (?:streets|roads) (?:only|throughout|everywhere)\b|"
     r"\b(?:nothing but|only) one[- ]?way (?:streets|roads)\b(?! (?:is|are))|"

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Mapping
 
-from roadgpt.brief.amount import exactly, span
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind
+from roadgpt.brief.amount import span
+from roadgpt.brief.junctions import RAMPS, JunctionClause, JunctionKind
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.numerals import plain
 
@@ -16,8 +16,6 @@ BEGINS = re.compile(
     r"\b(?:empez|empiez|sal)\w* (?:en|por) el carril (?:de la )?(izquierd[ao]|derech[ao])\b|"
     r"\b(?:cominc|iniz|part)\w* (?:nella|sulla|in) corsia (?:di )?(sinistra|destra)\b"
 )
-ONE_WAY = exactly(0)
-"""The number of oncoming lanes of a one-way road."""
 ADDED: Mapping[JunctionKind, int] = {"lane_gain": 1, "lane_drop": -1}
 """How many lanes more there are behind a place."""
 CHANGED: Mapping[JunctionKind, re.Pattern[str]] = {
@@ -84,27 +82,3 @@ def with_told_lane(brief: Brief, words: str) -> Brief:
         roads = (*brief.stretches[: n + 1], middle, *brief.stretches[n + 1 :])
         return brief.model_copy(update={"junctions": junctions, "stretches": roads})
     return brief
-
-
-def with_each_lane(brief: Brief) -> Brief:
-    """Returns a route on which one lane ends or begins at a time, and one-way roads stay one-way there.
-
-    A place where two lanes end or begin is split into two places, with a road between them.
-    """
-    junctions, roads = list(brief.junctions), list(brief.stretches)
-    is_one_way = bool(roads) and roads[0].against == ONE_WAY
-    for n, junction in enumerate(junctions):
-        is_one_way = (is_one_way and junction.kind in LANE_KINDS) or roads[n + 1].against == ONE_WAY
-        if is_one_way and roads[n + 1].against != ONE_WAY:
-            roads[n + 1] = roads[n + 1].model_copy(update={"against": None})
-    for n in reversed(range(len(junctions))):
-        before, behind = roads[n].lanes, roads[n + 1].lanes
-        if before is None or behind is None or not (before.exact and behind.exact):
-            continue
-        change = (behind.lo or 0) - (before.lo or 0)
-        if (junctions[n].kind, change) not in (("lane_drop", -2), ("lane_gain", 2)):
-            continue
-        middle = Brief(lanes=exactly((before.lo or 0) + change / 2), against=roads[n].against)
-        roads.insert(n + 1, middle)
-        junctions.insert(n, junctions[n])
-    return brief.model_copy(update={"junctions": tuple(junctions), "stretches": tuple(roads)})

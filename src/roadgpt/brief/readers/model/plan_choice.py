@@ -10,9 +10,6 @@ from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
-from roadgpt.brief.readers.model.denied_slopes import with_denied_slope
-from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
-from roadgpt.brief.readers.model.listed_values import with_listed_values
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.numbered_sides import told_turns, with_numbered_sides
 from roadgpt.brief.readers.model.ring_sizes import used_diameters
@@ -24,7 +21,7 @@ from roadgpt.errors import BriefError
 Sloped = TypeVar("Sloped", Brief, Clause)
 LEVEL = ("flat", "nearly_flat")
 NEARLY = 0.7  # difference of score
-ALMOST = 1.0  # difference of score
+ALMOST = 2.0  # difference of score
 FAIRLY = 1.5  # difference of score
 LIKELY = 2.5
 """Largest difference of score at which a plan is preferred that has as many junctions as the words name."""
@@ -33,15 +30,13 @@ LIKELY = 2.5
 def most_plausible(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan:
     """Returns the likeliest plan, but prefers plans that match the text and do not contradict themselves.
 
-    If the text lists the sides of the turns, returns the likeliest plan whose turns have these sides. If it
-    lists none or no plan has them, returns the likeliest plan; but if that is a route or a map that
-    contradicts itself, returns the likeliest plan that does not, if it is nearly as likely.
+    If the likeliest plan is a route or a map that contradicts itself, returns the likeliest one that does
+    not, if that is nearly as likely.
     """
     first = found[0] if found[0].is_refusal else _with_all_numbers(found, text) or found[0]
     found = (first, *(draft for draft in found if draft is not first))
-    listed = _as_listed(found, text)
-    if listed is not None or first.is_refusal:
-        return listed or first
+    if first.is_refusal:
+        return first
     if not is_of_junctions(first.line):
         return _with_told_turns(found, text) or first
     if can_be_kept(first.line):
@@ -77,27 +72,10 @@ def _turns(line: str) -> Amount:
     return brief.turns or total(brief.clauses)
 
 
-def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
-    """Returns the likeliest plan whose turns have the sides listed in the words; None if there is no list or
-    no such plan.
-    """
-    sides = listed_sides(text)
-    if not sides or found[0].is_refusal:
-        return None
-    is_route = is_of_junctions(found[0].line)
-    kept = (
-        draft
-        for draft in found
-        if not draft.is_refusal and is_of_junctions(draft.line) == is_route and can_be_kept(draft.line)
-    )
-    return next((draft for draft in kept if sides_of(read_plan(draft.line)) == sides), None)
-
-
 def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, corrected by rules where the words of the description are clear."""
     brief = with_words_of_all_turns(_level_at_zero(read_plan(line)), text)
-    brief = with_denied_slope(brief, text)
-    brief = with_numbered_sides(with_listed_values(with_checked_counts(brief, text), text), text)
+    brief = with_numbered_sides(with_checked_counts(brief, text), text)
     if brief.junctions or brief.map is not None:
         from roadgpt.brief.readers.model.route_rules import with_words_of_network  # only for networks
 

@@ -6,25 +6,18 @@ Descriptions of single roads do not need these rules.
 from collections.abc import Sequence
 from itertools import pairwise
 
-from roadgpt.brief.amount import meets
-from roadgpt.brief.junctions import BENDS
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.ranges import Range
 from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.armed_junctions import with_told_arms
-from roadgpt.brief.readers.model.exit_words import (
-    with_motorway_behind_ramp,
-    with_passed_exits,
-    with_stay_on_motorway,
-)
+from roadgpt.brief.readers.model.exit_words import with_passed_exits
 from roadgpt.brief.readers.model.from_start import with_distances_from_start
 from roadgpt.brief.readers.model.map_signs import with_counted_signs
 from roadgpt.brief.readers.model.map_words import asks_for_grid, with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.numbered_junctions import with_numbered_junctions
 from roadgpt.brief.readers.model.other_roads import with_other_roads
-from roadgpt.brief.readers.model.own_lane import with_each_lane, with_told_lane, without_own_lane
+from roadgpt.brief.readers.model.own_lane import with_told_lane, without_own_lane
 from roadgpt.brief.readers.model.ramp_lengths import with_ramp_lengths
 from roadgpt.brief.readers.model.route_lengths import (
     with_length_of_route,
@@ -82,10 +75,9 @@ def with_words_of_network(brief: Brief, text: SlottedText, words: str) -> Brief:
     brief = with_ramp_lengths(with_counted_junctions(brief, text), text)
     brief = with_lengths_of_ends(with_length_past_lanes(with_length_of_route(brief, text), text), text)
     brief = with_counted_signs(with_counted_map(brief, text), text)
-    brief = with_each_lane(with_told_lane(_into_new_lane(brief), words))
-    brief = _with_turns_by_degrees(with_sharp_side(with_told_arms(brief, text), words))
-    brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)
-    brief = with_motorway_behind_ramp(with_passed_exits(brief, words), words)
+    brief = with_told_lane(_into_new_lane(brief), words)
+    brief = with_sharp_side(with_told_arms(brief, text), words)
+    brief = with_passed_exits(without_own_lane(with_told_letter(brief, text), words), words)
     brief = with_distances_from_start(with_numbered_junctions(brief, text), words)
     brief = with_sides_of_side_roads(brief, text, words)
     return with_other_roads(with_whole_drive(brief, words), words)
@@ -98,16 +90,3 @@ def _into_new_lane(brief: Brief) -> Brief:
         if before.kind == "lane_gain" and place.kind == "lane_change" and before.side and place.take is None:
             places[n] = place.model_copy(update={"take": before.side})
     return brief.model_copy(update={"junctions": tuple(places)})
-
-
-def _with_turns_by_degrees(brief: Brief) -> Brief:
-    """Returns a route that goes left or right where the degrees are too few for "sharply", or too many or
-    too few for "slightly".
-    """
-    junctions = tuple(
-        each.model_copy(update={"take": (each.take or "").rpartition("_")[2]})
-        if not meets(each.degrees, BENDS.get((each.take or "").partition("_")[0], Range()))
-        else each
-        for each in brief.junctions
-    )
-    return brief.model_copy(update={"junctions": junctions})
