@@ -28,6 +28,10 @@ class IdleEditError(EditError):
     """A change request, as it was read, would change nothing on the road."""
 
 
+class UnclearPlaceError(EditError):
+    """A change request, as it was read, may mean any of several places on the road."""
+
+
 class DesignError(RoadGPTError):
     """No road could be designed on this map that meets every requirement of the Brief."""
 

@@ -524,22 +524,45 @@ def test_any_text_is_read_or_refused(words: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "written", "right"),
+    ("words", "right"),
     [
         (
             "let the first and the fourth turn swap radii",
-            "turn 1,4: radius =turn 1",
             "turn 1: radius =turn 4; turn 4: radius =turn 1",
         ),
         (
             "Tausche die Längen der ersten und der letzten Geraden.",
-            "straight 1,-1: length =straight -1",
             "straight 1: length =straight -1; straight -1: length =straight 1",
         ),
-        ("turns 2 and 4 share the radius of turn 2", "turn 2,4: radius =turn 2", None),
-        ("échange les rayons des virages 1, 2 et 3", "turn 1,2,3: radius =turn 1", None),
-        ("swap turns 1 and 2, both with the radius of turn 5", "turn 1,2: radius =turn 5", None),
+        (
+            "intercambia los radios de la primera y la segunda curva",
+            "turn 1: radius =turn 2; turn 2: radius =turn 1",
+        ),
+        ("exchange the radii of turns 1 and 2", "turn 1: radius =turn 2; turn 2: radius =turn 1"),
+        ("swap the angles of turn 2 and turn 4", "turn 2: angle =turn 4; turn 4: angle =turn 2"),
+        ("scambia i raggi della prima curva con la terza", "turn 1: radius =turn 3; turn 3: radius =turn 1"),
+        ("turns 2 and 4 share the radius of turn 2", None),
+        ("échange les rayons des virages 1, 2 et 3", None),
+        ("swap turns 1 and 2, both with the radius of turn 5", None),
+        ("do not swap the radii of turns 1 and 2", None),
+        ("swap the lengths of turn 1 and 2", None),
     ],
 )
-def test_two_parts_exchange_a_value(words: str, written: str, right: str | None) -> None:
-    assert exchanged_values(written, slotted(words, is_change=True)) == right
+def test_two_parts_exchange_a_value(words: str, right: str | None) -> None:
+    assert exchanged_values(slotted(words, is_change=True)) == right
+
+
+@pytest.mark.parametrize(
+    ("words", "plan"),
+    [
+        (
+            "set the straight between turn 1 and turn 2 to 20 m",
+            "straight between(turn 1, turn 2): length =20",
+        ),
+        ("swap turn 2 and turn 3", "turn 2,3: swap"),
+        ("scambia la seconda curva con la terza", "turn 2,3: swap"),
+        ("Intercambia la segunda curva con la tercera", "turn 2,3: swap"),
+    ],
+)
+def test_numbers_of_turns_are_no_lengths(words: str, plan: str) -> None:
+    assert read(words) == plan

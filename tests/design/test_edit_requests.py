@@ -12,8 +12,11 @@ import pytest
 from edit_truth import changed_besides, misses, ours, requests, roads, theirs
 from roadgpt import check
 from roadgpt.brief.change.plan import read_change_plan
+from roadgpt.brief.plan import read_plan
+from roadgpt.brief.readers.model.confidence import DOUBT
+from roadgpt.design import draft
 from roadgpt.design.edit import edit
-from roadgpt.errors import EditError
+from roadgpt.errors import EditError, UnclearPlaceError
 from roadgpt.road import Design, World, build
 
 REFEREE = Path(__file__).resolve().parents[3] / "shared" / "referee.py"
@@ -99,3 +102,17 @@ def test_the_truths_can_be_missed(break_it: str) -> None:
         row = row | {"sides": "LLL"}
     assert misses(row, old, old, ours)
     assert changed_besides(old, old.model_copy(update={"segments": old.segments[1:]}), [2]) == [1]
+
+
+def test_the_descent_of_a_road_that_falls_all_the_way_is_the_whole_road() -> None:
+    """The likelier reading is one of the straights; which one, the words do not say."""
+    design = draft(
+        read_plan("turn right deg=80; straight len=40; turn left deg=60 | down pct=6"), World(), seed=2
+    )
+    edited = edit(design, "dimezza la pendenza della discesa", World())
+    assert [segment.incline for segment in edited.design.segments] == pytest.approx(
+        [segment.incline / 2 for segment in design.segments], abs=0.11
+    )
+    assert edited.confidence <= DOUBT
+    with pytest.raises(UnclearPlaceError, match=r"could be any of"):
+        edit(design, read_change_plan("straight: length more"), World())

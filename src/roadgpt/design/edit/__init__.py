@@ -22,7 +22,7 @@ from roadgpt.design.edit.chatting import edited_by_chat
 from roadgpt.design.edit.placing import placed
 from roadgpt.design.edit.search import made
 from roadgpt.design.road_elements import RoadElements, elements_on_road
-from roadgpt.errors import EditError, IdleEditError
+from roadgpt.errors import EditError, IdleEditError, UnclearPlaceError
 from roadgpt.road import Design, Geometry, World
 
 MOST_CHANGES = 12
@@ -77,11 +77,17 @@ def edit(
     request = checked_request(words)
     try:
         return _edited(design, request, elements, found, world, geometry)
-    except IdleEditError:
+    except (IdleEditError, UnclearPlaceError) as error:
         other = second_reading(request)
-        if other is None:
+        if other is None or (isinstance(error, UnclearPlaceError) and not _is_of_road(other)):
             raise
         return _edited(design, other, elements, found, world, geometry)
+
+
+def _is_of_road(request: EditRequest) -> bool:
+    """Returns whether all changes are of the whole road: "the descent" of a road that falls all the way."""
+    targets = [change.target for change in request.changes]
+    return all(target is not None and target.noun == "road" for target in targets)
 
 
 def _edited(

@@ -8,7 +8,7 @@ from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import way
 from roadgpt.design.edit.stretches import stretch_of, within
 from roadgpt.design.road_elements import RoadElement, RoadElements
-from roadgpt.errors import EditError
+from roadgpt.errors import EditError, UnclearPlaceError
 
 LONG, SHORT = 60.0, 30.0  # m: brief.words
 LEAST_PART = 10.0  # m of a straight that climb, fall or are level, to be called a part of it
@@ -244,7 +244,7 @@ def _chosen(target: Target, found: Sequence[RoadElement], noun: str) -> list[Roa
         return [element for element in found if element in out]
     if len(found) > 1 and not target.every:
         names = " and ".join(("the " + _ordinal(n)) for n in range(1, min(len(found), 2) + 1))
-        raise EditError(
+        raise UnclearPlaceError(
             f"'{target.words}' could be any of {len(found)}; say which ({names}, ...), or: every {told}"
         )
     return list(found)

@@ -28,7 +28,7 @@ def read_by_rules(line: str, text: SlottedText) -> str | None:
         line: the plan that the network wrote.
         text: the change request.
     """
-    read = _climb(text, line) or _swap(text, line) or exchanged_values(line, text)
+    read = _climb(text, line) or _swap(text, line) or exchanged_values(text)
     return read or _other_sides(text, line) or _share(text, line)
 
 

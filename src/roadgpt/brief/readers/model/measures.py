@@ -4,11 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
+from roadgpt.brief.readers.model.nouns import LEFT, ONE_TURN, RIGHT
 from roadgpt.brief.readers.model.units import JOINTS, TIMES, UNITS, Unit
 from roadgpt.brief.readers.model.word_set import word_set
 
 LARGEST_SEEN = 20
+LAST_TURN = 9  # a number up to this one behind "turn" says which turn
 """The largest number without a unit that remains as digits in the text for the model. Larger ones become
 slots."""
 SIDES = LEFT | RIGHT | {"g", "d", "i", "der", "sn", "ds"}
@@ -91,8 +92,9 @@ def share_units(numbers: list[Number], tokens: list[str]) -> None:
             between = between[:-1]
         if one.unit or not other.unit or not 1 <= len(between) <= 2 or is_radius(tokens, one):
             continue
-        if one.first > 0 and tokens[one.first - 1] in SIDES:
-            continue  # "L90 - 40 m" is an angle and a length
+        before = tokens[one.first - 1] if one.first > 0 else ""
+        if before in SIDES or (before in ONE_TURN and one.value <= LAST_TURN):
+            continue  # "L90 - 40 m" is an angle and a length, "turn 2 to 20 m" the second turn
         if any(token not in JOINTS for token in between) or (between == [","] and one.value < LARGEST_SEEN):
             continue
         if len(between) == 2 and between[0] == "," and between[1] not in ("or", "and", "to"):

@@ -13,10 +13,30 @@ TURNS = (
 )
 NUMBER = rf"(?:(?:the|die|der|le|la|les|las|el|il) )?(\d|{PLACE})(?:st|nd|rd|th| \.|e|eme|a)?"
 AND = r"(?:and|with|und|mit|et|avec|y|con|e)"
-TWO = re.compile(
-    rf"\b{TURNS} (?:no |nr |number )?{NUMBER} {AND} (?:{TURNS} )?{NUMBER}\b|"
-    rf"\b{NUMBER} (?:{TURNS} )?{AND} {NUMBER} {TURNS}\b"
-)
+STRAIGHTS = r"(?:straights?|geraden?|lignes? droites?|rectas?|rettiline[oi])"
+
+
+def _two(nouns: str) -> re.Pattern[str]:
+    """Returns the pattern of two things that are named by their numbers, such as "turn 1 and the third"."""
+    return re.compile(
+        rf"\b{nouns} (?:no |nr |number )?{NUMBER} {AND} (?:{nouns} )?{NUMBER}\b|"
+        rf"\b{NUMBER} (?:{nouns} )?{AND} {NUMBER} {nouns}\b|"
+        rf"\b{NUMBER} {nouns} {AND} {NUMBER}(?= |$)"
+    )
+
+
+TWO = _two(TURNS)
+VALUES = {
+    "radius": r"radi\w*|raggi\w*|rayons?",
+    "angle": r"angles?|winkel\w*|angul\w*|angol\w*",
+    "length": r"lengths?|lange\w*|longueurs?|longitud\w*|lunghezz\w*",
+}
+"""Words for the values that two parts may exchange: turns a radius or an angle, straights a length."""
+TWO_WITH = {
+    "radius": ("turn", TWO),
+    "angle": ("turn", TWO),
+    "length": ("straight", _two(STRAIGHTS)),
+}
 BOTH = re.compile(
     rf"\b(?:the (?:two|2|both)|both|die (?:2|zwei|beiden)|les (?:2|deux)|las (?:2|dos)|le (?:2|due)) "
     rf"{TURNS}\b"
@@ -38,8 +58,6 @@ STAYS = re.compile(
     r"rest(?:a|ano)|invariat\w)\b[^,;.]*(?: , wie [^,;.]*)?(?: \.)?$"
 )
 """What stays as it is, said at the end."""
-COPIED = re.compile(r"(turn|straight) (-?\d),(-?\d): (angle|radius|length|slope) =(turn|straight) (-?\d)")
-"""A plan that gives one of two parts the value of the other."""
 WORDS = 12  # words of a request at most
 
 
@@ -58,13 +76,22 @@ def turns_to_swap(text: SlottedText) -> str | None:
     return "turn all" if BOTH.search(said) else None
 
 
-def exchanged_values(line: str, text: SlottedText) -> str | None:
-    """Returns the plan in which two parts exchange a value, where the words say so and the network wrote that
-    both get the value of one: "turn 1,4: radius =turn 1". Returns None for other requests.
+def exchanged_values(text: SlottedText) -> str | None:
+    """Returns the plan in which two turns exchange their radii or angles, or two straights their lengths;
+    None for other requests.
     """
-    found = COPIED.fullmatch(line)
-    said = " ".join(word.text for word in text.words if word.written)
-    if found is None or found[1] != found[5] or found[6] not in found.group(2, 3) or not SWAP.search(said):
+    said = STAYS.sub("", " ".join(word.text for word in text.words if word.written))
+    values = [value for value, words in VALUES.items() if re.search(rf"\b(?:{words})\b", said)]
+    if not SWAP.search(said) or len(values) != 1 or len(said.split()) > WORDS:
         return None
-    noun, one, other, value = found.group(1, 2, 3, 4)
-    return f"{noun} {one}: {value} ={noun} {other}; {noun} {other}: {value} ={noun} {one}"
+    noun, two = TWO_WITH[values[0]]
+    rest = re.sub(rf"\b(?:{VALUES[values[0]]}|{STRAIGHTS})\b", "", said)
+    found = two.findall(said)
+    if (
+        MORE.search(rest)
+        or len(found) != 1
+        or len(re.findall(rf"\b(?:\d+|{PLACE})\b", said)) != len(" ".join(found[0]).split())
+    ):
+        return None
+    one, other = (place_of(word) or int(word) for word in found[0] if word)
+    return f"{noun} {one}: {values[0]} ={noun} {other}; {noun} {other}: {values[0]} ={noun} {one}"
