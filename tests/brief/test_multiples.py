@@ -33,6 +33,14 @@ SAID = [
     ("a bend of radius 20 m, then one with three times that radius", [20, 60], "metres"),
     ("Kurve links Radius 40 m, Kurve rechts halber Radius", [40, 20], "metres"),
     ("una curva de radio 30 m y otra del doble de radio", [30, 60], "metres"),
+    ("una curva de 120 grados y otra con la mitad de grados", [120, 60], "degrees"),
+    ("a left of 80 degrees, then a right of half the degrees", [80, 40], "degrees"),
+    ("a left of 50 degrees, the second turns 40 degrees further than the first", [50, 90], "degrees"),
+    ("the first turns by 50 degrees, the second by 40 degrees more than that", [50, 90], "degrees"),
+    ("eine Gerade von 30 m, Kurve, dann eine Gerade, 20 m länger als die erste", [30, 50], "metres"),
+    ("un virage de 60 degrés, puis un de 20 degrés de moins que le premier", [60, 40], "degrees"),
+    ("un rettilineo di 40 m, una curva, e un rettilineo 10 m più lungo", [40, 10], "metres"),
+    ("una recta de 50 m, una curva y una recta de 15 m más que la primera", [50, 65], "metres"),
     ("uphill at 12 %? No, too much, half of it", [12, 6], "percent"),
 ]
 LEFT_ALONE = [
@@ -91,7 +99,8 @@ def test_the_reader_copies_the_figure(text: str, wanted: str) -> None:
 @pytest.mark.parametrize(
     ("words", "tells"),
     [
-        ("the first turns by 50 degrees, the second by 40 degrees more than that", True),
+        ("turns of 50 and 70 degrees, the third by 40 degrees more than that", True),
+        ("the first turns by 50 degrees, the second by 40 degrees more than that", False),  # 90 degrees
         ("die zweite Gerade 20 m länger als die erste", True),
         ("deux virages, le second de 20 degrés de plus que le premier", True),
         ("a straight of more than 40 m", False),

@@ -1,5 +1,5 @@
-"""Computes figures that are said as a multiple of an earlier one: in "40 m, a bend, and a straight twice as
-long", the last straight is 80 m long.
+"""Computes figures that are said by an earlier one: in "40 m, a bend, and a straight twice as long", the last
+straight is 80 m long, and so is "a straight 40 m longer than the first".
 
 The network only copies numbers, so it cannot compute them. A multiple is left as it is if its value is
 ambiguous, or if the words also give the figure ("twice as long, that is 80 m").
@@ -20,7 +20,7 @@ FACTORS = {
     "moitie": 0.5, "mitad": 0.5, "meta": 0.5, "doble": 2, "doppio": 2, "triplo": 3,
 }  # fmt: skip
 LENGTHS = "long|length|lang|lange|langen|laenge|longue|longueur|larga|largo|longitud|lunga|lungo|lunghezza"
-ANGLES = "angle|winkel|angulo|angolo"
+ANGLES = "angle|winkel|angulo|angolo|degrees|grad|degres|grados|gradi"
 GRADES = (
     "steep|steeply|grade|gradient|slope|steil|steigung|gefalle|raide|pente|empinada|empinado|pendiente|ripida"
     "|ripido|pendenza"
@@ -46,7 +46,8 @@ PHRASES = tuple(
         rf"(?<!\S)(?P<what>{RADII}) (?:(?:le|la|el|il) )?{WHOLE}\b",
         rf"(?<!\S)(?P<what>{RADII}) {TIMES} (?:plus|mas|piu) grande?\b",
         rf"(?<!\S)(?:{ONCE}|{TIMES}) (?:that|the|its) (?P<what>{RADII})\b",
-        rf"(?<!\S)(?P<once>halber|halbem|halben|halbe|doppelter|doppeltem|doppelte) (?P<what>{RADII})\b",
+        rf"(?<!\S)(?P<once>halber|halbem|halben|halbe|doppelter|doppeltem|doppelte) "
+        rf"(?P<what>{RADII}|{ANGLES})\b",
     )
 )
 """Multiples as they are said in five languages, in words without accents; numbers stand in braces."""
@@ -96,16 +97,34 @@ NEAR = 3  # words
 DENIALS = frozenset(["not", "no", "nicht", "keine", "pas", "ne", "non"])
 DENIED = 4  # words
 """How far before a multiple it may be denied: "not really twice as long"."""
+COMPARED = 8  # words
+"""How far behind a number it may be compared: "40 degrees further than the first one"."""
+SIGNS: tuple[Unit, ...] = ("metres", "degrees", "percent")
 EXPLAINED = 8  # words
 """How far behind a multiple its figure may be said: "twice as long as the first one, that is 80 m"."""
 
 
-SUM = re.compile(
-    r"\[unused\d+\] (?:degrees|metres|percent) (?:more|less|longer|shorter|steeper|tighter|mehr|weniger|"
-    r"langer|kurzer|de plus|de moins|mas|menos|in piu|in meno|di piu|di meno) (?:than|als|que|che|di) "
-    r"(?:that|this|it|the|der|die|das|dem|ce|cela|la|le|el|los?|eso|quel\w*|il)\b"
+MORE = (
+    r"more|further|farther|longer|wider|larger|bigger|steeper|mehr|weiter|langer|grosser|steiler|de plus|mas|"
+    r"in piu|di piu"
 )
-"""A difference from another part, "40 degrees more than that", in a text of slots. It is not computed."""
+LESS = (
+    r"less|fewer|shorter|tighter|smaller|weniger|kurzer|enger|kleiner|flacher|de moins|menos|in meno|di meno"
+)
+THAN = r"(?:than|als|que|che|di|rispetto a)"
+THE_ONE = (
+    r"(?:that|this|it|das|cela|ca|eso|quello|"
+    r"(?:the|der|die|das|dem|den|le|la|el|il) (?:first|previous|ersten?|vorigen?|vorherigen?|premi(?:er|ere)|"
+    r"precedente?|primer[oa]?|anterior|prim[oa])"
+    r"(?: (?:one|turn|bend|curve|corner|straight|kurve|gerade|virage|courbe|curva|recta|rettilineo))?)"
+)
+"""Words for the part that was named before."""
+ARTICLE = r"(?:the|der|die|das|dem|ce|la|le|el|los?|quel\w*|il)"
+DIFFERENCE = re.compile(rf"(?:(?P<more>{MORE})|(?P<less>{LESS})) {THAN} {THE_ONE}(?= |$)")
+SUM = re.compile(
+    rf"\[unused\d+\] (?:degrees|metres|percent) (?:{MORE}|{LESS}) {THAN} (?:{THE_ONE}|{ARTICLE})(?: |$)"
+)
+"""A difference from another part, "40 degrees more than that", that is not computed, in a text of slots."""
 
 
 def tells_a_difference(said: str) -> bool:
@@ -148,6 +167,29 @@ def with_multiples(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Num
         value = round(base.value * multiple.factor, 1)
         made.append(Number(value, multiple.first, multiple.last, base.unit, False))
         out = sorted([*others, made[-1]], key=lambda number: number.first)
+    return out
+
+
+def with_differences(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Number]:
+    """Returns the numbers of a text, where "40 degrees more than the first" is a sum if it is clear of which
+    figure: all earlier ones of its kind are equal. The words of the comparison become part of the number.
+
+    Args:
+        numbers: the numbers of the text with their units, in the order of the text.
+        tokens: the words of the text, in lower case and without accents.
+    """
+    out = list[Number]()
+    for number in numbers:
+        behind = " ".join(tokens[number.last + 1 : number.last + 1 + COMPARED])
+        found = DIFFERENCE.match(behind) if number.unit in SIGNS else None
+        base = _base_of_any(out, tokens, is_of_a_radius=False) if found else None
+        is_denied = not DENIALS.isdisjoint(tokens[max(number.first - DENIED, 0) : number.first])
+        if found is None or base is None or base.unit != number.unit or is_denied:
+            out.append(number)
+            continue
+        value = round(base.value + number.value * (1 if found["more"] else -1), 1)
+        last = number.last + len(found[0].split())
+        out.append(Number(value, number.first, last, number.unit, False) if value > 0 else number)
     return out
 
 
