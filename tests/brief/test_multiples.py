@@ -40,6 +40,10 @@ SAID = [
     ("eine Gerade von 30 m, Kurve, dann eine Gerade, 20 m länger als die erste", [30, 50], "metres"),
     ("un virage de 60 degrés, puis un de 20 degrés de moins que le premier", [60, 40], "degrees"),
     ("un rettilineo di 40 m, una curva, e un rettilineo 10 m più lungo", [40, 10], "metres"),
+    ("left 50 degrees, right 70 degrees, left 40 degrees more than the first", [50, 70, 90], "degrees"),
+    ("left 50 degrees, right 70 degrees, left 40 degrees more than that", [50, 70, 110], "degrees"),
+    ("a sinistra di 90 gradi, la seconda ha 30 gradi in meno.", [90, 60], "degrees"),
+    ("a left of 50 degrees, then 30 degrees more to the right", [50, 30], "degrees"),
     ("una recta de 50 m, una curva y una recta de 15 m más que la primera", [50, 65], "metres"),
     ("uphill at 12 %? No, too much, half of it", [12, 6], "percent"),
 ]
@@ -99,7 +103,7 @@ def test_the_reader_copies_the_figure(text: str, wanted: str) -> None:
 @pytest.mark.parametrize(
     ("words", "tells"),
     [
-        ("turns of 50 and 70 degrees, the third by 40 degrees more than that", True),
+        ("straights of 50 m and 70 m, the third 40 m longer than the first", True),
         ("the first turns by 50 degrees, the second by 40 degrees more than that", False),  # 90 degrees
         ("die zweite Gerade 20 m länger als die erste", True),
         ("deux virages, le second de 20 degrés de plus que le premier", True),

@@ -29,6 +29,12 @@ def test_a_plan_with_every_number_is_preferred_if_it_is_almost_as_likely(behind:
     assert most_plausible(found, text).line == chosen
 
 
+def test_a_contradiction_with_every_number_stays_one() -> None:
+    text = slotted("a road that falls all the way and ends 1 km higher")
+    found = plans(("turn | down climb=[1]", -0.1), ("turn | down climb=..[1]", -1.4))
+    assert most_plausible(found, text).line == "turn | down climb=1000"
+
+
 def test_a_plan_with_the_told_number_of_turns_is_preferred() -> None:
     found = plans(("turn x7 alternating", -0.1), ("turn x5", -0.5), ("turn x6 alternating", -1.0))
     assert most_plausible(found, slotted("six turns that alternate")).line == "turn x6 alternating"

@@ -255,6 +255,8 @@ PARTS = [
 """How many turns there are, distances from an end, moves, steepness, crests."""
 
 BY_RULES = [
+    ("parcours la même route en sens inverse", "road: reverse"),
+    ("drive the same road in the opposite direction", "road: reverse"),
     (
         "inverse le sens de tous les virages : la gauche devient la droite et la droite devient la gauche",
         "turn all: side other",

@@ -97,6 +97,10 @@ NEAR = 3  # words
 DENIALS = frozenset(["not", "no", "nicht", "keine", "pas", "ne", "non"])
 DENIED = 4  # words
 """How far before a multiple it may be denied: "not really twice as long"."""
+EACH = "each every jede jeder jedes je chaque chacun chacune cada ogni ognuna ognuno"
+BARRING = DENIALS | frozenset(EACH.split())
+"""Words before a difference that is denied, or one of several: "each 20 degrees more than the one before"."""
+BARRED = 6  # words
 COMPARED = 8  # words
 """How far behind a number it may be compared: "40 degrees further than the first one"."""
 SIGNS: tuple[Unit, ...] = ("metres", "degrees", "percent")
@@ -112,17 +116,21 @@ LESS = (
     r"less|fewer|shorter|tighter|smaller|weniger|kurzer|enger|kleiner|flacher|de moins|menos|in meno|di meno"
 )
 THAN = r"(?:than|als|que|che|di|rispetto a)"
-THE_ONE = (
-    r"(?:that|this|it|das|cela|ca|eso|quello|"
-    r"(?:the|der|die|das|dem|den|le|la|el|il) (?:first|previous|ersten?|vorigen?|vorherigen?|premi(?:er|ere)|"
-    r"precedente?|primer[oa]?|anterior|prim[oa])"
-    r"(?: (?:one|turn|bend|curve|corner|straight|kurve|gerade|virage|courbe|curva|recta|rettilineo))?)"
+ONE = r"(?: (?:one|turn|bend|curve|corner|straight|kurve|gerade|virage|courbe|curva|recta|rettilineo))?"
+ARTICLES = r"(?:the|der|die|das|dem|den|le|la|el|il)"
+FIRST = rf"{ARTICLES} (?:first|ersten?|premi(?:er|ere)|primer[oa]?|prim[oa]){ONE}"
+BEFORE = (
+    rf"(?:{ARTICLES} (?:previous|vorigen?|vorherigen?|precedente?|anterior){ONE}|"
+    rf"{ARTICLES} one before|that|this|it|das|cela|ca|eso|quello)"
 )
-"""Words for the part that was named before."""
+THE_ONE = rf"(?:(?P<first>{FIRST})|(?P<before>{BEFORE}))"
+"""Words for a part that was named before."""
 ARTICLE = r"(?:the|der|die|das|dem|ce|la|le|el|los?|quel\w*|il)"
-DIFFERENCE = re.compile(rf"(?:(?P<more>{MORE})|(?P<less>{LESS})) {THAN} {THE_ONE}(?= |$)")
+DIFFERENCE = re.compile(rf"(?:(?P<more>{MORE})|(?P<less>{LESS}))(?: {THAN} {THE_ONE})?(?= |$)")
+AT_END = re.compile(r"(?: ?[.,;!?]|$)")
 SUM = re.compile(
-    rf"\[unused\d+\] (?:degrees|metres|percent) (?:{MORE}|{LESS}) {THAN} (?:{THE_ONE}|{ARTICLE})(?: |$)"
+    rf"\[unused\d+\] (?:degrees|metres|percent) (?:{MORE}|{LESS}) {THAN} "
+    rf"(?:{FIRST}|{BEFORE}|{ARTICLE})(?: |$)"
 )
 """A difference from another part, "40 degrees more than that", that is not computed, in a text of slots."""
 
@@ -172,7 +180,7 @@ def with_multiples(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Num
 
 def with_differences(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Number]:
     """Returns the numbers of a text, where "40 degrees more than the first" is a sum if it is clear of which
-    figure: all earlier ones of its kind are equal. The words of the comparison become part of the number.
+    figure. The words of the comparison become part of the number.
 
     Args:
         numbers: the numbers of the text with their units, in the order of the text.
@@ -182,15 +190,31 @@ def with_differences(numbers: Sequence[Number], tokens: Sequence[str]) -> list[N
     for number in numbers:
         behind = " ".join(tokens[number.last + 1 : number.last + 1 + COMPARED])
         found = DIFFERENCE.match(behind) if number.unit in SIGNS else None
-        base = _base_of_any(out, tokens, is_of_a_radius=False) if found else None
-        is_denied = not DENIALS.isdisjoint(tokens[max(number.first - DENIED, 0) : number.first])
-        if found is None or base is None or base.unit != number.unit or is_denied:
+        base = _compared(out, number, found, behind) if found else None
+        is_barred = not BARRING.isdisjoint(tokens[max(number.first - BARRED, 0) : number.first])
+        value = base.value + number.value * (1 if found["more"] else -1) if found and base else 0.0
+        if found is None or value <= 0 or is_barred:
             out.append(number)
             continue
-        value = round(base.value + number.value * (1 if found["more"] else -1), 1)
         last = number.last + len(found[0].split())
-        out.append(Number(value, number.first, last, number.unit, False) if value > 0 else number)
+        out.append(Number(round(value, 1), number.first, last, number.unit, False))
     return out
+
+
+def _compared(before: Sequence[Number], number: Number, found: re.Match[str], behind: str) -> Number | None:
+    """Returns the earlier number to which a difference is added; None if it is not clear which one.
+
+    Degrees are those of turns only, so that "the first" and "that" say which. Metres and percent are clear if
+    all earlier ones are equal.
+    """
+    alike = [each for each in before if each.unit == number.unit]
+    if not alike or not (found["first"] or found["before"] or number.unit == "degrees"):
+        return None
+    if not (found["first"] or found["before"]) and AT_END.match(behind[found.end() :]) is None:
+        return None  # "30 degrees more to the left"
+    if number.unit == "degrees":
+        return alike[0] if found["first"] else alike[-1]
+    return alike[-1] if len({each.value for each in alike}) == 1 else None
 
 
 def _multiples(numbers: Sequence[Number], tokens: Sequence[str]) -> Iterator[Multiple]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
+from math import inf
 from typing import TypeVar
 
 from roadgpt.brief.feasible import check
@@ -22,6 +23,7 @@ Sloped = TypeVar("Sloped", Brief, Clause)
 LEVEL = ("flat", "nearly_flat")
 NEARLY = 0.7  # difference of score
 ALMOST = 2.0  # difference of score
+CLOSE = 1.0  # difference of score
 FAIRLY = 1.5  # difference of score
 LIKELY = 2.5
 """Largest difference of score at which a plan is preferred that has as many junctions as the words name."""
@@ -49,12 +51,16 @@ def most_plausible(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan
 
 
 def _with_all_numbers(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
-    """Returns the likeliest plan that leaves out no number of the text, if it is almost as likely as the
-    first plan; else None.
+    """Returns the likeliest plan that leaves out no number of the text and does not contradict itself, if it
+    is almost as likely as the first plan; else None.
+
+    If the first plan leaves out no number, another one has to be closer to it, since what contradicts itself
+    may be the description.
     """
     near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - ALMOST)
-    whole = (draft for draft in near if {*left_out(draft.tokens, text)} <= used_diameters(draft.tokens, text))
-    return next((draft for draft in whole if can_be_kept(draft.line)), None)
+    whole = [draft for draft in near if {*left_out(draft.tokens, text)} <= used_diameters(draft.tokens, text)]
+    least = found[0].score - CLOSE if found[0] in whole else -inf
+    return next((draft for draft in whole if draft.score > least and can_be_kept(draft.line)), None)
 
 
 def _with_told_turns(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:

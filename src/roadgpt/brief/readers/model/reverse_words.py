@@ -15,7 +15,7 @@ ENGLISH = (
     r"reverse the (?:driving|travel) direction|"
     r"(?:swap|exchange|switch) (?:the )?(?:start|beginning) and (?:the )?(?:end|finish)|"
     r"(?:let )?(?:the )?start and (?:the )?(?:end|finish) (?:should |shall )?(?:change|trade|swap) places|"
-    r"(?:drive|run|take|make|do)(?: it| this| the (?:road|route))?"
+    r"(?:drive|run|take|make|do)(?: it| this| the (?:same )?(?:road|route))?"
     r" (?:backwards|in reverse|the other way(?: a?round)?|in the (?:other|opposite|reverse) direction|"
     r"from (?:the )?(?:end|finish) to (?:the )?(?:start|beginning))"
 )
@@ -23,25 +23,27 @@ GERMAN = (
     rf"(?:(?:dreh|kehr)e? )?(?:die )?{WHOLE}(?:stra(?:ss|ß)e|strecke|fahrtrichtung|richtung)"
     r" (?:um|umdrehen|umkehren|andersherum|rueckwaerts|ruckwarts)|"
     r"(?:(?:tausche?|vertausche?) )?start und (?:ziel|ende)(?: (?:ver)?tauschen)?|"
-    r"(?:fahre? |das ganze )?(?:sie |es )?(?:in (?:der |die )?(?:gegenrichtung|umgekehrte[rn]? richtung|"
+    r"(?:fahre? |das ganze )?(?:sie |es |die(?:selbe| gleiche)? (?:strecke|route) )?"
+    r"(?:in (?:der |die )?(?:gegenrichtung|umgekehrte[rn]? richtung|"
     r"andere[rn]? richtung)|andersherum|ruckwarts)(?: fahren)?"
 )
 FRENCH = (
     rf"(?:invers|renvers|retourn)e[rz]? (?:la |le |l')?{WHOLE}(?:route|parcours|trace|sens)"
     r"(?: de (?:la )?(?:route|marche|parcours|circulation))?|"
-    r"(?:parcour\w+|prend\w*|roule[rz]?) ?-? ?(?:la |le |la route |le parcours )?(?:en sens inverse|"
+    r"(?:parcour\w+|prend\w*|roule[rz]?) ?-? ?(?:l[ae] )?(?:meme )?(?:route |parcours )?(?:en sens inverse|"
     r"dans l'autre sens|a l'envers)|echange[rz]? (?:le )?depart et (?:l')?arrivee"
 )
 SPANISH = (
     rf"(?:invierte|invertir|dale la vuelta a|da la vuelta a) (?:la |el )?{WHOLE}"
     r"(?:carretera|ruta|recorrido|sentido)(?: de (?:la )?(?:marcha|carretera|circulacion))?|"
-    r"(?:recorre\w*|conduce\w*|haz\w*) (?:la |el |la carretera |la ruta )?(?:al reves|en sentido contrario|"
-    r"en sentido inverso)|intercambia (?:la )?salida y (?:la )?(?:meta|llegada)"
+    r"(?:recorre\w*|conduce\w*|haz\w*) (?:la |el )?(?:misma )?(?:carretera |ruta )?"
+    r"(?:al reves|en sentido contrario|en sentido inverso)|"
+    r"intercambia (?:la )?salida y (?:la )?(?:meta|llegada)"
 )
 ITALIAN = (
     rf"(?:inverti|invertire|capovolgi) (?:la |il )?{WHOLE}(?:strada|percorso|senso|direzione|tracciato)"
     r"(?: di (?:marcia|percorrenza))?|"
-    r"(?:percorri|guida|fai)(?:la|lo)? (?:la strada )?(?:al contrario|"
+    r"(?:percorri|guida|fai)(?:la|lo)? (?:la (?:stessa )?strada )?(?:al contrario|"
     r"in senso (?:inverso|opposto|contrario))|"
     r"scambia (?:la )?partenza e (?:l')?arrivo"
 )
