@@ -90,3 +90,17 @@ def test_a_road_of_which_only_the_sum_is_known_has_turns_enough(asked: int) -> N
     for seed in range(5):
         points = build(draft(read_plan(f"| turns=1.. turning={asked}"), World(), seed=seed)).centreline()
         assert total(points) == pytest.approx(asked, rel=0.11, abs=4)
+
+
+@pytest.mark.parametrize(
+    ("words", "is_alike"),
+    [
+        ("three left turns of equal angle that add up to 270 degrees", True),
+        ("Somme des changements de direction : 360 degrés, répartis à parts égales sur six virages", True),
+        ("three left turns that add up to 270 degrees", False),
+    ],
+)
+def test_a_sum_that_is_shared_equally_makes_equal_turns(words: str, is_alike: bool) -> None:
+    brief = read(words)
+    assert brief.turning is not None
+    assert brief.alike is is_alike

@@ -38,7 +38,7 @@ from roadgpt.brief.readers.model.ring_sizes import with_diameters
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
-from roadgpt.brief.readers.model.total_turning import total_turning
+from roadgpt.brief.readers.model.total_turning import total_turning, with_equal_turns
 from roadgpt.brief.readers.model.vocabulary import plan_of
 from roadgpt.brief.readers.model.word_meanings import read_meanings
 from roadgpt.brief.refusal import MOST_CHARACTERS, ContradictionError, TooMuchError, refused
@@ -114,6 +114,10 @@ class ModelReader:
             BriefError: the description is empty, too long, not about a road, contradicts itself, or asks for
                 something impossible.
         """
+        return with_equal_turns(self._read_with_sum(words), words)
+
+    def _read_with_sum(self, words: str) -> Brief:
+        """Returns the Brief, with the sum of all turning angles if the words give one."""
         _text(words)
         turned = total_turning(words)
         if turned is None:

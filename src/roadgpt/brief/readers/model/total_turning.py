@@ -6,7 +6,8 @@ The network's vocabulary cannot express this sum, so the phrase is removed befor
 import re
 from typing import NamedTuple
 
-from roadgpt.brief.model import Amount, at_least, at_most, exactly
+from roadgpt.brief.model import Amount, Brief, at_least, at_most, exactly
+from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.slots import slot_name, slotted
 
 TOTAL = r"(?:total|overall|cumulative|accumulated|combined|summed|absolute)"
@@ -39,6 +40,15 @@ WAYS = tuple(
         rf"{CHANGE} {IN_ALL}{IS} {ANGLE}",
     )
 )
+EQUALLY = re.compile(
+    r"\b(?:equal(?:ly)? (?:angles?|large|big)|of equal (?:angles?|size)|the same angle|"
+    r"in equal (?:parts|shares)|(?:split|shared|spread|distributed) (?:evenly|equally)|"
+    r"(?:evenly|equally) (?:split|shared|spread|distributed)|"
+    r"gleiche[nrms]? winkel|gleich (?:gross|stark)|gleichmassig verteilt|zu gleichen teilen|a parts egales|"
+    r"(?:du |le )?meme angle|angles? ega(?:l|ux)|angulos? iguales|mismo angulo|por igual|a partes iguales|"
+    r"angoli uguali|stesso angolo|in parti uguali)\b"
+)
+"""Words for turns that have equal shares of the sum, in a text without accents."""
 
 
 class TotalTurning(NamedTuple):
@@ -67,3 +77,9 @@ def total_turning(words: str) -> TotalTurning | None:
     last = first + found[0].count(" ") + 1
     rest = [word.written for word in (*text.words[:first], *text.words[last:]) if word.written]
     return TotalTurning(amount, " ".join(rest))
+
+
+def with_equal_turns(brief: Brief, words: str) -> Brief:
+    """Returns the Brief with turns that are alike, where the words share the sum of all angles equally."""
+    is_shared = brief.turning is not None and EQUALLY.search(plain(words)) is not None
+    return brief.model_copy(update={"alike": True}) if is_shared else brief
