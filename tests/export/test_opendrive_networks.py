@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 import shapely
 
+from network.changing import built, design
 from network.random_designs import random_design
 from network.random_maps import map_route
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.network import Network, Route, build_route, read_network_design
-from roadgpt.road import World
+from roadgpt.road import Design, Segment, World, build
 
 WORLD = World()
 MAPS = range(1000, 1004)
@@ -365,3 +366,21 @@ def test_version_1_7_differs_by_its_number_and_the_boundaries() -> None:
     assert ET.canonicalize(ET.tostring(new), strip_text=True) == ET.canonicalize(
         ET.tostring(old), strip_text=True
     )
+
+
+@pytest.mark.parametrize("one_way", [None, "in"])
+def test_an_arm_with_segments_is_written_as_they_say(one_way: str | None) -> None:
+    segment = {"distance": 60, "direction": "left", "incline": 5, "turn_degrees": 50}
+    arm = {"angle": -90, "road_segment1": segment, **({"one_way": one_way} if one_way else {})}
+    junction = {"kind": "t_junction", "take": "straight", "arms": [arm, {"angle": 0}]}
+    route = built(design(80.0, junction, 60.0))
+    here = WrittenMap(document(route, WORLD).to_text())
+    (road,) = [each for each in here.roads.values() if each.length == pytest.approx(60)
+               and each.id not in {str(leg.road) for leg in route.legs}]  # fmt: skip
+    near, far = (road.length, 0.0) if one_way else (0.0, road.length)
+    x, y, _ = road.pose(near)
+    single = Design(starting_point=(x, y, 0), theta=-90, segments=(Segment.model_validate(segment),))
+    assert road.pose(far)[:2] == pytest.approx(build(single).at(60.0)[:2], abs=1e-6)
+    # 6 m of level road, and a parabola with a radius of 250 m up to a grade of 5 %
+    assert road.height(near) == pytest.approx(0, abs=1e-9)
+    assert road.height(far) == pytest.approx(0.05 * (60 - 6 - 12.5 / 2), abs=1e-9)

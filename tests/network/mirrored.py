@@ -11,11 +11,9 @@ def in_mirror(data: dict[str, Any]) -> dict[str, Any]:
     made = copy.deepcopy(data)
     made["starting_point"][1] *= -1
     made["theta"] *= -1
+    _turn_segments(made)
     for key, part in made.items():
-        if key.startswith("road_segment"):
-            part["direction"] = OTHER.get(part["direction"], part["direction"])
-            part["turn_degrees"] *= -1
-        elif key.startswith("junction"):
+        if key.startswith("junction"):
             for field in ("take", "side"):
                 if field in part:
                     part[field] = OTHER.get(part[field], part[field])
@@ -23,4 +21,12 @@ def in_mirror(data: dict[str, Any]) -> dict[str, Any]:
                 part["side"] = "left"  # without one, it is the right
             for arm in part.get("arms", ()):
                 arm["angle"] *= -1
+                _turn_segments(arm)
     return made
+
+
+def _turn_segments(parts: dict[str, Any]) -> None:
+    for key, part in parts.items():
+        if key.startswith("road_segment"):
+            part["direction"] = OTHER.get(part["direction"], part["direction"])
+            part["turn_degrees"] *= -1

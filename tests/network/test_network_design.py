@@ -14,7 +14,7 @@ from network.random_designs import random_design
 from network.shared_laws import sentence_of
 from roadgpt.errors import UsageError
 from roadgpt.network import JunctionDesign, NetworkDesign, build_route, is_network_design, read_network_design
-from roadgpt.network.design import ArmDesign
+from roadgpt.network.arm_design import ArmDesign
 from roadgpt.network.growing import controls_of
 from roadgpt.road import CrossSection, World
 

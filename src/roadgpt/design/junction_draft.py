@@ -23,7 +23,8 @@ from roadgpt.brief.junctions import (
 )
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.network import JunctionDesign
-from roadgpt.network.design import ASTERN, ArmDesign
+from roadgpt.network.arm_design import ArmDesign
+from roadgpt.network.design import ASTERN
 from roadgpt.network.growing import controls_of
 from roadgpt.network.ring import BETWEEN, MOST_LANES, MOUTH, ring_width, smallest_radius
 

@@ -48,6 +48,7 @@ from roadgpt.plural import plural
 from roadgpt.road import Profile, Segment, World
 
 DRAFTS = 400  # for one route, at most
+DRAFTS_OF_LENGTH = 1200  # the same, if a length of the whole route is required
 NO_HASTE = 12  # drafts without haste
 STRETCHES = 12  # drafts of one road between junctions
 HEIGHTS = 3  # draws of the heights of one road
@@ -101,16 +102,17 @@ class NetworkSearch:
         check_lanes_across(brief.junctions, self.lanes)
         self.failed: Counter[str] = Counter()
 
-    def run(self, drafts: int = DRAFTS) -> NetworkDesign:
+    def run(self, drafts: int | None = None) -> NetworkDesign:
         """Returns the first draft that is accepted.
 
         Args:
-            drafts: the greatest number of drafts that are tried.
+            drafts: the greatest number of drafts that are tried; None for the usual one.
 
         Raises:
             DesignError: no draft was accepted, or no road can have the lanes that are required. The message
                 says why; if drafts failed for several reasons, it names the most frequent one.
         """
+        drafts = drafts or (DRAFTS if self.brief.length is None else DRAFTS_OF_LENGTH)
         least = HURRIED * max(len(self.brief.junctions) - 2, 0)
         calm = min(NO_HASTE, drafts // 3)
         hastes = (max(0.0, (n - calm) / (drafts - calm)) ** 0.5 for n in range(drafts))

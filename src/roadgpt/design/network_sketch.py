@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from roadgpt.design.layout import PlanLine
 from roadgpt.network import JunctionDesign
-from roadgpt.network.design import STUB, PlaceDesign
+from roadgpt.network.arm_design import STUB
+from roadgpt.network.design import PlaceDesign
 from roadgpt.network.growing import contact_distances, profiles_of_arms
 from roadgpt.network.lane_design import RampDesign
 from roadgpt.network.ramps import lines_at_ramp

@@ -8,11 +8,11 @@ The design is written in RoadGPT's JSON format, with additional fields:
 
 ``after`` is the number of segments before the junction. ``arms`` are the roads at the junction other than the
 road of arrival; ``angle`` is the direction out of the junction on this arm, in degrees from the direction in
-which the route arrives, positive to the left. ``take`` names the arm on which the route goes on: "left",
-"right", "straight", or the number of the exit, counted counter-clockwise from the road of arrival. ``lanes``
-of a junction are those of the road on which the route goes on. ``network.lane_design`` describes merges,
-exits and places where lanes change. With ``"left_hand": true``, traffic drives on the left: exits are counted
-clockwise, and ramps lie on the left.
+which the route arrives, positive to the left; ``network.arm_design`` describes arms that are not straight and
+level. ``take`` names the arm on which the route goes on: "left", "right", "straight", or the number of the
+exit, counted counter-clockwise from the road of arrival. ``lanes`` of a junction are those of the road on
+which the route goes on. ``network.lane_design`` describes merges, exits and places where lanes change. With
+``"left_hand": true``, traffic drives on the left: exits are counted clockwise, and ramps lie on the left.
 """
 
 import re
@@ -24,6 +24,7 @@ from pydantic import BaseModel, Field, StrictBool, ValidationError
 
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, PlainKind, side_of
 from roadgpt.errors import UsageError
+from roadgpt.network.arm_design import ArmDesign, read_segments
 from roadgpt.network.lane_design import RAMP_TAPER, RARE, LanesChangeDesign, LanesDesign, RampDesign
 from roadgpt.network.pose import mirrored_point
 from roadgpt.road import Segment, read_design
@@ -31,7 +32,6 @@ from roadgpt.road.design import (
     OTHER_DIRECTION,
     Finite,
     FrozenFields,
-    Length,
     as_written,
     first_error,
     misnumbered,
@@ -45,7 +45,6 @@ OWN = ("lanes", "left_hand")
 OF_A_ROAD = "forward, backward and width"
 KERB = 10.0  # m, CD 123 Geometric design of at-grade priority junctions: corner radius of rural junctions
 ISLAND = 16.0  # m, usual radius of the central island
-STUB = 25.0  # m, length of an arm whose length is not given
 ASTERN = 25.0  # degrees, least angle between two neighbouring arms, the road of arrival among them
 MOST_JUNCTIONS = 100
 MOST_ARMS = 7
@@ -69,23 +68,6 @@ COUNTS: dict[PlainKind, tuple[int, int]] = {
 
 Take = Literal["left", "right", "straight"] | Annotated[int, Field(ge=1)]
 Part = TypeVar("Part", bound=BaseModel)
-
-
-class ArmDesign(FrozenFields):
-    """A road at a junction, other than the road on which the route arrives."""
-
-    angle: Annotated[float, Field(gt=-180, lt=180)]
-    """Direction out of the junction in degrees, from the direction of arrival, positive to the left."""
-    length: Length | None = None
-    """Length in metres of the straight arm, None for ``STUB``; not for the arm that the route takes."""
-    control: Control | None = None
-    """The sign or the light on this arm; None for what the junction's ``control`` implies."""
-    one_way: Literal["in", "out"] | None = None
-    """All traffic drives "in" to the junction or "out" of it; None for both; not for the arm taken."""
-
-    def mirrored(self) -> "ArmDesign":
-        """Returns the arm with left and right exchanged."""
-        return self.model_copy(update={"angle": 0.0 - self.angle})
 
 
 class JunctionDesign(FrozenFields):
@@ -129,12 +111,19 @@ class JunctionDesign(FrozenFields):
         """Returns the arm that the route takes; None if the route turns back at a roundabout.
 
         Raises:
-            UsageError: No arm, or more than one, fits ``take``.
+            UsageError: No arm, or more than one, fits ``take``, or the arm has a length or segments.
         """
         arms, taken = self.all_arms, self.taken
         if taken is None:
             return None
-        return arms[::-1][taken] if left_hand and isinstance(self.take, int) else arms[taken]
+        arm = arms[::-1][taken] if left_hand and isinstance(self.take, int) else arms[taken]
+        if arm.length is not None or arm.segments:
+            given = "its road segments" if arm.segments else "length"
+            raise UsageError(
+                f"the arm at {arm.angle:g} degrees is the one that the route takes; its road is that of the "
+                f"segments behind the junction, so leave out {given}"
+            )
+        return arm
 
     @property
     def taken(self) -> int | None:
@@ -225,8 +214,7 @@ class NetworkDesign(FrozenFields):
             out["left_hand"] = True
         if self.lanes is not None:
             out["lanes"] = _plain_lanes(self.lanes)
-        for number, segment in enumerate(self.segments, 1):
-            out[f"road_segment{number}"] = _plain(segment)
+        out |= _plain_segments(self.segments)
         for number, junction in enumerate(self.junctions, 1):
             row = _plain(junction, exclude={"arms", "lanes"})
             for name, usual in (("ring_lanes", 1), ("crosswalk", False), ("taper", RAMP_TAPER)):
@@ -234,9 +222,14 @@ class NetworkDesign(FrozenFields):
                     del row[name]
             if junction.lanes is not None:
                 row["lanes"] = _plain_lanes(junction.lanes)
-            arms = [_plain(arm) for arm in junction.arms] if isinstance(junction, JunctionDesign) else []
+            given = junction.arms if isinstance(junction, JunctionDesign) else ()
+            arms = [_plain(arm, exclude={"segments"}) | _plain_segments(arm.segments) for arm in given]
             out[f"junction{number}"] = {**row, "arms": arms} if arms else row
         return out
+
+
+def _plain_segments(segments: Sequence[Segment]) -> dict[str, Any]:
+    return {f"road_segment{number}": _plain(segment) for number, segment in enumerate(segments, 1)}
 
 
 def _plain_lanes(lanes: LanesDesign) -> dict[str, Any]:
@@ -269,15 +262,17 @@ def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[s
     if len(found) > MOST_JUNCTIONS:
         raise UsageError(f"the design has {len(found)} junctions; give {MOST_JUNCTIONS} at most")
     left_hand = is_left_hand(data)
-    numbered = sorted(((_place(n, raw, left_hand), n) for n, raw in found), key=lambda pair: pair[0].after)
-    junctions = [place for place, _ in numbered]
+    places = [(*_place(n, raw, left_hand), n) for n, raw in found]
+    places.sort(key=lambda each: each[0].after)
+    junctions = [place for place, _, _ in places]
     raw = data.get("lanes")
     lanes = None if raw is None else read_part(LanesDesign, "the lanes of the design", raw, OF_A_ROAD)
     _check_order(junctions, len(design.segments))
     if max(map(abs, (*design.starting_point, design.theta))) > FARTHEST:  # the digits would not suffice
         raise UsageError(f"starting_point or theta is beyond {FARTHEST:,.0f}; give smaller numbers")
     made = NetworkDesign(**dict(design), junctions=tuple(junctions), lanes=lanes, left_hand=left_hand)
-    return made, (*remarks, *misnumbered("junctions", [number for _, number in numbered]))
+    on_arms = [remark for _, said, _ in places for remark in said]
+    return made, (*remarks, *on_arms, *misnumbered("junctions", [number for *_, number in places]))
 
 
 def is_left_hand(data: Mapping[str, Any]) -> bool:
@@ -339,7 +334,8 @@ OF_LANES: dict[str, type[RampDesign] | type[LanesChangeDesign]] = {
 }
 
 
-def _place(number: int, raw: Any, left_hand: bool) -> PlaceDesign:
+def _place(number: int, raw: Any, left_hand: bool) -> tuple[PlaceDesign, tuple[str, ...]]:
+    """Returns a place from parsed JSON, and remarks on it."""
     what, fields = f"junction {number}", "after, kind and take"
     _check_object(what, raw, fields)
     if raw.get("lanes") is not None:
@@ -348,33 +344,32 @@ def _place(number: int, raw: Any, left_hand: bool) -> PlaceDesign:
     if "kind" in raw and raw["kind"] not in kinds:
         raise UsageError(f"{what} cannot be read: kind: is unknown; give {', '.join(map(repr, kinds))}")
     made = OF_LANES.get(raw.get("kind", ""))
-    return _junction(what, raw, left_hand) if made is None else read_part(made, what, raw, fields)
+    return _junction(what, raw, left_hand) if made is None else (read_part(made, what, raw, fields), ())
 
 
-def _junction(what: str, raw: Mapping[str, Any], left_hand: bool) -> JunctionDesign:
+def _junction(what: str, raw: Mapping[str, Any], left_hand: bool) -> tuple[JunctionDesign, tuple[str, ...]]:
     arms = raw.get("arms", ())
     if not isinstance(arms, (list, tuple)) or len(arms) > MOST_ARMS:
         raise UsageError(f"{what} cannot be read: arms: give a list of at most {MOST_ARMS} arms")
+    read, remarks = [], list[str]()
     for n, arm in enumerate(arms, 1):
         _check_object(f"arm {n} of {what}", arm, "angle")
+        fields, said = read_segments(f"arm {n} of {what}", arm)
+        read.append(fields)
+        remarks += said
     try:
-        made = JunctionDesign.model_validate(raw)
+        made = JunctionDesign.model_validate({**raw, "arms": read})
     except ValidationError as error:
-        said = first_error(error)
+        wrong = first_error(error)
         if error.errors()[0]["loc"][:1] == ("take",) and "take" in raw:
-            said = "take: is unknown; give 'left', 'right', 'straight' or the number of the exit, from 1 on"
-        raise UsageError(f"{what} cannot be read: {said}") from error
+            wrong = "take: is unknown; give 'left', 'right', 'straight' or the number of the exit, from 1 on"
+        raise UsageError(f"{what} cannot be read: {wrong}") from error
     try:
         _check_arms(made)
-        taken = made.arm_taken(left_hand)
+        made.arm_taken(left_hand)
     except UsageError as error:
         raise UsageError(f"{what}: {error}") from error
-    if taken is not None and taken.length is not None:
-        raise UsageError(
-            f"{what}: the arm at {taken.angle:g} degrees is the one that the route takes; its "
-            "length is that of the segments behind the junction, so leave out length"
-        )
-    return made
+    return made, tuple(remarks)
 
 
 def _check_arms(made: JunctionDesign) -> None:

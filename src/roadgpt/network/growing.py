@@ -8,10 +8,11 @@ from roadgpt.brief.junctions import Control, side_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry import GradeProfile, PieceCurve
 from roadgpt.geometry.curve import wrapped
+from roadgpt.network.arm_design import ArmDesign
 from roadgpt.network.building import Builder, Stub, edges_at
 from roadgpt.network.crossing import Mouth, build_crossing, setbacks
 from roadgpt.network.crossing_lanes import USUALLY_FED
-from roadgpt.network.design import STUB, ArmDesign, JunctionDesign, NetworkDesign, PlaceDesign
+from roadgpt.network.design import JunctionDesign, NetworkDesign, PlaceDesign
 from roadgpt.network.lane_design import LanesChangeDesign, RampDesign
 from roadgpt.network.lane_legs import legs_along
 from roadgpt.network.network import Connection, Continuation, RoadEnd, Roundabout
@@ -22,7 +23,8 @@ from roadgpt.network.route import Route
 from roadgpt.network.stretch import road_of
 from roadgpt.network.stretch_profiles import stretch_profiles
 from roadgpt.network.turning import curve_between
-from roadgpt.road import Profile, Segment, World
+from roadgpt.road import Profile, World
+from roadgpt.road.reversal import reversed_road
 from roadgpt.road.road import check_length
 
 FAR = 1e6  # m, a station behind all changes of a cross-section
@@ -165,15 +167,12 @@ class _RouteGrowth:
 
         ``contact`` is where it meets the junction, with the heading out of it.
         """
-        length = arm.length or STUB
-        check_length(length)
-        segments = (Segment(distance=length, direction="straight"),)
+        check_length(sum(segment.distance for segment in arm.stretch))
+        road = road_of(arm.stretch, *contact, profile, (True, False))
         if arm.one_way != "in":
-            road = self.builder.add(road_of(segments, *contact, profile, (True, False)))
-            return Stub(RoadEnd(road, "start"), contact.heading, profile, 0.0)
-        start = NetworkPose(contact.ahead(length).point, contact.heading + math.pi)
-        road = self.builder.add(road_of(segments, *start, profile, (False, True)))
-        return Stub(RoadEnd(road, "end"), contact.heading, profile, length)
+            return Stub(RoadEnd(self.builder.add(road), "start"), contact.heading, profile, 0.0)
+        road = reversed_road(road).with_profile(profile)
+        return Stub(RoadEnd(self.builder.add(road), "end"), contact.heading, profile, road.length)
 
 
 def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) -> list[Profile]:
