@@ -146,8 +146,14 @@ def test_options_of_files_and_of_tests_are_not_mixed(folder: Path) -> None:
     for words, told in (
         (["drive", "--again", "c", "1", "--friction", "0.5"], "leave out --friction"),
         (["drive", "--again", "c", "1", "--seed", "5"], "leave out --seed"),
-        (["drive", "road.json", "--out", "x"], "--out is for tests of a campaign; say --again as well"),
-        (["drive", "road.json", "--worst"], "--worst is for tests of a campaign; say --again as well"),
+        (
+            ["drive", "road.json", "--out", "x"],
+            "--out is for tests of a campaign, which are driven with --again",
+        ),
+        (
+            ["drive", "road.json", "--worst"],
+            "--worst is for tests of a campaign, which are driven with --again",
+        ),
         (["view", "road.json", "--axes", "thesis"], "--axes is for pictures; say --format png as well"),
         (["view", "road.json", "--format", "png", "--open"], "--open is for the page; leave out --format"),
         (["show", "c", "--watch", "--json"], "leave out --json"),

@@ -112,7 +112,10 @@ def _refuse_mixture(ctx: click.Context, again: bool) -> None:
                 f"a test keeps its world and its seed; leave out {parameter.opts[0]} with --again"
             )
         if is_of_again and not again:
-            raise UsageError(f"{parameter.opts[0]} is for tests of a campaign; say --again as well")
+            raise UsageError(
+                f"{parameter.opts[0]} is for tests of a campaign, which are driven with --again; leave it "
+                "out for a road from a file"
+            )
 
 
 def _driven(

@@ -117,15 +117,14 @@ LESS = (
 )
 THAN = r"(?:than|als|que|che|di|rispetto a)"
 ONE = r"(?: (?:one|turn|bend|curve|corner|straight|kurve|gerade|virage|courbe|curva|recta|rettilineo))?"
-ARTICLES = r"(?:the|der|die|das|dem|den|le|la|el|il)"
-FIRST = rf"{ARTICLES} (?:first|ersten?|premi(?:er|ere)|primer[oa]?|prim[oa]){ONE}"
+ARTICLE = r"(?:the|der|die|das|dem|den|ce|la|le|el|los?|quel\w*|il)"
+FIRST = rf"{ARTICLE} (?:first|ersten?|premi(?:er|ere)|primer[oa]?|prim[oa]){ONE}"
 BEFORE = (
-    rf"(?:{ARTICLES} (?:previous|vorigen?|vorherigen?|precedente?|anterior){ONE}|"
-    rf"{ARTICLES} one before|that|this|it|das|cela|ca|eso|quello)"
+    rf"(?:{ARTICLE} (?:previous|vorigen?|vorherigen?|precedente?|anterior){ONE}|"
+    rf"{ARTICLE} one before|that|this|it|das|cela|ca|eso|quello)"
 )
 THE_ONE = rf"(?:(?P<first>{FIRST})|(?P<before>{BEFORE}))"
 """Words for a part that was named before."""
-ARTICLE = r"(?:the|der|die|das|dem|ce|la|le|el|los?|quel\w*|il)"
 DIFFERENCE = re.compile(rf"(?:(?P<more>{MORE})|(?P<less>{LESS}))(?: {THAN} {THE_ONE})?(?= |$)")
 AT_END = re.compile(r"(?: ?[.,;!?]|$)")
 SUM = re.compile(

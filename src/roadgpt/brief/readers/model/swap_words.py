@@ -87,11 +87,9 @@ def exchanged_values(text: SlottedText) -> str | None:
     noun, two = TWO_WITH[values[0]]
     rest = re.sub(rf"\b(?:{VALUES[values[0]]}|{STRAIGHTS})\b", "", said)
     found = two.findall(said)
-    if (
-        MORE.search(rest)
-        or len(found) != 1
-        or len(re.findall(rf"\b(?:\d+|{PLACE})\b", said)) != len(" ".join(found[0]).split())
-    ):
+    named = [word for word in found[0] if word] if len(found) == 1 else []
+    others = len(re.findall(rf"\b(?:\d+|{PLACE})\b", said)) - len(named)
+    if MORE.search(rest) or not named or others:
         return None
-    one, other = (place_of(word) or int(word) for word in found[0] if word)
+    one, other = (place_of(word) or int(word) for word in named)
     return f"{noun} {one}: {values[0]} ={noun} {other}; {noun} {other}: {values[0]} ={noun} {one}"
