@@ -131,3 +131,10 @@ def test_any_text_is_a_brief_or_a_sentence(line: str) -> None:
 )
 def test_of_a_single_road_one_line_and_two_ask_the_same(line: str, same: str) -> None:
     assert read_plan(line) == read_plan(same)
+
+
+def test_a_misspelt_junction_is_answered_with_the_kinds_of_junctions() -> None:
+    with pytest.raises(
+        BriefError, match=r"no clause 'crosroads'; .*hairpin.* a junction with one of crossroads"
+    ):
+        read_plan("crosroads left")

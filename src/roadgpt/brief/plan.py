@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from roadgpt.brief.halfway import without_halfway
 from roadgpt.brief.junction_plan import BETWEEN, WHOLE, is_junction, junction_plan, read_junction
+from roadgpt.brief.junction_plan import KINDS as JUNCTIONS
 from roadgpt.brief.map_clause import is_map, map_plan, read_map
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Kind, exactly
 from roadgpt.brief.plan_amount import amount_text, read_amount
@@ -197,7 +198,8 @@ def _read_clause(text: str) -> Clause:
     kind, *words = text.split() or [""]
     if kind not in KINDS:
         raise BriefError(
-            f"a plan has no clause '{kind[:40]}'; a clause begins with one of {', '.join(sorted(KINDS))}"
+            f"a plan has no clause '{kind[:40]}'; on a road, a clause begins with one of "
+            f"{', '.join(sorted(KINDS))}, and a junction with one of {', '.join(sorted(JUNCTIONS))}"
         )
     fields: dict[str, object] = {"kind": kind}
     for word in words:
