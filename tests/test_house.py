@@ -7,6 +7,7 @@ import sys
 import zipfile
 from collections import defaultdict
 from functools import cache
+from importlib import import_module
 from importlib.metadata import entry_points
 from itertools import groupby
 from pathlib import Path
@@ -20,6 +21,11 @@ SOURCE = ROOT / "src" / "roadgpt"
 HALLWAY = {"errors", "plugins", "plural", "provenance", "reading", "children", "stopping"}
 MOST_LINES = 400
 MOST_LINES_OF_A_FUNCTION = 60
+TELLING = (
+    "import atexit, sys; from roadgpt.cli import main; "
+    "atexit.register(lambda: print(*sys.modules, file=sys.stderr)); main()"
+)
+"""Runs a command, and then writes the names of all modules that it has loaded."""
 HEAVY = ("numpy", "scipy", "numba", "matplotlib", "mujoco", "pydantic", "shapely", "rich")
 
 
@@ -248,20 +254,44 @@ def test_the_package_offers_every_value_and_verb_that_it_names() -> None:
         _ = roadgpt.gpt
 
 
+@pytest.mark.parametrize("room", rooms())
+def test_a_room_offers_every_name_that_it_lists(room: str) -> None:
+    """Some rooms load a name only when it is first used, so that a misspelt one would not be noticed."""
+    module = import_module(f"roadgpt.{room}")
+    for name in getattr(module, "__all__", ()):
+        assert getattr(module, name) is not None
+    with pytest.raises(AttributeError):
+        _ = module.no_such_name
+
+
 @pytest.mark.parametrize("words", [["--help"], ["run", "--help"], ["drive", "--no-such-option"]])
 def test_help_answers_at_once(words: list[str]) -> None:
     """What makes it slow is what it imports, and that is the same on every machine."""
-    code = (
-        "import atexit, sys; from roadgpt.cli import main; "
-        "atexit.register(lambda: print(*sys.modules, file=sys.stderr)); main()"
+    done = subprocess.run(
+        [sys.executable, "-c", TELLING, *words], capture_output=True, text=True, check=False
     )
-    done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=False)
     assert "Usage: roadgpt" in done.stdout + done.stderr
     loaded = {*done.stderr.split()}
     assert "click" in loaded
     assert not {name for name in loaded if name.split(".")[0] in HEAVY}
     rooms_used = {name.split(".")[1] for name in loaded if name.startswith("roadgpt.")}
     assert rooms_used <= {"cli", *HALLWAY}
+
+
+def test_a_road_without_junctions_loads_nothing_that_builds_networks_or_reads_files(tmp_path: Path) -> None:
+    """Otherwise every road pays for what few roads need, and who follows one through the code reads it."""
+    run = ["run", "an uphill road with 3 turns", "-n", "2", "--out", "made"]
+    done = subprocess.run(
+        [sys.executable, "-c", TELLING, *run], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert (tmp_path / "made" / "test.0002.json").is_file()
+    loaded = {name for name in done.stderr.split() if name.startswith("roadgpt.")}
+    assert {"roadgpt.drive.simulators.mujoco", "roadgpt.report.overview", "roadgpt.verdict.judging"} <= loaded
+    of_networks = {name for name in loaded if name.startswith("roadgpt.network")}
+    assert of_networks == {"roadgpt.network", "roadgpt.network.road_or_route"}
+    of_others = ("road.opendrive", "road.source", "report.network_view", "verdict.incidents", "design.advice")
+    of_others += ("drive.isolation.", "chat.strict_json", "campaign.stored_run", "campaign.traces")
+    assert not {name for name in loaded if name.removeprefix("roadgpt.").startswith(of_others)}
 
 
 def test_the_pins_cover_every_dependency_and_name_no_place() -> None:

@@ -14,7 +14,7 @@ from roadgpt.brief.readers.model.vocabulary import plan_of, tokens_of
 from roadgpt.brief.sentence import sentence
 from roadgpt.design import draft
 from roadgpt.errors import BriefError
-from roadgpt.network.source import network_made_from
+from roadgpt.network import network_made_from
 from roadgpt.road import World
 
 FOLDER = Path(__file__).parents[2] / "data" / "networks" / "train"

@@ -14,7 +14,8 @@ from roadgpt import children
 from roadgpt.drive import simulate
 from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.drive.isolation import IsolatedDriver, driver_of, process
+from roadgpt.drive.isolation import driver_of, process
+from roadgpt.drive.isolation.proxy import IsolatedDriver
 from roadgpt.drive.loading import load_driver
 from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import Design, Road, Segment, Site, World, build

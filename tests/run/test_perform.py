@@ -6,7 +6,8 @@ import pytest
 
 from roadgpt.brief.model import Brief
 from roadgpt.campaign import campaign
-from roadgpt.drive.isolation import IsolatedDriver, driver_of
+from roadgpt.drive.isolation import driver_of
+from roadgpt.drive.isolation.proxy import IsolatedDriver
 from roadgpt.errors import BriefError, DesignError, DriverError, PartError, UsageError
 from roadgpt.road import CrossSection, Limits, Road, World
 from roadgpt.run import MOST_ROUNDS, Run, Setup, brief_of, perform, prove, read_run, seed_of

@@ -4,15 +4,17 @@ generators and workers.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Literal, Protocol, TypeVar, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol, TypeVar, get_args
 
 from pydantic import Field
 
 from roadgpt.brief.model import Brief, Frozen
-from roadgpt.network import AnyDesign
 from roadgpt.road import Design
 from roadgpt.run.model import Outcome, Request
 from roadgpt.verdict.verdict import Cause, Side
+
+if TYPE_CHECKING:
+    from roadgpt.network import AnyDesign
 
 Goal = Literal["failures", "coverage", "hardest", "boundary"]
 """The goal of a search; a cell without a goal makes the requested number of roads and does not search."""
@@ -51,7 +53,7 @@ UNLIMITED = CellBudget()
 class Proposal:
     """A test that a generator proposes."""
 
-    design: AnyDesign | None
+    design: "AnyDesign | None"
     """The road's design. None: a worker drafts the road from the cell's Brief, with ``seed`` and the
     number of the test. The drafted road differs from the designs in the batches whose results the generator
     has received.
@@ -78,7 +80,7 @@ class Result:
     outcome: Outcome
     description: str
     """One sentence that describes the outcome."""
-    design: AnyDesign | None = None
+    design: "AnyDesign | None" = None
     """The design of the road; None if no road could be designed."""
     length: float = 0.0
     """Length of the road seen from above, metres; 0 if there is no road."""

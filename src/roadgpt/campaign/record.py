@@ -11,8 +11,6 @@ from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rows import RESULT, cell_of_text, design_of, result_of_row
 from roadgpt.campaign.single_test import seed_of_driver
 from roadgpt.campaign.store_check import LATER, check_store, reading_store
-from roadgpt.campaign.stored_run import no_road, stored_run
-from roadgpt.campaign.traces import TRACES, read_traces
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.network import made_from
@@ -243,6 +241,8 @@ class Record:
 
     def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
         """Returns the stored Run of a test; see ``rerun.kept_run``."""
+        from roadgpt.campaign.stored_run import no_road, stored_run
+
         own, result = self.cell(cell), self.result(cell, number)
         road = self.road(own, result)
         if road is None:
@@ -254,6 +254,8 @@ class Record:
 
     def drive(self, cell: str, number: int) -> Drive | None:
         """Returns the stored drive of a test; None if the test was not driven."""
+        from roadgpt.campaign.traces import TRACES, read_traces
+
         name = self.trace_file(cell, number)
         return None if name is None else read_traces(self.folder / TRACES / name, cell, number)
 

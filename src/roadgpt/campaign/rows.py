@@ -4,15 +4,18 @@ import json
 import math
 from dataclasses import replace
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.campaign.single_test import FinishedTest
-from roadgpt.network import AnyDesign
 from roadgpt.reading import json_of
+from roadgpt.road import Design
 from roadgpt.run.atomic import to_bytes
+
+if TYPE_CHECKING:
+    from roadgpt.network import AnyDesign
 
 MEASURED = ("outcome", "cause", "side", "length", "margin", "max_oob", "beyond", "at_s")
 """The columns of the table ``tests`` that hold the fields of a Result with the same names."""
@@ -20,17 +23,28 @@ SPENT = ("ended", "design_s", "drive_s", "tokens", "cost", "trace")
 """The columns of the table ``tests`` that depend on the clock or on the session."""
 RESULT = ", ".join(("tests.number, batch, seed, given", *MEASURED, "origin, design, description, features"))
 """The columns of a result in the joined tables ``tests`` and ``details``."""
-_DESIGNS: TypeAdapter[AnyDesign] = TypeAdapter(AnyDesign)
 
 
-def design_text(design: AnyDesign | None) -> str | None:
+def design_text(design: "AnyDesign | None") -> str | None:
     """Returns a design as JSON; ``design_of`` restores the same design."""
     return None if design is None else design.model_dump_json(exclude_none=True)
 
 
-def design_of(text: str | None) -> AnyDesign | None:
+def design_of(text: str | None) -> "AnyDesign | None":
     """Restores a design from JSON text as returned by ``design_text``."""
-    return None if text is None else _DESIGNS.validate_json(text)
+    if text is None:
+        return None
+    try:
+        return Design.model_validate_json(text)
+    except ValidationError:  # it has junctions or is a map, or is nothing at all
+        return _designs().validate_json(text)
+
+
+@cache
+def _designs() -> "TypeAdapter[AnyDesign]":
+    from roadgpt.network import AnyDesign
+
+    return TypeAdapter(AnyDesign)
 
 
 def proposal_rows(

@@ -1,21 +1,18 @@
-"""Counts what the questions of a campaign cost, and stops before a limit is exceeded.
+"""Holds the total cost of a campaign's questions, and stops before a limit is exceeded.
 
 Each reader and each designer has its own Chat; one Meter counts for all of them. ``counting`` makes a meter
-the current one inside a ``with`` block.
+the current one inside a ``with`` block. A Chat counts its questions with an Account (``chat.account``).
 """
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 
-from roadgpt.chat.model import ChatSettings, Message, Spent, Usage
-from roadgpt.chat.prices import cost_of, price_of
-from roadgpt.chat.strict_json import plain
+from roadgpt.chat.model import ChatSettings, Spent
 from roadgpt.errors import BudgetError
 
-LETTERS_PER_TOKEN = 4  # bytes of English and JSON; an estimate until the server has counted
 ENDLESS = 10**15
 LEAST_REPLY = 64  # tokens; a shorter answer is of no use
 
@@ -75,7 +72,7 @@ class Meter:
             return ENDLESS
         if price is None or self.spent.cost is None:
             raise BudgetError(
-                f"the price of '{plain(model)}' is not known, so --max-cost cannot be checked; "
+                f"the price of '{model}' is not known, so --max-cost cannot be checked; "
                 "give --price 0.15/0.60 (USD per million tokens of question and answer)"
             )
         left = self.max_cost - self.spent.cost - prompt * price[0] / 1e6
@@ -109,50 +106,13 @@ def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
         _now.reset(before)
 
 
+def meter_now() -> Meter | None:
+    """Returns the current meter; None if no campaign is counting."""
+    now = _now.get()
+    return now.meter if now else None
+
+
 def occasion() -> str:
     """Returns the label of the current questions, as given to ``counting``; empty if there is none."""
     now = _now.get()
     return now.occasion if now else ""
-
-
-class Account:
-    """Counts what one Chat spends, and adds the same amounts to the campaign's Meter. Without a campaign,
-    they are added to the Chat's own Meter.
-    """
-
-    def __init__(self, settings: ChatSettings) -> None:
-        self.settings = settings
-        self.spent = Spent()
-        self._own = Meter.of(settings)
-
-    @property
-    def meter(self) -> Meter:
-        """The meter of the current campaign; the Chat's own meter if there is no campaign."""
-        now = _now.get()
-        return now.meter if now else self._own
-
-    def reply_tokens(self, messages: Sequence[Message], model: str) -> int:
-        """Returns the largest number of tokens that the answer to these messages may have.
-
-        Raises:
-            BudgetError: too few tokens are left for an answer.
-        """
-        prompt = sum(tokens_in(message.text) for message in messages)
-        price = price_of(self.settings, model)
-        return self.meter.reply_tokens(prompt, self.settings.max_completion, price, model)
-
-    def count(self, model: str, usage: Usage, seconds: float) -> float | None:
-        """Counts one answered request and returns its cost in USD; None if the price is unknown."""
-        cost = cost_of(usage, price_of(self.settings, model))
-        self.add(Spent(calls=1, usage=usage, seconds=seconds, cost=cost))
-        return cost
-
-    def add(self, spent: Spent) -> None:
-        """Adds costs that are already known, such as those of a recorded exchange."""
-        self.spent = self.spent + spent
-        self.meter.add(spent)
-
-
-def tokens_in(text: str) -> int:
-    """Returns the estimated number of tokens of a text."""
-    return -(-len(text.encode("utf-8", "replace")) // LETTERS_PER_TOKEN)

@@ -10,8 +10,9 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from roadgpt.chat.account import Account
 from roadgpt.chat.json_schema import schema_of
-from roadgpt.chat.meter import Account, occasion
+from roadgpt.chat.meter import occasion
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent
 from roadgpt.errors import ChatError, ReplyError, UsageError, explained
 from roadgpt.reading import read_json

@@ -15,15 +15,18 @@ are under ``network_rules/`` (entry points of the group ``roadgpt.network_rules`
 """
 
 from functools import cache
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
 from roadgpt.check.sbft import sbft_verdict
 from roadgpt.errors import UsageError
-from roadgpt.network import Network, Route, has_no_route
+from roadgpt.network import has_no_route, is_route
 from roadgpt.road import Road, World
+
+if TYPE_CHECKING:
+    from roadgpt.network import Network, Route
 
 RULE_SETS = {
     "strict": (
@@ -75,7 +78,7 @@ class Rule(Protocol):
 class NetworkRule(Protocol):
     """A function that checks one property of a network."""
 
-    def __call__(self, network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+    def __call__(self, network: "Network", route: "Route | None", world: World) -> tuple[Finding, ...]:
         """Returns one Finding for each violation; an empty tuple if there is none.
 
         ``route`` leads through this network; None if there is no route. The stations of the findings are
@@ -103,7 +106,7 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
             that no road passes because rules are missing.
     """
     rules_of(rules)
-    if isinstance(road, Route) and rules == "strict":
+    if is_route(road) and rules == "strict":
         found_there = inspect_network(road.network, None if has_no_route(road) else road, world)
         if brief is None:
             return found_there
@@ -118,7 +121,7 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
     return tuple(found)
 
 
-def inspect_network(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+def inspect_network(network: "Network", route: "Route | None", world: World) -> tuple[Finding, ...]:
     """Returns the findings of all rules of networks, in the order of the rules.
 
     After a finding with ``stops``, no further rules are applied.

@@ -78,7 +78,7 @@ def likeness_complaints(found: Measures, asked: Outline) -> Iterator[Complaint]:
 
     If the counts are open, so that it is not known which turn is which, only turns of one group are compared.
     """
-    wanted = _wanted(asked, len(found.turns)) if asked.alike else None
+    wanted = _wanted(asked, len(found.turns))
     if wanted is None:
         return
     turns, gaps = wanted

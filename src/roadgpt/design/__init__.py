@@ -21,15 +21,17 @@ geometry         the kind of geometry that its designs require, such as "spline"
 
 from collections.abc import Sequence
 from functools import cache
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.chat import ChatSettings, instantiate, settings_for
 from roadgpt.design.unbuilt import check_built
 from roadgpt.errors import DesignError
-from roadgpt.network import AnyDesign
 from roadgpt.road import Design, World
+
+if TYPE_CHECKING:
+    from roadgpt.network import AnyDesign
 
 
 class Designer(Protocol):
@@ -37,7 +39,7 @@ class Designer(Protocol):
 
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
-    ) -> AnyDesign:
+    ) -> "AnyDesign":
         """Returns a Design that meets every requirement of the Brief and is valid on this map.
 
         If the Brief asks for a map of roads, the result is a MapDesign; if it asks for another network
@@ -64,7 +66,7 @@ def draft(
     seed: int = 0,
     designer: str = "planner",
     chat: ChatSettings | None = None,
-) -> AnyDesign:
+) -> "AnyDesign":
     """Returns a Design for a Brief; for a network a NetworkDesign, and for a map of roads a MapDesign.
 
     Args:

@@ -15,12 +15,12 @@ from roadgpt.brief.model import Amount, Brief, Clause
 from roadgpt.brief.outline import Outline
 from roadgpt.brief.words import ROAD
 from roadgpt.check.rules.too_abrupt import MOST
+from roadgpt.design.grade_correction import TOO_ABRUPT
 from roadgpt.road import World
 
 OF_THE_PLAN = ("too large", "over itself", "longer than was asked for", "like an earlier road")
 FOR_ROOM = ("too large", "over itself")
 """Reasons why drafts fail that may disappear on a larger map."""
-TOO_ABRUPT = "slopes that change too fast for the speed"
 MANY = 60  # if this many drafts fitted on the map but failed, the map was large enough
 SIDES = 7.0  # ratio of road length to map side; no longer road was ever drafted, so the search starts here
 SHORTER = 0.8  # ratio of each length tried to the one before

@@ -21,7 +21,6 @@ from roadgpt.brief.ranges import Range
 from roadgpt.check.matching import Complaint
 from roadgpt.check.measures import MeasuredFeature, Measures, measure, way
 from roadgpt.check.rules.promises import complaints
-from roadgpt.design.advice import TOO_ABRUPT
 from roadgpt.design.elements import cut
 from roadgpt.design.layout import PlanLine
 from roadgpt.design.vertical import Pace, joined, too_abrupt
@@ -29,6 +28,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment
 from roadgpt.road.builder import elevation_of
 
+TOO_ABRUPT = "slopes that change too fast for the speed"
 CORRECTIONS = 8
 MOST_OFF = 0.1  # of its length, that a straight is measured longer or shorter
 LONG_ENOUGH = 35.0  # m of a straight that may be measured longer or shorter

@@ -20,7 +20,7 @@ from roadgpt.brief.ranges import Range
 from roadgpt.design.compose import NEAR_NUMBER, asked_length, gap_between
 from roadgpt.design.draw import ANY_TURN, drawn_turn, hand_of, longest_turn, narrowed_turns
 from roadgpt.design.layout import COARSENESS, NEIGHBOURS, SPARE, MapPose, PlacedPlan, PlanLine, walk
-from roadgpt.design.sequence import TurnSequence
+from roadgpt.design.sequence import TurnSequence, may_repeat_last_turn
 from roadgpt.design.windows import Windows
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.nearness import Complex, meeting
@@ -39,7 +39,6 @@ OFF_BY_SPACING = 1.3  # metres added to the radius for each metre added between 
 BULGE = 0.5  # m by which the walked line may differ from the road that is built
 DEAD_ENDS = 30  # after which an attempt is given up
 LEAST_LEFT = 25.0  # m of road behind the last turn
-LONG = 700.0  # m: a shorter road with a few turns fits on the usual map
 
 
 class _Way(NamedTuple):
@@ -105,7 +104,7 @@ class _Growth:
     ) -> None:
         self.order, self.outline, self.windows, self.world, self.rng = order, outline, windows, world, rng
         self.target, self.asked = target, asked
-        self.more = _repeated(outline)
+        self.more = may_repeat_last_turn(outline)
         self.has_open_sides = _has_open_sides(outline)
         turns = narrowed_turns(order.turns, outline, windows, world, haste=0.5)
         self.turns = [_roomy(turn, target) for turn in turns]
@@ -244,11 +243,6 @@ def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:
     return out if out else [Element(metres)] if metres > 1 else []
 
 
-def is_long(outline: Outline) -> bool:
-    """Returns whether a length of 700 m or more is required and the number of turns is left open."""
-    return outline.length is not None and outline.length.lo >= LONG and _repeated(outline)
-
-
 def _roomy(turn: Feature, metres: float) -> Feature:
     """Returns a turn whose least radius suits the spacing of the spline's points.
 
@@ -259,15 +253,6 @@ def _roomy(turn: Feature, metres: float) -> Feature:
     spacing = max(CONTROL_SPACING, metres / MOST_CONTROL_POINTS)
     least = turn.radius.lo * OFF_TIGHTEST + OFF_BY_SPACING * (spacing - CONTROL_SPACING)
     return replace(turn, radius=Range(least))
-
-
-def _repeated(outline: Outline) -> bool:
-    """Returns whether the road may have more turns like its last one."""
-    turning = [group for group in outline.groups if group.feature.kind == "turn"]
-    is_last = bool(outline.groups) and outline.groups[-1].feature.kind == "turn" and outline.ends is None
-    if not turning:
-        return outline.turns.hi == inf and outline.ends is None
-    return len(turning) == 1 and is_last and turning[0].hi is None
 
 
 def _has_open_sides(outline: Outline) -> bool:

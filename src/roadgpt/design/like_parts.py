@@ -53,8 +53,6 @@ def with_like_parts(order: TurnSequence, given: LikePartDraw) -> TurnSequence:
     Raises:
         DesignError: a turn cannot have the required angle or radius.
     """
-    if not given.outline.alike:
-        return order
     turns = [*order.turns]
     for group in like_groups(turns):
         angles, radii = _like_turn(group, len(turns), given)

@@ -19,23 +19,11 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.refusal import NoRoomError
 from roadgpt.check.bumps import asks_for_bumps
-from roadgpt.design.advice import (
-    FOR_ROOM,
-    LIKELY,
-    advice,
-    larger_map,
-    main_reason,
-    metres_of,
-    roomier,
-    too_fast,
-)
 from roadgpt.design.compose import composed
 from roadgpt.design.grade_correction import corrected_draft
-from roadgpt.design.growth import grown, is_long
 from roadgpt.design.heights import drawn_heights
 from roadgpt.design.layout import MapPose, PlacedPlan, keeps_clear, place, smallest_box, walk
-from roadgpt.design.like_parts import LikePartDraw, with_like_parts
-from roadgpt.design.sequence import TurnSequence, drawn_sequence
+from roadgpt.design.sequence import TurnSequence, drawn_sequence, is_long
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
 from roadgpt.design.vertical import EASES, Pace
 from roadgpt.design.windows import Windows
@@ -86,11 +74,24 @@ def sufficient_map(brief: Brief, world: World) -> float | None:
             DraftSearch(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS
         ]
     except NoRoomError:
-        return larger_map(brief, world, fits, LIKELY * metres_of(brief, world))
+        return _larger_map(brief, world)
     except RoadGPTError:
         return None
     failed = next((search for search in searches if search.found(TRIED) is None), None)
-    if failed is None or main_reason(failed.failed) not in FOR_ROOM:
+    return None if failed is None else _larger_map(brief, world, failed)
+
+
+def _larger_map(brief: Brief, world: World, failed: "DraftSearch | None" = None) -> float | None:
+    """Returns the side in metres of a map large enough for a road that the World's map has no room for.
+
+    Returns None if no larger map would help. ``failed`` is a search that found no road; None if none was
+    made, because the map is clearly too small.
+    """
+    from roadgpt.design.advice import FOR_ROOM, LIKELY, larger_map, main_reason, metres_of, roomier
+
+    if failed is None:
+        return larger_map(brief, world, fits, LIKELY * metres_of(brief, world))
+    if main_reason(failed.failed) not in FOR_ROOM:
         return None
     return larger_map(brief, world, fits, roomier(world, failed.boxes))
 
@@ -133,11 +134,17 @@ class DraftSearch:
         """
         found = self.found()
         if found is None:
-            slower = self._speed_that_would_do()
-            if slower:
-                raise DesignError(too_fast(self.world, slower))
-            raise DesignError(advice(self.brief, self.outline, self.world, self.failed, self.boxes, fits))
+            raise DesignError(self._advice())
         return found
+
+    def _advice(self) -> str:
+        """Returns the message for a search that found no road."""
+        from roadgpt.design.advice import advice, too_fast
+
+        slower = self._speed_that_would_do()
+        if slower:
+            return too_fast(self.world, slower)
+        return advice(self.brief, self.outline, self.world, self.failed, self.boxes, fits)
 
     def found(self, drafts: int = DRAFTS) -> tuple[Design, Road] | None:
         """Returns the first draft that is accepted, as in ``run``; None if no draft is accepted.
@@ -184,6 +191,10 @@ class DraftSearch:
 
     def _sequence(self, plain: bool, haste: float) -> TurnSequence:
         order = drawn_sequence(self.outline, self.rng, plain)
+        if not self.outline.alike:
+            return order
+        from roadgpt.design.like_parts import LikePartDraw, with_like_parts
+
         return with_like_parts(order, LikePartDraw(self.outline, self.windows, self.world, self.rng, haste))
 
     def _growth(self) -> PlacedPlan | None:
@@ -193,6 +204,8 @@ class DraftSearch:
         """
         if self.outline.length is None:
             return None
+        from roadgpt.design.growth import grown
+
         order = self._sequence(plain=True, haste=0.5)
         found = grown(order, self.outline, self.windows, self.world, self.rng)
         if found is None:

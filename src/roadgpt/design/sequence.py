@@ -20,6 +20,7 @@ SWITCH = 0.6  # probability that a turn goes to the other side than the one befo
 WIDE = 100.0  # degrees: larger turns to one side would coil up, so they mostly alternate
 SWITCH_WIDE = 0.9
 SMALL, LARGE = 27.0, 105.0  # degrees of usual turns, which bound their number if their sum is required
+LONG = 700.0  # m: a shorter road with a few turns fits on the usual map
 ROUNDS = 60  # of drawing sides until the numbers of left and right turns are right
 
 
@@ -37,6 +38,20 @@ class TurnSequence(NamedTuple):
 def is_hairpin(feature: Feature) -> bool:
     """Returns whether the description calls the turn a hairpin or a switchback."""
     return feature.name in HAIRPINS
+
+
+def is_long(outline: Outline) -> bool:
+    """Returns whether a length of 700 m or more is required and the number of turns is left open."""
+    return outline.length is not None and outline.length.lo >= LONG and may_repeat_last_turn(outline)
+
+
+def may_repeat_last_turn(outline: Outline) -> bool:
+    """Returns whether the road may have more turns like its last one."""
+    turning = [group for group in outline.groups if group.feature.kind == "turn"]
+    is_last = bool(outline.groups) and outline.groups[-1].feature.kind == "turn" and outline.ends is None
+    if not turning:
+        return outline.turns.hi == inf and outline.ends is None
+    return len(turning) == 1 and is_last and turning[0].hi is None
 
 
 def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> TurnSequence:

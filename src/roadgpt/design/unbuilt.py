@@ -2,14 +2,16 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from roadgpt.brief.amount import span
 from roadgpt.brief.junctions import RAMPS, JunctionClause, JunctionKind
 from roadgpt.brief.model import Brief
 from roadgpt.errors import DesignError
-from roadgpt.network.lane_design import LanesDesign
-from roadgpt.network.ring import MOST_LANES as MOST_RING_LANES
 from roadgpt.plural import plural
+
+if TYPE_CHECKING:
+    from roadgpt.network.lane_design import LanesDesign
 
 TURNING_LANES: Mapping[JunctionKind, int] = {"t_junction": 1, "crossroads": 2}
 """How many lanes of a road can end or begin at a junction: they lead to the side or come from there."""
@@ -34,7 +36,7 @@ def check_built(brief: Brief) -> None:
         raise DesignError(f"{named} cannot be built yet; leave {'them' if others else 'it'} out")
 
 
-def check_lanes_across(places: Sequence[JunctionClause], lanes: Sequence[LanesDesign]) -> None:
+def check_lanes_across(places: Sequence[JunctionClause], lanes: "Sequence[LanesDesign]") -> None:
     """Checks that no lane of a road leads nowhere at a junction where a route goes straight on.
 
     Lanes that do not continue there turn off, or come from the side: one to the left and one to the right at
@@ -81,6 +83,8 @@ def _of_junction(junction: JunctionClause, before: Brief, after: Brief) -> Itera
         if span(ramp.lanes).lo > 1 or span(ramp.against).lo > 0 or ramp.divided:
             yield "a ramp with several lanes or oncoming traffic"
     if junction.kind == "roundabout":
+        from roadgpt.network.ring import MOST_LANES as MOST_RING_LANES
+
         lanes = [span(each).lo for road in (before, after) for each in (road.lanes, road.against)]
         if junction.size == "mini" and max(lanes) > 1:
             yield "a mini roundabout on a road with several lanes in one direction"

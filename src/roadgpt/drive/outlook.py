@@ -5,18 +5,19 @@ from typing import TYPE_CHECKING
 
 from roadgpt.drive.view import JunctionAhead
 from roadgpt.geometry import wrap_angle
-from roadgpt.network import Leg, Passage, Route
+from roadgpt.network import is_route
 
 if TYPE_CHECKING:
+    from roadgpt.network import Leg, Passage, Route
     from roadgpt.road import Profile, Road, World
 
 
-def route_of(road: "Road") -> Route | None:
+def route_of(road: "Road") -> "Route | None":
     """Returns the road if it is a route through a network, otherwise None."""
-    return road if isinstance(road, Route) else None
+    return road if is_route(road) else None
 
 
-def passages(road: "Road") -> tuple[Passage, ...]:
+def passages(road: "Road") -> "tuple[Passage, ...]":
     """Returns the passages of a route through its junctions in driving order; empty for a single road."""
     route = route_of(road)
     return () if route is None else route.passages
@@ -36,7 +37,7 @@ class Outlook:
             self._beside = [_beside_on_leg(self._route, leg) for leg in self._route.legs]
         self._plain = (self._route, (), *self._beside[0])
 
-    def at(self, s: float) -> tuple[Route | None, tuple[JunctionAhead, ...], int, int]:
+    def at(self, s: float) -> "tuple[Route | None, tuple[JunctionAhead, ...], int, int]":
         """Returns ``route``, ``junctions``, ``lanes_left`` and ``lanes_right`` of a View at station ``s``."""
         if self._route is None:
             return self._plain
@@ -50,7 +51,7 @@ class Outlook:
         return self._route, ahead, *self._beside[max(bisect_right(self._starts, s) - 1, 0)]
 
 
-def _junction(road: "Road", passage: Passage) -> tuple[float, float, tuple[str, float, int, str]]:
+def _junction(road: "Road", passage: "Passage") -> tuple[float, float, tuple[str, float, int, str]]:
     """Returns the stations between which a junction lies, and what a driver sees of it from any station."""
     turn = float(wrap_angle(road.heading(passage.end) - road.heading(passage.start)))
     return passage.start, passage.end, (passage.entered.kind, turn, passage.exit, passage.control)
@@ -63,7 +64,7 @@ def _beside_on_road(road: "Road", world: "World") -> tuple[int, int]:
     return _left_and_right(profile, profile.driven + backward, forward - 1 - profile.driven)
 
 
-def _beside_on_leg(route: Route, leg: Leg) -> tuple[int, int]:
+def _beside_on_leg(route: "Route", leg: "Leg") -> tuple[int, int]:
     profile = route.network.road(leg.road).profile
     forward, backward = profile.count
     if profile.leads_along(leg.lane):

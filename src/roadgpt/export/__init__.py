@@ -17,13 +17,16 @@ import shutil
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from roadgpt import plugins
 from roadgpt.errors import ExportError, UsageError
 from roadgpt.export.poses import Poses
-from roadgpt.network import Route, has_no_route
+from roadgpt.network import has_no_route, is_route
 from roadgpt.road import Road, World
+
+if TYPE_CHECKING:
+    from roadgpt.network import Route
 
 __all__ = ["Exporter", "Poses", "exporter_of", "save"]
 
@@ -103,7 +106,7 @@ def save(
     parts = [exporter_of(format_) for format_ in dict.fromkeys(formats)]
     if not name or name == ".." or Path(name).name != name:
         raise UsageError(f"'{name}' cannot name a file; give a name without a folder")
-    if isinstance(road, Route):
+    if is_route(road):
         for part in parts:
             _check_holds(road, part)
     road, folder = world.lay(road), Path(folder)
@@ -121,7 +124,7 @@ def save(
     return tuple(dict.fromkeys(written))
 
 
-def _check_holds(road: Route, part: Exporter) -> None:
+def _check_holds(road: "Route", part: Exporter) -> None:
     """Raises ExportError if a format would hold only the route, without the junctions beside it, or if it
     needs a route and there is none.
     """

@@ -4,36 +4,43 @@ A NetworkDesign describes a route with the junctions that it passes; ``build_rou
 MapDesign describes a whole map and a route through the map, or none; ``build_map`` makes a Route from it. A
 Route is a Road whose centre line follows the reference lines of its roads, one after another.
 ``route.network`` is the Network, with all roads, connecting roads, junctions and roundabouts.
+
+Most roads lead through no junctions. The functions that all roads are asked with are loaded at once (see
+``road_or_route``); what builds and describes networks is loaded when its name is first used.
 """
 
-from roadgpt.network.design import JunctionDesign, NetworkDesign, is_network_design, read_network_design
-from roadgpt.network.growing import build_route, passing_length
-from roadgpt.network.map_design import MapDesign, MapNode, read_map_design
-from roadgpt.network.map_growing import build_map
-from roadgpt.network.network import (
-    Arm,
-    Connection,
-    Continuation,
-    Junction,
-    LaneLink,
-    Leg,
-    Network,
-    NetworkRoad,
-    RoadEnd,
-    Roundabout,
-)
-from roadgpt.network.passages import Passage
-from roadgpt.network.route import Route, has_no_route, refuse_without_route
-from roadgpt.network.source import (
-    AnyDesign,
-    Blueprint,
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from roadgpt.network.road_or_route import (
+    has_no_route,
+    is_route,
     made_from,
-    network_made_from,
-    read_any_design,
-    read_blueprint,
-    read_road,
+    refuse_without_route,
     road_from_json,
 )
+
+if TYPE_CHECKING:
+    from roadgpt.network.blueprint import AnyDesign, Blueprint, network_made_from
+    from roadgpt.network.design import JunctionDesign, NetworkDesign, is_network_design, read_network_design
+    from roadgpt.network.growing import build_route, passing_length
+    from roadgpt.network.map_design import MapDesign, MapNode, read_map_design
+    from roadgpt.network.map_growing import build_map
+    from roadgpt.network.network import (
+        Arm,
+        Connection,
+        Continuation,
+        Junction,
+        LaneLink,
+        Leg,
+        Network,
+        NetworkRoad,
+        RoadEnd,
+        Roundabout,
+    )
+    from roadgpt.network.passages import Passage
+    from roadgpt.network.route import Route
+    from roadgpt.network.source import read_any_design, read_blueprint, read_road
 
 __all__ = [
     "AnyDesign",
@@ -58,6 +65,7 @@ __all__ = [
     "build_route",
     "has_no_route",
     "is_network_design",
+    "is_route",
     "made_from",
     "network_made_from",
     "passing_length",
@@ -69,3 +77,34 @@ __all__ = [
     "refuse_without_route",
     "road_from_json",
 ]
+
+_LATER = {
+    "blueprint": ("AnyDesign", "Blueprint", "network_made_from"),
+    "design": ("JunctionDesign", "NetworkDesign", "is_network_design", "read_network_design"),
+    "growing": ("build_route", "passing_length"),
+    "map_design": ("MapDesign", "MapNode", "read_map_design"),
+    "map_growing": ("build_map",),
+    "network": (
+        "Arm",
+        "Connection",
+        "Continuation",
+        "Junction",
+        "LaneLink",
+        "Leg",
+        "Network",
+        "NetworkRoad",
+        "RoadEnd",
+        "Roundabout",
+    ),
+    "passages": ("Passage",),
+    "route": ("Route",),
+    "source": ("read_any_design", "read_blueprint", "read_road"),
+}
+"""The names that are loaded when they are first used, by the module that defines them."""
+
+
+def __getattr__(name: str) -> Any:
+    for module, names in _LATER.items():
+        if name in names:
+            return getattr(import_module(f"roadgpt.network.{module}"), name)
+    raise AttributeError(f"roadgpt.network has no '{name}'; it offers {', '.join(__all__)}")

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import accumulate, groupby, pairwise
-from typing import Any, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, Piece, PieceCurve
@@ -36,6 +36,7 @@ class Route(Road):
     drive it. What needs a centre line all the same gets that of the network's first road.
     """
 
+    is_route: ClassVar[bool] = True
     network: Network
     legs: tuple[Leg, ...]
 
@@ -137,20 +138,6 @@ class Route(Road):
         route, the list is empty.
         """
         return {"route": [list(leg) for leg in self.legs]}
-
-
-def has_no_route(road: Road) -> bool:
-    """Returns whether a road is a network through which no route was asked for."""
-    return isinstance(road, Route) and not road.legs
-
-
-def refuse_without_route(road: Road, what: str) -> None:
-    """Raises UsageError if no route was asked for; ``what`` says what cannot be done then, as in "driven"."""
-    if has_no_route(road):
-        raise UsageError(
-            f"a map without a route cannot be {what}; give it one, the nodes in driving order, such as "
-            '"route": [1, 2, 4]'
-        )
 
 
 def _first_leg(network: Network) -> Leg:

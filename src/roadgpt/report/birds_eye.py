@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from matplotlib import colormaps
@@ -14,20 +14,21 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.ticker import MultipleLocator
 
-from roadgpt.campaign.faults.reason import FailureReason
 from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Route, has_no_route
+from roadgpt.network import has_no_route, is_route
 from roadgpt.plural import plural
 from roadgpt.report.canvas import HALO, INK, SEVERE, SOFT, Header, add_axes, in_our_style, new_figure, save
 from roadgpt.report.labels import Labels
-from roadgpt.report.network_view import FAR_ROUTE, SIGN_NAMES, TINT, sign_style, signs_shown
 from roadgpt.report.places import MarkedPlace, minor_places_of, places_of
 from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, is_far, plan_points
 from roadgpt.report.text_width import inches
 from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.verdict import SEVERITIES, Severity, severity
+
+if TYPE_CHECKING:
+    from roadgpt.campaign.faults.reason import FailureReason
 
 Scale = Literal["equal", "thesis"]
 """Axes that fit the road ("equal"), or x and y from 0 to 220 m as in RoadGPT's thesis ("thesis")."""
@@ -68,8 +69,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     right = BAR if run.drive is not None else 0.3
     header = Header.of(run, LEFT + across + right)
     per_inch = frame.width / across
-    network_key = [*_route_key(road, world, per_inch), *_sign_key(road, frame, per_inch)]
-    rows = [row for row in (_outside_key(run.drive), network_key) if row]
+    rows = [row for row in (_outside_key(run.drive), _network_key(road, world, frame, per_inch)) if row]
     foot = BOTTOM + KEY * len(rows)
     figure = new_figure(header.width, foot + across * frame.height / frame.width + header.height)
     axes = add_axes(figure, LEFT, foot, right, header.height)
@@ -228,24 +228,23 @@ def _outside_key(drive: Drive | None) -> list[KeyEntry]:
     ]
 
 
-def _route_key(road: Road, world: World, per_inch: float) -> list[KeyEntry]:
-    """Returns the key to the tint of the route's lane; none for a road without junctions or a map without a
-    route.
+def _network_key(road: Road, world: World, frame: Frame, per_inch: float) -> list[KeyEntry]:
+    """Returns the key to the tint of the route's lane, and to the signs and lights that a frame shows; empty
+    for a road without junctions.
     """
-    if not isinstance(road, Route) or has_no_route(road):
+    if not is_route(road):
         return []
+    from roadgpt.report.network_view import FAR_ROUTE, SIGN_NAMES, TINT, sign_style, signs_shown
+
     colour = FAR_ROUTE if is_far(road, world, per_inch) else TINT
-    return [KeyEntry("lane of the route", SWATCH, {"lw": RIM, "color": colour})]
-
-
-def _sign_key(road: Road, frame: Frame, per_inch: float) -> list[KeyEntry]:
-    """Returns the key to the signs and lights that a frame shows."""
+    lane = [KeyEntry("lane of the route", SWATCH, {"lw": RIM, "color": colour})]
     found = {sign.control for sign in signs_shown(road, per_inch) if frame.holds(*sign.place[:2])}
-    return [
+    signs = [
         KeyEntry(SIGN_NAMES[control], DOT, {**sign_style(control), "markevery": [0]})
         for control in SIGN_NAMES
         if control in found
     ]
+    return signs if has_no_route(road) else lane + signs
 
 
 def _draw_key(figure: Figure, above: float, entries: list[KeyEntry]) -> None:
@@ -258,7 +257,7 @@ def _draw_key(figure: Figure, above: float, entries: list[KeyEntry]) -> None:
         left += width + 3 * GAP + inches(text, KEY_SIZE)
 
 
-def fault_picture(run: Run, reason: FailureReason, more: str = "") -> Figure:
+def fault_picture(run: Run, reason: "FailureReason", more: str = "") -> Figure:
     """Returns a bird's-eye view of the place of a failure, with the cause in its header.
 
     Args:
@@ -281,6 +280,6 @@ def fault_picture(run: Run, reason: FailureReason, more: str = "") -> Figure:
 
 
 @in_our_style
-def draw_fault(run: Run, reason: FailureReason, more: str, path: Path) -> Path:
+def draw_fault(run: Run, reason: "FailureReason", more: str, path: Path) -> Path:
     """Writes the picture of a failure to ``path``, whose suffix gives the format; see ``fault_picture``."""
     return save(fault_picture(run, reason, more), path)

@@ -34,6 +34,7 @@ UNDATED: Mapping[str, Mapping[str, None]] = {
 # Without a salt the ids in an SVG are random; publishers want fonts of Type 42 in a PDF.
 SAVING: dict[Any, Any] = {"svg.hashsalt": "roadgpt", "svg.fonttype": "path", "pdf.fonttype": 42}
 INK, SOFT, FAINT = "#1b1e23", "#5f6670", "#d9dce1"
+GRASS = "#cfdcc0"
 
 # Okabe and Ito's colours, which colour-blind people can distinguish; a word or a symbol is always shown, too.
 BLUE, ORANGE, GREEN, VERMILLION, PURPLE = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#aa4499"

@@ -5,7 +5,7 @@ from typing import Literal, NamedTuple
 from matplotlib.axes import Axes
 
 from roadgpt.brief.junctions import NAMES
-from roadgpt.network import Route
+from roadgpt.network import is_route
 from roadgpt.report.canvas import HALO, SOFT
 from roadgpt.report.text_width import inches
 from roadgpt.road import Road
@@ -28,7 +28,7 @@ class JunctionStretch(NamedTuple):
 
 def junction_stretches(road: Road) -> tuple[JunctionStretch, ...]:
     """Returns the junctions that a route passes, in driving order; none for a road without junctions."""
-    if not isinstance(road, Route):
+    if not is_route(road):
         return ()
     return tuple(JunctionStretch(each.start, each.end, NAMES[each.entered.kind][0]) for each in road.passages)
 

@@ -18,12 +18,12 @@ from roadgpt.network.markings import JunctionSign, between_crosswalks, signs, st
 from roadgpt.network.paved import stations_of
 from roadgpt.network.polygon import Area
 from roadgpt.network.surface import NetworkSurface
+from roadgpt.report.canvas import GRASS
 from roadgpt.report.text_width import POINTS
-from roadgpt.road import Road
 
 VERGE, ASPHALT, PAINT = "#dcd9c3", "#b9bdc3", "#ffffff"
 TINT, ARROW = "#8fb3d6", "#0072b2"
-GRASS, KERB = "#cfdcc0", "#e9e6dc"
+KERB = "#e9e6dc"
 FAR_ASPHALT, FAR_ROUTE = "#a7adb5", "#4d86b8"
 LINE_POINTS, STOP_POINTS = 1.1, 2.2  # points, least width of a line on paper
 SIGNS = {"stop": "#c1272d", "yield": "#c1272d", "priority": "#e0a800", "lights": "#2b2f36"}
@@ -135,11 +135,11 @@ def _draw_route(axes: Axes, route: Route, per_inch: float) -> None:
         )
 
 
-def signs_shown(road: Road, per_inch: float) -> tuple[JunctionSign, ...]:
-    """Returns the signs and lights to draw in a picture with ``per_inch`` metres per inch. There are none for
-    a road without junctions, or if ``per_inch`` is more than 50.
+def signs_shown(route: Route, per_inch: float) -> tuple[JunctionSign, ...]:
+    """Returns the signs and lights to draw in a picture with ``per_inch`` metres per inch. There are none if
+    ``per_inch`` is more than 50.
     """
-    return signs(road.network) if isinstance(road, Route) and per_inch <= NEAR else ()
+    return signs(route.network) if per_inch <= NEAR else ()
 
 
 def sign_style(control: Control) -> dict[str, Any]:

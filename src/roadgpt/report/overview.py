@@ -16,7 +16,6 @@ from matplotlib.transforms import Affine2D
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
-from roadgpt.network.network_json import network_from_json
 from roadgpt.reading import read_json
 from roadgpt.report.canvas import (
     DARKER,
@@ -32,7 +31,6 @@ from roadgpt.report.canvas import (
     new_figure,
     save_all,
 )
-from roadgpt.report.network_view import path_of
 from roadgpt.report.plan_view import ASPHALT, GROUND
 from roadgpt.report.text_width import fitted, inches
 from roadgpt.road import World
@@ -145,6 +143,9 @@ def _paved(path: Path) -> Outline | None:
     data = _loaded(run / "road.json")
     if not isinstance(data, dict) or "network" not in data:
         return None
+    from roadgpt.network.network_json import network_from_json
+    from roadgpt.report.network_view import path_of
+
     return path_of(network_from_json(data["network"]).paved)
 
 

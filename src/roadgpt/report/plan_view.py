@@ -8,8 +8,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon
 
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Route, has_no_route
-from roadgpt.report.network_view import GRASS, draw_network, draw_network_from_far, lines_of
+from roadgpt.network import has_no_route, is_route
+from roadgpt.report.canvas import GRASS
 from roadgpt.report.text_width import POINTS
 from roadgpt.road import Edges, Road, World
 
@@ -75,7 +75,9 @@ def plan_points(road: Road) -> Array:
     """Returns points, shape ``(n, 2)``, along the centre line of a road; for a route, also along the
     reference lines of all roads in its network."""
     points: Array = road.at(stations_of(road))[:, :2]
-    if isinstance(road, Route):
+    if is_route(road):
+        from roadgpt.report.network_view import lines_of
+
         return np.concatenate([points, lines_of(road)[:, :2]])
     return points
 
@@ -85,7 +87,9 @@ def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
     of metres per inch of the picture. For a route, draws the whole network.
     """
     s, profile = stations_of(road), world.profile_of(road)
-    if isinstance(road, Route):
+    if is_route(road):
+        from roadgpt.report.network_view import draw_network, draw_network_from_far
+
         if is_far(road, world, per_inch):
             draw_network_from_far(axes, road, THINNEST_LANE)
         else:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -65,6 +65,8 @@ class Road:
     None otherwise.
     """
 
+    is_route: ClassVar[bool] = False
+    """Whether the road is a Route, which leads through the junctions of a network."""
     plan: PlanCurve
     elevation: ElevationProfile
     nodes: Array | None = None

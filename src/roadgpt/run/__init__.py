@@ -12,7 +12,7 @@ import traceback
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from roadgpt import plugins
 from roadgpt.brief import NoRoomError, read
@@ -20,14 +20,13 @@ from roadgpt.brief.model import Brief
 from roadgpt.chat import Meter, ReplyError, counting
 from roadgpt.check import Finding, inspect, rules_of
 from roadgpt.design import check_designer, designer_of
-from roadgpt.design.advice import no_room
 from roadgpt.design.report import DesignReport
 from roadgpt.design.road_search import fits
 from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored, simulate
 from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
-from roadgpt.network import AnyDesign, Blueprint, made_from, refuse_without_route
+from roadgpt.network import made_from, refuse_without_route
 from roadgpt.road import Design, Geometry, Road, World, in_short_segments
 from roadgpt.run.card import seed_in
 from roadgpt.run.folder import Draw, read_run, write_run
@@ -37,6 +36,9 @@ from roadgpt.run.seeds import seed_of
 from roadgpt.run.versions import versions_of
 from roadgpt.stopping import look
 from roadgpt.verdict import judge
+
+if TYPE_CHECKING:
+    from roadgpt.network import AnyDesign, Blueprint
 
 __all__ = [
     "Draw",
@@ -133,11 +135,13 @@ def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Mete
             fixed = "map_size" in world.site.model_fields_set
             return read(words, setup.reader, *limits, setup.chat, world.section.road_width, fixed)
         except NoRoomError as error:
+            from roadgpt.design.advice import no_room
+
             raise BriefError(no_room(error, world, fits)) from error
 
 
 def prove(
-    blueprint: Blueprint,
+    blueprint: "Blueprint",
     seed: int = 0,
     world: World = USUAL,
     setup: Setup = PLAIN,
@@ -197,7 +201,7 @@ def check_parts(setup: Setup, world: World = USUAL) -> None:
 class _Made(NamedTuple):
     """A draft, its road, and the findings: the rules that the road breaks."""
 
-    design: AnyDesign
+    design: "AnyDesign"
     road: Road
     findings: tuple[Finding, ...]
     rounds: int

@@ -25,7 +25,7 @@ from roadgpt.check import Finding
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
-from roadgpt.network import read_any_design, road_from_json
+from roadgpt.network import road_from_json
 from roadgpt.reading import LARGEST, read_json, read_text, strictly
 from roadgpt.run.atomic import json_text, refuse_links, to_bytes, whole_folder, write_whole
 from roadgpt.run.model import Outcome, Request, Run, Seconds
@@ -187,6 +187,8 @@ def _folder_of(path: Path) -> Path:
 def _read(folder: Path, card: dict[str, Any]) -> Run:
     def value(name: str) -> Any:
         return _loaded(folder / name) if (folder / name).is_file() else None
+
+    from roadgpt.network import read_any_design  # it knows all kinds of designs
 
     data = strictly(_Card, card)
     brief, design, road, verdict = (value(f"{n}.json") for n in ("brief", "design", "road", "verdict"))

@@ -9,11 +9,11 @@ from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import permission
-from roadgpt.network import AnyDesign
 from roadgpt.road import Design, Geometry, Road, World
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
+    from roadgpt.network import AnyDesign
     from roadgpt.verdict import Verdict
 
 Outcome = Literal["PASS", "FAIL", "INVALID", "ERROR", "VALID"]
@@ -111,7 +111,7 @@ class Run:
     description: str = "valid, not driven"
     """The outcome in a sentence."""
     brief: Brief | None = None
-    design: AnyDesign | None = None
+    design: "AnyDesign | None" = None
     road: Road | None = None
     findings: tuple[Finding, ...] = ()
     drive: "Drive | None" = None

@@ -29,7 +29,7 @@ from roadgpt.verdict.oracle import is_outside
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
-    from roadgpt.road import Road, World
+    from roadgpt.road import World
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -44,17 +44,15 @@ EDGE = 0.02  # m, by which a tyre may be beyond the polygon of the paved area, w
 STEP = 1.0  # m, between points at which the heading of other roads is known
 
 
-def incidents_of(road: "Road", drive: "Drive", world: "World") -> tuple[Incident, ...] | None:
-    """Returns what the car did wrong, in order of time; None if the road is not a Route."""
-    if not isinstance(road, Route):
-        return None
+def incidents_of(route: Route, drive: "Drive", world: "World") -> tuple[Incident, ...]:
+    """Returns what the car did wrong on a route, in order of time."""
     found: list[tuple[int, IncidentKind]] = [
-        (step, "out of lane") for step in begins(is_outside(road, drive, world))
+        (step, "out of lane") for step in begins(is_outside(route, drive, world))
     ]
-    found += [(step, "wrong turn") for step in begins(_is_on_wrong_road(road, drive))]
-    found += [(step, "wrong way") for step in begins(_is_backwards(road, drive))]
-    found += [(step, "off road") for step in begins(_is_off_road(road, drive))]
-    found += [(step, "stop line") for step in _stops_missed(road, drive)]
+    found += [(step, "wrong turn") for step in begins(_is_on_wrong_road(route, drive))]
+    found += [(step, "wrong way") for step in begins(_is_backwards(route, drive))]
+    found += [(step, "off road") for step in begins(_is_off_road(route, drive))]
+    found += [(step, "stop line") for step in _stops_missed(route, drive)]
     return tuple(
         Incident(
             kind,

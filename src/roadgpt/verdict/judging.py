@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.errors import UsageError
+from roadgpt.network import is_route
 from roadgpt.verdict.incident import Incident
-from roadgpt.verdict.incidents import incidents_of
 from roadgpt.verdict.margin import EPSILON, margins
 from roadgpt.verdict.oracle import consult, has_departed, is_outside
 from roadgpt.verdict.severity import percent
@@ -77,7 +77,7 @@ def judge(
         UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``.
     """
     road = world.lay(road)
-    incidents = incidents_of(road, drive, world)
+    incidents = _incidents(road, drive, world)
     step, cause = known or _first_failure(road, drive, world)
     if cause is None:
         step, cause = _first_of(incidents or (), drive, step)
@@ -108,6 +108,15 @@ def judge(
         side=side,
         incidents=incidents,
     )
+
+
+def _incidents(road: "Road", drive: "Drive", world: "World") -> tuple[Incident, ...] | None:
+    """Returns what the car did wrong, in order of time; None if the road is not a Route."""
+    if not is_route(road):
+        return None
+    from roadgpt.verdict.incidents import incidents_of  # a single road does not need it
+
+    return incidents_of(road, drive, world)
 
 
 def most_beyond(road: "Road", drive: "Drive", world: "World") -> float:

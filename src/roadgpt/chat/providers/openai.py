@@ -14,11 +14,12 @@ from weakref import WeakKeyDictionary
 
 from pydantic import BaseModel
 
+from roadgpt.chat.account import Account, tokens_in
 from roadgpt.chat.answer import Answer, from_chat, from_responses
 from roadgpt.chat.client import ApiClient
 from roadgpt.chat.config import key_for
 from roadgpt.chat.json_schema import schema_of
-from roadgpt.chat.meter import Account, Meter, tokens_in
+from roadgpt.chat.meter import Meter
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent, Usage
 from roadgpt.chat.request_error import RequestError
 from roadgpt.chat.server_quirks import ResponseFormat, ServerQuirks, quirks_of

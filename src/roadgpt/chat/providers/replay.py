@@ -7,7 +7,8 @@ from pathlib import Path
 
 from pydantic import BaseModel
 
-from roadgpt.chat.meter import Account, occasion
+from roadgpt.chat.account import Account
+from roadgpt.chat.meter import occasion
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent
 from roadgpt.chat.recording import ExchangeStore, question_of
 from roadgpt.errors import ChatError, RefusedError, ReplyError, UnparsableError, UsageError

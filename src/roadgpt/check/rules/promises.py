@@ -14,7 +14,6 @@ from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import COUNTS, NO_TURN, ROAD, WHOLE_SLOPES
 from roadgpt.check.finding import Finding
-from roadgpt.check.likeness import likeness_complaints
 from roadgpt.check.matching import Complaint, fits, sequence_complaints, turn_complaints
 from roadgpt.check.measures import LEVEL, Measures, measure
 from roadgpt.road import Road, World
@@ -34,7 +33,10 @@ def complaints(found: Measures, asked: Outline) -> list[Complaint]:
     out = list(_counts(found, asked))
     if len(found.turns) in asked.turns:
         out += sequence_complaints(found, asked)
-        out += likeness_complaints(found, asked)
+        if asked.alike:
+            from roadgpt.check.likeness import likeness_complaints
+
+            out += likeness_complaints(found, asked)
     for number, turn in enumerate(found.turns, 1):
         out += turn_complaints(number, turn, asked.each_turn)
     out += _slopes(found, asked)

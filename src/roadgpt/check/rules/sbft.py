@@ -7,13 +7,13 @@ from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
 from roadgpt.check.sbft import sbft_verdict
 from roadgpt.errors import UsageError
-from roadgpt.network import Route
+from roadgpt.network import is_route
 from roadgpt.road import Road, World
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the error message of the competition's validator if it rejects the road's control points."""
-    if isinstance(road, Route):
+    if is_route(road):
         return (Finding("sbft", "the road leads through junctions, and SBFT tests are single roads"),)
     try:
         is_valid, message = sbft_verdict(road.control_points(), world.site.map_size)

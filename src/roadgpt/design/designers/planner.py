@@ -5,14 +5,17 @@ only where it is used.
 """
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
-from roadgpt.network import AnyDesign
 from roadgpt.road import Design, World
+
+if TYPE_CHECKING:
+    from roadgpt.network import AnyDesign
 
 
 class Planner:
@@ -25,7 +28,7 @@ class Planner:
 
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
-    ) -> AnyDesign:
+    ) -> "AnyDesign":
         """Returns a valid Design that meets the Brief; a NetworkDesign or a MapDesign for a network.
 
         Args:

@@ -10,11 +10,10 @@ its own drive fails. One process serves many drives, one after another; the driv
 from typing import Any
 
 from roadgpt import plugins
-from roadgpt.drive.isolation.proxy import IsolatedDriver
 from roadgpt.drive.loading import load_driver
 from roadgpt.drive.permission import require_permission, split_spec
 
-__all__ = ["IsolatedDriver", "driver_of"]
+__all__ = ["driver_of"]
 
 OURS = "roadgpt."  # prefix of the modules whose drivers run in this process, beside the simulator
 
@@ -40,4 +39,6 @@ def driver_of(spec: str) -> Any:
     module = "" if path else plugins.module_of("drivers", spec)
     if not path and (not module or module.startswith(OURS)):  # load_driver reports an unknown plug-in
         return load_driver(spec)
+    from roadgpt.drive.isolation.proxy import IsolatedDriver  # RoadGPT's own drivers need no process
+
     return IsolatedDriver(spec)
