@@ -138,3 +138,17 @@ def test_a_misspelt_junction_is_answered_with_the_kinds_of_junctions() -> None:
         BriefError, match=r"no clause 'crosroads'; .*hairpin.* a junction with one of crossroads"
     ):
         read_plan("crosroads left")
+
+
+@pytest.mark.parametrize(
+    ("line", "kept"),
+    [
+        ("turn gentle; turn x2 sharp | r=18..", "turn gentle; turn x2 sharp | r=18.."),
+        ("hairpin x3 | r=20", "hairpin x3 r=20"),
+        ("slalom x6 | deg=30 r=25", "slalom x6 deg=30 r=25"),
+        ("turn gentle; hairpin | r=20..", "turn gentle; hairpin | r=20.."),
+    ],
+)
+def test_a_figure_for_every_turn_is_never_lost(line: str, kept: str) -> None:
+    assert plan(normal(read_plan(line))) == kept
+    assert normal(normal(read_plan(line))) == normal(read_plan(line))

@@ -31,6 +31,8 @@ class Element(NamedTuple):
     """
     required_grade: Range | None = None
     """Allowed range of the mean grade, in percent; None if the description asks for no grade here."""
+    required_climb: Range | None = None
+    """Allowed range of the height of the end above the start, in metres; None if none is asked for here."""
 
     @property
     def length(self) -> float:

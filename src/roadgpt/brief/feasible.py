@@ -11,6 +11,7 @@ from roadgpt.brief.map_fit import ROAD_WIDTH, check_room
 from roadgpt.brief.minimum_length import least_length
 from roadgpt.brief.model import Amount, Brief, Clause, Slope, exactly, span
 from roadgpt.brief.normal import BUMPS, SINGLE, STRAIGHT, clauses_turn, normal, total, turns_of
+from roadgpt.brief.part_climb import check_climb
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import (
     COUNTS,
@@ -162,6 +163,7 @@ def _shape(clause: Clause, limits: _Limits) -> None:
     _angle(clause, noun)
     _radius(clause, noun)
     _incline(clause.slope, clause.incline, limits)
+    check_climb(clause, limits.steepest)
     if length < 1:
         raise BriefError(f"a {noun} of {length:g} m is too short; ask for {LEAST_STRAIGHT:g} m or more")
 

@@ -74,6 +74,10 @@ class Clause(Frozen):
     slope: Slope | None = None
     incline: Amount | None = None
     """The grade in percent, always positive; ``slope`` says whether it is up or down."""
+    climb: Amount | None = None
+    """How many metres each feature rises or falls from its start to its end, always positive; ``slope`` says
+    whether it is up or down. The height of a crest, the depth of a dip.
+    """
 
 
 class Brief(Frozen):

@@ -10,7 +10,8 @@
 - A serpentine 'of 4 turns or more' becomes a serpentine without a count. ``alternating`` is not set for kinds
   that always alternate.
 - A requirement for every turn (sharpness, degrees, radius) moves to the clauses if they name the turns.
-- If all clauses have the same slope, it becomes the slope of the whole road.
+- If all clauses have the same slope, it becomes that of the whole road, and stays where a height is asked.
+- A height in metres makes 'steeply up' an 'up', and is uphill without a direction.
 - Fields that only repeat the clauses (number of turns, left or right, slope, first and last feature) are
   cleared.
 - If 4 of 5 turns go left, 1 goes right; if none goes left, all turns go right.
@@ -145,10 +146,13 @@ def turns_of(clause: Clause) -> tuple[float, float]:
 def _plain(clause: Clause) -> Clause:
     kind, count = clause.kind, clause.count
     said = {"slope": clause.slope, "incline": clause.incline, **_slope(clause.slope, clause.incline)}
+    if clause.climb and kind not in BUMPS:  # metres replace "steep" and "gentle", as a grade does
+        said["slope"] = PLAIN.get(clause.slope, clause.slope) if clause.slope else "up"
     if kind in STRAIGHT:
         return Clause(
             kind=kind,
             count=count,
+            climb=clause.climb,
             length=clause.length if kind == "straight" else None,
             size=clause.size if kind == "straight" and not clause.length else None,
             **(said if kind == "straight" else {}),
@@ -297,12 +301,23 @@ def _pushed_down(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Claus
     turning = [clause for clause in clauses if clause.kind not in STRAIGHT]
     if not turning:
         return whole, clauses
-    pushed = [_shaped(whole, clause) if clause.kind in SHAPED else clause for clause in clauses]
+    stays = _stays_behind(whole, turning)
+    shared = whole.model_copy(update=dict.fromkeys(stays))
+    pushed = [clause if clause.kind in STRAIGHT else _shaped(shared, clause) for clause in clauses]
     if whole.alternating and len(turning) == 1:
         pushed = [one for c in pushed for one in _singles(_plain(c.model_copy(update={"alternating": True})))]
     alternating = whole.alternating and len(turning) > 1
-    update = {"sharpness": None, "degrees": None, "radius": None, "alternating": alternating}
-    return whole.model_copy(update=update), pushed
+    gone = dict.fromkeys({"sharpness", "degrees", "radius"} - stays)
+    return whole.model_copy(update={**gone, "alternating": alternating}), pushed
+
+
+def _stays_behind(whole: Brief, turning: list[Clause]) -> set[str]:
+    """Returns the limits for every turn that stay limits of the road: a radius or an angle of "at least" or
+    "at most" beside turns that have a word for it instead.
+    """
+    is_worded = any(clause.sharpness and not clause.radius for clause in turning)
+    is_bound = whole.radius is not None and not whole.radius.exact
+    return {"radius"} if is_worded and is_bound else set()
 
 
 def _shaped(whole: Brief, clause: Clause) -> Clause:
@@ -311,6 +326,8 @@ def _shaped(whole: Brief, clause: Clause) -> Clause:
     }
     if clause.radius or clause.sharpness:  # its own shape is not mixed with the shape asked of the whole road
         said["sharpness"], said["radius"] = clause.sharpness, clause.radius
+    if clause.kind not in SHAPED:
+        said["sharpness"] = clause.sharpness
     return clause.model_copy(update=said)
 
 
@@ -324,7 +341,8 @@ def _with_one_slope(whole: Brief, clauses: list[Clause]) -> Brief:
 
 
 def _without_slope_of(whole: Brief, clause: Clause) -> Clause:
-    if clause.slope and clause.slope == whole.slope and clause.incline in (None, whole.incline):
+    is_said_alone = clause.incline in (None, whole.incline) and clause.climb is None
+    if clause.slope and clause.slope == whole.slope and is_said_alone:
         return clause.model_copy(update={"slope": None, "incline": None})
     return clause
 

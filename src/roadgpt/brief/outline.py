@@ -14,12 +14,14 @@ from roadgpt.brief.like_numbers import with_like_numbers
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
 from roadgpt.brief.motorway import has_low_grades, has_wide_turns
 from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of
+from roadgpt.brief.part_climb import climb_of_each, limits_of_climb
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import (
     FEATURE,
     FIGURE_WINS,
     KINDS,
     LEAST_GRADE,
+    LEAST_STRAIGHT,
     MOTORWAY_GRADE,
     MOTORWAY_RADIUS,
     ROAD,
@@ -56,6 +58,8 @@ class Feature:
     radius: Range | None = None
     length: Range | None = None
     grade: Range | None = None
+    climb: Range | None = None
+    """How many metres it rises from its start to its end; negative if it falls."""
 
     def limits(self, *more: str) -> str:
         """Returns the requirements as text, such as ': to the left, 25 to 120 degrees'; empty if there are
@@ -82,6 +86,7 @@ def both(one: Feature, other: Feature) -> Feature:
         radius=overlap(one.radius, other.radius),
         length=overlap(one.length, other.length),
         grade=overlap(one.grade, other.grade),
+        climb=overlap(one.climb, other.climb),
     )
 
 
@@ -276,7 +281,8 @@ def _turn(clause: Clause, roomy: bool, angle_is_free: bool = False) -> Feature:
         radius = _near(clause.radius, FEATURE["radius"])
     length = _near(clause.length, FEATURE["length"])
     name = meaning.names[0]
-    return Feature("turn", name, clause.side, degrees, radius, length, _grade(clause.slope, clause.incline))
+    grade = _grade(clause.slope, clause.incline)
+    return _climbing(Feature("turn", name, clause.side, degrees, radius, length, grade), clause)
 
 
 def _straight(clause: Clause) -> Feature:
@@ -286,7 +292,25 @@ def _straight(clause: Clause) -> Feature:
     if clause.length:
         length = _near(clause.length, FEATURE["length"])
     grade = _grade(clause.slope, clause.incline)
-    return Feature("straight", "straight", None, KINDS["straight"].degrees, None, length, grade)
+    asked = Feature("straight", "straight", None, KINDS["straight"].degrees, None, length, grade)
+    return _climbing(asked, clause)
+
+
+def _climbing(feature: Feature, clause: Clause) -> Feature:
+    """Returns a feature of a clause with the height that is asked of it, and the lengths and grades that are
+    possible with it.
+    """
+    each = _near(climb_of_each(clause), FEATURE["climb"])
+    if each is None:
+        return feature
+    given = None if clause.length is None and clause.size is None else feature.length
+    size = _near(clause.incline, FEATURE["grade"])
+    length, grade = limits_of_climb(each, given, size, has_radius=feature.radius is not None)
+    if feature.kind == "straight":
+        length = length and overlap(length, Range(LEAST_STRAIGHT))
+    falls = (clause.slope or "up").endswith("down")
+    climb, grade = (each.negative, grade.negative) if falls else (each, grade)
+    return replace(feature, length=length, grade=grade, climb=climb)
 
 
 def _merged(groups: Iterable[Group]) -> list[Group]:
@@ -295,8 +319,8 @@ def _merged(groups: Iterable[Group]) -> list[Group]:
     for group in groups:
         last = out[-1].feature if out else None
         if last and last.kind == group.feature.kind == "straight" and last.grade == group.feature.grade:
-            length = _sum(last.length, group.feature.length)
-            out[-1] = Group(replace(last, length=length))
+            length, climb = _sum(last.length, group.feature.length), _sum(last.climb, group.feature.climb)
+            out[-1] = Group(replace(last, length=length, climb=climb))
         else:
             out.append(group)
     return out
@@ -318,9 +342,7 @@ def _grade(slope: Slope | None, incline: Amount | None) -> Range | None:
         return SLOPES[slope].grade if slope else None
     size = _near(incline, FEATURE["grade"]) or NO_LIMIT
     size = overlap(size, Range(LEAST_GRADE, STEEPEST)) or size
-    if not (slope and slope.endswith("down")):
-        return size
-    return Range(-size.hi, -size.lo, number=None if size.number is None else -size.number)
+    return size.negative if slope and slope.endswith("down") else size
 
 
 def _whole_grade(brief: Brief) -> tuple[Literal["up", "down", "flat"] | None, Range | None]:

@@ -17,7 +17,7 @@ from roadgpt.brief.halfway import without_halfway
 from roadgpt.brief.junction_plan import BETWEEN, WHOLE, is_junction, junction_plan, read_junction
 from roadgpt.brief.junction_plan import KINDS as JUNCTIONS
 from roadgpt.brief.map_clause import is_map, map_plan, read_map
-from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Kind, exactly
+from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Kind, exactly, span
 from roadgpt.brief.plan_amount import amount_text, read_amount
 from roadgpt.brief.refusal import refused
 from roadgpt.errors import BriefError
@@ -30,7 +30,8 @@ WORDS = {
     **dict.fromkeys(("up", "down", "flat", "nearly_flat", "gently_up", "gently_down"), "slope"),
     **dict.fromkeys(("steeply_up", "steeply_down"), "slope"),
 }
-BARE = dict.fromkeys(("straight", "crest", "dip"), "length")
+BUMPS = ("crest", "dip")
+BARE = dict.fromkeys(("straight", *BUMPS), "length")
 """The field that a number without a key sets, by kind of clause; for turns, the number is their angle."""
 FLAGS = ("alternating", "alike", "hard", "motorway", "divided", "left_hand")
 ONE_WAY = "oneway"
@@ -38,6 +39,7 @@ NO_LANE = exactly(0)
 CENTRE = "centre="
 MAP_SIZE = "map_size="
 KEYS = {"deg": "degrees", "r": "radius", "len": "length", "pct": "incline"}
+CLAUSE_KEYS = {**KEYS, "climb": "climb"}
 ROAD_KEYS = {
     "turns": "turns",
     "lefts": "left",
@@ -103,7 +105,7 @@ def _with_whole(line: str, wishes: list[str]) -> str:
 
 def _clause(clause: Clause) -> str:
     count = [] if clause.count == ONE else [f"x{amount_text(clause.count)}"]
-    return " ".join([clause.kind, *count, *_mods(clause, KEYS)])
+    return " ".join([clause.kind, *count, *_mods(clause, CLAUSE_KEYS)])
 
 
 def _mods(thing: Clause | Brief, keys: dict[str, str]) -> list[str]:
@@ -210,8 +212,26 @@ def _read_clause(text: str) -> Clause:
         elif word[0] == "r" and word[1:2] in "0123456789." and word[1:]:
             _set(fields, "radius", read_amount(word[1:]))
         else:
-            _read_mod(fields, word, KEYS)
-    return _made(Clause, fields, text)
+            _read_mod(fields, word, CLAUSE_KEYS)
+    return _made(Clause, _with_side_of_climb(fields), text)
+
+
+def _with_side_of_climb(fields: dict[str, object]) -> dict[str, object]:
+    """Returns the fields of a clause with a positive climb: the slope says whether it is up or down."""
+    climb = fields.get("climb")
+    if not isinstance(climb, Amount):
+        return fields
+    falls = span(climb).hi <= 0 and climb != exactly(0)
+    if falls and str(fields.get("slope", "down")).endswith("up"):
+        raise BriefError(f"a plan gives '{fields['slope']}' and a climb of {climb} m; leave out the minus")
+    if falls:
+        climb = Amount(**{n: None if v is None else abs(v) for n, v in (("lo", climb.hi), ("hi", climb.lo))})
+    elif span(climb).lo < 0 < span(climb).hi and climb.lo is not None:
+        raise BriefError(
+            f"a part cannot both rise and fall: 'climb={amount_text(climb)}'; give one of the two"
+        )
+    way = {} if fields["kind"] in BUMPS else {"slope": fields.get("slope", "down" if falls else "up")}
+    return {**fields, **way, "climb": climb}
 
 
 def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> None:

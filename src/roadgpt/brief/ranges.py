@@ -32,6 +32,11 @@ class Range:
         edge = min(margin, share * (self.hi - self.lo))
         return Range(self.lo + edge, self.hi - edge, self.number)
 
+    @property
+    def negative(self) -> Range:
+        """The range of the negative numbers."""
+        return Range(-self.hi, -self.lo, None if self.number is None else -self.number)
+
     def around(self, share: float) -> Range:
         """Returns the range with the fraction ``share`` (0 to 1) of the tolerance of its number; unchanged if
         it has no number.

@@ -4,7 +4,7 @@ from roadgpt.brief.junction_sentence import junction_text
 from roadgpt.brief.junctions import NAMES
 from roadgpt.brief.map_clause import SIGNS, JunctionCount, MapClause
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Slope, at_least, exactly
-from roadgpt.brief.normal import STRAIGHT, normal
+from roadgpt.brief.normal import BUMPS, STRAIGHT, normal
 from roadgpt.brief.words import FEATURE, KINDS, ROAD, SLOPES, SURFACES
 
 CENTRES: dict[CentreLine, str] = {
@@ -160,7 +160,8 @@ def _said(name: str, amount: Amount) -> str:
 
 def _slope(thing: Brief | Clause) -> str:
     """Returns the slope as an adjective; empty for a slope with a number, which is written after the noun."""
-    return SLOPES[thing.slope].names[0] if thing.slope and not thing.incline else ""
+    has_figure = thing.incline or (isinstance(thing, Clause) and thing.climb)
+    return SLOPES[thing.slope].names[0] if thing.slope and not has_figure else ""
 
 
 def _slope_at(slope: Slope, incline: Amount) -> str:
@@ -173,6 +174,15 @@ def clause_text(clause: Clause) -> str:
     count = exactly(1) if clause.kind in WAVY else clause.count
     text = _joined(*_adjectives(clause), _plural(_noun(clause), count))
     return _joined((_article(text) if count == exactly(1) else f"{count} ") + text, *_tails(clause))
+
+
+def _height(clause: Clause) -> str:
+    """Returns how much a feature rises or falls, such as 'that falls by 4 metres'."""
+    if clause.kind in BUMPS:
+        return f"{clause.climb} metres {'high' if clause.kind == 'crest' else 'deep'}"
+    verb = "fall" if (clause.slope or "up").endswith("down") else "rise"
+    height = FEATURE["climb"].said.format(clause.climb)
+    return f"that {verb}s {height}" if clause.count == exactly(1) else f"that {verb} {height} each"
 
 
 def clause_columns(clause: Clause) -> tuple[str, str]:
@@ -214,6 +224,8 @@ def _tails(clause: Clause) -> list[str]:
         tails.append(FEATURE["length"].said.format(clause.length) + each)
     if clause.slope and clause.incline:
         tails.append(_slope_at(clause.slope, clause.incline))
+    if clause.climb:
+        tails.append(_height(clause))
     if clause.radius:
         tails.append(FEATURE["radius"].said.format(clause.radius))
     if clause.kind in WAVY and clause.count != exactly(1):

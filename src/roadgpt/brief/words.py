@@ -144,6 +144,7 @@ STEEPEST = 15.0  # percent, up or down: the system prompt of RoadGPT's thesis
 PERCENT_SLACK = 1.0  # percentage points, around a grade that was given as a number
 LENGTH_SLACK = 0.15  # ratio, around the length of a straight or the radius of a turn
 ROAD_LENGTH_SLACK = 0.10  # ratio, around the length of the whole road
+PART_CLIMB_SLACK = 0.25  # ratio, around the height of one turn or straight, whose ends are rounded
 TURNING_SLACK = 0.10  # ratio, around the degrees of all turns together
 
 
@@ -212,6 +213,9 @@ FEATURE = {
     ),
     "length": Quantity("{} m long", "is {:.0f} m long", "of {} metres", *_METRES, unit=" m"),
     "grade": Quantity("slope {} %", "has a grade of {:.1f} %", "{} percent", *_PERCENT, True, " %"),
+    "climb": Quantity(
+        "climb {} m", "rises by {:.1f} m", "by {} metres", *_share(PART_CLIMB_SLACK, 1.0), True, " m"
+    ),
 }
 """The quantities of one turn or straight, by their names in a Feature and in a MeasuredFeature."""
 

@@ -74,6 +74,11 @@ class MeasuredFeature:
         """The length of the feature in plan, in metres."""
         return self.end - self.start
 
+    @property
+    def climb(self) -> float:
+        """How many metres the feature rises from its start to its end; negative if it falls."""
+        return self.grade * self.length / 100
+
 
 @dataclass(frozen=True, slots=True)
 class Measures:

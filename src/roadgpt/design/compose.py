@@ -45,6 +45,7 @@ OPEN = Range(LEAST_STRAIGHT, inf)  # m, of a required straight without a require
 ALONE = (60.0, 240.0)  # m, of a road without turns and without a required length
 HILL = 42.0  # m of one climb or fall of a hilly road
 CLIMBS_AT = 12.0  # percent at most, where a road must be long enough for its climb
+MODERATE = 5.0  # percent, of a straight whose height is given and whose length is open
 EASE = 0.85  # of that grade, on average
 SHORT_LEAD = 5.0  # m, of a lead-in or lead-out of a road that must be short
 NEAR_NUMBER = 0.1  # share of the tolerance of a length that is used where possible
@@ -182,7 +183,7 @@ def _asked_gap(
         changes = [
             _change(grade, other, windows, haste) for other in neighbours if windows.part(grade, other)
         ]
-        least = max(LEAD, sum(changes) + 8.0 if changes else 0.0)
+        least = max(LEAD, sum(changes) + 8.0 if changes else 0.0, _room_of_climb(wish))
         if number and windows.alike(grades[number - 1], grade):
             out.append(_ledge(grades[number - 1], grade, windows))
         length = drawn_straight(wish, rng, haste, least, mean)
@@ -190,10 +191,18 @@ def _asked_gap(
             # the straight alone is then a little short, and with what looks straight a little long
             beside = (before if number == 0 else None, after if number == len(wishes) - 1 else None)
             length = max(length - sum(map(_looks_straight, beside)) / 2, min(least, length))
-        out.append(Element(length, required_length=wish.length or OPEN, required_grade=grade))
+        asked = wish.length or OPEN
+        out.append(Element(length, required_length=asked, required_grade=grade, required_climb=wish.climb))
     if after and windows.part(grades[-1], after.required_grade):
         out.append(Element(STEP_ASIDE, required_grade=after.required_grade))
     return out
+
+
+def _room_of_climb(wish: Feature) -> float:
+    """Returns the length in metres on which a straight of open length has its height at a moderate grade."""
+    if wish.climb is None or (wish.length and wish.length.hi < inf):
+        return 0.0
+    return 100 * min(abs(wish.climb.lo), abs(wish.climb.hi)) / MODERATE
 
 
 def _looks_straight(turn: Element | None) -> float:

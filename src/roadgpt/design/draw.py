@@ -208,7 +208,7 @@ def drawn_turn(
         transition = 0.1 * length
         radius = min(max((length - transition) / radians(angle), least), most)
         angle = min(max(degrees((length - transition) / radius), asked.lo), asked.hi)
-        return turn_element(angle, hand_of(turn), radius, transition, turn.grade)
+        return turn_element(angle, hand_of(turn), radius, transition, turn.grade, turn.climb)
     if not is_tight and not hard:
         least = max(least, SHORTEST_TURN * (1 - haste) / radians(angle))
     wide = max(min(most, WIDEST if most == inf else most), min(least * 1.4, most))
@@ -220,7 +220,7 @@ def drawn_turn(
             angle = max(asked.lo, min(angle, degrees(longest / radius)))
         radius = max(least, min(radius, longest / radians(angle)))
     transition = _transition(is_tight, angle, radius, rng)
-    return turn_element(angle, hand_of(turn), radius, transition, turn.grade)
+    return turn_element(angle, hand_of(turn), radius, transition, turn.grade, turn.climb)
 
 
 def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Generator) -> float:

@@ -24,7 +24,12 @@ SPARE = 1.0  # m: a turn longer than its radius needs by more than this is a tur
 
 
 def turn_element(
-    angle: float, hand: int, radius: float, transition: float, required_grade: Range | None = None
+    angle: float,
+    hand: int,
+    radius: float,
+    transition: float,
+    required_grade: Range | None = None,
+    required_climb: Range | None = None,
 ) -> Element:
     """Returns a turn with numbers rounded to the precision of design files.
 
@@ -37,6 +42,7 @@ def turn_element(
         transition: length in metres of the clothoid at each end; it is shortened to at most 0.55 of the arc
             length of one segment.
         required_grade: range that the mean grade must lie in, in percent; None if no grade is required.
+        required_climb: range of the height of the end above the start in metres; None if none is required.
     """
     parts = segments_of_turn(angle)
     share = round(angle / parts * TENTH) / TENTH
@@ -44,7 +50,11 @@ def turn_element(
     most = MOST_TRANSITION * radius * radians(share)
     transition = max(floor(min(transition, most) * TENTH), 1) / TENTH
     return Element(
-        turn=hand * share * parts, radius=radius, transition=transition, required_grade=required_grade
+        turn=hand * share * parts,
+        radius=radius,
+        transition=transition,
+        required_grade=required_grade,
+        required_climb=required_climb,
     )
 
 

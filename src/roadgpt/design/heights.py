@@ -12,6 +12,7 @@ from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import STEEPEST
 from roadgpt.check.measures import LEVEL
 from roadgpt.design.elements import TENTH, required_hills
+from roadgpt.design.part_heights import asks_for_heights, with_grades_of_climbs
 from roadgpt.design.sequence import is_hairpin
 from roadgpt.design.vertical import Pace, softened
 from roadgpt.design.windows import Windows
@@ -29,6 +30,8 @@ CREST = Range(2.5, 4.5)  # percent: climb of a straight before a bend of a hard 
 STEADY_SHARE = Range(0.75, 1.25)  # of the mean grade, on a road with hairpins
 HELD = 0.5  # percentage points by which the grade of a straight of required length and grade may be moved
 LEAST_SLOPE = 1.8  # percent: the least slope that is clearly a climb or a fall
+HARDLY_SLOPED = Range(-0.8, 0.8)  # percent, of parts of which no slope is asked beside those with heights
+SHORT_JOIN = 30.0  # m, of a straight between two parts with heights, which takes no slope of its own
 MOST_SHIFT = 40.0  # percentage points
 BISECTIONS = 50
 
@@ -56,6 +59,7 @@ def drawn_heights(
             radius, that one is used.
         bumps: True allows vertical accelerations of up to 1 g, as for a requested crest or dip.
     """
+    plan = with_grades_of_climbs(plan, windows.limit, pace, ease, bumps)
     is_hilly = bool(outline.hills and outline.hills.lo > required_hills(plan))
     if is_hilly:
         assert outline.hills is not None
@@ -65,7 +69,12 @@ def drawn_heights(
         drawn = [[one._replace(incline=grade)] for one, grade in zip(plan, grades, strict=True)]
     row = [element for own in drawn for element in own]
     lengths = np.array([element.length for element in row])
-    limits = [overlap(e.required_grade or windows.base, windows.limit) or windows.limit for e in row]
+    rests = [False] * len(row) if is_hilly else _are_level(plan, outline, windows)
+    asked = [
+        e.required_grade or windows.base or (HARDLY_SLOPED if rests_level else None)
+        for e, rests_level in zip(row, rests, strict=True)
+    ]
+    limits = [overlap(span, windows.limit) or windows.limit for span in asked]
     values = np.clip([e.incline for e in row], [r.lo for r in limits], [r.hi for r in limits])
     if outline.steepest and outline.steepest.lo > 0:
         values = _with_steepest(values, lengths, limits, outline.steepest, rng)
@@ -106,10 +115,10 @@ def _grades(
         return free(plan, windows, rng)
     out: list[float] = []
     last: tuple[Range | None, float] = (None, 0.0)
-    for element in plan:
+    for element, is_level in zip(plan, _are_level(plan, outline, windows), strict=True):
         window = element.required_grade or (windows.base if element.turn or len(plan) == 1 else None)
         if window is None:
-            out.append(np.nan)
+            out.append(0.0 if is_level else np.nan)
             continue
         near = window.around(0.0)
         keeps = last[0] is not None and last[1] in near and rng.random() < STEADY
@@ -117,6 +126,20 @@ def _grades(
         out.append(value)
         last = (window, value)
     return out
+
+
+def _are_level(plan: Sequence[Element], outline: Outline, windows: Windows) -> list[bool]:
+    """Returns for each element whether it stays level, because heights are asked of others and no slope of
+    it; a short straight between two parts with heights only joins them.
+    """
+    if windows.base or outline.climb or outline.hills or not asks_for_heights(plan):
+        return [False] * len(plan)
+    has_height = [False, *(element.required_climb is not None for element in plan), False]
+    joins = [
+        not element.turn and element.length < SHORT_JOIN and before and after
+        for element, before, after in zip(plan, has_height, has_height[2:], strict=False)
+    ]
+    return [not (e.required_grade or is_join) for e, is_join in zip(plan, joins, strict=True)]
 
 
 def _crests(plan: Sequence[Element], windows: Windows, rng: np.random.Generator) -> list[float]:

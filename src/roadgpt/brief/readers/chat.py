@@ -41,6 +41,7 @@ Behind it may stand, each once and only where the description says so:
   long or short          of straights
   up, down, flat, nearly_flat, gently_up, gently_down, steeply_up, steeply_down
   deg=45 r=20 len=80 pct=5     degrees of each turn, its radius in metres, length in metres, slope in percent
+  climb=4                      metres that it rises or falls (with up or down); the height of a crest or dip
 "road": what holds for the whole road, on one line: the words alternating, gentle, sweeping, sharp, hard and
 those of slopes, and
   turns=3 lefts=1 rights=2 deg= r= len= pct=     steepest=8 (percent)  climb=20 (metres)  hills=2

@@ -131,7 +131,7 @@ def _beside() -> Symbol:
 
 def _road_key(key: str, numbers: Numbers) -> Symbol:
     """Returns a key and its amount, or the word that stands for an amount."""
-    keyed, word = Keyed(f"{key}=", numbers), IN_WORDS.get(key)
+    keyed, word = Keyed(f"{key}=", numbers, is_signed=key == "climb"), IN_WORDS.get(key)
     return AnyOf((OneOf((word,)), keyed)) if word else keyed
 
 
@@ -209,8 +209,8 @@ def _ways(most: int) -> Symbol:
 
 def _clause(numbers: Numbers) -> Symbol:
     turning = tuple(kind for kind in KINDS if kind not in STRAIGHT_KINDS)
-    count, keys = Keyed("x", numbers), {key: Keyed(key, numbers) for key in CLAUSE_KEYS}
-    straight = (count, OneOf(SIZES), OneOf(SLOPES), keys["len="], keys["pct="])
+    count, keys = Keyed("x", numbers), {key: Keyed(key, numbers) for key in (*CLAUSE_KEYS, "climb=")}
+    straight = (count, OneOf(SIZES), OneOf(SLOPES), keys["len="], keys["pct="], keys["climb="])
     words = tuple(OneOf(words) for words in (SIDES, SHARPNESS, SLOPES, ["alternating"]))
     return AnyOf(
         (

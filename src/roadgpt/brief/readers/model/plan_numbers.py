@@ -68,6 +68,8 @@ class Keyed:
     key: str
     numbers: Numbers
     may_be_empty: bool = False
+    is_signed: bool = False
+    """Whether the number may be negative."""
 
     def first(self) -> Iterable[str]:
         """Returns the key if there are numbers for it."""
@@ -75,7 +77,7 @@ class Keyed:
 
     def after(self, token: str) -> tuple[Symbol, ...]:
         """Returns the amount, which must follow the key."""
-        return (AmountTokens(self.key, self.numbers),)
+        return (AmountTokens(self.key, self.numbers, is_signed=self.is_signed),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +89,7 @@ class AmountTokens:
     numbers: Numbers
     low: str = ""
     may_be_empty: bool = False
+    is_signed: bool = False
 
     def first(self) -> Iterable[str]:
         """Returns the numbers and signs with which the amount can begin."""
@@ -94,7 +97,7 @@ class AmountTokens:
         if self.low:
             low = self.numbers.value(self.low)
             return [number for number in numbers if self.numbers.value(number) > low]
-        return ["..", *numbers, *(["-"] if self.key == "climb=" else [])]
+        return ["..", *numbers, *(["-"] if self.is_signed else [])]
 
     def after(self, token: str) -> tuple[Symbol, ...]:
         """Returns the rest of the amount."""

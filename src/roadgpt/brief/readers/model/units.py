@@ -17,6 +17,8 @@ _SAID: tuple[tuple[str, Unit, float], ...] = (
     ),
     ("km kms kilometre kilometres kilometer kilometers kilometern kilomètre kilomètres", "metres", 1000.0),
     ("kilometro kilometros chilometro chilometri", "metres", 1000.0),
+    ("cm centimetre centimetres centimeter centimeters zentimeter zentimetern", "metres", 0.01),
+    ("centimètre centimètres centimetro centimetros centimetri", "metres", 0.01),
     ("ft feet foot fuß fuss pied pieds pie pies piede piedi", "metres", 0.3048),
     ("yd yds yard yards yarda yardas iarde", "metres", 0.9144),
     ("mile miles meile meilen mille_marin milla millas miglio miglia", "metres", 1609.344),

@@ -8,8 +8,10 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 
+from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.readers.model.denial import places_reached
 from roadgpt.brief.readers.model.slots import SlottedText
+from roadgpt.brief.readers.model.vocabulary import KINDS, SIDES
 from roadgpt.reading import read_text
 
 GROUPS: Mapping[str, frozenset[str]] = {
@@ -58,8 +60,9 @@ def understood(
     """Returns the places (indices) of the words in ``places`` that the plan takes into account after all.
 
     A word counts if it usually asks for a token that occurs in the plan at least as often as the word occurs
-    in the text. A number counts if the plan has it, as many junctions, or a junction of as many roads.
-    A negation and the words that it denies are added if the plan lacks what these words ask for.
+    in the text. A number counts if the plan has it, as many turns (of a kind, or to a side), straights or
+    junctions, or a junction of as many roads. A negation and the words that it denies are added if the plan
+    lacks what these words ask for.
 
     Args:
         text: the description.
@@ -110,6 +113,26 @@ def _is_counted(number: str, tokens: Sequence[str], there: Mapping[str, int]) ->
     kinds = GROUPS["@junction"]
     return (
         number in tokens
+        or int(number) in _counts_of_roads(tokens)
         or any(str(there.get(kind, 0)) == number for kind in (*kinds, "@junction"))
         or any(ARMS.get(kind) == number for kind in kinds if there.get(kind))
     )
+
+
+def _counts_of_roads(tokens: Sequence[str]) -> frozenset[int]:
+    """Returns how many turns, straights, and things of one kind or to one side the clauses of a plan have."""
+    counts: Counter[str] = Counter()
+    kind, number = "", 1
+    for place, word in enumerate(tokens):
+        if word == "|":
+            break
+        if word in KINDS:
+            kind, number = word, 1
+            after = tokens[place + 1 : place + 3]
+            if len(after) == 2 and after[0] == "x" and after[1].isdecimal():
+                number = int(after[1])
+            counts[kind] += number
+            counts["turns"] += 0 if kind in STRAIGHT else number
+        elif word in SIDES and kind:
+            counts[word] += number
+    return frozenset(counts.values())

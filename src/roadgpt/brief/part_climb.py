@@ -1,0 +1,92 @@
+"""Heights of single turns and straights: what a climb in metres says of their lengths and grades, and when it
+contradicts them.
+"""
+
+from math import inf
+
+from roadgpt.brief.model import Amount, Clause, span
+from roadgpt.brief.normal import SHAPED, STRAIGHT
+from roadgpt.brief.ranges import Range, overlap
+from roadgpt.brief.words import KINDS, LEAST_GRADE, LENGTH_SLACK, PART_CLIMB_SLACK, PERCENT_SLACK, STEEPEST
+from roadgpt.errors import BriefError
+
+USUALLY_STEEPEST = 12.0  # percent, of a part whose height is given and whose length and grade are open
+TOGETHER = frozenset({"s_bend", "chicane"}) | (SHAPED - {"turn"}) | {"slalom"}
+"""The kinds that are several turns, which share the height."""
+
+
+def climb_of_each(clause: Clause) -> Amount | None:
+    """Returns how many metres each single turn or straight of a clause rises or falls; None if no height is
+    asked of it. The turns of an S-bend share its height equally.
+    """
+    if clause.climb is None or clause.kind in STRAIGHT or clause.kind not in TOGETHER:
+        return clause.climb
+    turns = KINDS[clause.kind].turns
+    share = turns.lo if turns else 1.0
+    if clause.kind not in ("s_bend", "chicane"):
+        share = max(share, span(clause.count).lo)
+    return Amount(
+        **{end: None if (n := getattr(clause.climb, end)) is None else n / share for end in ("lo", "hi")}
+    )
+
+
+def limits_of_climb(
+    climb: Range, length: Range | None, grade: Range | None, has_radius: bool
+) -> tuple[Range | None, Range]:
+    """Returns the ranges of length (metres) and grade (percent, positive) of a part of a given height.
+
+    Args:
+        climb: the height in metres, positive.
+        length: the range of lengths asked for; None if the length is open.
+        grade: the range of grades asked for in figures, positive; None if there is none.
+        has_radius: True for a turn whose radius is given, so that its angle and radius give the length.
+    """
+    allowed = grade or Range(LEAST_GRADE, STEEPEST)
+    low, high = max(climb.lo, 0.0), climb.hi
+    if length is None and not has_radius:
+        least = 100 * low / min(allowed.hi, USUALLY_STEEPEST if grade is None else inf)
+        most = 100 * high / allowed.lo if grade else inf
+        number = 100 * climb.number / grade.number if grade and grade.number and climb.number else None
+        length = Range(least, most, number)
+    if length is None or length.lo <= 0:
+        return length, allowed
+    number = 100 * climb.number / length.number if climb.number and length.number else None
+    implied = Range(100 * low / length.hi, 100 * high / length.lo, number)
+    found = overlap(implied, allowed) or implied
+    return length, found if found.lo <= found.hi else implied
+
+
+def check_climb(clause: Clause, steepest: float) -> None:
+    """Checks the height that is asked of a clause against its slope, length and grade.
+
+    Args:
+        clause: the clause, in normal form.
+        steepest: the steepest grade allowed, in percent.
+
+    Raises:
+        BriefError: they contradict each other, or such a height needs a steeper grade.
+    """
+    if clause.climb is None:
+        return
+    noun, height = KINDS[clause.kind].names[0], span(clause.climb)
+    if (clause.climb.lo or 0) < 0 or height.hi <= 0:
+        raise BriefError(
+            f"a {noun} cannot rise or fall by {clause.climb} m; ask for more than 0 m, up or down"
+        )
+    if clause.slope in ("flat", "nearly_flat"):
+        raise BriefError(f"a level {noun} cannot rise or fall by {clause.climb} m; leave out one of the two")
+    length, grade = span(clause.length), span(clause.incline)
+    longest, least = length.hi * (1 + LENGTH_SLACK), height.lo * (1 - PART_CLIMB_SLACK)
+    if least > longest * steepest / 100:
+        raise BriefError(
+            f"a {noun} of {clause.length} m cannot rise or fall by {clause.climb} m at {steepest:g} percent"
+            " or less; ask for a longer one or for less height"
+        )
+    shortest, most = length.lo * (1 - LENGTH_SLACK), height.hi * (1 + PART_CLIMB_SLACK)
+    too_steep = shortest > -inf and shortest * (grade.lo - PERCENT_SLACK) / 100 > most
+    too_gentle = longest < inf and longest * (grade.hi + PERCENT_SLACK) / 100 < least
+    if clause.incline and (too_steep or too_gentle):
+        raise BriefError(
+            f"{clause.length} m at {clause.incline} percent do not make {clause.climb} m of height;"
+            " leave out one of the three"
+        )

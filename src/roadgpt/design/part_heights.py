@@ -1,0 +1,64 @@
+"""Gives turns and straights of which a height in metres is asked the grades that lead to this height."""
+
+from collections.abc import Sequence
+from itertools import accumulate, pairwise
+
+from roadgpt.brief.element import Element
+from roadgpt.brief.ranges import Range, overlap
+from roadgpt.design.vertical import Pace
+
+ROUNDS = 3  # of estimating how much height the parabola on a crest takes away; it converges fast
+
+
+def with_grades_of_climbs(
+    plan: Sequence[Element], limit: Range, pace: Pace, ease: float, bumps: bool
+) -> list[Element]:
+    """Returns the elements of a plan with the grades in percent that give the heights that are asked for.
+
+    Where the road rises and then falls, the parabola between the two slopes takes away height at its vertex,
+    which both slopes make up for. For the other arguments see ``drawn_heights``.
+    """
+    joints = list(accumulate(element.length for element in plan))[:-1]
+    radii = [pace.eased(s, ease, bumps) for s in joints] if asks_for_heights(plan) else []
+    grades = [_grade(element, 0.0) for element in plan]
+    for _ in range(ROUNDS if radii else 0):
+        lost = [0.0] * len(plan)
+        for at, ((one, other), radius) in enumerate(zip(pairwise(grades), radii, strict=True)):
+            if one * other < 0 and all(plan[i].required_climb for i in (at, at + 1)):
+                cut = radius * ((one - other) / 100) ** 2 / 8
+                lost[at], lost[at + 1] = lost[at] + cut, lost[at + 1] + cut
+        grades = [_grade(element, metres) for element, metres in zip(plan, lost, strict=True)]
+    return [_with_grade(element, grade, limit) for element, grade in zip(plan, grades, strict=True)]
+
+
+def asks_for_heights(plan: Sequence[Element]) -> bool:
+    """Returns whether a height is asked of a part; parts of which no slope is asked then stay level."""
+    return any(element.required_climb for element in plan)
+
+
+def _grade(element: Element, lost: float) -> float:
+    """Returns the grade in percent that gives an element its height and ``lost`` metres more; 0 if it needs
+    none.
+    """
+    asked = element.required_climb
+    if asked is None:
+        return 0.0
+    metres = asked.number if asked.number is not None else _nearest_to_level(asked)
+    return 100 * (metres + (lost if metres > 0 else -lost)) / element.length
+
+
+def _nearest_to_level(asked: Range) -> float:
+    """Returns a height a little inside the end of a range that is nearer to 0."""
+    near, far = (asked.lo, asked.hi) if asked.lo > 0 else (asked.hi, asked.lo)
+    return near * 1.1 if abs(far) > 1.2 * abs(near) else (near + far) / 2
+
+
+def _with_grade(element: Element, grade: float, limit: Range) -> Element:
+    asked = element.required_climb
+    if asked is None:
+        return element
+    metres = asked.number if asked.number is not None else _nearest_to_level(asked)
+    ends = sorted(grade * end / metres for end in (asked.lo, asked.hi)) if metres else [0.0, 0.0]
+    found = overlap(Range(ends[0], ends[1], number=grade), limit)
+    is_possible = found is not None and found.lo <= found.hi
+    return element._replace(required_grade=found) if is_possible else element
