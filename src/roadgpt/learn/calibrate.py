@@ -1,4 +1,8 @@
-"""Fits a reader's confidence to how often the reader was right on texts held back from training."""
+"""Fits a reader's confidence to how often the reader was right on texts held back from training.
+
+For single roads these are prompts with truths: a reading is right if the roads made of it are. That is more
+often than its plan is the labelled one, because most texts can be labelled in several ways.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,11 +13,14 @@ import numpy.typing as npt
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model import ModelReader, UncalibratedReading
+from roadgpt.brief.readers.model import NEVER, ModelReader, UncalibratedReading
 from roadgpt.brief.readers.model.ensemble import Ensemble
+from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.test_time_augmentation import refusal
+from roadgpt.errors import BriefError
 from roadgpt.learn.data import NETWORK
 from roadgpt.learn.generator import Pair
+from roadgpt.learn.told_prompts import ToldPrompt, is_right
 
 Floats = npt.NDArray[np.float64]
 MOST_WRONGLY = 0.012  # share of valid held-back descriptions that may be refused; higher for new descriptions
@@ -45,8 +52,11 @@ class Calibration(EnsembleCalibration):
     routes: EnsembleCalibration | None = None
 
 
-def calibrated(reader: ModelReader, pairs: Sequence[Pair]) -> Calibration:
-    """Returns settings fitted to ``pairs``, on which the networks must not have been trained."""
+def calibrated(reader: ModelReader, pairs: Sequence[Pair], prompts: Sequence[ToldPrompt] = ()) -> Calibration:
+    """Returns settings fitted to ``pairs`` and ``prompts``, on which the networks must not have been trained.
+
+    Without prompts, the confidence for single roads is fitted to the pairs.
+    """
     honest = [pair for pair in pairs if not pair.plan.startswith("!")]
     words = [pair for pair in honest if not pair.is_change]
     roads = calibrated_ensemble(reader, reader.roads, [pair for pair in words if not _is_route(pair)])
@@ -57,7 +67,7 @@ def calibrated(reader: ModelReader, pairs: Sequence[Pair]) -> Calibration:
     ]
     return Calibration(
         roads.refuse_from,
-        roads.confidence,
+        confidence_by_roads(reader, prompts) if prompts else roads.confidence,
         _weights([(looks, looks.plan == right) for looks, right in asked if looks]),
         None if reader.routes is None else calibrated_routes(reader, reader.routes, honest),
     )
@@ -75,11 +85,25 @@ def calibrated_ensemble(
     """Returns the calibration of an ensemble, fitted to valid descriptions of the kind that this ensemble
     reads. In the fit of the confidence model, a wrong reading counts ``caution`` times, a right one once.
     """
-    read = [(reader.uncalibrated(pair.text, 2.0), _bare(pair.plan)) for pair in pairs]
+    read = [(reader.uncalibrated(pair.text, NEVER), _bare(pair.plan)) for pair in pairs]
     return EnsembleCalibration(
         _threshold(ensemble, pairs),
         _weights([(looks, _bare(looks.plan) == right) for looks, right in read if looks], caution),
     )
+
+
+def confidence_by_roads(reader: ModelReader, prompts: Sequence[ToldPrompt]) -> dict[str, float]:
+    """Returns the weights of the confidence model for single roads, fitted to prompts with truths."""
+    found = []
+    for prompt in prompts:
+        looks = reader.uncalibrated(prompt.text, NEVER)
+        if looks is None or not looks.features or is_of_junctions(looks.plan):
+            continue
+        try:
+            found.append((looks, is_right(reader.read(prompt.text), prompt.truth)))
+        except BriefError:  # refused, so there is no confidence
+            continue
+    return _weights(found)
 
 
 def _is_route(pair: Pair) -> bool:

@@ -20,6 +20,7 @@ from roadgpt.learn.generator import Pair
 from roadgpt.learn.growing import decoder_layers
 from roadgpt.learn.network import NetworkSizes, ReaderNetwork
 from roadgpt.learn.pretrained import NOTICE, read_vocabulary
+from roadgpt.learn.told_prompts import ToldPrompt
 
 OPSET = 17
 SHARED = "reader.pieces.weight_quantized"
@@ -126,6 +127,7 @@ def export_checkpoints(
     fillers: Sequence[str],
     meanings: Mapping[str, Sequence[str]],
     kept: Path | None = None,
+    prompts: Sequence[ToldPrompt] = (),
 ) -> None:
     """Writes all files that the reader needs, from the checkpoints of up to three training runs.
 
@@ -138,6 +140,8 @@ def export_checkpoints(
         meanings: for each word, the plan tokens for which it stands; see ``word_meanings.word_meanings``.
         kept: the folder of an exported reader, whose networks and calibration stay where no checkpoint
             replaces them; None: all networks are in ``checkpoints``.
+        prompts: prompts with truths, to which the confidence for single roads is fitted; without any, it is
+            fitted to ``held_back``.
 
     Raises:
         LearnError: there is no checkpoint, one is of the other kind of network, or the embeddings of the
@@ -155,7 +159,7 @@ def export_checkpoints(
     (folder / MEANINGS).write_text("\n".join(rows), encoding="utf-8")
     names = [name for name in ("", SECOND, ROUTES) if name in checkpoints or kept]
     share_embedding([folder / f"encoder{name}.onnx" for name in names])
-    settings = _settings(folder, checkpoints, held_back, kept)
+    settings = _settings(folder, checkpoints, held_back, kept, prompts)
     (folder / "settings.json").write_text(json.dumps(settings, indent=2) + "\n", encoding="utf-8")
     (folder / "NOTICE").write_text(NOTICE, encoding="utf-8")
     write_sums(folder)
@@ -185,17 +189,21 @@ def _trained(checkpoint: Path, name: str) -> ReaderNetwork:
 
 
 def _settings(
-    folder: Path, trained: Iterable[str], held_back: Sequence[Pair], kept: Path | None
+    folder: Path,
+    trained: Iterable[str],
+    held_back: Sequence[Pair],
+    kept: Path | None,
+    prompts: Sequence[ToldPrompt],
 ) -> dict[str, Any]:
     """Returns the calibration of the reader in ``folder``; what was not trained keeps its calibration."""
     reader = ModelReader(folder)
     if kept is None:
-        return asdict(calibrated(reader, held_back))
+        return asdict(calibrated(reader, held_back, prompts))
     before: dict[str, Any] = json.loads((kept / "settings.json").read_text(encoding="utf-8"))
     if ROUTES in trained and reader.routes is not None:
         before["routes"] = asdict(calibrated_routes(reader, reader.routes, held_back))
     if set(trained) - {ROUTES}:
-        before |= {**asdict(calibrated(reader, held_back)), "routes": before["routes"]}
+        before |= {**asdict(calibrated(reader, held_back, prompts)), "routes": before["routes"]}
     return before
 
 

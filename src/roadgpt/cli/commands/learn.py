@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 SPLITS = ("train", "validation", "test", "exam")
 NETWORKS_OF_READER = ("first", "second", "routes")
+BOTH = "both"
 COUNT = whole(1, 10_000_000, "a number")
 TRAINED_ON = ("train", "contrasts", "free")
 HELD_BACK = ("validation", "contrasts_validation", "free_validation")
@@ -77,8 +78,11 @@ OF_EXPORT = (
            "for single roads.", folder),
     Option("--routes", "Folder of a training run with --routes; its neural network reads routes and maps.",
            folder),
-    Option("--only", "The network of the installed reader that CHECKPOINT replaces; the others stay as "
-           "they are.", click.Choice(NETWORKS_OF_READER)),
+    Option("--only", "The network of the installed reader that CHECKPOINT replaces; both: CHECKPOINT and "
+           "--second replace those for single roads. The others stay as they are.",
+           click.Choice((*NETWORKS_OF_READER, BOTH))),
+    Option("--prompts", "File with prompts and truths, to which the confidence for single roads is fitted.",
+           PATH, Path("data/outsiders/roads.jsonl")),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
     options.seed("Seed of the chats.", 1),
 )
@@ -191,18 +195,22 @@ def export(
     second: Path | None,
     routes: Path | None,
     only: str | None,
+    prompts: Path,
     chats: int | None,
     seed: int,
 ) -> None:
     """Write the reader saved in the folder CHECKPOINT into the folder OUT, quantised to int8."""
-    if only and (second or routes):
-        raise LearnError("--only takes CHECKPOINT alone; leave out --second and --routes")
+    if only == BOTH and (routes or not second):
+        raise LearnError("--only both takes CHECKPOINT and --second; leave out --routes")
+    if only and only != BOTH and (second or routes):
+        raise LearnError(f"--only {only} takes CHECKPOINT alone; leave out --second and --routes")
     try:
         from roadgpt.learn.export import export_checkpoints
     except ImportError as error:
         raise LearnError(EXTRA) from error
     from roadgpt.brief.readers.model import ROUTES, SECOND, WEIGHTS
     from roadgpt.learn.data import is_for_roads_only
+    from roadgpt.learn.told_prompts import told_prompts
     from roadgpt.learn.word_meanings import filler_words, word_meanings
 
     told = [pair for folder in HELD_BACK for pair in _pairs_of(hand / folder)]
@@ -212,9 +220,11 @@ def export(
     trained_on = _trained_on(hand, changes, networks)
     words = filler_words(trained_on), word_meanings(trained_on)
     endings = dict(zip(NETWORKS_OF_READER, ("", SECOND, ROUTES), strict=True))
-    found = {endings[only or "first"]: checkpoint, **({} if only else {SECOND: second, ROUTES: routes})}
+    first = endings.get(only or "first", "")
+    found = {first: checkpoint, **({} if only in NETWORKS_OF_READER else {SECOND: second, ROUTES: routes})}
     checkpoints = {name: run for name, run in found.items() if run}
-    export_checkpoints(checkpoints, out, held_back, *words, WEIGHTS if only else None)
+    told_by_others = told_prompts(prompts) if prompts.is_file() else []
+    export_checkpoints(checkpoints, out, held_back, *words, WEIGHTS if only else None, told_by_others)
     click.echo(f"{sum(file.stat().st_size for file in out.iterdir()) / 1e6:.1f} MB in {out}")
     if chats:
         _write_chats(out, chats, seed)

@@ -1,5 +1,5 @@
-"""Computes the confidence in a reading from the probability of its plan and from the numbers and negations of
-the text that the plan lacks.
+"""Computes the confidence in a reading from the probability and the length of its plan, and from the numbers
+and negations of the text that the plan lacks.
 """
 
 import re
@@ -49,6 +49,8 @@ def features(
     - ``sceptic``: how unlikely the plan is for the text itself and the network that doubts it most.
     - ``agreement``: the share of the variants and networks whose likeliest plan this is.
     - ``numbers``: how many numbers of the text the plan lacks.
+    - ``words``, ``tokens``: how long the text and the plan are. A long plan is less likely than a short one
+      that is as often right.
     """
     read, tokens = seen or (text, draft.tokens)
     sceptic = max(-float(each.chances_of([read], tokens, read)[0].sum()) for each in networks)
@@ -58,6 +60,8 @@ def features(
         "sceptic": _unlikely(sceptic),
         "agreement": draft.agreement,
         "numbers": log1p(len(left_out(draft.tokens, text))),
+        "words": log(max(len(text.words), 1)),
+        "tokens": log(max(len(draft.tokens), 1)),
     }
 
 
