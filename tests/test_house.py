@@ -9,6 +9,7 @@ from collections import defaultdict
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
+from importlib.util import find_spec
 from itertools import groupby
 from pathlib import Path
 
@@ -278,6 +279,16 @@ def test_help_answers_at_once(words: list[str]) -> None:
     assert rooms_used <= {"cli", *HALLWAY}
 
 
+ONLY_IN_BRIEF = (
+    "junction_check arm_check lane_sequence junction_ranges junction_sentence map_plan motorway change"
+    " readers.model.junction_nouns readers.model.change_grammar readers.model.change_reading"
+    " readers.model.change_rules readers.model.swap_words readers.model.reverse_words"
+    " readers.model.height_words readers.model.route_rules"
+)
+"""What only routes, maps, motorways and change requests need. A network that reads a road may weigh the plan
+'crossroads' or 'roundabout' and drop it, so ``junction_plan`` and ``ring_sizes`` are not here."""
+
+
 def test_a_road_without_junctions_loads_nothing_that_builds_networks_or_reads_files(tmp_path: Path) -> None:
     """Otherwise every road pays for what few roads need, and who follows one through the code reads it."""
     run = ["run", "an uphill road with 3 turns", "-n", "2", "--out", "made"]
@@ -292,6 +303,9 @@ def test_a_road_without_junctions_loads_nothing_that_builds_networks_or_reads_fi
     of_others = ("road.opendrive", "road.source", "report.network_view", "verdict.incidents", "design.advice")
     of_others += ("drive.isolation.", "chat.strict_json", "campaign.stored_run", "campaign.traces")
     assert not {name for name in loaded if name.removeprefix("roadgpt.").startswith(of_others)}
+    of_brief = {f"roadgpt.brief.{name}" for name in ONLY_IN_BRIEF.split()}
+    assert all(map(find_spec, of_brief)), "a name that no module has is never loaded"
+    assert not loaded & of_brief
 
 
 def test_the_pins_cover_every_dependency_and_name_no_place() -> None:

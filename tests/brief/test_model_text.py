@@ -146,3 +146,19 @@ def test_a_radius_does_not_take_the_unit_of_what_follows() -> None:
         (30, "degrees"),
         (50, "degrees"),
     ]
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        ("curve 1: fifty-five degrees", [(55.0, "degrees")]),
+        ("the final one: eighty-five degrees", [(85.0, "degrees")]),
+        ("one in twenty-five", [(4.0, "percent")]),
+        ("le 4e de 50°", [(50.0, "degrees")]),
+        ("la 2.ª de 40 grados", [(40.0, "degrees")]),
+        ("a hump of 80 cm", [(0.8, "metres")]),
+        ("un dosso di 120 centimetri", [(1.2, "metres")]),
+    ],
+)
+def test_ordinals_and_figures_in_words_are_no_other_numbers(text: str, read: list[tuple[float, str]]) -> None:
+    assert [(slot.value, slot.unit) for slot in slotted(text).slots] == read

@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from roadgpt.brief.map_clause import read_map
+from roadgpt.brief.map_plan import read_map
 from roadgpt.brief.plan import read_plan
 from roadgpt.design import draft
 from roadgpt.design.carved_draft import can_be_carved

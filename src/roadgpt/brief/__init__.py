@@ -15,7 +15,7 @@ from functools import cache
 from typing import Protocol, cast, runtime_checkable
 
 from roadgpt import plugins
-from roadgpt.brief import beside, motorway
+from roadgpt.brief import beside
 from roadgpt.brief.feasible import check, is_possible
 from roadgpt.brief.left_hand import with_driving_side
 from roadgpt.brief.map_fit import LARGEST_MAP, ROAD_WIDTH
@@ -34,7 +34,7 @@ from roadgpt.brief.model import (
     between,
     exactly,
 )
-from roadgpt.brief.motorway import says_motorway
+from roadgpt.brief.motorway_words import says_motorway
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.plan import plan, read_plan
@@ -237,7 +237,12 @@ def remarks(brief: Brief, map_size: float, friction: float | None = None) -> tup
         map_size: side of the square map in metres.
         friction: friction coefficient of the road; with None, a surface named in the description sets it.
     """
-    return (*beside.remarks(brief.beside, friction), *motorway.remarks(brief, map_size))
+    told = (*beside.remarks(brief.beside, friction),)
+    if not brief.motorway:
+        return told
+    from roadgpt.brief import motorway  # only for motorways
+
+    return (*told, *motorway.remarks(brief, map_size))
 
 
 def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:

@@ -7,7 +7,8 @@ roads lead on, and which angles are between the arms.
 from itertools import product
 
 from roadgpt.brief.amount import meets, span
-from roadgpt.brief.junctions import ARMS, BENDS, SKEW, JunctionClause, JunctionKind, is_about
+from roadgpt.brief.junction_ranges import ARMS, BENDS, SKEW, is_about
+from roadgpt.brief.junctions import JunctionClause, JunctionKind
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.errors import BriefError
 

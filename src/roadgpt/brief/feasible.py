@@ -5,8 +5,7 @@ change.
 from math import inf
 from typing import NamedTuple
 
-from roadgpt.brief.junction_check import check_junction, check_lanes, check_map, check_turning_back
-from roadgpt.brief.lane_sequence import check_lane_sequence
+from roadgpt.brief.amount import meets
 from roadgpt.brief.map_fit import ROAD_WIDTH, check_room
 from roadgpt.brief.minimum_length import least_length
 from roadgpt.brief.model import Amount, Brief, Clause, Slope, exactly, span
@@ -21,6 +20,7 @@ from roadgpt.brief.words import (
     LEAST_RADIUS,
     LEAST_STRAIGHT,
     LENGTH_SLACK,
+    MOST_LANES,
     ROAD_LENGTH_SLACK,
     SHARPNESS,
     SLOPES,
@@ -73,18 +73,14 @@ def check(
         BriefError: there is a contradiction or an impossible requirement; the message, one sentence, names
             the first one found.
     """
-    if brief.junctions:
-        for junction in brief.junctions:
-            check_junction(junction)
-        check_turning_back(brief)
-        check_lane_sequence(brief)
+    if brief.junctions or brief.map is not None:
+        from roadgpt.brief.junction_check import check_network  # only for networks
+
+        check_network(brief)
         for stretch in brief.stretches:
             check(stretch, None, min_radius, max_grade, road_width)
         return
-    if brief.map is not None:
-        check_map(brief.map)
-        return
-    check_lanes(brief)
+    _lanes(brief)
     _counts(brief)
     _limits_of_every_turn(brief)
     brief = normal(brief)
@@ -114,6 +110,17 @@ def is_possible(
     except BriefError:
         return False
     return True
+
+
+def _lanes(brief: Brief) -> None:
+    if not meets(brief.lanes, Range(1, MOST_LANES)):
+        raise BriefError(
+            f"a road has 1 to {MOST_LANES} lanes in each direction, not {brief.lanes}; change it"
+        )
+    if not meets(brief.against, Range(0, MOST_LANES)):
+        raise BriefError(f"a road has 0 to {MOST_LANES} oncoming lanes, not {brief.against}; change it")
+    if brief.against is not None and span(brief.against).hi == 0 and (brief.divided or brief.centre):
+        raise BriefError("a one-way road has no oncoming lanes, so leave its median or centre line out")
 
 
 def _counts(brief: Brief) -> None:

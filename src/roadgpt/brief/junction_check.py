@@ -6,20 +6,11 @@ from typing import TYPE_CHECKING
 from roadgpt.brief.amount import Amount, meets, span
 from roadgpt.brief.arm_check import check_arms
 from roadgpt.brief.junction_plan import word_of
-from roadgpt.brief.junctions import (
-    ACROSS,
-    ARMS,
-    LANE_KINDS,
-    NAMES,
-    RAMPS,
-    SIZES,
-    JunctionClause,
-    JunctionKind,
-    Way,
-)
+from roadgpt.brief.junction_ranges import ACROSS, ARMS, SIZES
+from roadgpt.brief.junctions import LANE_KINDS, NAMES, RAMPS, JunctionClause, JunctionKind, Way
+from roadgpt.brief.lane_sequence import check_lane_sequence
 from roadgpt.brief.map_clause import SIGNS, MapClause
 from roadgpt.brief.ranges import Range, overlap
-from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import BriefError
 
 if TYPE_CHECKING:
@@ -45,6 +36,20 @@ MOST_BLOCKS = 8
 MOST_OF_KIND = 12
 MOST_ARMS_OF_MINI = 4  # with more, kerbs between them would have radii below 3 m
 CIRCULATORY = 10.0  # m, about: the outer diameter of a roundabout minus the diameter of its island
+
+
+def check_network(brief: "Brief") -> None:
+    """Checks the junctions of a route and its lanes there, or the map that a Brief requires.
+
+    Raises:
+        BriefError: The requirements contradict each other or cannot be met; the message says what to change.
+    """
+    for junction in brief.junctions:
+        check_junction(junction)
+    _check_turning_back(brief)
+    check_lane_sequence(brief)
+    if brief.map is not None and not brief.junctions:
+        _check_map(brief.map)
 
 
 def check_junction(junction: JunctionClause) -> None:
@@ -119,7 +124,7 @@ def _check_fields_of_lanes(junction: JunctionClause) -> None:
         )
 
 
-def check_turning_back(brief: "Brief") -> None:
+def _check_turning_back(brief: "Brief") -> None:
     """Checks that a route ends after it has turned back at a roundabout.
 
     Raises:
@@ -154,23 +159,7 @@ def _check_take(junction: JunctionClause, name: str) -> None:
         raise BriefError(f"a {name} with ways on {_said(ways)} has none {take}; change one of them")
 
 
-def check_lanes(brief: "Brief") -> None:
-    """Checks the lanes, the median and the centre line that a Brief requires of a road.
-
-    Raises:
-        BriefError: No road can meet these requirements; the message says what to change.
-    """
-    if not meets(brief.lanes, Range(1, MOST_LANES)):
-        raise BriefError(
-            f"a road has 1 to {MOST_LANES} lanes in each direction, not {brief.lanes}; change it"
-        )
-    if not meets(brief.against, Range(0, MOST_LANES)):
-        raise BriefError(f"a road has 0 to {MOST_LANES} oncoming lanes, not {brief.against}; change it")
-    if brief.against is not None and span(brief.against).hi == 0 and (brief.divided or brief.centre):
-        raise BriefError("a one-way road has no oncoming lanes, so leave its median or centre line out")
-
-
-def check_map(asked: MapClause) -> None:
+def _check_map(asked: MapClause) -> None:
     """Checks the map of roads that a Brief requires.
 
     Raises:

@@ -11,13 +11,10 @@ from typing import get_args
 from pydantic import ValidationError
 
 from roadgpt.brief.amount import Amount
-from roadgpt.brief.junctions import Control, IslandSize, JunctionClause, JunctionKind, Side, Take, Way
+from roadgpt.brief.junctions import Control, IslandSize, JunctionClause, Side, Take, Way
 from roadgpt.brief.plan_amount import amount_text, read_amount
 from roadgpt.errors import BriefError
 
-BETWEEN = "//"
-WHOLE = "||"
-KINDS: frozenset[str] = frozenset(get_args(JunctionKind))
 WORDS = {
     **dict.fromkeys(get_args(Take), "take"),
     **dict.fromkeys(get_args(IslandSize), "size"),
@@ -55,11 +52,6 @@ def word_of(field: str) -> str:
 def _half(amount: Amount) -> Amount:
     lo, hi = (None if bound is None else bound / 2 for bound in (amount.lo, amount.hi))
     return Amount(lo=lo, hi=hi)
-
-
-def is_junction(text: str) -> bool:
-    """Returns whether part of a plan begins with a kind of junction."""
-    return (text.split() or [""])[0] in KINDS
 
 
 def read_junction(text: str) -> JunctionClause:

@@ -1,7 +1,30 @@
 """Writes the requirements of a junction as plain English."""
 
+from collections.abc import Mapping
+
 from roadgpt.brief.amount import Amount
-from roadgpt.brief.junctions import CONTROLS, LANE_KINDS, ORDINALS, TAKES, JunctionClause
+from roadgpt.brief.junctions import LANE_KINDS, Control, JunctionClause, Take
+
+TAKES: Mapping[Take, str] = {
+    "left": "turn left",
+    "right": "turn right",
+    "straight": "go straight on",
+    "back": "turn back the way it came",
+    "sharp_left": "take the sharpest left",
+    "sharp_right": "take the sharpest right",
+    "slight_left": "bear slightly left",
+    "slight_right": "bear slightly right",
+    "ramp": "use the ramp",
+    "main": "stay on the main road",
+}
+CONTROLS: Mapping[Control, str] = {
+    "priority": "where the route has priority",
+    "yield": "where the route has to give way",
+    "stop": "with a stop sign for the route",
+    "lights": "with traffic lights",
+    "none": "without signs",
+}
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
 def junction_text(junction: JunctionClause) -> str:

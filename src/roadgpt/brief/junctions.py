@@ -1,4 +1,4 @@
-"""Defines what a description can ask of a junction on the route, and what its words mean.
+"""Defines what a description can ask of a junction on the route.
 
 Merges, motorway exits, lane drops, lane gains and lane changes are listed together with the junctions, in
 driving order.
@@ -9,8 +9,7 @@ from typing import Literal, get_args
 
 from pydantic import field_validator
 
-from roadgpt.brief.amount import Amount, Frozen, span
-from roadgpt.brief.ranges import Range
+from roadgpt.brief.amount import Amount, Frozen
 
 PlainKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
 """The named kinds of junctions that have no ramps."""
@@ -54,78 +53,6 @@ NAMES: Mapping[JunctionKind, tuple[str, ...]] = {
 
 The kind "junction" means that the description names no kind; any kind but a roundabout is then possible.
 """
-ARMS: Mapping[JunctionKind, Range] = {
-    "t_junction": Range(3, 3),
-    "y_junction": Range(3, 3),
-    "crossroads": Range(4, 4),
-    "star": Range(5, 6),
-    "roundabout": Range(3, 6),
-    "junction": Range(3, 6),
-    "merge": Range(3, 3),
-    "diverge": Range(3, 3),
-    **dict.fromkeys(LANE_KINDS, Range(2, 2)),
-}
-"""The number of arms of each kind, including the road on which the route arrives."""
-SIZES: Mapping[IslandSize, Range] = {
-    "mini": Range(13, 25),
-    "normal": Range(26, 45),
-    "large": Range(46, 70),
-}
-"""The range of the outer diameter of a roundabout in metres, for each word for its size.
-
-CD 116 Geometric design of roundabouts (National Highways) calls a roundabout of less than 28 m "compact" or
-"mini"; the other limits are usual figures.
-"""
-ACROSS = Range(18, 70)
-"""The outer diameters in metres with which roundabouts can be built."""
-SKEW = 70.0  # degrees; crossroads with a smaller angle between two neighbouring arms are skew
-SIDE = 25.0  # degrees; a smaller change of direction is straight on
-TAKES: Mapping[Take, str] = {
-    "left": "turn left",
-    "right": "turn right",
-    "straight": "go straight on",
-    "back": "turn back the way it came",
-    "sharp_left": "take the sharpest left",
-    "sharp_right": "take the sharpest right",
-    "slight_left": "bear slightly left",
-    "slight_right": "bear slightly right",
-    "ramp": "use the ramp",
-    "main": "stay on the main road",
-}
-CONTROLS: Mapping[Control, str] = {
-    "priority": "where the route has priority",
-    "yield": "where the route has to give way",
-    "stop": "with a stop sign for the route",
-    "lights": "with traffic lights",
-    "none": "without signs",
-}
-ABOUT = 5.0  # degrees: the tolerance of an angle that is given as one number
-BENDS = {"slight": Range(SIDE, 75), "sharp": Range(95, 180)}
-"""How many degrees the route turns if it bears slightly, or turns sharply, to a side."""
-ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
-
-
-def side_of(turn: float) -> Way:
-    """Returns the way that a change of direction leads: "left", "right", or "straight" if it is small.
-
-    ``turn`` is the change of direction in degrees, positive to the left.
-    """
-    return "left" if turn > SIDE else "right" if turn < -SIDE else "straight"
-
-
-def bends_as(take: Take | None, turn: float) -> bool:
-    """Returns whether a change of direction in degrees is as slight or as sharp as ``take`` requires.
-
-    ``take`` is the way that a route takes at a junction, such as "slight_left". Its side is not compared.
-    Without "slight" or "sharp" in ``take``, the result is True.
-    """
-    return abs(turn) in BENDS.get((take or "").partition("_")[0], Range())
-
-
-def is_about(degrees: float, asked: Amount) -> bool:
-    """Returns whether an angle in degrees is as required; the tolerance of a single number is ``ABOUT``."""
-    wanted, slack = span(asked), ABOUT if asked.exact else 0.0
-    return degrees in Range(wanted.lo - slack, wanted.hi + slack)
 
 
 class JunctionClause(Frozen):

@@ -11,43 +11,14 @@ mph (1,050 ft, 320 m). RAA 2008, design classes EKA 1 A, 1 B, 2 and 3: radii of 
 m, grades up to 4, 4.5, 4.5 and 6 percent.
 """
 
-import re
 from collections.abc import Iterator
-from itertools import pairwise
 from math import ceil, radians
 
 from roadgpt.brief.map_fit import LARGEST_MAP
 from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.normal import STRAIGHT, normal, total, turns_of
-from roadgpt.brief.words import (
-    LENGTH_SLACK,
-    MOTORWAY_GRADE,
-    MOTORWAY_RADIUS,
-    ROAD_LENGTH_SLACK,
-    unaccented,
-)
+from roadgpt.brief.words import LENGTH_SLACK, MOTORWAY_GRADE, MOTORWAY_RADIUS, ROAD_LENGTH_SLACK
 
-
-def _bag(*lines: str) -> frozenset[str]:
-    return frozenset(word for line in lines for word in line.split())
-
-
-NAMES = _bag(
-    "motorway motorways freeway freeways expressway expressways highway highways interstate turnpike",
-    "autobahn autobahnen schnellstrasse schnellstraße kraftfahrstrasse kraftfahrstraße autoroute autoroutes",
-    "autopista autopistas autovia autovias autostrada autostrade superstrada superstrade",
-)
-PAIRS = frozenset([("voie", "rapide"), ("voies", "rapides")])
-NOT_ONE = _bag(
-    "no not without off from to towards toward near beside leaving leave join joining over under",
-    "kein keine keiner ohne neben zur zum von pas sans vers quitter sin hacia junto senza verso accanto non",
-)
-"""Words that mean, up to three words before "motorway", that the road is not one, or only near one."""
-BACK = 3  # how many words before "motorway" are searched for NOT_ONE
-PARTS_OF_ONE = _bag(
-    "exit exits ramp ramps slip interchange junction entrance bridge services ausfahrt auffahrt"
-)
-"""Words that, right after "motorway", name only a part of it, such as a ramp or a bridge."""
 OPEN_KINDS = frozenset({"turn", "s_bend", "winding"})
 """The kinds of turns whose radius is not fixed by their kind."""
 SHORTEST_CURVE = 320.0  # metres
@@ -57,18 +28,6 @@ SIDES = 1.3  # a nearly straight road may be this many sides of the map long
 COMFORT = 1.5  # the proposed map is this many times the least length of the road
 ROUND = 500.0  # metres: the proposed map is rounded up to this
 STEEP = ("steeply_up", "steeply_down")
-
-
-def says_motorway(words: str) -> bool:
-    """Returns True if a description in English, German, French, Spanish or Italian asks for a motorway."""
-    said = re.findall(r"[^\W\d_]+", unaccented(words))
-    for at, (word, after) in enumerate(pairwise([*said, ""])):
-        is_pair = (word, after) in PAIRS
-        if is_pair or word in NAMES:
-            follows = "".join(said[at + 2 : at + 3]) if is_pair else after
-            if follows not in PARTS_OF_ONE and not NOT_ONE & {*said[max(at - BACK, 0) : at]}:
-                return True
-    return False
 
 
 def has_wide_turns(brief: Brief, map_size: float) -> bool:

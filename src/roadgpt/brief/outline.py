@@ -12,7 +12,6 @@ from typing import Any, Literal, TypeVar
 
 from roadgpt.brief.like_numbers import with_like_numbers
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
-from roadgpt.brief.motorway import has_low_grades, has_wide_turns
 from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of
 from roadgpt.brief.part_climb import climb_of_each, limits_of_climb
 from roadgpt.brief.ranges import Range, overlap
@@ -176,8 +175,6 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
         whole["steepest"] = overlap(
             whole["steepest"], Range(0, max(abs(grade_range.lo), abs(grade_range.hi)))
         )
-    if has_low_grades(brief):
-        whole["steepest"] = overlap(whole["steepest"], Range(0, MOTORWAY_GRADE))
     found = Outline(
         groups=groups,
         turns=_turn_count(brief, groups),
@@ -198,7 +195,7 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
         hard=brief.hard,
     )
     found = _with_both_ends(found)
-    return _widened(found) if has_wide_turns(brief, map_size) else found
+    return _as_motorway(found, brief, map_size) if brief.motorway else found
 
 
 def _with_both_ends(found: Outline) -> Outline:
@@ -245,11 +242,16 @@ def _within(said: Sloped, most: float) -> Sloped:
     return said.model_copy(update={"incline": Amount(lo=max(most / 2, LEAST_GRADE), hi=most)})
 
 
-def _widened(found: Outline) -> Outline:
-    """Returns the Outline with the minimum radius of a motorway for every turn."""
-    wide = Range(MOTORWAY_RADIUS)
-    each = replace(found.each_turn, radius=overlap(found.each_turn.radius, wide))
-    return replace(found, each_turn=each)
+def _as_motorway(found: Outline, brief: Brief, map_size: float) -> Outline:
+    """Returns the Outline with the grades and wide turns of a motorway, unless others are asked for."""
+    from roadgpt.brief.motorway import has_low_grades, has_wide_turns  # only for motorways
+
+    if has_low_grades(brief):
+        found = replace(found, steepest=overlap(found.steepest, Range(0, MOTORWAY_GRADE)))
+    if not has_wide_turns(brief, map_size):
+        return found
+    wide = overlap(found.each_turn.radius, Range(MOTORWAY_RADIUS))
+    return replace(found, each_turn=replace(found.each_turn, radius=wide))
 
 
 def _groups(clause: Clause, roomy: bool) -> list[Group]:

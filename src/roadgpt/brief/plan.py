@@ -14,15 +14,17 @@ from typing import TypeVar, get_args
 from pydantic import ValidationError
 
 from roadgpt.brief.halfway import without_halfway
-from roadgpt.brief.junction_plan import BETWEEN, WHOLE, is_junction, junction_plan, read_junction
-from roadgpt.brief.junction_plan import KINDS as JUNCTIONS
-from roadgpt.brief.map_clause import is_map, map_plan, read_map
+from roadgpt.brief.junctions import JunctionKind
+from roadgpt.brief.map_clause import MAP
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Kind, exactly, span
 from roadgpt.brief.plan_amount import amount_text, read_amount
 from roadgpt.brief.refusal import refused
 from roadgpt.errors import BriefError
 
 KINDS = frozenset(get_args(Kind))
+JUNCTIONS: frozenset[str] = frozenset(get_args(JunctionKind))
+BETWEEN = "//"
+WHOLE = "||"
 WORDS = {
     **dict.fromkeys(("left", "right"), "side"),
     **dict.fromkeys(("gentle", "sweeping", "sharp"), "sharpness"),
@@ -67,6 +69,8 @@ def plan(brief: Brief) -> str:
     if brief.junctions:
         return _network_plan(brief)
     if brief.map is not None:
+        from roadgpt.brief.map_plan import map_plan  # only for maps
+
         return _with_whole(map_plan(brief.map), _wishes(brief))
     wishes = _wishes(brief)
     line = "; ".join(_clause(clause) for clause in brief.clauses)
@@ -92,6 +96,8 @@ def _wishes(brief: Brief) -> list[str]:
 
 
 def _network_plan(brief: Brief) -> str:
+    from roadgpt.brief.junction_plan import junction_plan  # only for networks
+
     parts = [plan(brief.stretches[0])]
     for junction, stretch in zip(brief.junctions, brief.stretches[1:], strict=True):
         parts += [junction_plan(junction), plan(stretch)]
@@ -149,8 +155,20 @@ def read_plan(line: str) -> Brief:
     return _made(Brief, fields, line)
 
 
+def is_junction(text: str) -> bool:
+    """Returns whether part of a plan begins with a kind of junction."""
+    return (text.split() or [""])[0] in JUNCTIONS
+
+
+def is_map(line: str) -> bool:
+    """Returns whether a plan asks for a map."""
+    return (line.split() or [""])[0] == MAP
+
+
 def _read_network(line: str) -> Brief:
     """Returns the Brief of a plan with junctions."""
+    from roadgpt.brief.junction_plan import read_junction  # only for networks
+
     route, _, whole = line.partition(WHOLE)
     junctions: list[str] = []
     roads = [""]
@@ -177,6 +195,8 @@ def _read_network(line: str) -> Brief:
 
 def _read_map(line: str) -> Brief:
     """Returns the Brief of a plan that asks for a map."""
+    from roadgpt.brief.map_plan import read_map  # only for maps
+
     roads, _, whole = line.partition(WHOLE)
     return _made(Brief, {"map": read_map(roads), **_read_whole(whole)}, line)
 

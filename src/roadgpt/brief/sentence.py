@@ -1,6 +1,5 @@
 """Writes a Brief as one plain English sentence, which the model reader can read back."""
 
-from roadgpt.brief.junction_sentence import junction_text
 from roadgpt.brief.junctions import NAMES
 from roadgpt.brief.map_clause import SIGNS, JunctionCount, MapClause
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Slope, at_least, exactly
@@ -35,6 +34,8 @@ def sentence(brief: Brief) -> str:
 
 def _route_sentence(brief: Brief) -> str:
     """Returns a sentence about a route: its roads and junctions in driving order."""
+    from roadgpt.brief.junction_sentence import junction_text  # only for networks
+
     parts = [_stretch(brief.stretches[0])]
     for junction, stretch in zip(brief.junctions, brief.stretches[1:], strict=True):
         parts += [junction_text(junction), _stretch(stretch)]

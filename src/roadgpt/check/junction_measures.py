@@ -11,7 +11,8 @@ from itertools import islice, pairwise
 
 import numpy as np
 
-from roadgpt.brief.junctions import RAMPS, Control, JunctionKind, LaneKind, Side, Way, side_of
+from roadgpt.brief.junction_ranges import side_of
+from roadgpt.brief.junctions import RAMPS, Control, JunctionKind, LaneKind, Side, Way
 from roadgpt.geometry import CubicProfile, PieceCurve
 from roadgpt.geometry.pieces import along_all
 from roadgpt.network import Connection, Junction, Network, NetworkRoad, Passage, RoadEnd, Route

@@ -11,17 +11,9 @@ from math import inf
 import numpy as np
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.junctions import (
-    LANE_KINDS,
-    NAMES,
-    RAMPS,
-    SIZES,
-    SKEW,
-    TAKES,
-    JunctionClause,
-    bends_as,
-    is_about,
-)
+from roadgpt.brief.junction_ranges import SIZES, SKEW, bends_as, is_about
+from roadgpt.brief.junction_sentence import TAKES
+from roadgpt.brief.junctions import LANE_KINDS, NAMES, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range

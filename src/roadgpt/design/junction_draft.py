@@ -10,17 +10,8 @@ import numpy as np
 from roadgpt.brief.amount import span
 from roadgpt.brief.arm_check import ANGLES, FORK_GAPS
 from roadgpt.brief.junction_check import MOST_ARMS_OF_MINI
-from roadgpt.brief.junctions import (
-    ARMS,
-    SIDE,
-    SIZES,
-    JunctionClause,
-    JunctionKind,
-    PlainKind,
-    bends_as,
-    is_about,
-    side_of,
-)
+from roadgpt.brief.junction_ranges import ARMS, SIDE, SIZES, bends_as, is_about, side_of
+from roadgpt.brief.junctions import JunctionClause, JunctionKind, PlainKind
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.network import JunctionDesign
 from roadgpt.network.arm_design import ArmDesign

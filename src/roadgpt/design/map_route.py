@@ -8,7 +8,8 @@ import cmath
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from roadgpt.brief.junctions import Way, side_of
+from roadgpt.brief.junction_ranges import side_of
+from roadgpt.brief.junctions import Way
 from roadgpt.design.map_draft import MapDraft, Rng
 
 WALKS = 60  # number of random walks, of which the best is taken

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.brief.junctions import RAMPS, Way, side_of
+from roadgpt.brief.junction_ranges import side_of
+from roadgpt.brief.junctions import RAMPS, Way
 from roadgpt.geometry.curve import Array, wrap_angle
 from roadgpt.network.network import Arm, Connection, Junction, Network, NetworkRoad, RoadEnd
 from roadgpt.network.passages import CROSSED, STOP_LINE, line_before

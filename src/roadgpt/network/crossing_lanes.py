@@ -15,7 +15,8 @@ The ways from one arm never cross each other.
 import math
 from collections.abc import Iterator, Sequence
 
-from roadgpt.brief.junctions import Way, side_of
+from roadgpt.brief.junction_ranges import side_of
+from roadgpt.brief.junctions import Way
 from roadgpt.geometry.curve import wrapped
 from roadgpt.network.building import Stub
 

@@ -22,7 +22,8 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, Field, StrictBool, ValidationError
 
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, PlainKind, side_of
+from roadgpt.brief.junction_ranges import side_of
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, PlainKind
 from roadgpt.errors import UsageError
 from roadgpt.network.arm_design import ArmDesign, read_segments
 from roadgpt.network.lane_design import RAMP_TAPER, RARE, LanesChangeDesign, LanesDesign, RampDesign

@@ -4,7 +4,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from roadgpt.brief.junctions import Control, side_of
+from roadgpt.brief.junction_ranges import side_of
+from roadgpt.brief.junctions import Control
 from roadgpt.errors import UsageError
 from roadgpt.geometry import GradeProfile, PieceCurve
 from roadgpt.geometry.curve import wrapped

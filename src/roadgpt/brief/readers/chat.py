@@ -12,13 +12,11 @@ from itertools import groupby
 from pydantic import BaseModel, Field
 
 from roadgpt.brief.feasible import check
-from roadgpt.brief.junction_plan import BETWEEN, WHOLE, is_junction
-from roadgpt.brief.junction_plan import KINDS as JUNCTIONS
 from roadgpt.brief.junctions import NAMES
-from roadgpt.brief.map_clause import MAP, is_map
+from roadgpt.brief.map_clause import MAP
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
-from roadgpt.brief.plan import KINDS, read_plan
+from roadgpt.brief.plan import BETWEEN, JUNCTIONS, KINDS, WHOLE, is_junction, is_map, read_plan
 from roadgpt.brief.refusal import EXAMPLE, MOST_CHARACTERS
 from roadgpt.chat import Chat, ChatSettings, Message, configured, open_chat
 from roadgpt.chat.json_schema import fixed_description

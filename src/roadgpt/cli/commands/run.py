@@ -134,7 +134,6 @@ def carry_out(job: RunJob, screen: Screen) -> None:
         RoadGPTError: The description, a plug-in or the folder cannot be used, or nothing could be designed.
         KeyboardInterrupt: The user pressed Ctrl-C; finished roads are saved in full.
     """
-    from roadgpt.brief.map_clause import with_route
     from roadgpt.campaign import campaign
     from roadgpt.chat import Meter
     from roadgpt.run import brief_of
@@ -143,6 +142,8 @@ def carry_out(job: RunJob, screen: Screen) -> None:
     meter = Meter.of(job.setup.chat)
     brief = brief_of(job.words, job.world, job.setup, meter)
     if job.route:
+        from roadgpt.brief.map_plan import with_route  # only for maps
+
         brief = brief.model_copy(update={"map": with_route(brief.map, job.route)})
     seed = _seed(job)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print

@@ -12,20 +12,17 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
 from roadgpt.brief.model import Brief, at_least
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan
-from roadgpt.brief.readers.model.change_rules import lost_numbers, read_by_rules
 from roadgpt.brief.readers.model.closed_loops import asks_for_a_closed_loop
-from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
+from roadgpt.brief.readers.model.confidence import DOUBT, features
 from roadgpt.brief.readers.model.denied_words import without_denials
 from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
-from roadgpt.brief.readers.model.height_words import is_doubtful_climb, with_sign
-from roadgpt.brief.readers.model.junction_nouns import names_a_junction
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.multiples import tells_a_difference
 from roadgpt.brief.readers.model.negative_numbers import negative_number
@@ -33,8 +30,6 @@ from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
 from roadgpt.brief.readers.model.plan_choice import brief_of, can_be_kept, most_plausible
-from roadgpt.brief.readers.model.reverse_words import asks_to_reverse
-from roadgpt.brief.readers.model.ring_sizes import with_diameters
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
@@ -46,15 +41,14 @@ from roadgpt.brief.words import SURE
 from roadgpt.errors import BriefError, PartError
 from roadgpt.reading import read_json, read_text
 
+if TYPE_CHECKING:
+    from roadgpt.brief.readers.model.change_reading import ChangeReading
+
 WEIGHTS = Path(__file__).parent / "weights"
 MEANINGS = "meanings.txt"
 """The file with what words usually ask for: in each line a word and tokens of plans."""
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
-REVERSED = "road: reverse"
-CERTAIN = 0.97
-"""The confidence in a change request that a rule reads."""
-ALMOST = 2.0  # difference of score
 NEVER = 2.0  # a probability that no refusal reaches
 SECOND = "_2"
 """What follows 'encoder' and 'decoder' in the names of the second network's files."""
@@ -67,18 +61,6 @@ MANY_JUNCTIONS = (
     "no more than 8 junctions are read from words; a plan can list more, such as "
     "--plan 'crossroads left // crossroads right // ...'"
 )
-
-
-class ChangeReading(NamedTuple):
-    """The network's reading of a change request."""
-
-    plan: str
-    """A plan of changes, or a refusal."""
-    confidence: float
-    unused: tuple[str, ...]
-    """Words that the plan does not depend on."""
-    other: str = ""
-    """The second likeliest plan that is no refusal; empty if none is likely."""
 
 
 class UncalibratedReading(NamedTuple):
@@ -145,7 +127,7 @@ class ModelReader:
             brief = brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
         return brief if brief.confidence >= SURE else brief.model_copy(update={"other": _other(found, brief)})
 
-    def read_change(self, words: str, key: Callable[[str], str]) -> ChangeReading:
+    def read_change(self, words: str, key: Callable[[str], str]) -> "ChangeReading":
         """Returns what a change request asks for, as a plan.
 
         Args:
@@ -156,30 +138,9 @@ class ModelReader:
         Raises:
             BriefError: the network wrote no plan that can be read.
         """
-        if asks_to_reverse(words):
-            return ChangeReading(REVERSED, CERTAIN, ())
-        text = slotted(words, is_change=True)
-        found = scored_plans(self.roads.networks, words, self.roads.refuse_from, key=key)
-        if not found:
-            raise BriefError("this could not be read as changes; use shorter sentences")
-        line = found[0].line
-        known = read_by_rules(line, text)
-        if known is not None:
-            return ChangeReading(known, CERTAIN, ())
-        near = [draft for draft in found if draft.score >= found[0].score - ALMOST]
-        draft = next((draft for draft in near if not lost_numbers(draft, text)), found[0])
-        others = (with_sign(each.line, text) for each in near if each is not draft and not each.is_refusal)
-        other = next(others, "")
-        found_in = features(self.roads.networks, draft, text)
-        if draft.is_refusal:
-            sure = confidence(self._settings["changes"], found_in, (), text)
-            return ChangeReading(draft.line, sure, (), other)
-        lost = lost_numbers(draft, text)
-        unused = self.roads.unused(text, draft.tokens)
-        sure = confidence(self._settings["changes"], found_in, (*lost, *unused), text)
-        sure = min(sure, DOUBT) if is_denial(words) or is_doubtful_climb(draft.line, text) else sure
-        unused = tuple(dict.fromkeys([*lost, *unused]))
-        return ChangeReading(with_sign(draft.line, text), sure, unused, other)
+        from roadgpt.brief.readers.model.change_reading import read_change  # only for changes
+
+        return read_change(self.roads, self._settings["changes"], words, key)
 
     def uncalibrated(self, words: str, refuse_from: float) -> UncalibratedReading | None:
         """Returns the likeliest plan of a description as an UncalibratedReading; None if no plan could be
@@ -258,8 +219,11 @@ class ModelReader:
         why = draft.line
         if why.startswith("!contradiction"):
             return self._brief_in_spite_of(why, words, text, ensemble)
-        if why == TOO_MANY_TURNS and names_a_junction(text.text):
-            raise BriefError(MANY_JUNCTIONS)
+        if why == TOO_MANY_TURNS:
+            from roadgpt.brief.readers.model.junction_nouns import names_a_junction  # only for refusals
+
+            if names_a_junction(text.text):
+                raise BriefError(MANY_JUNCTIONS)
         brief = self._for_the_usual_map(words, text, ensemble) if why.startswith("!impossible") else None
         raise TooMuchError(TOO_MUCH, brief) if brief else refused(why)
 
@@ -325,7 +289,7 @@ class ModelReader:
         # the roads of a map may be closed loops
         kept = (name for name in brief.beside if name != "loop" or brief.map is None)
         found["beside"] = tuple(dict.fromkeys(kept))
-        return with_diameters(brief, draft.tokens, text).model_copy(update=found)
+        return _with_diameters(brief, draft.tokens, text).model_copy(update=found)
 
     @cached_property
     def roads(self) -> Ensemble:
@@ -368,11 +332,19 @@ def _other(found: Sequence[ScoredPlan], brief: Brief) -> str:
         if draft.is_refusal or not can_be_kept(draft.line):
             continue
         text = slotted(brief.words)
-        other = with_diameters(brief_of(draft.line, text, brief.words), draft.tokens, text)
+        other = _with_diameters(brief_of(draft.line, text, brief.words), draft.tokens, text)
         line = plan(normal(other).model_copy(update={"beside": ()}))
         if line != plan(said):
             return line
     return ""
+
+
+def _with_diameters(brief: Brief, tokens: Sequence[str], text: SlottedText) -> Brief:
+    if not brief.junctions:
+        return brief
+    from roadgpt.brief.readers.model.ring_sizes import with_diameters  # only for networks
+
+    return with_diameters(brief, tokens, text)
 
 
 def _has_unlimited_signs(brief: Brief, text: SlottedText) -> bool:

@@ -2,7 +2,7 @@
 
 import re
 
-from roadgpt.brief.map_clause import is_map
+from roadgpt.brief.plan import is_map
 from roadgpt.brief.readers.model.denial import is_denied
 from roadgpt.brief.readers.model.numerals import plain
 

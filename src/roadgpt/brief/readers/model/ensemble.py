@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from roadgpt.brief.readers.model.confidence import confidence, features
-from roadgpt.brief.readers.model.junction_nouns import names_a_junction
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES, asks_for_map, may_tell_a_route
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
@@ -101,8 +100,7 @@ def scored_by(
     read = routes.scored(words, refuse_from) if routes and may_tell_a_route(words) else ()
     is_route = bool(read) and not roads.knows(_without_motorway(read[0].tokens))
     sure = _confidence(routes, read, text) if routes and is_route else 0.0
-    is_said = names_a_junction(text.text) or asks_for_map(text)
-    if routes and is_route and (sure >= GUESS or (is_said and not read[0].is_refusal)):
+    if routes and is_route and (sure >= GUESS or (_says_network(text) and not read[0].is_refusal)):
         return routes, read
     found = roads.scored(words, refuse_from)
     if routes and found and not TOLD_ON_ROUTES.isdisjoint(found[0].tokens):
@@ -113,6 +111,13 @@ def scored_by(
     if read[0].is_refusal:
         return (routes, read) if against < SURE else (roads, found)
     return (routes, read) if is_route and sure >= against else (roads, found)
+
+
+def _says_network(text: SlottedText) -> bool:
+    """Returns whether a text asks for a map, or has a noun that can only mean a junction."""
+    from roadgpt.brief.readers.model.junction_nouns import names_a_junction  # only for networks
+
+    return names_a_junction(text.text) or asks_for_map(text)
 
 
 def _confidence(ensemble: Ensemble, found: Sequence[ScoredPlan], text: SlottedText) -> float:

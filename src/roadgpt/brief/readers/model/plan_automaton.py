@@ -11,7 +11,6 @@ from roadgpt.brief.beside import BESIDE
 from roadgpt.brief.halfway import HALFWAY
 from roadgpt.brief.map_clause import LONGEST_ROUTE, ROUTE
 from roadgpt.brief.plan import ONE_WAY, ROAD_KEYS
-from roadgpt.brief.readers.model.change_grammar import change_request
 from roadgpt.brief.readers.model.evidence import Evidence
 from roadgpt.brief.readers.model.plan_numbers import Keyed, Numbers
 from roadgpt.brief.readers.model.slots import NumberSlot
@@ -77,7 +76,7 @@ class PlanAutomaton:
         is_change: bool = False,
     ) -> None:
         numbers = Numbers(slots, said, evidence or Evidence())
-        whole = change_request(numbers) if is_change else _description(numbers)
+        whole = _change(numbers) if is_change else _description(numbers)
         self._stack: Stack = (AnyOf((*_refusals(), whole)), OneOf((END,)))
 
     def copy(self) -> "PlanAutomaton":
@@ -102,6 +101,12 @@ def _refusals() -> tuple[Symbol, ...]:
         Sequel(OneOf(("!contradiction",)), (clashing, clashing)),
         Sequel(OneOf(("!impossible",)), (beyond, beyond)),
     )
+
+
+def _change(numbers: Numbers) -> Symbol:
+    from roadgpt.brief.readers.model.change_grammar import change_request  # only for changes
+
+    return change_request(numbers)
 
 
 def _description(numbers: Numbers) -> Symbol:

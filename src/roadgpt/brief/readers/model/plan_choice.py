@@ -13,10 +13,9 @@ from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.numbered_sides import told_turns, with_numbered_sides
-from roadgpt.brief.readers.model.ring_sizes import used_diameters
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
-from roadgpt.brief.readers.model.used_words import left_out
+from roadgpt.brief.readers.model.used_words import lost
 from roadgpt.errors import BriefError
 
 Sloped = TypeVar("Sloped", Brief, Clause)
@@ -58,7 +57,7 @@ def _with_all_numbers(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredP
     may be the description.
     """
     near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - ALMOST)
-    whole = [draft for draft in near if {*left_out(draft.tokens, text)} <= used_diameters(draft.tokens, text)]
+    whole = [draft for draft in near if not lost(draft.tokens, text)]
     least = found[0].score - CLOSE if found[0] in whole else -inf
     return next((draft for draft in whole if draft.score > least and can_be_kept(draft.line)), None)
 

@@ -8,11 +8,12 @@ import re
 from collections.abc import Sequence
 
 from roadgpt.brief.amount import exactly, span
-from roadgpt.brief.junctions import ACROSS, SIZES, JunctionClause
+from roadgpt.brief.junction_ranges import ACROSS, SIZES
+from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.all_turns import EXCEPT
 from roadgpt.brief.readers.model.slots import SlottedText, slot_name
-from roadgpt.brief.readers.model.vocabulary import RING_SIZES, SIDES, SLOT_TOKENS, TAKES
+from roadgpt.brief.readers.model.vocabulary import RING_SIZES, ROUNDABOUT, SIDES, SLOT_TOKENS, TAKES
 
 TOLD = re.compile(r"across|diam|durchmess|circle|ø")
 ISLAND = re.compile(
@@ -34,7 +35,6 @@ LEAST, MORE, FEW = 28.0, 8.0, 4
 """The outer diameter in metres at which FEW arms and one lane have room, the additional diameter for each
 further arm and for a second lane, and the number of arms FEW.
 """
-ROUNDABOUT = "roundabout"
 PARTS = ("//", "||")
 
 

@@ -53,6 +53,8 @@ CHANGE = "[unused13]"
 """The token in front of a change request, which tells the model that the text is not a description."""
 MIXED = re.compile(r"(\d)([½¼¾])")
 """A whole number with a fraction behind it, as in "1½"."""
+ORDINAL_SIGN = re.compile(r"(?<=\d)(?:e|\.?ª)(?!\w)")
+"""What makes an ordinal of a number right before it: "4e" in French, "4ª" in Spanish and Italian."""
 BARE_POINT = re.compile(r"(?<![\w.])\.(?=\d)")
 MILLION = 1e6
 THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
@@ -98,7 +100,8 @@ class SlottedText:
 
 def slotted(text: str, is_change: bool = False) -> SlottedText:
     """Returns the text with its numbers replaced by slots; a change request gets CHANGE as its first word."""
-    said = tolerances_first(WORD.findall(BARE_POINT.sub("0.", MIXED.sub(_sum, text).translate(SYMBOLS))))
+    text = ORDINAL_SIGN.sub("eme", MIXED.sub(_sum, text))
+    said = tolerances_first(WORD.findall(BARE_POINT.sub("0.", text.translate(SYMBOLS))))
     tokens = _with_miles([plain(word) for word in said])
     numbers = _numbers(tokens)
     for number in numbers:
@@ -140,7 +143,7 @@ def _numbers(tokens: list[str]) -> list[Number]:
     at = 0
     while at < len(tokens):
         number = (
-            unit_fraction(tokens, at) or whole_and_share(tokens, at) or _ratio(tokens, at)
+            unit_fraction(tokens, at) or whole_and_share(tokens, at) or _ratio(tokens, at, language)
             or _millions(tokens, at) or _part(tokens, at) or _digits(tokens, at) or _set(tokens, at)
             or _spelled(tokens, at, language) or one_with_decimals(tokens, at)
         )  # fmt: skip
@@ -163,16 +166,17 @@ def _with_miles(tokens: list[str]) -> list[str]:
     ]
 
 
-def _ratio(tokens: list[str], at: int) -> Number | None:
+def _ratio(tokens: list[str], at: int, language: str) -> Number | None:
     """Reads "one in ten" and "1:8" as percent."""
     places = [place for place in range(at, min(at + 5, len(tokens))) if tokens[place] != "-"][:3]
     here = [tokens[place] for place in places]
     if len(here) < 3 or here[0] not in {"1", *ONES} - {"a", "an"} or here[1] not in RATIO:
         return None
-    below = _digit_value(here[2]) or number_word(here[2])
-    if not 3 <= below <= 100 or unit_at(tokens, places[2] + 1):
+    spelled = _spelled(tokens, places[2], language)  # the whole of "fifty-five"
+    below, last = (spelled.value, spelled.last) if spelled else (_digit_value(here[2]) or 0.0, places[2])
+    if not 3 <= below <= 100 or unit_at(tokens, last + 1):
         return None
-    return Number(round(100 / below, 1), at, places[2], "percent", False)
+    return Number(round(100 / below, 1), at, last, "percent", False)
 
 
 def _millions(tokens: list[str], at: int) -> Number | None:

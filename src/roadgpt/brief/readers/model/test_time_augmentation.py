@@ -15,10 +15,9 @@ from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.bounds import bounded
 from roadgpt.brief.readers.model.mirror import in_mirror, in_mirror_tokens
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork, WrittenPlan
-from roadgpt.brief.readers.model.ring_sizes import with_ring_sizes
 from roadgpt.brief.readers.model.route_words import asks_for_map
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
-from roadgpt.brief.readers.model.vocabulary import REFUSALS, TOKENS, plan_of
+from roadgpt.brief.readers.model.vocabulary import REFUSALS, ROUNDABOUT, TOKENS, plan_of
 from roadgpt.errors import RoadGPTError
 
 UNSEEN = 1.5
@@ -162,7 +161,11 @@ def _plans_of_variant(
     for written in network.write(network.encode(text), text, refuse_from, barred=barred):
         chance = written.refusal
         tokens = in_mirror_tokens(written.tokens) if is_mirrored else written.tokens
-        tokens = tokens if text.is_change else with_ring_sizes(bounded(tokens, text), text)
+        tokens = tokens if text.is_change else bounded(tokens, text)
+        if ROUNDABOUT in tokens and not text.is_change:
+            from roadgpt.brief.readers.model.ring_sizes import with_ring_sizes  # only for networks
+
+            tokens = with_ring_sizes(tokens, text)
         seen = WrittenPlan(tokens, written.log_chances, written.refusal)
         key = _key(seen.tokens, text, normal_form)
         if key and (key not in plans or plans[key][0] < written.score):

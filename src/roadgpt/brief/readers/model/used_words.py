@@ -10,9 +10,8 @@ from collections.abc import Collection, Mapping, Sequence
 from roadgpt.brief.readers.model.bounds import NOT
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.numerals import plain
-from roadgpt.brief.readers.model.ring_sizes import used_diameters
 from roadgpt.brief.readers.model.slots import SlottedText, Word
-from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
+from roadgpt.brief.readers.model.vocabulary import RING_SIZES, SLOT_TOKENS
 from roadgpt.brief.readers.model.word_meanings import understood
 from roadgpt.brief.readers.model.word_set import word_set
 
@@ -50,7 +49,7 @@ def unused_words(
     idle = _idle(network, text, tokens, fillers)
     idle -= understood(text, tokens, idle, meanings, NEGATORS)
     out: list[str] = []
-    missing, slot = set(left_out(tokens, text)) - used_diameters(tokens, text), 0
+    missing, slot = lost(tokens, text), 0
     for place, word in enumerate(text.words):
         if word.text.startswith("[unused") and word.written:
             if slot in missing or slot >= len(text.slots):
@@ -65,6 +64,18 @@ def unused_words(
 def left_out(tokens: Sequence[str], text: SlottedText) -> list[int]:
     """Returns the indices of those numbers (slots) of a text that its plan does not use."""
     return [index for index in range(len(text.slots)) if SLOT_TOKENS[index] not in tokens]
+
+
+def lost(tokens: Sequence[str], text: SlottedText) -> set[int]:
+    """Returns the indices of the numbers of a text that its plan does not use, also not as the size of a
+    roundabout.
+    """
+    missing = {*left_out(tokens, text)}
+    if set(RING_SIZES).isdisjoint(tokens):
+        return missing
+    from roadgpt.brief.readers.model.ring_sizes import used_diameters  # only for networks
+
+    return missing - used_diameters(tokens, text)
 
 
 def passes_over(unused: Sequence[str], text: SlottedText) -> bool:

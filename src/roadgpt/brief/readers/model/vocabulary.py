@@ -87,6 +87,7 @@ JUNCTIONS = ["t_junction", "y_junction", "crossroads", "star", "junction"]
 RAMPS = ["merge", "diverge"]
 LANE_KINDS = ["lane_drop", "lane_gain"]
 TAKES = ["straight", "back", "sharp_left", "sharp_right", "slight_left", "slight_right"]
+ROUNDABOUT = "roundabout"
 RING_SIZES = ["mini", "normal", "large"]
 CONTROLS = ["priority", "yield", "stop", "lights", "none"]
 FLAGS = ["skew", "all_way", "crosswalk"]
@@ -94,7 +95,7 @@ NEWER_FLAGS = ["others_stop"]
 LISTED_WAYS = ["left+right", "left+straight", "right+straight", "left+right+straight"]
 CENTRES = ["solid", "broken", "double", "none"]
 NETWORKS = [
-    "//", "||", *JUNCTIONS, "roundabout", *RAMPS, *LANE_KINDS, "lane_change", *TAKES, "ramp", "main",
+    "//", "||", *JUNCTIONS, ROUNDABOUT, *RAMPS, *LANE_KINDS, "lane_change", *TAKES, "ramp", "main",
     *RING_SIZES, *CONTROLS, *FLAGS, "side=", "ways=", *LISTED_WAYS, "exit=", "arms=", "lanes=", "against=",
     "oneway", "divided", "centre=", *CENTRES, "left_hand", "motorway", "map", "columns=", "rows=", "halfway",
     "d=", *NEWER_FLAGS, "angle=", "in=", "out=", "dead_ends=", "taper=",

@@ -10,7 +10,8 @@ from math import degrees
 
 import numpy as np
 
-from roadgpt.brief.junctions import SIDE, Control, Way, side_of
+from roadgpt.brief.junction_ranges import SIDE, side_of
+from roadgpt.brief.junctions import Control, Way
 from roadgpt.export.lanelets import Lanelet, leading_to
 from roadgpt.export.markup import XmlElement, number
 from roadgpt.network import Arm, Connection, Junction, Network
