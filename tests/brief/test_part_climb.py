@@ -29,8 +29,36 @@ def test_the_slope_says_whether_a_height_is_up_or_down(line: str, written: str) 
     assert read_plan(plan(found)) == found
 
 
-def test_a_height_stays_on_its_clause_where_all_slopes_are_alike() -> None:
-    assert plan(normal(read_plan("turn up climb=3; straight up"))) == "turn up climb=3; straight | up"
+@pytest.mark.parametrize("line", ["turn up climb=3; straight up", "turn x3 down climb=2"])
+def test_heights_of_parts_ask_no_slope_of_the_whole_road(line: str) -> None:
+    assert plan(normal(read_plan(line))) == line
+    check(read_plan(line + (" | climb=-5" if "up" in line else " | climb=5")))
+
+
+@pytest.mark.parametrize(
+    "line", ["crest len=100 climb=5; turn", "dip len=60.. pct=4; turn", "crest pct=5; turn"]
+)
+def test_a_crest_keeps_its_length_and_its_percent(line: str) -> None:
+    assert plan(normal(read_plan(line))) == line
+
+
+def test_each_slope_of_a_crest_has_half_of_its_length() -> None:
+    up, down = outline(read_plan("crest len=100 climb=5")).groups
+    for group in (up, down):
+        assert group.feature.length is not None
+        assert group.feature.length.number == 50
+
+
+def test_the_slopes_that_a_dip_shares_with_a_crest_have_both_heights() -> None:
+    _, rise, _ = outline(read_plan("dip climb=2; crest climb=4")).groups
+    assert rise.feature.climb is not None
+    assert rise.feature.climb.number == 6
+
+
+def test_a_part_that_rises_by_at_most_so_much_does_not_fall() -> None:
+    (group,) = outline(read_plan("turn x3 up climb=..2")).groups
+    assert group.feature.climb is not None
+    assert (group.feature.climb.lo, group.feature.climb.hi) == (0, 2)
 
 
 @pytest.mark.parametrize(
@@ -40,6 +68,13 @@ def test_a_height_stays_on_its_clause_where_all_slopes_are_alike() -> None:
         ("hairpin x2 up climb=3..4; turn", "2 hairpins that rise by 3 to 4 metres each"),
         ("crest climb=2; turn", "a crest 2 metres high"),
         ("dip climb=1.5; turn", "a dip 1.5 metres deep"),
+        ("crest len=80 climb=3; turn", "a crest of 80 metres that is 3 metres high"),
+        ("dip pct=5; turn", "a dip with slopes of 5 percent"),
+        ("slalom x4 up climb=4; straight", "a slalom with 4 turns that rises by 4 metres"),
+        (
+            "turn deg=90 r=30 climb=3; straight",
+            "of 90 degrees with a radius of 30 metres that rises by 3 metres",
+        ),
     ],
 )
 def test_the_sentence_says_the_height(line: str, said: str) -> None:
@@ -51,6 +86,7 @@ def test_the_sentence_says_the_height(line: str, said: str) -> None:
     [
         ("straight flat climb=5", "level"),
         ("straight len=30 climb=8", "15 percent"),  # 27 %
+        ("crest len=40 climb=5", "15 percent"),  # 25 %, on 20 m of it
         ("straight len=100 pct=2 climb=9", "leave out one of the three"),  # 2 m
         ("straight len=100 pct=10 climb=2", "leave out one of the three"),  # 10 m
         ("turn up climb=0", "more than 0 m"),

@@ -41,6 +41,36 @@ def test_a_hill_between_straights_is_as_high_as_was_said() -> None:
     assert min(tops) > 4
 
 
+@pytest.mark.parametrize("plan", ["crest climb=3", "crest len=100 climb=3"])
+def test_a_crest_alone_is_as_high_as_was_said(plan: str) -> None:
+    tops = [z.max() for z in heights(plan)]
+    assert np.median(tops) == pytest.approx(3, abs=0.2)
+    assert min(tops) > 2.7
+
+
+def test_a_crest_behind_a_dip_rises_from_its_depth_to_its_height() -> None:
+    found = heights("dip climb=2; crest climb=4")
+    assert np.median([z.min() for z in found]) == pytest.approx(-2, abs=0.3)
+    assert np.median([z.max() for z in found]) == pytest.approx(4, abs=0.4)
+    assert np.median([z[-1] for z in found]) == pytest.approx(0, abs=0.3)
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_parts_that_rise_or_fall_by_at_most_so_much_are_built(way: int) -> None:
+    for z in heights(f"turn x3 {'up' if way > 0 else 'down'} climb=..2"):
+        assert 1 < way * z[-1] < 8
+
+
+@pytest.mark.parametrize("ends", [10, -5])
+def test_the_other_parts_make_up_for_the_height_of_one(ends: int) -> None:
+    for z in heights(f"turn left climb=3; turn right | climb={ends}"):
+        assert z[-1] == pytest.approx(ends, abs=0.6)
+
+
+def test_a_steep_place_is_beside_the_part_with_a_height() -> None:
+    assert len(heights("turn left climb=3; turn right | steepest=10")) == len(SEEDS)
+
+
 def test_a_hollow_in_a_straight_road_is_as_deep_as_was_said() -> None:
     depths = [-z.min() for z in heights("straight; dip climb=2; straight")]
     assert np.median(depths) == pytest.approx(2, abs=0.3)

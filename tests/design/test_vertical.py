@@ -89,7 +89,7 @@ def test_slopes_that_cannot_be_had_at_the_speed_are_refused_in_a_sentence(
 
 
 def test_a_short_hump_that_was_asked_for_may_be_as_abrupt_as_wheels_can_follow() -> None:
-    brief = read_plan("straight len=60; crest len=20 pct=10; straight len=40 | turns=0")
+    brief = read_plan("straight len=60; crest len=40 pct=10; straight len=40 | turns=0")
     design = draft(brief, WORLD, seed=2)
     assert 3 < felt(design) <= 9.85
     assert check.inspect(build(design), brief, WORLD) == ()

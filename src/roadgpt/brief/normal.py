@@ -10,7 +10,7 @@
 - A serpentine 'of 4 turns or more' becomes a serpentine without a count. ``alternating`` is not set for kinds
   that always alternate.
 - A requirement for every turn (sharpness, degrees, radius) moves to the clauses if they name the turns.
-- If all clauses have the same slope, it becomes that of the whole road, and stays where a height is asked.
+- If all clauses have the same slope and none has a height, it becomes that of the whole road.
 - A height in metres makes 'steeply up' an 'up', and is uphill without a direction.
 - Fields that only repeat the clauses (number of turns, left or right, slope, first and last feature) are
   cleared.
@@ -153,9 +153,9 @@ def _plain(clause: Clause) -> Clause:
             kind=kind,
             count=count,
             climb=clause.climb,
-            length=clause.length if kind == "straight" else None,
+            length=clause.length,
             size=clause.size if kind == "straight" and not clause.length else None,
-            **(said if kind == "straight" else {}),
+            **(said if kind == "straight" else {"incline": clause.incline}),
         )
     own = KINDS[kind]
     if (
@@ -334,7 +334,10 @@ def _shaped(whole: Brief, clause: Clause) -> Clause:
 def _with_one_slope(whole: Brief, clauses: list[Clause]) -> Brief:
     said = {(clause.slope, clause.incline) for clause in clauses}
     rises_and_falls = any(clause.kind in BUMPS for clause in clauses)
+    has_height = any(clause.climb for clause in clauses)  # its grade need not be the usual one of the word
     if whole.slope or whole.hills or whole.starts or whole.ends or len(said) != 1 or rises_and_falls:
+        return whole
+    if has_height:
         return whole
     slope, incline = said.pop()
     return whole.model_copy(update={"slope": slope, "incline": incline or whole.incline})

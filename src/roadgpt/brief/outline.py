@@ -13,7 +13,7 @@ from typing import Any, Literal, TypeVar
 from roadgpt.brief.like_numbers import with_like_numbers
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
 from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of
-from roadgpt.brief.part_climb import climb_of_each, limits_of_climb
+from roadgpt.brief.part_climb import climb_of_each, limits_of_climb, side_of_bump, sum_of
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import (
     FEATURE,
@@ -258,7 +258,7 @@ def _groups(clause: Clause, roomy: bool) -> list[Group]:
     """Returns the groups of a clause; a crest or a dip becomes two straights."""
     if clause.kind in BUMPS:
         slopes: tuple[Slope, Slope] = ("up", "down") if clause.kind == "crest" else ("down", "up")
-        one = [Group(_straight(clause.model_copy(update={"slope": slope}))) for slope in slopes]
+        one = [Group(_straight(side_of_bump(clause, slope))) for slope in slopes]
         return int(max(span(clause.count).lo, 1)) * one
     if clause.kind == "straight":
         return [Group(_straight(clause))]
@@ -311,6 +311,7 @@ def _climbing(feature: Feature, clause: Clause) -> Feature:
     if feature.kind == "straight":
         length = length and overlap(length, Range(LEAST_STRAIGHT))
     falls = (clause.slope or "up").endswith("down")
+    each = replace(each, lo=max(each.lo, 0.0))  # "at most 2 m uphill" does not fall
     climb, grade = (each.negative, grade.negative) if falls else (each, grade)
     return replace(feature, length=length, grade=grade, climb=climb)
 
@@ -321,15 +322,12 @@ def _merged(groups: Iterable[Group]) -> list[Group]:
     for group in groups:
         last = out[-1].feature if out else None
         if last and last.kind == group.feature.kind == "straight" and last.grade == group.feature.grade:
-            length, climb = _sum(last.length, group.feature.length), _sum(last.climb, group.feature.climb)
+            length = sum_of(last.length, group.feature.length)
+            climb = sum_of(last.climb, group.feature.climb)
             out[-1] = Group(replace(last, length=length, climb=climb))
         else:
             out.append(group)
     return out
-
-
-def _sum(one: Range | None, other: Range | None) -> Range | None:
-    return Range(one.lo + other.lo, one.hi + other.hi) if one and other else one or other
 
 
 def _last(clause: Clause, roomy: bool) -> Feature:

@@ -4,8 +4,8 @@ contradicts them.
 
 from math import inf
 
-from roadgpt.brief.model import Amount, Clause, span
-from roadgpt.brief.normal import SHAPED, STRAIGHT
+from roadgpt.brief.model import Amount, Clause, Slope, span
+from roadgpt.brief.normal import BUMPS, SHAPED, STRAIGHT
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import KINDS, LEAST_GRADE, LENGTH_SLACK, PART_CLIMB_SLACK, PERCENT_SLACK, STEEPEST
 from roadgpt.errors import BriefError
@@ -25,8 +25,27 @@ def climb_of_each(clause: Clause) -> Amount | None:
     share = turns.lo if turns else 1.0
     if clause.kind not in ("s_bend", "chicane"):
         share = max(share, span(clause.count).lo)
+    return _scaled(clause.climb, 1 / share)
+
+
+def side_of_bump(clause: Clause, slope: Slope) -> Clause:
+    """Returns one slope of a crest or a dip: it has the whole height, and half of the length."""
+    return clause.model_copy(update={"slope": slope, "length": _scaled(clause.length, 0.5)})
+
+
+def sum_of(one: Range | None, other: Range | None) -> Range | None:
+    """Returns the range of the length, or of the height, of two straights that are measured as one."""
+    if one is None or other is None:
+        return one or other
+    number = one.number + other.number if one.number is not None and other.number is not None else None
+    return Range(one.lo + other.lo, one.hi + other.hi, number)
+
+
+def _scaled(amount: Amount | None, factor: float) -> Amount | None:
+    if amount is None:
+        return None
     return Amount(
-        **{end: None if (n := getattr(clause.climb, end)) is None else n / share for end in ("lo", "hi")}
+        **{end: None if (n := getattr(amount, end)) is None else n * factor for end in ("lo", "hi")}
     )
 
 
@@ -75,7 +94,8 @@ def check_climb(clause: Clause, steepest: float) -> None:
         )
     if clause.slope in ("flat", "nearly_flat"):
         raise BriefError(f"a level {noun} cannot rise or fall by {clause.climb} m; leave out one of the two")
-    length, grade = span(clause.length), span(clause.incline)
+    slope = side_of_bump(clause, "up") if clause.kind in BUMPS else clause
+    length, grade = span(slope.length), span(clause.incline)
     longest, least = length.hi * (1 + LENGTH_SLACK), height.lo * (1 - PART_CLIMB_SLACK)
     if least > longest * steepest / 100:
         raise BriefError(

@@ -180,10 +180,12 @@ def clause_text(clause: Clause) -> str:
 def _height(clause: Clause) -> str:
     """Returns how much a feature rises or falls, such as 'that falls by 4 metres'."""
     if clause.kind in BUMPS:
-        return f"{clause.climb} metres {'high' if clause.kind == 'crest' else 'deep'}"
+        text = f"{clause.climb} metres {'high' if clause.kind == 'crest' else 'deep'}"
+        return f"that is {text}" if clause.length or clause.incline else text
     verb = "fall" if (clause.slope or "up").endswith("down") else "rise"
     height = FEATURE["climb"].said.format(clause.climb)
-    return f"that {verb}s {height}" if clause.count == exactly(1) else f"that {verb} {height} each"
+    is_one = clause.kind in WAVY or clause.count == exactly(1)
+    return f"that {verb}s {height}" if is_one else f"that {verb} {height} each"
 
 
 def clause_columns(clause: Clause) -> tuple[str, str]:
@@ -191,7 +193,7 @@ def clause_columns(clause: Clause) -> tuple[str, str]:
     is_one = clause.kind in WAVY or clause.count == exactly(1)
     what = _noun(clause) if is_one else _counted(clause.count, _noun(clause))
     how = (*_adjectives(clause), *_tails(clause))
-    return what, ", ".join(words.removeprefix("of ") for words in how if words)
+    return what, ", ".join(words.removeprefix("of ").removeprefix("that ") for words in how if words)
 
 
 def road_words(brief: Brief) -> str:
@@ -223,16 +225,18 @@ def _tails(clause: Clause) -> list[str]:
     if clause.length:
         each = " each" if clause.count != exactly(1) else ""
         tails.append(FEATURE["length"].said.format(clause.length) + each)
-    if clause.slope and clause.incline:
+    if clause.kind in BUMPS and clause.incline:
+        tails.append(f"with slopes of {FEATURE['grade'].said.format(clause.incline)}")
+    elif clause.slope and clause.incline:
         tails.append(_slope_at(clause.slope, clause.incline))
-    if clause.climb:
-        tails.append(_height(clause))
     if clause.radius:
         tails.append(FEATURE["radius"].said.format(clause.radius))
     if clause.kind in WAVY and clause.count != exactly(1):
         tails.append(f"with {_counted(clause.count, 'turn')}")
     if clause.alternating and clause.side:
         tails.append(f"starting to the {clause.side}")
+    if clause.climb:
+        tails.append(_height(clause))
     return tails
 
 

@@ -80,7 +80,7 @@ def drawn_heights(
         values = _with_steepest(values, lengths, limits, outline.steepest, rng)
         limits = _steep_kept(values, lengths, limits, outline.steepest.lo)
     if ease > 0:
-        limits = [_held(one, value, room) for one, value, room in zip(row, values, limits, strict=True)]
+        limits = _held(row, values, limits)
     if is_hilly or _is_mountainous(outline):
         limits = [_one_way(value, room) for value, room in zip(values, limits, strict=True)]
     values = _softened(values, lengths, limits, pace, ease, bumps)
@@ -132,7 +132,8 @@ def _are_level(plan: Sequence[Element], outline: Outline, windows: Windows) -> l
     """Returns for each element whether it stays level, because heights are asked of others and no slope of
     it; a short straight between two parts with heights only joins them.
     """
-    if windows.base or outline.climb or outline.hills or not asks_for_heights(plan):
+    is_steep = outline.steepest is not None and outline.steepest.lo > 0
+    if windows.base or outline.climb or outline.hills or is_steep or not asks_for_heights(plan):
         return [False] * len(plan)
     has_height = [False, *(element.required_climb is not None for element in plan), False]
     joins = [
@@ -285,11 +286,18 @@ def _steep_kept(values: Array, lengths: Array, limits: Sequence[Range], least: f
     return out
 
 
-def _held(element: Element, value: float, room: Range) -> Range:
-    """Returns the limit of a straight of required length and grade: close to the grade that was chosen."""
-    if element.required_grade is None or not element.has_fixed_length or 0 in element.required_grade:
-        return room
-    return overlap(room, Range(value - HELD, value + HELD)) or room
+def _held(row: Sequence[Element], values: Array, limits: Sequence[Range]) -> list[Range]:
+    """Returns limits close to the chosen grades for straights of required length and grade; without such a
+    straight, for parts of required height.
+    """
+    fixed = [element.has_fixed_length for element in row]
+    held = fixed if any(fixed) else [element.required_climb is not None for element in row]
+    return [
+        overlap(room, Range(value - HELD, value + HELD)) or room
+        if is_held and one.required_grade is not None and 0 not in one.required_grade
+        else room
+        for one, value, room, is_held in zip(row, values, limits, held, strict=True)
+    ]
 
 
 def _one_way(value: float, room: Range) -> Range:

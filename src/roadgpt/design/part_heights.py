@@ -6,8 +6,10 @@ from itertools import accumulate, pairwise
 from roadgpt.brief.element import Element
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.design.vertical import Pace
+from roadgpt.road.elevation import MOST_OF_SLOPE
 
-ROUNDS = 3  # of estimating how much height the parabola on a crest takes away; it converges fast
+ROUNDS = 12  # of estimating how much height the parabola on a crest takes away
+FEW_ROUNDS = 3  # beside a straight of fixed length, which steeper slopes would shorten by longer parabolas
 
 
 def with_grades_of_climbs(
@@ -21,11 +23,14 @@ def with_grades_of_climbs(
     joints = list(accumulate(element.length for element in plan))[:-1]
     radii = [pace.eased(s, ease, bumps) for s in joints] if asks_for_heights(plan) else []
     grades = [_grade(element, 0.0) for element in plan]
-    for _ in range(ROUNDS if radii else 0):
+    rounds = FEW_ROUNDS if any(element.has_fixed_length for element in plan) else ROUNDS
+    for _ in range(rounds if radii else 0):
         lost = [0.0] * len(plan)
         for at, ((one, other), radius) in enumerate(zip(pairwise(grades), radii, strict=True)):
             if one * other < 0 and all(plan[i].required_climb for i in (at, at + 1)):
-                cut = radius * ((one - other) / 100) ** 2 / 8
+                change = abs(one - other) / 100
+                room = 2 * MOST_OF_SLOPE * min(plan[at].length, plan[at + 1].length)  # half on each side
+                cut = min(radius * change, room) * change / 8
                 lost[at], lost[at + 1] = lost[at] + cut, lost[at + 1] + cut
         grades = [_grade(element, metres) for element, metres in zip(plan, lost, strict=True)]
     return [_with_grade(element, grade, limit) for element, grade in zip(plan, grades, strict=True)]
@@ -43,22 +48,25 @@ def _grade(element: Element, lost: float) -> float:
     asked = element.required_climb
     if asked is None:
         return 0.0
-    metres = asked.number if asked.number is not None else _nearest_to_level(asked)
+    metres = asked.number if asked.number is not None else _gentle(asked)
     return 100 * (metres + (lost if metres > 0 else -lost)) / element.length
 
 
-def _nearest_to_level(asked: Range) -> float:
-    """Returns a height a little inside the end of a range that is nearer to 0."""
-    near, far = (asked.lo, asked.hi) if asked.lo > 0 else (asked.hi, asked.lo)
-    return near * 1.1 if abs(far) > 1.2 * abs(near) else (near + far) / 2
+def _gentle(asked: Range) -> float:
+    """Returns a height inside a range: a little beyond its end nearer to 0, or half of "at most" a height."""
+    near, far = sorted((asked.lo, asked.hi), key=abs)
+    return near * 1.1 if near and abs(far) > 1.2 * abs(near) else (near + far) / 2
 
 
 def _with_grade(element: Element, grade: float, limit: Range) -> Element:
     asked = element.required_climb
     if asked is None:
         return element
-    metres = asked.number if asked.number is not None else _nearest_to_level(asked)
-    ends = sorted(grade * end / metres for end in (asked.lo, asked.hi)) if metres else [0.0, 0.0]
-    found = overlap(Range(ends[0], ends[1], number=grade), limit)
-    is_possible = found is not None and found.lo <= found.hi
-    return element._replace(required_grade=found) if is_possible else element
+    metres = asked.number if asked.number is not None else _gentle(asked)
+    low, high = sorted(grade * end / metres for end in (asked.lo, asked.hi))
+    found = Range(low, high, number=grade)
+    for other in (limit, element.required_grade):
+        both = overlap(found, other) or found
+        near = min(max(grade, limit.lo), limit.hi)  # as high as it can be, if it cannot be as high as asked
+        found = both if both.lo <= both.hi else Range(near, near)
+    return element._replace(required_grade=found)
