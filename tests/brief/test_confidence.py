@@ -1,6 +1,4 @@
-"""The confidence of a reading: a logistic model of features, and doubt where a "not" or a number changed
-nothing.
-"""
+"""The confidence of a reading: a logistic model of features, and doubt where a measured number is ignored."""
 
 from collections.abc import Sequence
 from math import log
@@ -51,20 +49,13 @@ def test_equal_odds_are_one_half_and_threefold_odds_three_quarters() -> None:
     assert confidence({"bias": 0.0, "numbers": -log(3)}, {"numbers": 1.0}, (), PLAIN) == 0.25
 
 
-@given(st.floats(-20, 20), st.sampled_from(["not", "keine", "sans", "nicht", "only"]))
-def test_a_negation_without_effect_leaves_doubt(bias: float, word: str) -> None:
-    sure = confidence({"bias": bias}, {}, ("tree", word), PLAIN)
-    assert sure <= DOUBT
-    assert sure == min(DOUBT, confidence({"bias": bias}, {}, ("tree",), PLAIN))
-
-
 @given(st.floats(-20, 20))
-def test_a_number_that_is_ignored_leaves_doubt_and_another_word_does_not(bias: float) -> None:
+def test_a_measure_that_is_ignored_leaves_doubt_and_another_word_does_not(bias: float) -> None:
     text = slotted("dear Ruth, three turns, one of them 40 m long, and a tree")
     sure = confidence({"bias": bias}, {}, (), text)
     assert confidence({"bias": bias}, {}, ("Ruth", "tree"), text) == sure
     assert confidence({"bias": bias}, {}, ("Ruth", "40 m"), text) == min(DOUBT, sure)
-    assert confidence({"bias": bias}, {}, ("three",), text) == min(DOUBT, sure)
+    assert confidence({"bias": bias}, {}, ("three", "not"), text) == sure
 
 
 def test_the_network_that_doubts_a_plan_most_is_heard() -> None:

@@ -47,6 +47,9 @@ MEANT = {
         "straight flat 100; straight steeply_up; straight flat | turns=0"
     ),
     "a hilly road with 2 turns": "turn x2 | hills=3..",
+    "a straight of 120 m that rises 6 m, then a hairpin to the left": (
+        "straight up len=120 climb=6; hairpin left"
+    ),
     "four turns, first half uphill, second half downhill": "turn x2 up; turn x2 down",
     "a road that is hard for a lane keeper, with at least 4 turns": "turn x4.. | hard",
     "eine bergauf führende Straße mit drei Kurven": "turn x3 | up",

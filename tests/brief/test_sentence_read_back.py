@@ -9,7 +9,7 @@ from roadgpt.errors import BriefError
 from roadgpt.learn.generator import pairs
 
 SHARE = 0.9
-NUMBER = 20
+NUMBER = 60
 
 
 def test_sentences_of_usual_briefs_are_read_back() -> None:

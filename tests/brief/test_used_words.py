@@ -56,12 +56,15 @@ def test_long_texts_are_tried_up_to_a_limit() -> None:
     assert len(idle(f"turns {many}", "turn")) == used_words.MOST_WORDS - 1
 
 
-def test_a_negation_that_changes_nothing_is_noticed() -> None:
-    text = slotted("nicht 40 purple turns")
-    assert passes_over(("Nicht", "purple"), text)
-    assert passes_over(idle("don't turns", "turn"), slotted("don't turns"))
+def test_a_negation_that_changes_nothing_is_named() -> None:
     assert idle("don't turns", "turn") == ("don't",)
-    assert not passes_over(("purple", "turns"), text)
+    assert idle("nicht turns", "turn") == ("nicht",)
+
+
+def test_words_and_counts_are_no_measured_numbers() -> None:
+    text = slotted("nicht 4 purple turns of 40 m")
+    assert not passes_over(("nicht", "4", "purple"), text)
+    assert passes_over(("40 m",), text)
 
 
 def test_a_number_that_changes_nothing_is_noticed_even_if_there_are_more_than_fit() -> None:

@@ -29,6 +29,8 @@ CAUTION = 2.0
 """Weight of a wrong reading of a route, relative to a right one: a confident wrong reading does more harm
 than an unnecessary doubt.
 """
+CAUTION_OF_ROADS = 3.3
+"""The same for a reading of a single road."""
 PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
 
 
@@ -103,7 +105,7 @@ def confidence_by_roads(reader: ModelReader, prompts: Sequence[ToldPrompt]) -> d
             found.append((looks, is_right(reader.read(prompt.text), prompt.truth)))
         except BriefError:  # refused, so there is no confidence
             continue
-    return _weights(found)
+    return _weights(found, CAUTION_OF_ROADS)
 
 
 def _is_route(pair: Pair) -> bool:

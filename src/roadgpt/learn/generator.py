@@ -20,8 +20,10 @@ from roadgpt.learn.standard import makes_sense, standard
 
 SPOILED = 0.045
 """Share of valid descriptions that are made contradictory or impossible on purpose."""
-COMPOSED = 0.6
-"""Share of the English pairs that come from ``compositions`` instead of a grammar."""
+COMPOSED = {"en": 0.6, "de": 0.15, "fr": 0.15, "es": 0.15, "it": 0.15}
+"""Share of the pairs that come from ``compositions`` instead of a grammar, by language. Other languages than
+English only have lists of turns there. A quarter of the English compositions are such lists: 0.15 as well.
+"""
 SHARES = {"en": 0.62, "de": 0.10, "fr": 0.10, "es": 0.09, "it": 0.09}
 EVEN = {"en": 0.44, "de": 0.14, "fr": 0.14, "es": 0.14, "it": 0.14}
 """Shares of the languages in pairs that are hard to read in every language: contrasts, detailed descriptions
@@ -54,8 +56,7 @@ def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair
     rng = np.random.default_rng(seed)
     while True:
         code = drawn_language(languages or SHARES, rng)
-        is_composed = code == "en" and rng.random() < COMPOSED
-        pair = _composed(rng) if is_composed else draw(code, rng)
+        pair = _composed(code, rng) if rng.random() < COMPOSED[code] else draw(code, rng)
         if pair:
             yield sometimes_spoiled(pair, rng)
 
@@ -142,11 +143,11 @@ def draw_change(language: str, rng: np.random.Generator) -> Pair | None:
     return Pair(text, plan, f"changes-{language}", language, True) if 1 <= len(text) <= 500 else None
 
 
-def _composed(rng: np.random.Generator) -> Pair | None:
-    said = composed(rng)
+def _composed(language: str, rng: np.random.Generator) -> Pair | None:
+    said = composed(rng, language)
     if said is None or is_held_out(said.text):
         return None
-    return Pair(said.text, said.plan, "composed-en", "en")
+    return Pair(said.text, said.plan, f"composed-{language}", language)
 
 
 def assembled(raw: str) -> str | None:

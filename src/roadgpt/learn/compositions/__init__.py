@@ -1,5 +1,5 @@
-"""Composes English descriptions whose turns are numbered, repeated, separated by straights, or counted
-separately for left and right.
+"""Composes descriptions whose turns are numbered, repeated, separated by straights, or counted separately for
+left and right, in English, and lists of turns in five languages.
 
 The grammars of ``learn.generator`` describe a road feature by feature. Here, one sentence refers to many
 features at once ("six bends, 30 m of straight between any two", "turns 2 and 4 go left, the others right"),
@@ -18,6 +18,7 @@ from roadgpt.errors import BriefError
 from roadgpt.learn.compositions.by_parts import by_parts
 from roadgpt.learn.compositions.endings import corrected, nothing_more
 from roadgpt.learn.compositions.limits import limited, with_limits
+from roadgpt.learn.compositions.listed import listed
 from roadgpt.learn.compositions.numbered import numbered_kinds, numbered_sides
 from roadgpt.learn.compositions.out_of_order import out_of_order
 from roadgpt.learn.compositions.repeated import lettered, repeated
@@ -41,6 +42,7 @@ WAYS: tuple[tuple[Callable[[Voice], Composition], float], ...] = (
     (corrected, 0.03),
     (nothing_more, 0.03),
     (out_of_order, 0.05),
+    (listed, 0.33),
 )
 SEVERAL = 2
 WITH_LIMITS = 0.4
@@ -48,21 +50,22 @@ WITH_LIMITS = 0.4
 SHARES = np.cumsum([share for _, share in WAYS])
 
 
-def composed(rng: np.random.Generator) -> Composition | None:
+def composed(rng: np.random.Generator, language: str = "en") -> Composition | None:
     """Returns a random description and its plan in standard form; None if the described road is
-    impossible.
+    impossible. In languages other than English ("en"), it is a list of turns.
     """
     way = WAYS[int(np.searchsorted(SHARES, rng.random() * SHARES[-1], side="right"))][0]
-    voice = Voice(rng)
+    way = way if language == "en" else listed
+    voice = Voice(rng, language)
     said = way(voice)
-    if way is not limited and voice.chance(WITH_LIMITS):
+    if way not in (limited, listed) and voice.chance(WITH_LIMITS):
         said = with_limits(voice, said)
     try:
         brief = read_plan(said.plan)
         check(brief, MAP_SIZE)
     except BriefError:
         return None
-    return Composition(noisy(tidy(said.text), "en", rng), _written(brief))
+    return Composition(noisy(tidy(said.text, language), language, rng), _written(brief))
 
 
 def _written(brief: Brief) -> str:

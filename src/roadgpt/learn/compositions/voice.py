@@ -42,12 +42,14 @@ class DescribedTurn:
 
     kind: str = "turn"
     mods: dict[str, str] = field(default_factory=dict)
-    """The plan's words for the turn, keyed by 'side', 'sharpness', 'slope' or 'deg': {'deg': 'deg=90'}."""
+    """The plan's words for the turn, keyed by 'side', 'sharpness', 'slope', 'deg' or 'r':
+    {'deg': 'deg=90'}.
+    """
 
     @property
     def clause(self) -> str:
         """The clause of the turn in a plan, without a count."""
-        order = ("side", "sharpness", "slope", "deg")
+        order = ("side", "sharpness", "slope", "deg", "r")
         return " ".join([self.kind, *(self.mods[key] for key in order if key in self.mods)])
 
 
@@ -66,8 +68,9 @@ def clauses(turns: Sequence[DescribedTurn]) -> str:
 class Voice:
     """Chooses phrases at random; each voice writes all its numbers as digits, or all of them as words."""
 
-    def __init__(self, rng: np.random.Generator) -> None:
+    def __init__(self, rng: np.random.Generator, language: str = "en") -> None:
         self.rng = rng
+        self.language = language
         self.spells = rng.random() < 0.45
 
     def pick(self, ways: Sequence[Thing]) -> Thing:
@@ -88,7 +91,7 @@ class Voice:
 
     def number(self, value: int) -> str:
         """Returns the number as digits or as words, depending on the voice."""
-        return spell(value, "en") if self.spells else str(value)
+        return spell(value, self.language) if self.spells else str(value)
 
     def metres(self, low: int = 15, high: int = 80) -> tuple[str, int]:
         """Returns a random length from ``low`` to ``high`` metres in steps of 5, as text and as a number."""

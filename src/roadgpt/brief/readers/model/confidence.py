@@ -1,5 +1,5 @@
 """Computes the confidence in a reading from the probability and the length of its plan, and from the numbers
-and negations of the text that the plan lacks.
+of the text that the plan lacks.
 """
 
 import re
@@ -12,8 +12,8 @@ from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.used_words import left_out, passes_over
 
 DOUBT = 0.5
-"""The highest confidence of a reading that lacks a number of the text, or that would stay the same if a word
-such as "not" were left out, and of the reading of a change request that says only what must not change."""
+"""The highest confidence of a reading that lacks a measured number of the text, and of the reading of a
+change request that says only what must not change."""
 LEAST_UNLIKELY = 0.03
 """Added before a logarithm is taken, so that it is finite for a plan with probability 1."""
 
@@ -75,8 +75,8 @@ def confidence(
 ) -> float:
     """Returns the estimated probability (0 to 1) that a reading is right.
 
-    The confidence model was fitted on held-out texts. The result for a reading that ignores a number or a
-    negation is at most ``DOUBT``. Other unused words do not lower it: on held-out texts, readings with and
+    The confidence model was fitted on held-out texts. The result for a reading that ignores a measured
+    number is at most ``DOUBT``. Other unused words do not lower it: on held-out texts, readings with and
     without such words were right equally often.
 
     Args:

@@ -9,7 +9,6 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.numbered_sides import told_turns, with_numbered_sides
@@ -79,8 +78,7 @@ def _turns(line: str) -> Amount:
 
 def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, corrected by rules where the words of the description are clear."""
-    brief = with_words_of_all_turns(_level_at_zero(read_plan(line)), text)
-    brief = with_numbered_sides(with_checked_counts(brief, text), text)
+    brief = with_numbered_sides(with_checked_counts(_level_at_zero(read_plan(line)), text), text)
     if brief.junctions or brief.map is not None:
         from roadgpt.brief.readers.model.route_rules import with_words_of_network  # only for networks
 

@@ -11,9 +11,9 @@ from roadgpt.brief.amount import exactly, span
 from roadgpt.brief.junction_ranges import ACROSS, SIZES
 from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.model import Brief
-from roadgpt.brief.readers.model.all_turns import EXCEPT
 from roadgpt.brief.readers.model.slots import SlottedText, slot_name
 from roadgpt.brief.readers.model.vocabulary import RING_SIZES, ROUNDABOUT, SIDES, SLOT_TOKENS, TAKES
+from roadgpt.brief.readers.model.word_set import word_set
 
 TOLD = re.compile(r"across|diam|durchmess|circle|ø")
 ISLAND = re.compile(
@@ -29,6 +29,11 @@ CORRECTED = re.compile(
     r"^metres(?: \w+){0,3} [,.;:-] (?:no|nein|non|sorry|pardon|scusa|perdon) (?:[,.;:!]|\[unused)"
 )
 """Matches the words behind a length that is taken back at once, as in "30 metres, no, 40"."""
+EXCEPT = word_set(
+    "but save except excepting excluding bar ausser außer auf sauf excepte hormis salvo menos excepto tranne",
+    "eccetto meno",
+)
+"""Words for an exception; "auf" is that of "bis auf"."""
 REACH = 4
 """The largest number of words between a length and a word such as "across"."""
 LEAST, MORE, FEW = 28.0, 8.0, 4

@@ -9,7 +9,6 @@ from collections.abc import Collection, Mapping, Sequence
 
 from roadgpt.brief.readers.model.bounds import NOT
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
-from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.slots import SlottedText, Word
 from roadgpt.brief.readers.model.vocabulary import RING_SIZES, SLOT_TOKENS
 from roadgpt.brief.readers.model.word_meanings import understood
@@ -79,11 +78,13 @@ def lost(tokens: Sequence[str], text: SlottedText) -> set[int]:
 
 
 def passes_over(unused: Sequence[str], text: SlottedText) -> bool:
-    """Returns whether one of the unused words is a number of the text, or denies or limits something, such as
-    "not" or "only".
+    """Returns whether one of the unused words is a measured number of the text, such as "40 m".
+
+    Counts and words such as "not" are no sign of a wrong reading: another word often says the same ("five
+    turns: left, left, ..."), and readings without effect of such a word were right as often as others.
     """
-    numbers = {w.written for w in text.words if w.text.startswith("[unused") or w.text.isdecimal()}
-    return any(word in numbers or plain(word.removesuffix("'t")) in NEGATORS for word in unused)
+    numbers = {w.written for w in text.words if w.text.startswith("[unused")}
+    return any(word in numbers for word in unused)
 
 
 def _idle(
