@@ -155,4 +155,10 @@ def test_a_part_that_is_not_installed_is_answered_with_those_that_are() -> None:
 def test_one_network_that_is_replaced_is_given_alone() -> None:
     result = invoke("learn", "export", "run", "out", "--only", "routes", "--second", "another")
     assert result.exit_code != 0
-    assert "--only takes CHECKPOINT alone; leave out --second and --routes" in result.stderr
+    assert "--only routes takes CHECKPOINT alone; leave out --second and --routes" in result.stderr
+
+
+def test_both_networks_that_are_replaced_are_given() -> None:
+    result = invoke("learn", "export", "run", "out", "--only", "both")
+    assert result.exit_code != 0
+    assert "--only both takes CHECKPOINT and --second" in result.stderr

@@ -30,7 +30,7 @@ ENLARGED = 0.25  # standard deviation of the logarithm by which a whole plan is 
 REDRAWN = (0.1, 1.2)  # logarithm of the widest radius of redrawn turns over the smallest allowed one
 SPARED = 0.5  # largest share of straights that a road with redrawn turns keeps
 SHORT = 30.0  # m, longest of these straights
-NUMBERS = Element._fields.index("vertical_radius") + 1  # fields that are interpolated
+INTERPOLATED = Element._fields[: Element._fields.index("vertical_radius") + 1]
 
 Rng = np.random.Generator
 Make = Callable[[Elements, Rng, World], Elements]
@@ -89,8 +89,8 @@ def interpolated(one: Elements, other: Elements, share: float) -> Elements | Non
 
     out = []
     for pair in zip(one, other, strict=True):
-        *numbers, radius = (between(a, b) for a, b in list(zip(*pair, strict=True))[:NUMBERS])
-        out.append(Element._make((*numbers, radius or None, None, None)))
+        mixed = {name: between(*(getattr(each, name) for each in pair)) for name in INTERPOLATED}
+        out.append(Element(**mixed | {"vertical_radius": mixed["vertical_radius"] or None}))
     return tuple(out)
 
 

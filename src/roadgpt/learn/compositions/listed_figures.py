@@ -5,7 +5,7 @@ one.
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 
-from roadgpt.learn.compositions.turn_list import UNITS, Place, TurnList
+from roadgpt.learn.compositions.turn_list import UNITS, PlaceInList, TurnList
 from roadgpt.learn.compositions.voice import SIDES
 
 
@@ -47,7 +47,7 @@ def figures_of_both(road: TurnList) -> str:
     return (", " if road.voice.chance(0.5) else "; ").join(said)
 
 
-def _is(road: TurnList, key: str, place: Place, value: int, is_first: bool = True) -> str:
+def _is(road: TurnList, key: str, place: PlaceInList, value: int, is_first: bool = True) -> str:
     """Gives a place one value; returns the phrase, shorter if it follows another of its kind."""
     road.give(key, value, place.at)
     figures = {"a": road.bare(value), "d": str(value), "A": road.measure(value, UNITS[key])}
@@ -73,7 +73,7 @@ def _odd_and_even(road: TurnList, key: str) -> str:
     return _two_places(road, key, road.odd_and_even())
 
 
-def _two_places(road: TurnList, key: str, places: Sequence[Place]) -> str:
+def _two_places(road: TurnList, key: str, places: Sequence[PlaceInList]) -> str:
     said: list[str] = []
     for value, place in zip(road.draw(key, 2), places, strict=True):
         said.append(_is(road, key, place, value, not said))

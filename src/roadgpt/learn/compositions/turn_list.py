@@ -24,7 +24,7 @@ HALF = re.compile("half|Hälfte|moitié|mitad|metà")
 ONE_OR_MANY = re.compile(r"\[([^|\]]*)\|([^\]]*)\]")
 
 
-class Place(NamedTuple):
+class PlaceInList(NamedTuple):
     """Some turns of the list: their name, the same behind a preposition, and their indices from 0."""
 
     name: str
@@ -148,12 +148,12 @@ class TurnList:
         """Returns the indices of the turns to one side."""
         return [at for at, turn in enumerate(self.turns) if turn.mods.get("side") == side]
 
-    def place(self, name: str, at: Sequence[int]) -> Place:
+    def place(self, name: str, at: Sequence[int]) -> PlaceInList:
         """Returns a place with the form that its name has behind a preposition."""
         other = name
         for pattern, new in self.phrases["oblique"]:
             other = re.sub(pattern, new, other)
-        return Place(name, other, tuple(at), len(at) == 1 or HALF.search(name) is not None)
+        return PlaceInList(name, other, tuple(at), len(at) == 1 or HALF.search(name) is not None)
 
     def ordinal(self, at: int, of: int, is_bare: bool = False) -> str:
         """Returns "the third", "the last", for an index from 0 among ``of`` things."""
@@ -162,7 +162,7 @@ class TurnList:
         name = self.ordinals[at]
         return name if is_bare else self.say("short", i=name)
 
-    def one(self, at: int) -> Place:
+    def one(self, at: int) -> PlaceInList:
         """Returns a name for one turn: by ordinal, by number, or by ordinal among those of its side."""
         side = self.turns[at].mods.get("side")
         if side and self.voice.chance(0.2):
@@ -177,7 +177,7 @@ class TurnList:
         name = self.ordinal(at, self.number)
         return self.place(name.replace(" one", "") if name == self.ordinals[at] else name, [at])
 
-    def some(self, at: Sequence[int]) -> Place:
+    def some(self, at: Sequence[int]) -> PlaceInList:
         """Returns a name for one or more turns."""
         if len(at) == 1:
             return self.one(at[0])
@@ -188,14 +188,14 @@ class TurnList:
             self.place(self.ordinal(index, self.number, is_bare=self.voice.chance(0.8)), [index])
             for index in at
         ]
-        return Place(
+        return PlaceInList(
             self.joined([place.name for place in places]),
             self.joined([place.oblique for place in places]),
             tuple(at),
             False,
         )
 
-    def odd_and_even(self) -> list[Place]:
+    def odd_and_even(self) -> list[PlaceInList]:
         """Returns names for the first, third, ... and for the second, fourth, ... turn."""
         names = self.voice.pick(self.phrases["odd"])
         return [
@@ -203,12 +203,12 @@ class TurnList:
             for first, name in enumerate(names)
         ]
 
-    def chosen(self, most: int) -> Place:
+    def chosen(self, most: int) -> PlaceInList:
         """Returns up to ``most`` random turns, and fewer than all."""
         number = min(self.voice.whole(1, most), self.number - 1)
         return self.some(sorted(int(at) for at in self.voice.rng.permutation(self.number)[:number]))
 
-    def others(self, at: Sequence[int]) -> Place:
+    def others(self, at: Sequence[int]) -> PlaceInList:
         """Returns the turns other than those with these indices, as 'the others'."""
         rest = [index for index in range(self.number) if index not in at]
         return self.place(self.say("rest" if len(rest) > 1 else "rest one"), rest)
@@ -228,13 +228,13 @@ class TurnList:
             return voice.pick((" ", ", ")).join(f"{value}{mark}" for value in values)
         return ", ".join(str(value) for value in values) + voice.pick(("", unit))
 
-    def sided(self, side: str) -> Place:
+    def sided(self, side: str) -> PlaceInList:
         """Returns a name for all turns to one side."""
         its = self.of_side(side)
         names = self.voice.pick(self.phrases["sided" if len(its) > 1 else "sided one"])
         return self.place(names[SIDES.index(side)], its)
 
-    def groups(self, are_short: bool = False) -> list[Place]:
+    def groups(self, are_short: bool = False) -> list[PlaceInList]:
         """Returns the list cut into two or three parts of consecutive turns, with names for them.
 
         Names that are singular, or that cannot be followed by a verb, are used only if ``are_short``.
@@ -251,7 +251,7 @@ class TurnList:
         ends = [0, *cuts, self.number]
         return [self._group(ends[part], ends[part + 1], part, are_short) for part in range(parts)]
 
-    def _group(self, start: int, end: int, part: int, is_short: bool) -> Place:
+    def _group(self, start: int, end: int, part: int, is_short: bool) -> PlaceInList:
         at, size = range(start, end), end - start
         is_last = end == self.number
         if size == 1:

@@ -49,7 +49,7 @@ def read_change(
     if not found:
         raise BriefError("this could not be read as changes; use shorter sentences")
     line = found[0].line
-    known = read_by_rules(line, text)
+    known = read_by_rules(line, text, found[1].line if len(found) > 1 else "")
     if known is not None:
         return ChangeReading(known, CERTAIN, ())
     near = [draft for draft in found if draft.score >= found[0].score - ALMOST]

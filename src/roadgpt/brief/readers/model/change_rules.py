@@ -18,18 +18,21 @@ BY = r"(?:(?:by|um) (?:(?:a|one|ein) )?|(?:de|d '|en|di) (?:un[ea]?|la|le) )"
 BECOMES = re.compile(r"\b(?:flip|becomes?|wird|werden|invers\w*|devien\w*|inviert\w*|pasa\w* a|divent\w*)\b")
 """Words with which one side becomes the other, beside those that exchange two things."""
 ALTERNATE = "turn all: alternate"
+CLASH_OF_SIDES = "!contradiction sides"
 ALTERNATES = re.compile(r"\b(?:altern\w*|abwechs\w*|wechsel\w*|tour a tour|avvicend\w*)\b")
 
 
-def read_by_rules(line: str, text: SlottedText) -> str | None:
+def read_by_rules(line: str, text: SlottedText, second: str = "") -> str | None:
     """Returns the plan of a change request that rules read; None if the network has to read it.
 
     Args:
         line: the plan that the network wrote.
         text: the change request.
+        second: the second likeliest plan; empty if there is none.
     """
     read = _climb(text, line) or _swap(text, line) or exchanged_values(text)
-    return read or _other_sides(text, line) or _share(text, line)
+    of_sides = second if line == CLASH_OF_SIDES else line  # "left becomes right, right becomes left"
+    return read or _other_sides(text, of_sides) or _share(text, line)
 
 
 def _climb(text: SlottedText, line: str) -> str | None:
