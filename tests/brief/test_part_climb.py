@@ -110,7 +110,11 @@ def test_heights_that_can_be(line: str) -> None:
 
 @pytest.mark.parametrize(
     ("line", "why"),
-    [("straight up climb=-3", "leave out the minus"), ("straight climb=-2..3", "both rise and fall")],
+    [
+        ("straight up climb=-3", "leave out the minus"),
+        ("crest climb=-3", "leave out the minus"),
+        ("straight climb=-2..3", "both rise and fall"),
+    ],
 )
 def test_plans_whose_heights_have_two_directions_are_refused(line: str, why: str) -> None:
     with pytest.raises(BriefError, match=why):

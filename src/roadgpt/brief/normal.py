@@ -301,23 +301,22 @@ def _pushed_down(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Claus
     turning = [clause for clause in clauses if clause.kind not in STRAIGHT]
     if not turning:
         return whole, clauses
-    stays = _stays_behind(whole, turning)
-    shared = whole.model_copy(update=dict.fromkeys(stays))
+    stays = _radius_stays(whole, turning)
+    shared = whole.model_copy(update={"radius": None}) if stays else whole
     pushed = [clause if clause.kind in STRAIGHT else _shaped(shared, clause) for clause in clauses]
     if whole.alternating and len(turning) == 1:
         pushed = [one for c in pushed for one in _singles(_plain(c.model_copy(update={"alternating": True})))]
     alternating = whole.alternating and len(turning) > 1
-    gone = dict.fromkeys({"sharpness", "degrees", "radius"} - stays)
+    gone = {"sharpness": None, "degrees": None, **({} if stays else {"radius": None})}
     return whole.model_copy(update={**gone, "alternating": alternating}), pushed
 
 
-def _stays_behind(whole: Brief, turning: list[Clause]) -> set[str]:
-    """Returns the limits for every turn that stay limits of the road: a radius or an angle of "at least" or
-    "at most" beside turns that have a word for it instead.
+def _radius_stays(whole: Brief, turning: list[Clause]) -> bool:
+    """Returns whether a radius of "at least" or "at most" for every turn stays a limit of the road, because
+    turns have a word such as "sharp" instead of a radius of their own.
     """
     is_worded = any(clause.sharpness and not clause.radius for clause in turning)
-    is_bound = whole.radius is not None and not whole.radius.exact
-    return {"radius"} if is_worded and is_bound else set()
+    return is_worded and whole.radius is not None and not whole.radius.exact
 
 
 def _shaped(whole: Brief, clause: Clause) -> Clause:

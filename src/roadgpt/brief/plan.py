@@ -17,6 +17,7 @@ from roadgpt.brief.halfway import without_halfway
 from roadgpt.brief.junctions import JunctionKind
 from roadgpt.brief.map_clause import MAP
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Kind, exactly, span
+from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.plan_amount import amount_text, read_amount
 from roadgpt.brief.refusal import refused
 from roadgpt.errors import BriefError
@@ -32,8 +33,7 @@ WORDS = {
     **dict.fromkeys(("up", "down", "flat", "nearly_flat", "gently_up", "gently_down"), "slope"),
     **dict.fromkeys(("steeply_up", "steeply_down"), "slope"),
 }
-BUMPS = ("crest", "dip")
-BARE = dict.fromkeys(("straight", *BUMPS), "length")
+BARE: dict[str, str] = dict.fromkeys(("straight", *BUMPS), "length")
 """The field that a number without a key sets, by kind of clause; for turns, the number is their angle."""
 FLAGS = ("alternating", "alike", "hard", "motorway", "divided", "left_hand")
 ONE_WAY = "oneway"
@@ -242,6 +242,8 @@ def _with_side_of_climb(fields: dict[str, object]) -> dict[str, object]:
     if not isinstance(climb, Amount):
         return fields
     falls = span(climb).hi <= 0 and climb != exactly(0)
+    if falls and fields["kind"] in BUMPS:
+        raise BriefError(f"a {fields['kind']} has a height above 0; leave out the minus of {climb}")
     if falls and str(fields.get("slope", "down")).endswith("up"):
         raise BriefError(f"a plan gives '{fields['slope']}' and a climb of {climb} m; leave out the minus")
     if falls:
