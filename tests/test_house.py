@@ -282,8 +282,7 @@ def test_help_answers_at_once(words: list[str]) -> None:
 ONLY_IN_BRIEF = (
     "junction_check arm_check lane_sequence junction_ranges junction_sentence map_plan motorway change"
     " readers.model.junction_nouns readers.model.change_grammar readers.model.change_reading"
-    " readers.model.change_rules readers.model.swap_words readers.model.reverse_words"
-    " readers.model.height_words readers.model.route_rules"
+    " readers.model.reverse_words readers.model.route_rules"
 )
 """What only routes, maps, motorways and change requests need. A network that reads a road may weigh the plan
 'crossroads' or 'roundabout' and drop it, so ``junction_plan`` and ``ring_sizes`` are not here."""

@@ -2,11 +2,10 @@
 
 import pytest
 
-from roadgpt.brief import read
-from roadgpt.brief.left_hand import may_mean_left_hand, says_left_hand, with_driving_side
-from roadgpt.brief.plan import read_plan
+from roadgpt.brief import normal, read
+from roadgpt.brief.left_hand import says_left_hand, with_driving_side
+from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import ModelReader
-from roadgpt.brief.readers.model.whole_drive import with_whole_drive
 from roadgpt.brief.sentence import sentence
 
 READER = ModelReader()
@@ -81,15 +80,38 @@ def test_a_single_road_is_read_with_it(words: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "stays"),
+    ("words", "line"),
     [
-        ("a village with six junctions", False),
-        ("un village de six carrefours", False),
-        ("a village with six junctions, cars on the left", True),
-        ("six junctions, as in Scotland", True),
-        ("sechs Kreuzungen, man fährt links", True),
+        ("a village with six junctions, cars on the left", "map junction x6 || left_hand"),
+        ("un village de six carrefours", "map crossroads x6"),
+        (
+            "straight over a crossroads, then uphill; we drive on the left",
+            "crossroads straight // | up || left_hand",
+        ),
+        ("left-hand traffic, a T-junction, turn left", "t_junction left || left_hand"),
+        ("a roundabout, second exit, with cars driving on the left", "roundabout exit=2 || left_hand"),
+        ("as in Scotland: a crossroads, straight on", "crossroads straight || left_hand"),
+        ("LHT; crossroads; right", "crossroads right || left_hand"),
+        ("im Linksverkehr geradeaus über die Kreuzung", "crossroads straight || left_hand"),
+        ("on conduit à gauche : un rond-point, première sortie", "roundabout exit=1 || left_hand"),
+        ("se maneja por la izquierda: cruce, a la derecha", "crossroads right || left_hand"),
+        ("un incrocio a destra, guida a sinistra", "crossroads right || left_hand"),
+        ("a village with six junctions", "map junction x6"),
     ],
 )
-def test_a_plan_with_traffic_on_the_left_needs_a_word_for_it(words: str, stays: bool) -> None:
-    written = read_plan("map junction x6 || left_hand")
-    assert may_mean_left_hand(words) == with_whole_drive(written, words).left_hand == stays
+def test_routes_and_maps_have_the_traffic_that_the_words_ask_for(words: str, line: str) -> None:
+    assert plan(normal(read(words))) == plan(normal(read_plan(line)))
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        ("a T-junction, turn left", "t_junction left"),
+        ("change to the left lane, then a crossroads", "lane_change left // crossroads"),
+        ("keep to the left at the fork", "y_junction left"),
+        ("usciamo da un senso unico e al bivio si tiene la sinistra", "| oneway // y_junction left"),
+        ("à la fourche on tient la gauche", "y_junction left"),
+    ],
+)
+def test_words_that_only_name_the_left_say_where_the_route_goes(words: str, line: str) -> None:
+    assert plan(normal(read(words))) == plan(normal(read_plan(line)))

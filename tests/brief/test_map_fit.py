@@ -52,10 +52,34 @@ def test_the_tightest_turn_is_that_of_the_world() -> None:
     assert read("a turn with a radius of 8 m", min_radius=5.0).clauses[0].radius == exactly(8)
 
 
-@pytest.mark.parametrize("words", ["from Berlin to Munich", "a figure of eight"])
+@pytest.mark.parametrize(
+    "words",
+    [
+        "from Berlin to Munich",
+        "a figure of eight",
+        "a closed loop with five turns",
+        "ein Rundkurs mit fünf Kurven",
+        "un circuit fermé de six virages",
+        "un circuito cerrado con seis curvas",
+        "un anello chiuso con quattro curve a sinistra",
+    ],
+)
 def test_what_no_map_holds_is_refused_on_every_map(words: str) -> None:
     with pytest.raises(BriefError):
         read(words, map_size=10_000)
+
+
+@pytest.mark.parametrize(
+    ("words", "turns"),
+    [
+        ("three turns, no closed loop", 3),
+        ("four turns instead of a closed loop", 4),
+        ("five turns on a road closed to traffic", 5),
+        ("kein Rundkurs, drei Kurven", 3),
+    ],
+)
+def test_a_closed_loop_that_is_not_asked_for_does_not_matter(words: str, turns: int) -> None:
+    assert [clause.count for clause in read(words).clauses] == [exactly(turns)]
 
 
 def test_the_reader_alone_says_what_it_was_asked_for() -> None:

@@ -84,4 +84,4 @@ def test_all_encoders_have_one_embedding() -> None:
         graph = onnx.load(WEIGHTS / f"encoder{name}.onnx").graph
         (tensor,) = (each for each in graph.initializer if each.name == "reader.pieces.weight_quantized")
         assert np.array_equal(onnx.numpy_helper.to_array(tensor).ravel(), kept)
-        assert (WEIGHTS / f"encoder{name}.onnx").stat().st_size < 14e6
+        assert (WEIGHTS / f"encoder{name}.onnx").stat().st_size < 24e6  # the embedding alone has 10 MB

@@ -1,43 +1,32 @@
-"""Sharp sides at skew crossroads, and the lanes of the motorway that a route joins."""
+"""Sharp bends before skew crossroads, and the lanes of the motorway that a route joins."""
 
 import pytest
 
-from roadgpt.brief.plan import plan as plan_of
-from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model import ModelReader
-from roadgpt.brief.readers.model.sharp_sides import with_sharp_side
+from roadgpt.brief import normal, read
+from roadgpt.brief.plan import plan, read_plan
 
 
 @pytest.mark.parametrize(
-    ("words", "plan", "wanted"),
+    ("words", "line"),
     [
-        ("turn sharp left at the skew crossroads", "crossroads left skew", "crossroads left skew deg=100.."),
-        (
-            "an der schiefen Kreuzung scharf rechts",
-            "crossroads right skew",
-            "crossroads right skew deg=100..",
-        ),
-        ("sharply right", "crossroads right angle=60", "crossroads right angle=60 deg=100.."),
-        ("a sharp left bend, left at a skew crossroads", "crossroads left skew", "crossroads left skew"),
-        ("sharp right, then left at a skew crossroads", "crossroads left skew", "crossroads left skew"),
-        ("turn sharp left at the crossroads", "crossroads left", "crossroads left"),
+        ("a sharp left bend, left at a skew crossroads", "turn left sharp // crossroads left skew"),
+        ("sharp right, then left at a skew crossroads", "turn right sharp // crossroads left skew"),
     ],
 )
-def test_a_sharp_side_at_a_skew_crossroads(words: str, plan: str, wanted: str) -> None:
-    assert with_sharp_side(read_plan(plan), words) == read_plan(wanted)
+def test_a_sharp_bend_is_no_sharp_side_at_a_skew_crossroads(words: str, line: str) -> None:
+    assert plan(normal(read(words))) == plan(normal(read_plan(line)))
 
 
 @pytest.mark.parametrize(
-    ("words", "lanes"),
+    ("words", "line"),
     [
-        ("on-ramp onto a three-lane motorway", 3),
-        ("join the 2-lane freeway", 2),
-        ("Auffahrt auf eine dreispurige Autobahn", 3),
-        ("rejoindre une autoroute à deux voies", 2),
-        ("me incorporo a una autopista de tres carriles", 3),
-        ("entro in un'autostrada a tre corsie", 3),
+        ("on-ramp onto a three-lane motorway", "merge ramp // | motorway lanes=3"),
+        ("join the 2-lane freeway", "merge ramp // | motorway lanes=2"),
+        ("Auffahrt auf eine dreispurige Autobahn", "merge ramp // | motorway lanes=3"),
+        ("rejoindre une autoroute à deux voies", "merge ramp // | motorway lanes=2"),
+        ("me incorporo a una autopista de tres carriles", "merge ramp // | motorway lanes=3"),
+        ("entro in un'autostrada a tre corsie", "merge ramp // | motorway lanes=3"),
     ],
 )
-def test_the_lanes_of_the_motorway_that_is_joined(words: str, lanes: int) -> None:
-    brief = ModelReader().read(words)
-    assert plan_of(brief) == f"merge ramp // | motorway lanes={lanes}"
+def test_the_lanes_of_the_motorway_that_is_joined(words: str, line: str) -> None:
+    assert plan(normal(read(words))) == plan(normal(read_plan(line)))

@@ -129,27 +129,6 @@ def test_the_numbered_street_is_taken(words: str, last: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "line", "expected"),
-    [
-        ("four junctions, two of them roundabouts, the last a T-junction, right",
-         "roundabout // roundabout // roundabout // t_junction right",
-         "roundabout // roundabout // junction // t_junction right"),
-        ("fünf Knoten, zwei davon Kreisverkehre",
-         "roundabout // roundabout // roundabout // junction // junction",
-         "roundabout // roundabout // junction // junction // junction"),
-        ("four junctions, at least two of them roundabouts",
-         "roundabout // roundabout // roundabout // junction", None),
-        ("four junctions, two of them roundabouts",
-         "roundabout exit=1 // roundabout exit=2 // roundabout left // junction", None),
-    ],
-)  # fmt: skip
-def test_no_more_junctions_are_of_a_kind_than_are_counted(
-    words: str, line: str, expected: str | None
-) -> None:
-    assert corrected(line, words) == plan(read_plan(expected or line))
-
-
-@pytest.mark.parametrize(
     ("words", "expected"),
     [
         (
@@ -161,3 +140,18 @@ def test_no_more_junctions_are_of_a_kind_than_are_counted(
 )
 def test_the_distance_to_an_exit_is_no_deceleration_lane(words: str, expected: str) -> None:
     assert plan(read(words)) == plan(read_plan(expected))
+
+
+@pytest.mark.parametrize(
+    ("words", "line", "expected"),
+    [
+        ("out of a side street, turn right onto the main road, then a roundabout",
+         "junction right // roundabout", "t_junction right // roundabout"),
+        ("aus einer Nebenstraße nach links, dann ein Kreisverkehr",
+         "junction left // roundabout", "t_junction left // roundabout"),
+        ("past a side street, then right at the junction", "junction right", None),
+        ("out of a side street, straight over the junction", "junction straight", None),
+    ],
+)  # fmt: skip
+def test_a_side_street_ends_at_a_t_junction(words: str, line: str, expected: str | None) -> None:
+    assert corrected(line, words) == plan(read_plan(expected or line))

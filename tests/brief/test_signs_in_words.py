@@ -4,7 +4,7 @@ import pytest
 
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.map_signs import with_counted_signs
-from roadgpt.brief.readers.model.map_words import asks_for_grid, with_counted_map
+from roadgpt.brief.readers.model.map_words import with_counted_map
 from roadgpt.brief.readers.model.slots import slotted
 
 GRID = "map columns=2 rows=2"
@@ -185,21 +185,6 @@ def test_all_junctions_of_a_grid_but_one_have_a_sign(words: str) -> None:
 )
 def test_signs_are_where_the_words_count_them(words: str, written: str, right: str) -> None:
     assert corrected(words, written) == right
-
-
-@pytest.mark.parametrize(
-    ("words", "is_grid"),
-    [
-        ("deux îlots sur deux avec des feux à deux carrefours", True),
-        ("two by three blocks", True),
-        ("three blocks by two", True),
-        ("a village with two crossroads", False),
-        ("two by two blocks, or rather three by three", False),
-        ("a road with two by two lanes", False),
-    ],
-)
-def test_columns_and_rows_ask_for_a_grid(words: str, is_grid: bool) -> None:
-    assert asks_for_grid(slotted(words)) == is_grid
 
 
 def test_more_than_one_block_is_not_one_block() -> None:

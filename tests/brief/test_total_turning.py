@@ -6,49 +6,41 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt import World, build, draft, read
-from roadgpt.brief import Amount, at_least, at_most, check, exactly
-from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model.total_turning import total_turning
+from roadgpt.brief import check, exactly
+from roadgpt.brief.normal import normal
+from roadgpt.brief.plan import plan, read_plan
 from roadgpt.errors import BriefError
 
 
 @pytest.mark.parametrize(
-    ("words", "degrees", "rest"),
+    ("words", "wanted"),
     [
-        (
-            "three turns with a total heading change of 270 degrees, uphill",
-            exactly(270),
-            "three turns , uphill",
-        ),
-        ("four turns, total heading change no less than 300 deg", at_least(300), "four turns"),
-        (
-            "two lefts that add up to 180 degrees, then a straight",
-            exactly(180),
-            "two lefts , then a straight",
-        ),
-        ("five bends, at most 200 degrees of turning in all", at_most(200), "five bends"),
-        ("Drei Kurven, insgesamt 270 Grad", exactly(270), "Drei Kurven"),
-        ("trois virages, 200 degrés au total", exactly(200), "trois virages"),
-        ("turning 270 degrees in all", exactly(270), ""),
-        ("3 turns total angle around 270 for all of them together", exactly(270), "3 turns"),
-        ("five turns, accumulated heading change of 300 degrees or more", at_least(300), "five turns"),
+        ("three turns with a total heading change of 270 degrees, uphill", "turn x3 | up turning=270"),
+        ("four turns, total heading change no less than 300 deg", "turn x4 | turning=300.."),
+        ("two lefts that add up to 180 degrees, then a straight", "turn x2 left; straight | turning=180"),
+        ("five bends, at most 200 degrees of turning in all", "turn x5 | turning=..200"),
+        ("Drei Kurven, insgesamt 270 Grad", "turn x3 | turning=270"),
+        ("trois virages, 200 degrés au total", "turn x3 | turning=200"),
+        ("3 turns total angle around 270 for all of them together", "turn x3 | turning=270"),
+        ("five turns, accumulated heading change of 300 degrees or more", "turn x5 | turning=300.."),
+        ("three left turns that add up to 270 degrees", "turn x3 left | turning=270"),
     ],
 )
-def test_it_is_taken_out_of_the_words(words: str, degrees: Amount, rest: str) -> None:
-    assert total_turning(words) == (degrees, rest)
+def test_degrees_of_all_turns_together_are_read(words: str, wanted: str) -> None:
+    assert plan(normal(read(words))) == plan(normal(read_plan(wanted)))
 
 
 @pytest.mark.parametrize(
-    "words",
+    ("words", "wanted"),
     [
-        "a 90 degree left, then 40 m",
-        "three turns in all",
-        "three bends of 60 degrees",
-        "400 m in total, two turns",
+        ("a 90 degree left, then 40 m", "turn left deg=90; straight len=40"),
+        ("three turns in all", "turn x3"),
+        ("three bends of 60 degrees", "turn x3 deg=60"),
+        ("400 m in total, two turns", "turn x2 | len=400"),
     ],
 )
-def test_other_degrees_and_other_totals_are_left_alone(words: str) -> None:
-    assert total_turning(words) is None
+def test_other_degrees_and_other_totals_are_no_degrees_of_all_turns(words: str, wanted: str) -> None:
+    assert plan(normal(read(words))) == plan(normal(read_plan(wanted)))
 
 
 def test_the_trained_reader_reads_it() -> None:
@@ -58,7 +50,7 @@ def test_the_trained_reader_reads_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("plan", "reason"),
+    ("line", "reason"),
     [
         ("hairpin x2 | turning=90", "add up to 280 degrees or more"),
         ("turn x2 deg=45 | turning=400", "degrees at most"),
@@ -66,9 +58,9 @@ def test_the_trained_reader_reads_it() -> None:
         ("turn x3.. | turning=5000", "no map"),
     ],
 )
-def test_sums_that_no_turns_have_are_refused(plan: str, reason: str) -> None:
+def test_sums_that_no_turns_have_are_refused(line: str, reason: str) -> None:
     with pytest.raises(BriefError, match=reason):
-        check(read_plan(plan))
+        check(read_plan(line))
 
 
 def total(points: np.ndarray) -> float:
@@ -90,17 +82,3 @@ def test_a_road_of_which_only_the_sum_is_known_has_turns_enough(asked: int) -> N
     for seed in range(5):
         points = build(draft(read_plan(f"| turns=1.. turning={asked}"), World(), seed=seed)).centreline()
         assert total(points) == pytest.approx(asked, rel=0.11, abs=4)
-
-
-@pytest.mark.parametrize(
-    ("words", "is_alike"),
-    [
-        ("three left turns of equal angle that add up to 270 degrees", True),
-        ("Somme des changements de direction : 360 degrés, répartis à parts égales sur six virages", True),
-        ("three left turns that add up to 270 degrees", False),
-    ],
-)
-def test_a_sum_that_is_shared_equally_makes_equal_turns(words: str, is_alike: bool) -> None:
-    brief = read(words)
-    assert brief.turning is not None
-    assert brief.alike is is_alike

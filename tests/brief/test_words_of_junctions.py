@@ -1,14 +1,11 @@
-"""What words leave no choice about, on routes and maps, corrects what the network writes."""
+"""What words say of maps, of the roads that a route does not take, and of junctions that are all alike."""
 
 import pytest
 
+from roadgpt.brief import normal, read
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import ModelReader
-from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.map_words import with_counted_map
-from roadgpt.brief.readers.model.other_roads import with_other_roads
-from roadgpt.brief.readers.model.own_lane import without_own_lane
-from roadgpt.brief.readers.model.plan_choice import brief_of
 from roadgpt.brief.readers.model.route_words import asks_for_map
 from roadgpt.brief.readers.model.slots import slotted
 
@@ -163,143 +160,79 @@ def test_blocks_and_dead_ends_of_maps_follow_from_the_words(asked: str, words: s
 
 
 @pytest.mark.parametrize(
-    ("asked", "words", "line"),
+    ("words", "line"),
+    [
+        ("one crossroads and four T-junctions make four blocks", "map crossroads; t_junction x4 dead_ends=0"),
+        ("four by two, blocks of 110 m", "map columns=4 rows=2 len=110"),
+        (
+            "a village with a roundabout, and besides it four junctions of which I know nothing",
+            "map roundabout; junction x4",
+        ),
+        (
+            "una strada con quattro strade laterali a fondo cieco: sono vicoli ciechi",
+            "map t_junction x4 dead_ends=6",
+        ),
+        ("4 crossroads (8 dead ends)", "map crossroads x4 dead_ends=8"),
+        ("four blocks in a two by two grid", "map columns=2 rows=2"),
+        ("drei Blöcke in einer Reihe", "map columns=3 rows=1"),
+        ("four blocks wide and three deep", "map columns=4 rows=3"),
+        (
+            "four T-junctions around one block, a side street at each that is a dead end",
+            "map t_junction x4 dead_ends=4",
+        ),
+        ("two rows with three blocks in a row each", "map columns=3 rows=2"),
+        ("a village with one through road and three cul-de-sacs off it", "map t_junction x3 dead_ends=5"),
+        ("ein Dorf, eine Hauptstraße, zwei Sackgassen", "map t_junction x2 dead_ends=4"),
+        ("a small town with four dead ends and two roundabouts", "map roundabout x2 dead_ends=4"),
+    ],
+)
+def test_maps_are_read_with_their_blocks_and_dead_ends(words: str, line: str) -> None:
+    assert plan(normal(read(words))) == plan(normal(read_plan(line)))
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
     [
         (
-            "crossroads straight priority",
-            "I have priority, the crossing road has stop signs",
+            "straight over a crossroads where I have priority, the crossing road has stop signs",
             "crossroads straight priority others_stop",
         ),
-        ("crossroads straight priority", "I have priority and no stop sign", "crossroads straight priority"),
-        ("crossroads straight priority", "priority, then a bus stop", "crossroads straight priority"),
-        ("crossroads straight priority", "j'ai priorité, aucun panneau stop", "crossroads straight priority"),
-        ("crossroads straight priority", "there isn't a stop sign", "crossroads straight priority"),
-        ("crossroads straight priority", "there isn’t a stop sign", "crossroads straight priority"),
+        ("out of a one-way street, right at the crossroads", "| oneway // crossroads right"),
         (
-            "| oneway // crossroads right",
-            "One-way streets only, right at the crossroads.",
-            "| oneway // crossroads right in=left out=straight // | oneway",
-        ),
-        (
-            "| oneway // crossroads right",
-            "Not all roads are one-way, only mine",
-            "| oneway // crossroads right",
-        ),
-        (
-            "| oneway // crossroads straight // | oneway",
             "a one-way street crossroads, straight on, one-way behind it",
             "| oneway // crossroads straight // | oneway",
         ),
-        (
-            "crossroads straight priority // crossroads left priority",
-            "priority at two crossroads, one has stop signs for the others",
-            "crossroads straight priority // crossroads left priority",
-        ),
-        (
-            "crossroads straight priority // t_junction stop",
-            "priority, then a stop sign at the T",
-            "crossroads straight priority // t_junction stop",
-        ),
-        (
-            "| oneway // crossroads right // | oneway",
-            "one-way streets only, right at the crossroads",
-            "| oneway // crossroads right in=left out=straight // | oneway",
-        ),
-        (
-            "| oneway // crossroads straight // | oneway",
-            "lauter Einbahnstraßen, über die Kreuzung",
-            "| oneway // crossroads straight in=left out=right // | oneway",
-        ),
-        (
-            "| oneway // t_junction left ways=left+straight // | oneway",
-            "all roads are one-way: left off the main street",
-            "| oneway // t_junction left ways=left+straight out=straight // | oneway",
-        ),
-        (
-            "| oneway // crossroads right",
-            "out of a one-way street, right at the crossroads",
-            "| oneway // crossroads right",
-        ),
     ],
 )
-def test_roads_that_the_route_does_not_take_are_as_the_words_say(asked: str, words: str, line: str) -> None:
-    assert plan(with_other_roads(read_plan(asked), words)) == line
+def test_signs_and_directions_of_other_roads_are_those_of_the_words(words: str, line: str) -> None:
+    assert plan(normal(read(words))) == plan(normal(read_plan(line)))
 
 
-CHANGES = "lane_change right // lane_change left // crossroads left"
-ONE_CHANGE = "lane_change left // crossroads left"
+def test_a_change_into_a_lane_and_back_is_two_changes() -> None:
+    words = "change into the right lane and back to the left"
+    line = "lane_change right // lane_change left"
+    assert plan(normal(read(words))) == plan(normal(read_plan(line)))
 
 
 @pytest.mark.parametrize(
-    ("asked", "words", "line"),
+    ("words", "line"),
     [
-        (f"| lanes=2 // {CHANGES}", "start in the right lane, change left", f"| lanes=2 // {ONE_CHANGE}"),
-        (CHANGES, "two lanes: I start off in the right one and move over to the left", ONE_CHANGE),
-        (CHANGES, "wir beginnen auf dem rechten Fahrstreifen und wechseln nach links", ONE_CHANGE),
+        ("five crossroads, straight over all of them", " // ".join(5 * ["crossroads straight"])),
+        ("two T-junctions, left at both", "t_junction left // t_junction left"),
+        ("three roundabouts", "roundabout // roundabout // roundabout"),
+        ("five crossroads, no, make that two", "crossroads // crossroads"),
+        ("una rotonda, y luego otras dos rotondas", "roundabout // roundabout // roundabout"),
         (
-            "| lanes=2 // lane_change right // | len=200 // lane_change left",
-            "start in the right lane, after 200 m change to the left lane",
-            "| lanes=2 len=200 // lane_change left",
+            "two crossroads and then three more crossroads",
+            "crossroads // crossroads // crossroads // crossroads // crossroads",
         ),
-        (CHANGES, "change into the right lane and back to the left", CHANGES),
-        (CHANGES, "be in the right lane after 100 m, then back", CHANGES),
-        (CHANGES, "start in the left lane, change right, change left", CHANGES),
+        ("three crossroads, left first", "crossroads left // crossroads // crossroads"),
+        ("a road with 3 bends and roundabouts at both ends", "roundabout // turn x3 // roundabout"),
+        (
+            "four crossroads, 100 m apart",
+            "crossroads // | len=100 // crossroads // | len=100 // crossroads // | len=100 // crossroads",
+        ),
     ],
 )
-def test_the_lane_at_the_start_is_no_change(asked: str, words: str, line: str) -> None:
-    assert plan(without_own_lane(read_plan(asked), words)) == line
-
-
-@pytest.mark.parametrize(
-    ("asked", "words", "line"),
-    [
-        (
-            4 * ["crossroads straight"],
-            "five crossroads, straight over all of them",
-            5 * ["crossroads straight"],
-        ),
-        (5 * ["roundabout exit=2"], "sechs Kreisverkehre, jeweils Ausfahrt 2", 6 * ["roundabout exit=2"]),
-        (3 * ["t_junction left"], "two T-junctions, left at both", 2 * ["t_junction left"]),
-        (3 * ["roundabout"], "three roundabouts", 3 * ["roundabout"]),
-        (2 * ["crossroads left"], "five crossroads, no, make that two", 2 * ["crossroads left"]),
-        (3 * ["roundabout"], "una rotonda, y luego otras dos rotondas", 3 * ["roundabout"]),
-        (3 * ["crossroads"], "two crossroads and then three more crossroads", 3 * ["crossroads"]),
-        (
-            ["crossroads left", "crossroads"],
-            "three crossroads, left first",
-            ["crossroads left", "crossroads"],
-        ),
-        (2 * ["roundabout"], "a road with 3 bends and roundabouts at both ends", 2 * ["roundabout"]),
-        (2 * ["merge main"], "four junctions of a motorway", 2 * ["merge main"]),
-    ],
-)
-def test_junctions_that_are_all_alike_are_counted(asked: list[str], words: str, line: list[str]) -> None:
-    brief = with_counted_junctions(read_plan(" // ".join(asked)), slotted(words))
-    assert plan(brief) == " // ".join(line)
-
-
-def test_roads_between_alike_junctions_are_alike_too() -> None:
-    asked = "crossroads // | len=100 // crossroads // | len=100 // crossroads"
-    brief = with_counted_junctions(read_plan(asked), slotted("four crossroads, 100 m apart"))
-    assert [each.length.lo for each in brief.stretches if each.length] == [100, 100, 100]
-    uneven = read_plan("crossroads // | len=100 // crossroads // | len=50 // crossroads")
-    assert with_counted_junctions(uneven, slotted("four crossroads, 100 m and 50 m apart")) == uneven
-
-
-@pytest.mark.parametrize(
-    ("asked", "line"),
-    [
-        (
-            "straight up; straight down; straight up | turns=0 hills=3.. // crossroads",
-            "straight up; straight down; straight up | turns=0 // crossroads",
-        ),
-        ("straight up; straight down | turns=0 hills=2..", "straight up; straight down | turns=0"),
-        ("straight up; straight down | turns=0 hills=1..", "straight up; straight down | turns=0 hills=1.."),
-        ("straight up; straight down | turns=0 hills=3", "straight up; straight down | turns=0 hills=3"),
-        ("straight up; straight | turns=0 hills=3..", "straight up; straight | turns=0 hills=3.."),
-        ("straight up; turn; straight down | hills=3..", "straight up; turn; straight down | hills=3.."),
-    ],
-)
-def test_hilly_means_the_slopes_that_are_listed(asked: str, line: str) -> None:
-    words = "a hilly road, up and down"
-    assert plan(brief_of(asked, slotted(words), words)) == line
+def test_junctions_that_are_all_alike_are_counted(words: str, line: str) -> None:
+    assert plan(normal(read(words))) == plan(normal(read_plan(line)))

@@ -19,10 +19,7 @@ from roadgpt.brief import SURE as SURE_ENOUGH
 from roadgpt.brief.change import read_request
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import Change, EditRequest, Target
-from roadgpt.brief.readers.model.height_words import height_wish
 from roadgpt.brief.readers.model.reverse_words import asks_to_reverse
-from roadgpt.brief.readers.model.slots import slotted
-from roadgpt.brief.readers.model.swap_words import exchanged_values, turns_to_swap
 from roadgpt.errors import EditError
 
 TRAINING = Path(__file__).resolve().parents[2] / "data" / "changes" / "train"
@@ -254,42 +251,86 @@ PARTS = [
 ]
 """How many turns there are, distances from an end, moves, steepness, crests."""
 
-BY_RULES = [
-    ("parcours la même route en sens inverse", "road: reverse"),
-    ("drive the same road in the opposite direction", "road: reverse"),
+REVERSALS = [
+    "reverse the road",
+    "Please drive it the other way round.",
+    "drive the same road in the opposite direction",
+    "Kehre die Fahrtrichtung um",
+    "parcours la route en sens inverse",
+    "parcours la même route en sens inverse",
+    "intercambia la salida y la meta",
+    "inverti il senso di marcia",
+]
+
+REORDERED = [
     (
         "inverse le sens de tous les virages : la gauche devient la droite et la droite devient la gauche",
         "turn all: side other",
     ),
+    ("reverse the second turn", "turn 2: side other"),
+    ("reverse the slope", "road: slope x-1"),
+    ("swap left and right", "road: mirror"),
+    ("swap turns 2 and 3 for hairpins", "turn 2,3: shape hairpin"),
     (
-        "Vertausche links und rechts bei allen Kurven und kürze die Gerade ganz am Ende auf 20 m.",
-        "turn all: side other; straight -1: length =20",
+        "let the first and the fourth turn swap radii",
+        "turn 1: radius =turn 4; turn 4: radius =turn 1",
     ),
     (
-        "Riduci a un terzo il rettilineo tra la prima e la seconda curva",
-        "straight between(turn 1, turn 2): length x0.333",
+        "Tausche die Längen der ersten und der letzten Geraden.",
+        "straight 1: length =straight -1; straight -1: length =straight 1",
     ),
-    ("reduce the first straight by a third", "straight 1: length x0.667"),
-    ("kürze die erste Gerade auf ein Drittel", "straight 1: length x0.333"),
+    (
+        "intercambia los radios de la primera y la segunda curva",
+        "turn 1: radius =turn 2; turn 2: radius =turn 1",
+    ),
+    ("exchange the radii of turns 1 and 2", "turn 1: radius =turn 2; turn 2: radius =turn 1"),
+    ("swap the angles of turn 2 and turn 4", "turn 2: angle =turn 4; turn 4: angle =turn 2"),
+    ("scambia i raggi della prima curva con la terza", "turn 1: radius =turn 3; turn 3: radius =turn 1"),
+    ("turns 2 and 4 share the radius of turn 2", "turn 4: radius =turn 2"),
+]
+"""Requests with words such as "reverse" and "swap" that are not for the road's direction."""
+
+SWAPPED = [
+    ("swap the first and the last turn", "turn 1,-1: swap"),
     ("swap the first turn and the last turn, the straights stay where they are", "turn 1,-1: swap"),
     ("tausche die zweite und die dritte Kurve, der Rest bleibt, wie er ist", "turn 2,3: swap"),
-    ("reverse the road", "road: reverse"),
-    ("Please drive it the other way round.", "road: reverse"),
-    ("Kehre die Fahrtrichtung um", "road: reverse"),
-    ("parcours la route en sens inverse", "road: reverse"),
-    ("intercambia la salida y la meta", "road: reverse"),
-    ("inverti il senso di marcia", "road: reverse"),
-    ("make the last straight climb 10 m", "straight -1: climb =10"),
-    ("it should climb 8 m in all", "road: climb =8"),
-    ("raise the end by 5 m", "road: climb +5"),
-    ("die Straße soll insgesamt 6 m ansteigen", "road: climb =6"),
-    ("the road should lose 6 m of height", "road: climb =-6"),
-    ("swap the first and the last turn", "turn 1,-1: swap"),
-    ("turns 2 and 3 should trade places", "turn 2,3: swap"),
     ("Tausch bitte die erste mit der dritten Kurve", "turn 1,3: swap"),
     ("échange les virages 1 et 4", "turn 1,4: swap"),
     ("scambia le due curve", "turn all: swap"),
+    ("Intercambia la segunda curva con la tercera", "turn 2,3: swap"),
 ]
+"""Two turns that change places, which rules read."""
+
+HEIGHTS = [
+    ("make the last straight climb 10 m", "straight -1: climb =10"),
+    ("each straight should climb 2 m", "straight all: climb =2"),
+    ("it should climb 8 m in all", "road: climb =8"),
+    ("climb 8 m more", "road: climb +8"),
+    ("raise the end by 5 m", "road: climb +5"),
+    ("die Straße soll insgesamt 6 m ansteigen", "road: climb =6"),
+    ("the road should lose 6 m of height", "road: climb =-6"),
+    ("no falling any more, rising 5 m in height overall", "road: climb =5"),
+    ("instead of dropping it should be gaining 6 m of height", "road: climb =6"),
+    ("la carretera debe subir 6 m en total, ahora baja", "road: climb =6"),
+    ("Die Strecke soll vom Start bis zum Ziel 7 m an Höhe verlieren", "road: climb =-7"),
+    ("la curva 3 debería perder 1,5 m de altura", "turn 3: climb =-1.5"),
+]
+
+ALONG = [
+    ("make the road 8 m longer", "road: length +8"),
+    ("the last straight shall lose 10 m", "straight -1: length -10"),
+    ("the climbing section should be 80 m", "straight up: length =80"),
+    ("append a 50 m climb", "add straight up len=50 at_end"),
+    ("over the last 80 m it should climb", "end len=80: slope up"),
+    ("nach 50 m soll es ansteigen", "road after(start len=50): slope up"),
+    ("reduce the first straight by a third", "straight 1: length x0.667"),
+    ("kürze die erste Gerade auf ein Drittel", "straight 1: length x0.333"),
+    (
+        "set the straight between turn 1 and turn 2 to 20 m",
+        "straight between(turn 1, turn 2): length =20",
+    ),
+]
+"""Metres along the road, which are no heights."""
 
 REFUSED = [
     "   ",
@@ -321,43 +362,30 @@ ROWS = sorted(
 )
 
 
-@pytest.mark.parametrize(("words", "plan"), BY_RULES)
-def test_rules_read_what_the_network_has_no_words_for(words: str, plan: str) -> None:
+@pytest.mark.parametrize("words", REVERSALS)
+def test_a_road_to_be_driven_the_other_way_is_reversed(words: str) -> None:
+    assert read(words) == "road: reverse"
+
+
+@pytest.mark.parametrize(("words", "plan"), REORDERED)
+def test_other_exchanges_are_no_reversals(words: str, plan: str) -> None:
+    assert not asks_to_reverse(words)
+    assert meaning(read(words)) == meaning(plan)
+
+
+@pytest.mark.parametrize(("words", "plan"), SWAPPED)
+def test_turns_change_places(words: str, plan: str) -> None:
     assert read(words) == plan
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        "reverse the slope",  # up and down
-        "reverse the road and make turn 1 sharper",
-        "reverse the second turn",
-        "make the road 8 m longer",
-        "the last straight shall lose 10 m",  # of its length
-        "raise the start by 5 m",
-        "climb no more than 8 m",
-        "let it climb for 20 m",  # along the road
-        "climb 8 m more",
-        "raise the distance between the turns to 60 m",
-        "nach 50 m soll es ansteigen",
-        "the climbing section should be 80 m",
-        "append a 50 m climb",
-        "mirror it and let it climb 4 m",
-        "each straight should climb 2 m",
-        "swap the lengths of turn 1 and 2",
-        "exchange both bends with gentle ones",
-        "switch turns 1 and 2, then remove turn 3",
-        "over the last 80 m it should climb",
-        "swap left and right",
-        "exchange the radii of turns 1 and 2",
-        "swap turns 2 and 3 for hairpins",
-    ],
-)
-def test_rules_leave_other_requests_to_the_network(words: str) -> None:
-    text = slotted(words, is_change=True)
-    assert not asks_to_reverse(words)
-    assert turns_to_swap(text) is None
-    assert height_wish(text) is None
+@pytest.mark.parametrize(("words", "plan"), HEIGHTS)
+def test_heights_are_climbs_with_the_sign_of_the_words(words: str, plan: str) -> None:
+    assert read(words) == plan
+
+
+@pytest.mark.parametrize(("words", "plan"), ALONG)
+def test_metres_along_the_road_are_no_heights(words: str, plan: str) -> None:
+    assert meaning(read(words)) == meaning(plan)
 
 
 @pytest.mark.parametrize(
@@ -366,28 +394,11 @@ def test_rules_leave_other_requests_to_the_network(words: str) -> None:
         "climb no more than 8 m",
         "climb at least 8 m",
         "mirror it and let it climb 4 m",
-        "let it climb for 20 m",
-        "raise the start by 5 m",
-        "no falling any more, rising 5 m in height overall",
-        "instead of dropping it should be gaining 6 m of height",
+        "let it climb for 20 m",  # along the road
     ],
 )
 def test_a_climb_that_the_words_do_not_give_is_doubted(words: str) -> None:
     assert read_request(words).confidence < SURE_ENOUGH
-
-
-@pytest.mark.parametrize(
-    ("words", "plan"),
-    [
-        ("instead of dropping it should be gaining 6 m of height", "road: climb =6"),
-        ("la carretera debe subir 6 m en total, ahora baja", "road: climb =6"),
-        ("Die Strecke soll vom Start bis zum Ziel 7 m an Höhe verlieren", "road: climb =-7"),
-        ("la curva 3 debería perder 1,5 m de altura", "turn 3: climb =-1.5"),
-        ("climb 8 m more", "road: climb +8"),
-    ],
-)
-def test_a_climb_has_the_sign_of_the_words(words: str, plan: str) -> None:
-    assert read(words) == plan
 
 
 def read(words: str) -> str:
@@ -491,7 +502,12 @@ def test_what_cannot_be_read_at_all_is_refused_with_the_reason() -> None:
 
 
 @pytest.mark.parametrize(
-    "words", ["don't make the second turn sharper", "mach die zweite Kurve nicht schärfer"]
+    "words",
+    [
+        "don't make the second turn sharper",
+        "mach die zweite Kurve nicht schärfer",
+        "do not swap the radii of turns 1 and 2",
+    ],
 )
 def test_a_denied_change_is_refused_or_doubted(words: str) -> None:
     try:
@@ -523,48 +539,3 @@ def test_any_row_of_words_is_read_or_refused(words: list[str]) -> None:
 def test_any_text_is_read_or_refused(words: str) -> None:
     with suppress(EditError):
         assert read_request(words).changes
-
-
-@pytest.mark.parametrize(
-    ("words", "right"),
-    [
-        (
-            "let the first and the fourth turn swap radii",
-            "turn 1: radius =turn 4; turn 4: radius =turn 1",
-        ),
-        (
-            "Tausche die Längen der ersten und der letzten Geraden.",
-            "straight 1: length =straight -1; straight -1: length =straight 1",
-        ),
-        (
-            "intercambia los radios de la primera y la segunda curva",
-            "turn 1: radius =turn 2; turn 2: radius =turn 1",
-        ),
-        ("exchange the radii of turns 1 and 2", "turn 1: radius =turn 2; turn 2: radius =turn 1"),
-        ("swap the angles of turn 2 and turn 4", "turn 2: angle =turn 4; turn 4: angle =turn 2"),
-        ("scambia i raggi della prima curva con la terza", "turn 1: radius =turn 3; turn 3: radius =turn 1"),
-        ("turns 2 and 4 share the radius of turn 2", None),
-        ("échange les rayons des virages 1, 2 et 3", None),
-        ("swap turns 1 and 2, both with the radius of turn 5", None),
-        ("do not swap the radii of turns 1 and 2", None),
-        ("swap the lengths of turn 1 and 2", None),
-    ],
-)
-def test_two_parts_exchange_a_value(words: str, right: str | None) -> None:
-    assert exchanged_values(slotted(words, is_change=True)) == right
-
-
-@pytest.mark.parametrize(
-    ("words", "plan"),
-    [
-        (
-            "set the straight between turn 1 and turn 2 to 20 m",
-            "straight between(turn 1, turn 2): length =20",
-        ),
-        ("swap turn 2 and turn 3", "turn 2,3: swap"),
-        ("scambia la seconda curva con la terza", "turn 2,3: swap"),
-        ("Intercambia la segunda curva con la tercera", "turn 2,3: swap"),
-    ],
-)
-def test_numbers_of_turns_are_no_lengths(words: str, plan: str) -> None:
-    assert read(words) == plan

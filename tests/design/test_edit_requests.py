@@ -13,7 +13,7 @@ from edit_truth import changed_besides, misses, ours, requests, roads, theirs
 from roadgpt import check
 from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model.confidence import DOUBT
+from roadgpt.brief.words import SURE
 from roadgpt.design import draft
 from roadgpt.design.edit import edit
 from roadgpt.errors import EditError, UnclearPlaceError
@@ -113,6 +113,6 @@ def test_the_descent_of_a_road_that_falls_all_the_way_is_the_whole_road() -> Non
     assert [segment.incline for segment in edited.design.segments] == pytest.approx(
         [segment.incline / 2 for segment in design.segments], abs=0.11
     )
-    assert edited.confidence <= DOUBT
+    assert edited.confidence < SURE
     with pytest.raises(UnclearPlaceError, match=r"could be any of"):
         edit(design, read_change_plan("straight: length more"), World())

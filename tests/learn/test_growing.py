@@ -5,7 +5,7 @@ import pytest
 torch = pytest.importorskip("torch", reason="comes with the extra 'learn'")
 
 from roadgpt.errors import LearnError  # noqa: E402
-from roadgpt.learn.growing import decoder_layers, grown  # noqa: E402
+from roadgpt.learn.growing import decoder_layers, deepened, encoder_layers, grown  # noqa: E402
 from roadgpt.learn.network import NetworkSizes, ReaderNetwork  # noqa: E402
 
 SMALL = NetworkSizes(pieces=40, tokens=9, width=24, heads=3, inner=32, layers=1, decoder_layers=2,
@@ -31,6 +31,26 @@ def test_a_network_does_not_shrink() -> None:
     for tokens, layers in ((8, 2), (9, 1), (9, 3)):
         with pytest.raises(LearnError, match="cannot grow"):
             grown(weights, tokens, layers)
+
+
+def test_a_deeper_encoder_hardly_changes_the_scores_at_first() -> None:
+    torch.manual_seed(4)
+    sizes = NetworkSizes(**{**_fields(SMALL), "layers": 2})
+    small = ReaderNetwork(sizes).eval()
+    with torch.no_grad():  # norms as a trained network has them, with different gains
+        for layer in small.layers:
+            layer.last_norm.weight.uniform_(0.8, 1.2)
+            layer.last_norm.bias.uniform_(-0.1, 0.1)
+    weights = small.state_dict()
+    large = ReaderNetwork(NetworkSizes(**{**_fields(SMALL), "layers": 6})).eval()
+    large.load_state_dict(deepened(weights, 6))
+    pieces, tokens = torch.randint(1, 40, (8, 7)), torch.randint(1, 9, (8, 5))
+    with torch.no_grad():
+        old, new = small(pieces, tokens), large(pieces, tokens)
+    assert encoder_layers(large.state_dict()) == 6
+    assert torch.corrcoef(torch.stack([old.ravel(), new.ravel()]))[0, 1] > 0.99
+    with pytest.raises(LearnError, match="cannot grow"):
+        deepened(weights, 3)
 
 
 def _fields(sizes: NetworkSizes) -> dict[str, int]:

@@ -11,7 +11,8 @@ from roadgpt.errors import LearnError
 from roadgpt.learn.onnx_weights import exported_weights
 from roadgpt.learn.pretrained import begin
 
-LAYERS = 6  # of the first network's decoder
+LAYERS = 3  # of the first network's decoder
+ENCODER_LAYERS = 12
 onnxruntime = pytest.importorskip("onnxruntime")
 pytest.importorskip("onnx", reason="comes with the extra 'learn'")
 
@@ -38,7 +39,7 @@ def _keys_and_values(numbers: np.ndarray, weights: dict[str, np.ndarray]) -> np.
     """BERT as its paper has it, and what our decoder makes of its last layer."""
     x = weights["pieces.weight"][numbers] + weights["places.weight"][: len(numbers)] + weights["kind"]
     x = _layer_norm(x, weights, "norm", 1e-12)
-    for index in range(6):
+    for index in range(ENCODER_LAYERS):
         own = f"layers.{index}"
         query, key, value = (
             _heads(_linear(x, weights, f"{own}.attention.{part}"), 12) for part in ("query", "key", "value")
@@ -76,7 +77,12 @@ def test_every_parameter_of_the_network_is_there(weights: dict[str, np.ndarray])
     from roadgpt.learn.network import NetworkSizes, ReaderNetwork
 
     reader = ReaderNetwork(
-        NetworkSizes(pieces=len(weights["pieces.weight"]), tokens=len(OF_ROADS), decoder_layers=LAYERS)
+        NetworkSizes(
+            pieces=len(weights["pieces.weight"]),
+            tokens=len(OF_ROADS),
+            layers=ENCODER_LAYERS,
+            decoder_layers=LAYERS,
+        )
     )
     reader.load_state_dict({name: torch.from_numpy(array) for name, array in weights.items()})
 

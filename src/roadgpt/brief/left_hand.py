@@ -29,21 +29,11 @@ BY_PLACE = re.compile(
     r"\bbritish roads|like the (?:british|uk)\b|ponmelo britanico"
 )
 TRAFFIC = re.compile(r"traffic|verkehr|circulation|circulacion|circolazione|trafico")
-MAY_MEAN = re.compile(
-    r"\b(?:left|links|linke\w*|gauche|izquierd\w*|sinistra|lh|lht|lefthand\w*|linksver\w*|linksfahr\w*|"
-    rf"brit\w*|anglais\w*|ingles\w*|englisch\w*|japan\w*|{COUNTRIES})\b"
-)
-"""Words without which a description cannot mean traffic on the left."""
 FORK = re.compile(r"\b(?:bivio|biforcazione|fourche|bifurcation)\b")
 """Where "keep left" says where the route goes."""
 NEGATED = re.compile(
     r"\b(?:no|not|without|never|kein|keinen|nicht|ohne|pas de|sans|sin|senza)\b(?:\s\w+)?\s*$"
 )
-
-
-def may_mean_left_hand(words: str) -> bool:
-    """Returns whether a description has a word that may mean traffic on the left: "left", or a country."""
-    return MAY_MEAN.search(unaccented(words)) is not None
 
 
 def says_left_hand(words: str, by_place: bool = False) -> bool:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from roadgpt.brief.model import Amount
 from roadgpt.brief.normal import STRAIGHT, normal
 from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.computed_numbers import Compared
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES
 from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot, slot_name, slotted
@@ -25,26 +26,26 @@ from roadgpt.learn.routes import generated_routes, routes
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
 SHARES: Mapping[str, float] = {
-    "hand": 0.26,
-    "free": 0.17,
-    "contrasts": 0.10,
-    "changes": 0.10,
-    "generated": 0.04,
-    "generated contrasts": 0.10,
-    "generated changes": 0.12,
-    "generated specs": 0.11,
+    "hand": 0.12,
+    "free": 0.20,
+    "contrasts": 0.09,
+    "changes": 0.14,
+    "generated": 0.10,
+    "generated contrasts": 0.07,
+    "generated changes": 0.08,
+    "generated specs": 0.20,
 }
 """The share of each series of pairs in the training of the networks for single roads and changes."""
 SHARES_OF_ROUTES: Mapping[str, float] = {
-    "networks": 0.37,
-    "generated routes": 0.33,
+    "networks": 0.34,
+    "generated routes": 0.36,
     "routes": 0.08,
-    "hand": 0.09,
+    "hand": 0.08,
     "free": 0.06,
     "contrasts": 0.03,
     "generated": 0.01,
     "generated contrasts": 0.015,
-    "generated specs": 0.015,
+    "generated specs": 0.025,
 }
 """The share of each series of pairs in the training of the network for routes and maps. ``networks`` are
 hand-written routes with junctions, ``routes`` join these to hand-written roads, and ``generated routes`` come
@@ -92,7 +93,8 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
     """
     taken = slotted(pair.text, pair.is_change)
     plan = pair.plan if pair.is_change else with_shared_values(_without_motorway(pair.plan), taken.slots)
-    tokens = tokens_of(plan, taken.slots)
+    compared = None if pair.is_change else Compared.of(taken.text)
+    tokens = tokens_of(plan, taken.slots, compared)
     if tokens is None or len(tokens) > LONGEST_PLAN - 2 or any(token not in NUMBER_OF for token in tokens):
         return None
     words = [word.text for word in taken.words]

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import torch
 from torch import Tensor, nn
@@ -17,7 +17,7 @@ from roadgpt.brief.readers.model.vocabulary import OF_ROADS
 from roadgpt.errors import LearnError
 from roadgpt.learn.calibrate import calibrated, calibrated_routes
 from roadgpt.learn.generator import Pair
-from roadgpt.learn.growing import decoder_layers
+from roadgpt.learn.growing import decoder_layers, encoder_layers
 from roadgpt.learn.network import NetworkSizes, ReaderNetwork
 from roadgpt.learn.pretrained import NOTICE, read_vocabulary
 from roadgpt.learn.told_prompts import ToldPrompt
@@ -71,14 +71,15 @@ class DecoderGraph(nn.Module):
         return reader.scores(x)[:, 0], torch.stack(kept)
 
 
-def export(reader: ReaderNetwork, folder: Path, ending: str = "", bits: Literal[7, 8] = 8) -> None:
+def export(reader: ReaderNetwork, folder: Path, ending: str = "") -> None:
     """Writes the network to ``encoder.onnx`` and ``decoder.onnx``, with weights in int8.
+
+    The weights use 7 of the 8 bits, so that the files are an eighth smaller when compressed.
 
     Args:
         reader: the network.
         folder: where the files are written.
         ending: what follows "encoder" and "decoder" in the names of the files.
-        bits: number of bits that the weights use; with 7, files are an eighth smaller when compressed.
     """
     from onnxruntime.quantization import QuantType, quantize_dynamic
     from onnxruntime.quantization.shape_inference import quant_pre_process
@@ -95,7 +96,7 @@ def export(reader: ReaderNetwork, folder: Path, ending: str = "", bits: Literal[
             quant_pre_process(str(raw), str(ready), skip_symbolic_shape=True)
             quantize_dynamic(
                 str(ready), str(folder / f"{name}{ending}.onnx"), weight_type=QuantType.QInt8,
-                per_channel=True, reduce_range=bits == 7, op_types_to_quantize=["MatMul", "Gather", "Gemm"],
+                per_channel=True, reduce_range=True, op_types_to_quantize=["MatMul", "Gather", "Gemm"],
             )  # fmt: skip
 
 
@@ -151,7 +152,7 @@ def export_checkpoints(
     if kept and kept.resolve() != folder.resolve():
         shutil.copytree(kept, folder, dirs_exist_ok=True)
     for name, reader in readers.items():
-        export(reader, folder, name, 7 if name == ROUTES else 8)
+        export(reader, folder, name)
         pieces = read_vocabulary(checkpoints[name] / "pieces.txt")
         (folder / "pieces.txt").write_text("\n".join(pieces), encoding="utf-8")
     (folder / "words.txt").write_text("\n".join(fillers), encoding="utf-8")
@@ -182,7 +183,12 @@ def _trained(checkpoint: Path, name: str) -> ReaderNetwork:
             else ("single roads", "one for routes is trained with: roadgpt learn train --routes")
         )
         raise LearnError(f"the network in {checkpoint} reads {what}; {todo}")
-    sizes = NetworkSizes(pieces=len(pieces), tokens=tokens, decoder_layers=decoder_layers(weights))
+    sizes = NetworkSizes(
+        pieces=len(pieces),
+        tokens=tokens,
+        layers=encoder_layers(weights),
+        decoder_layers=decoder_layers(weights),
+    )
     reader = ReaderNetwork(sizes)
     reader.load_state_dict(weights)
     return reader

@@ -14,7 +14,8 @@ The parts of a rule are:
     ``<name>``     another symbol (``<name?>`` in half of the cases, ``<name?20>`` in 20 % of cases), which
                    may have a label: ``<name:label>``
     ``<#2-9>``     a number (``<#20-90/5>`` in steps of 5), which may have a label: ``<#2-9:n>``
-    ``<=n-1>``     only in a plan: a number computed from labelled numbers of the text, here ``n`` minus 1
+    ``<=n-1>``     only in a plan: a number computed from labelled numbers of the text, here ``n`` minus 1;
+                   also ``<=n/2>``, ``<=n*3>`` and ``<=n+d*2>``, which is ``n`` and twice ``d``
 
 Without ``=>``, the plan of a rule consists of the plans of its parts in order. In a plan, ``|word`` is a
 requirement for the whole road, wherever it occurs. A rule with ``-`` before ``=>`` has an empty text. Lines
@@ -37,7 +38,7 @@ CHOICE = re.compile(r"\{([^{}]*)\}")
 OPTION = re.compile(r"\[(?:(\d+):)?([^\[\]]*)\]")
 PART = re.compile(r"<([^<>]+)>")
 NUMBER = re.compile(r"#(\d+)-(\d+)(?:/(\d+))?")
-SUM = re.compile(r"=(\w+)([-+*])(\w+)")
+SUM = re.compile(r"=(\w+)([-+*/])(\w+)(?:\*(\d+))?")
 JOINT = re.compile(r"<((?:link|lastlink|vlink|oops|prewish|tailwish|lenwish|sidewish|hardwish)[?0-9]*)>")
 """Symbols that join other symbols; they get a space on both sides, and ``tidy`` removes unneeded spaces."""
 DEEPEST = 30
@@ -195,7 +196,10 @@ def _filled(part: str, plans: Mapping[str, str]) -> str:
     left, right = (
         int(name) if name.isdigit() else int(plans.get(name) or 0) for name in (total[1], total[3])
     )
-    number = {"-": left - right, "+": left + right, "*": left * right}[total[2]]
+    right *= int(total[4] or 1)
+    if total[2] == "/" and (not right or left % right):
+        raise Discarded
+    number = {"-": left - right, "+": left + right, "*": left * right, "/": left // max(right, 1)}[total[2]]
     if number < 1:
         raise Discarded
     return str(number)

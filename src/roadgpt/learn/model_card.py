@@ -38,9 +38,9 @@ def card(
             "Reads a description of a road in English, German, French, Spanish or Italian and writes a plan:"
             " the Brief on one line; reads a change request as well, and writes a plan of changes. Two"
             " networks read every text; a third one reads those that may tell of junctions, lanes or maps."
-            " Their encoders are MiniLM, 6 layers, fine-tuned; their decoders, with 6, 3 and 3 layers, began"
-            " from random weights; all in int8. The tables below are of single roads, which the first two"
-            " read.",
+            " Their encoders are MiniLM, fine-tuned: that of the first was grown from 6 to 12 layers, the"
+            " others have 6; their decoders, with 3 layers each, began from random weights; all in int8. The"
+            " tables below are of single roads, which the first two read.",
             "",
             *_files(weights),
             *_data(data),

@@ -19,8 +19,9 @@ from roadgpt.brief.readers.model.vocabulary import OF_ROADS, TOKENS
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.errors import LearnError
 from roadgpt.learn.data import SHARES, SHARES_OF_ROUTES, Numbers, batches, examples
+from roadgpt.learn.feed import fed_batches
 from roadgpt.learn.generator import Pair
-from roadgpt.learn.growing import decoder_layers, grown
+from roadgpt.learn.growing import decoder_layers, deepened, encoder_layers, grown
 from roadgpt.learn.network import NetworkSizes, ReaderNetwork, load_minilm
 from roadgpt.learn.onnx_weights import exported_weights
 
@@ -57,6 +58,10 @@ class TrainingSettings:
     """Number of decoder layers; if training starts from the installed reader, a multiple of its number. None
     keeps that number, or takes 3 for a new network.
     """
+    encoder_layers: int | None = None
+    """Number of encoder layers; a multiple of the number of the installed reader. None keeps that number."""
+    feeders: int = 0
+    """Number of processes that make the batches; 0 makes them in the training process itself."""
     ending: str = ""
     """What follows 'encoder' and 'decoder' in the file names of the network that training starts from."""
     seed: int = 1
@@ -111,7 +116,10 @@ def train(
     # each start has its own stream, so that a resumed training does not see the same pairs again
     seed = (plan.seed * 1_000_003 + first) * 16 + plan.rank
     shares = SHARES_OF_ROUTES if plan.is_of_routes else SHARES
-    stream = batches(examples(seed, hand, WordPieces(pieces), shares), plan.size, POOL, seed)
+    if plan.feeders:
+        stream = fed_batches(plan.feeders, seed, hand, pieces, shares, plan.size, POOL)
+    else:
+        stream = batches(examples(seed, hand, WordPieces(pieces), shares), plan.size, POOL, seed)
     began, losses = time.monotonic(), []
     reader.train()
     for step in range(first, plan.steps):
@@ -137,8 +145,11 @@ def _started(
         exported = exported_weights(weights, plan.ending)
         kept = {name: torch.from_numpy(array) for name, array in exported.items()}
         kept = grown(kept, tokens, plan.decoder_layers or decoder_layers(kept), plan.seed)
+        kept = deepened(kept, plan.encoder_layers or encoder_layers(kept))
     layers = decoder_layers(kept) if kept else plan.decoder_layers or NetworkSizes().decoder_layers
-    reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=tokens, decoder_layers=layers))
+    depth = encoder_layers(kept) if kept else NetworkSizes().layers
+    sizes = NetworkSizes(pieces=len(pieces), tokens=tokens, layers=depth, decoder_layers=layers)
+    reader = ReaderNetwork(sizes)
     if kept:
         reader.load_state_dict(kept)
     elif weights:

@@ -26,6 +26,10 @@ NETWORKS_OF_READER = ("first", "second", "routes")
 BOTH = "both"
 COUNT = whole(1, 10_000_000, "a number")
 TRAINED_ON = ("train", "contrasts", "free")
+SPENT = tuple(
+    f"data/outsiders/{name}.jsonl" for name in ("roads", "2026-11-26/descriptions", "2026-11-26/contrasts")
+)
+"""Files with prompts by outsiders, with which a reader has been judged before."""
 HELD_BACK = ("validation", "contrasts_validation", "free_validation")
 """Folders of the descriptions with which readers are trained (TRAINED_ON) and calibrated (HELD_BACK)."""
 MEASURED = 600  # number of training pairs that are descriptions of measured roads
@@ -62,13 +66,17 @@ OF_TRAIN = (
     Option("--routes", "Train the neural network for routes and maps, not one for single roads.", bool),
     Option("--decoder-layers", "Number of decoder layers; with --installed, a multiple of the number that "
            "the installed reader has.", whole(1, 24, "layers")),
+    Option("--encoder-layers", "Number of encoder layers; with --installed, a multiple of the number that "
+           "the installed reader has.", whole(1, 48, "layers")),
     Option("--frozen-layers", "Number of encoder layers, from the lowest, that are not trained.",
-           whole(0, 6, "layers"), 0),
+           whole(0, 24, "layers"), 0),
     Option("--cool-down", "Share of the steps, at the end, in which the learning rates fall to zero.",
            measure(0, 1), 0.3),
     Option("--encoder-rate", "Highest learning rate of the encoder.", measure(0, 1, above=True), 1.5e-4),
     Option("--decoder-rate", "Highest learning rate of the decoder.", measure(0, 1, above=True), 7e-4),
     Option("--workers", "Number of training processes; use one per core.", whole(1, 64, "processes"), 2),
+    Option("--feeders", "Number of processes that make the pairs; with a GPU, one per core. 0: the training "
+           "makes them itself.", whole(0, 64, "processes"), 0),
     Option("--own", "Folder with training pairs of your own, used in addition.", folder),
     options.seed("The same seed gives the same pairs.", 1),
 )
@@ -81,8 +89,8 @@ OF_EXPORT = (
     Option("--only", "The network of the installed reader that CHECKPOINT replaces; both: CHECKPOINT and "
            "--second replace those for single roads. The others stay as they are.",
            click.Choice((*NETWORKS_OF_READER, BOTH))),
-    Option("--prompts", "File with prompts and truths, to which the confidence for single roads is fitted.",
-           PATH, Path("data/outsiders/roads.jsonl")),
+    Option("--prompts", "File with prompts and truths, to which the confidence for single roads is fitted; "
+           "repeat the option for more files.", default=SPENT, multiple=True),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
     options.seed("Seed of the chats.", 1),
 )
@@ -195,7 +203,7 @@ def export(
     second: Path | None,
     routes: Path | None,
     only: str | None,
-    prompts: Path,
+    prompts: Sequence[str],
     chats: int | None,
     seed: int,
 ) -> None:
@@ -223,7 +231,7 @@ def export(
     first = endings.get(only or "first", "")
     found = {first: checkpoint, **({} if only in NETWORKS_OF_READER else {SECOND: second, ROUTES: routes})}
     checkpoints = {name: run for name, run in found.items() if run}
-    told_by_others = told_prompts(prompts) if prompts.is_file() else []
+    told_by_others = [each for path in map(Path, prompts) if path.is_file() for each in told_prompts(path)]
     export_checkpoints(checkpoints, out, held_back, *words, WEIGHTS if only else None, told_by_others)
     click.echo(f"{sum(file.stat().st_size for file in out.iterdir()) / 1e6:.1f} MB in {out}")
     if chats:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
-from roadgpt.brief.model import Brief, at_least
+from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model.closed_loops import asks_for_a_closed_loop
@@ -24,7 +24,6 @@ from roadgpt.brief.readers.model.confidence import DOUBT, features
 from roadgpt.brief.readers.model.denied_words import without_denials
 from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
 from roadgpt.brief.readers.model.mirror import is_of_junctions
-from roadgpt.brief.readers.model.multiples import tells_a_difference
 from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.numerals import plain
@@ -33,7 +32,6 @@ from roadgpt.brief.readers.model.plan_choice import brief_of, can_be_kept, most_
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
-from roadgpt.brief.readers.model.total_turning import total_turning, with_equal_turns
 from roadgpt.brief.readers.model.vocabulary import plan_of
 from roadgpt.brief.readers.model.word_meanings import read_meanings
 from roadgpt.brief.refusal import MOST_CHARACTERS, ContradictionError, TooMuchError, refused
@@ -96,24 +94,6 @@ class ModelReader:
             BriefError: the description is empty, too long, not about a road, contradicts itself, or asks for
                 something impossible.
         """
-        return with_equal_turns(self._read_with_sum(words), words)
-
-    def _read_with_sum(self, words: str) -> Brief:
-        """Returns the Brief, with the sum of all turning angles if the words give one."""
-        _text(words)
-        turned = total_turning(words)
-        if turned is None:
-            return self._read(words)
-        update = {"words": words, "turning": turned.degrees}
-        try:
-            brief = self._read(turned.rest) if turned.is_more_said else Brief(turns=at_least(1))
-        except TooMuchError as error:
-            raise TooMuchError(str(error), error.brief.model_copy(update=update)) from error
-        if brief.junctions or brief.map is not None:  # the sum of which turns is meant is not said
-            return self._read(words)
-        return brief.model_copy(update=update)
-
-    def _read(self, words: str) -> Brief:
         text = _text(words)
         ensemble, found = self.scored(words)
         if not found:
@@ -123,7 +103,7 @@ class ModelReader:
             raise refused("!impossible loop")
         brief = self._brief(words, text, draft, ensemble)
         is_unclear = is_of_junctions(draft.line) and not can_be_kept(found[0].line)
-        if is_unclear or _has_unlimited_signs(brief, text) or tells_a_difference(text.text):
+        if is_unclear or _has_unlimited_signs(brief, text):
             brief = brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
         return brief if brief.confidence >= SURE else brief.model_copy(update={"other": _other(found, brief)})
 
@@ -189,11 +169,6 @@ class ModelReader:
         Raises:
             BriefError: as in ``read``.
         """
-        turned = total_turning(words)
-        if turned:
-            rest = self.alternatives(turned.rest, number, temperature, seed) if turned.is_more_said else ()
-            update = {"words": words, "turning": turned.degrees}
-            return tuple(brief.model_copy(update=update) for brief in rest) or (self.read(words),)
         first = self.read(words)
         text = _text(words)
         ensemble, _ = self.scored(words)

@@ -1,20 +1,19 @@
-"""Reads a change request with the networks that read descriptions of single roads, and by rules."""
+"""Reads a change request with the networks that read descriptions of single roads."""
 
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from roadgpt.brief.readers.model.change_rules import lost_numbers, read_by_rules
 from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
 from roadgpt.brief.readers.model.ensemble import Ensemble
-from roadgpt.brief.readers.model.height_words import is_doubtful_climb, with_sign
 from roadgpt.brief.readers.model.reverse_words import asks_to_reverse
-from roadgpt.brief.readers.model.slots import slotted
-from roadgpt.brief.readers.model.test_time_augmentation import scored_plans
+from roadgpt.brief.readers.model.slots import SlottedText, slotted
+from roadgpt.brief.readers.model.swap_words import turns_to_swap
+from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.errors import BriefError
 
 REVERSED = "road: reverse"
 CERTAIN = 0.97
-"""The confidence in a change request that a rule reads."""
+"""The confidence in a request that is read by its words: to reverse the road, or to swap two turns."""
 ALMOST = 2.0  # difference of score
 
 
@@ -45,24 +44,34 @@ def read_change(
     if asks_to_reverse(words):
         return ChangeReading(REVERSED, CERTAIN, ())
     text = slotted(words, is_change=True)
+    swapped = turns_to_swap(text)
+    if swapped:
+        return ChangeReading(f"{swapped}: swap", CERTAIN, ())
     found = scored_plans(roads.networks, words, roads.refuse_from, key=key)
     if not found:
         raise BriefError("this could not be read as changes; use shorter sentences")
-    line = found[0].line
-    known = read_by_rules(line, text, found[1].line if len(found) > 1 else "")
-    if known is not None:
-        return ChangeReading(known, CERTAIN, ())
     near = [draft for draft in found if draft.score >= found[0].score - ALMOST]
-    draft = next((draft for draft in near if not lost_numbers(draft, text)), found[0])
-    others = (with_sign(each.line, text) for each in near if each is not draft and not each.is_refusal)
+    draft = next((draft for draft in near if not _lost_numbers(draft, text)), found[0])
+    others = (each.line for each in near if each is not draft and not each.is_refusal)
     other = next(others, "")
     found_in = features(roads.networks, draft, text)
     if draft.is_refusal:
         sure = confidence(weights, found_in, (), text)
         return ChangeReading(draft.line, sure, (), other)
-    lost = lost_numbers(draft, text)
+    lost = _lost_numbers(draft, text)
     unused = roads.unused(text, draft.tokens)
     sure = confidence(weights, found_in, (*lost, *unused), text)
-    sure = min(sure, DOUBT) if is_denial(words) or is_doubtful_climb(draft.line, text) else sure
+    sure = min(sure, DOUBT) if is_denial(words) else sure
     unused = tuple(dict.fromkeys([*lost, *unused]))
-    return ChangeReading(with_sign(draft.line, text), sure, unused, other)
+    return ChangeReading(draft.line, sure, unused, other)
+
+
+def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
+    """Returns the small numbers of a change request (positions and counts) that its plan lacks."""
+    if draft.is_refusal:
+        return ()
+    return tuple(
+        word.written
+        for word in text.words
+        if word.written and word.text.isdecimal() and word.text not in (*draft.tokens, "1")
+    )

@@ -3,6 +3,8 @@
 import re
 from collections.abc import Sequence
 
+from roadgpt.brief.readers.model.word_set import word_set
+
 WITHOUT = r"(?:no|without(?: any)?|kein\w*|ohne|aucune?|pas d '|sans|ningun\w*|sin|nessun\w*|senza)"
 """Words before a noun that say that there is none, in a text without accents."""
 NOT = (
@@ -10,6 +12,12 @@ NOT = (
     r"mai|niente)"
 )
 """Other words that deny something."""
+NEGATIONS = word_set(
+    "no not never none neither nor nowhere without t nothing cannot dont doesnt kein keine keinen",
+    "keiner keines nicht nichts nie niemals nirgends nirgendwo ohne pas sans aucun aucune jamais nulle",
+    "sin nunca ningun ninguna nada non senza mai nessun nessuna niente ne",
+)
+"""All words that deny something, each alone."""
 DENIAL = rf"(?:{WITHOUT}|{NOT})"
 DENIED = re.compile(rf"(?:\b{DENIAL}|n['’]t)\b[^.,;:!?]*$")
 

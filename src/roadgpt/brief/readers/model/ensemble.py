@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from roadgpt.brief.readers.model.confidence import confidence, features
+from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES, asks_for_map, may_tell_a_route
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
@@ -78,11 +79,11 @@ def scored_by(
     ``routes`` reads the description if a word may mention a junction, ramp, lane or map. It is chosen in any
     of these cases:
 
-    - Its plan has words that ``roads`` does not know, and a confidence of at least ``GUESS``. The confidence
-      of ``roads`` is then ignored, because ``roads`` may be sure that "crossroads, sharp left" is a bend.
-    - Its plan has words that ``roads`` does not know, and the text asks for a map, or has a noun that can
-      only mean a junction.
-    - Its plan has words that ``roads`` does not know, and ``roads`` has no plan of higher confidence.
+    - Its plan is a route or a map, or has words that ``roads`` does not know, and has a confidence of at
+      least ``GUESS``. The confidence of ``roads`` is then ignored, because ``roads`` may be sure that
+      "crossroads, sharp left" is a bend.
+    - Its plan is such a one, and the text asks for a map, or has a noun that can only mean a junction.
+    - Its plan is such a one, and ``roads`` has no plan of higher confidence.
     - It refuses the description, and the confidence of ``roads`` in a plan is less than ``SURE``.
     - ``roads`` names a junction or the like beside the road, or as the cause of a refusal. ``routes`` then
       reads the description whatever its words are.
@@ -98,7 +99,7 @@ def scored_by(
     """
     text = slotted(words)
     read = routes.scored(words, refuse_from) if routes and may_tell_a_route(words) else ()
-    is_route = bool(read) and not roads.knows(_without_motorway(read[0].tokens))
+    is_route = bool(read) and _is_route(read[0], roads)
     sure = _confidence(routes, read, text) if routes and is_route else 0.0
     if routes and is_route and (sure >= GUESS or (_says_network(text) and not read[0].is_refusal)):
         return routes, read
@@ -111,6 +112,11 @@ def scored_by(
     if read[0].is_refusal:
         return (routes, read) if against < SURE else (roads, found)
     return (routes, read) if is_route and sure >= against else (roads, found)
+
+
+def _is_route(draft: ScoredPlan, roads: Ensemble) -> bool:
+    """Returns whether a plan is one of a route or a map, or has words that ``roads`` does not know."""
+    return is_of_junctions(draft.line) or not roads.knows(_without_motorway(draft.tokens))
 
 
 def _says_network(text: SlottedText) -> bool:

@@ -7,6 +7,8 @@ of the description, in any of the five languages, can imply it.
 import re
 from dataclasses import dataclass
 
+from roadgpt.brief.readers.model.computed_numbers import Compared
+
 ANGLE = re.compile(
     r"kink|dog|leg|square|right.angle|angle|wink|knick|orthog|perpend|angolo|angulo|equerre|coude|quiebr|codo|gomito"
     r"|piega|quarter|decroch|recod|baionn|ninety|neunzig|quatre|noventa|novanta|forty|\d|unused"
@@ -30,12 +32,13 @@ HILLY = re.compile(
 @dataclass(frozen=True, slots=True)
 class Evidence:
     """The numbers that a description can imply: angles ("right angle"), a grade ("mountain road"), a number
-    of hills ("rolling").
+    of hills ("rolling"), and figures that it tells by others ("twice as long").
     """
 
     angles: bool = True
     mountains: bool = True
     hills: bool = True
+    compared: Compared | None = None
 
     @classmethod
     def of(cls, text: str) -> "Evidence":
@@ -43,4 +46,5 @@ class Evidence:
         accents.
         """
         patterns = (ANGLE, MOUNTAIN, HILLY)
-        return cls(*(pattern.search(text) is not None for pattern in patterns))
+        angles, mountains, hills = (pattern.search(text) is not None for pattern in patterns)
+        return cls(angles, mountains, hills, Compared.of(text))

@@ -111,11 +111,6 @@ MORE_KINDS = re.compile(
 NOT_A_TREE = re.compile(rf"\b{DENIAL}\b[^.;]{{0,25}}{DEAD_END}\b")
 
 
-def asks_for_grid(text: SlottedText) -> bool:
-    """Returns whether a map can only be a grid, because its words give columns and rows: "two by three"."""
-    return len(BY.findall(said_of(text))) == 1
-
-
 def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
     """Returns the Brief of a map with the numbers of blocks and dead ends that follow from the words.
 

@@ -1,7 +1,6 @@
 """Chooses among the plans that the networks wrote, and makes a Brief of one."""
 
 from collections.abc import Sequence
-from itertools import pairwise
 from math import inf
 from typing import TypeVar
 
@@ -9,22 +8,18 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.mirror import is_of_junctions
-from roadgpt.brief.readers.model.numbered_sides import told_turns, with_numbered_sides
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
+from roadgpt.brief.readers.model.told_turns import told_turns
 from roadgpt.brief.readers.model.used_words import lost
 from roadgpt.errors import BriefError
 
 Sloped = TypeVar("Sloped", Brief, Clause)
-LEVEL = ("flat", "nearly_flat")
 NEARLY = 0.7  # difference of score
 ALMOST = 2.0  # difference of score
 CLOSE = 1.0  # difference of score
 FAIRLY = 1.5  # difference of score
-LIKELY = 2.5
-"""Largest difference of score at which a plan is preferred that has as many junctions as the words name."""
 
 
 def most_plausible(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan:
@@ -40,10 +35,7 @@ def most_plausible(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan
     if not is_of_junctions(first.line):
         return _with_told_turns(found, text) or first
     if can_be_kept(first.line):
-        from roadgpt.brief.readers.model.route_rules import as_counted  # only for networks
-
-        kept = (draft for draft in found if not draft.is_refusal and draft.score > first.score - LIKELY)
-        return as_counted([draft for draft in kept if can_be_kept(draft.line)], text) or first
+        return first
     near = [draft for draft in found if not draft.is_refusal and draft.score > first.score - NEARLY]
     return next((draft for draft in near if can_be_kept(draft.line)), first)
 
@@ -78,12 +70,12 @@ def _turns(line: str) -> Amount:
 
 def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, corrected by rules where the words of the description are clear."""
-    brief = with_numbered_sides(with_checked_counts(_level_at_zero(read_plan(line)), text), text)
+    brief = _level_at_zero(read_plan(line))
     if brief.junctions or brief.map is not None:
         from roadgpt.brief.readers.model.route_rules import with_words_of_network  # only for networks
 
         brief = with_words_of_network(brief, text, words)
-    return _with_listed_hills(brief)
+    return brief
 
 
 def _level_at_zero(brief: Brief) -> Brief:
@@ -96,20 +88,6 @@ def _level_at_zero(brief: Brief) -> Brief:
 def _at_zero(said: Sloped) -> Sloped:
     is_level = said.slope is not None and said.incline == exactly(0)
     return said.model_copy(update={"slope": "flat", "incline": None}) if is_level else said
-
-
-def _with_listed_hills(brief: Brief) -> Brief:
-    """Returns the Brief without "hilly" where all slopes of a straight road are listed and change less."""
-    parts = tuple(_with_listed_hills(each) for each in brief.stretches)
-    brief = brief.model_copy(update={"stretches": parts}) if parts != brief.stretches else brief
-    slopes = [clause.slope for clause in brief.clauses]
-    steep = [slope for slope in slopes if slope and slope not in LEVEL]
-    is_listed = bool(slopes) and None not in slopes and all(each.kind == "straight" for each in brief.clauses)
-    hills, turns = brief.hills, brief.turns
-    if not is_listed or hills is None or hills.hi is not None or turns is None or turns.hi != 0:
-        return brief
-    changes = sum(("up" in one) != ("up" in other) for one, other in pairwise(steep))
-    return brief.model_copy(update={"hills": None}) if changes < (hills.lo or 0) else brief
 
 
 def can_be_kept(line: str) -> bool:

@@ -7,10 +7,11 @@ A measured number is either a slot of the text with a suitable unit, or a number
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+from roadgpt.brief.readers.model.computed_numbers import FACTORS, KEYS, ONE, SIGNS, STEPS
 from roadgpt.brief.readers.model.evidence import Evidence
 from roadgpt.brief.readers.model.measures import LARGEST_SEEN
 from roadgpt.brief.readers.model.slots import NumberSlot
-from roadgpt.brief.readers.model.token_grammar import OneOf, Sequel, Symbol
+from roadgpt.brief.readers.model.token_grammar import AnyOf, OneOf, Sequel, Symbol
 from roadgpt.brief.readers.model.vocabulary import FIXED, SLOT_TOKENS, UNIT_OF
 
 UNSAID = {"deg=": FIXED, "angle=": FIXED, "turning=": ("180",), "steepest=": ("4", "5"), "climb=": ("0",)}
@@ -18,6 +19,7 @@ UNSAID = {"deg=": FIXED, "angle=": FIXED, "turning=": ("180",), "steepest=": ("4
 ALWAYS = {"angle": FIXED, "slope": ("1",), "climb=": ("0",)}
 """Numbers that a plan may contain whatever the text says, by plan key: a right angle, one percent."""
 COUNTS = tuple(str(number) for number in range(LARGEST_SEEN + 1))
+BOUND, MINUS = "..", "-"
 LEAST = {"arms=": 3}  # "a two-lane roundabout" has no two arms
 
 
@@ -52,6 +54,20 @@ class Numbers:
     def _fitting(self, unit: str) -> list[str]:
         return [SLOT_TOKENS[index] for index, slot in enumerate(self.slots) if slot.unit in ("", unit)]
 
+    def computed(self, key: str, base: str) -> tuple[Symbol, ...]:
+        """Returns what may follow a number if the words compare figures: a factor, or a sum with another
+        number."""
+        compared = self.evidence.compared
+        if key not in KEYS or compared is None:
+            return ()
+        ways: list[Symbol] = [Sequel(OneOf(("x",)), (OneOf(FACTORS),))] if compared.by_factor else []
+        small = [each for each in COUNTS if each in self.said or (each == "1" and key in ONE)]
+        others = [number for number in (*self._fitting(UNIT_OF[key]), *small) if number != base]
+        if others and compared.by_difference:
+            often = Sequel(OneOf(("x",)), (OneOf(STEPS),), is_open=True)
+            ways.append(Sequel(OneOf(SIGNS), (OneOf(others), often)))
+        return (Sequel(AnyOf(tuple(ways)), (), is_open=True),) if ways else ()
+
     def percents(self) -> list[str]:
         """Returns the numbers of the text that can be percentages."""
         return self._fitting("percent")
@@ -59,6 +75,23 @@ class Numbers:
     def value(self, word: str) -> float:
         """Returns the value of a number token."""
         return self.slots[SLOT_TOKENS.index(word)].value if word in SLOT_TOKENS else float(word)
+
+
+@dataclass(frozen=True, slots=True)
+class OneNumber:
+    """A number that may follow a key, or a sum or a multiple of numbers."""
+
+    key: str
+    numbers: Numbers
+    may_be_empty: bool = False
+
+    def first(self) -> Iterable[str]:
+        """Returns the numbers."""
+        return self.numbers.of(self.key)
+
+    def after(self, token: str) -> tuple[Symbol, ...]:
+        """Returns the rest of a sum or a multiple."""
+        return self.numbers.computed(self.key, token)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,8 +135,12 @@ class AmountTokens:
     def after(self, token: str) -> tuple[Symbol, ...]:
         """Returns the rest of the amount."""
         if self.low:
-            return ()
-        if token in ("..", "-"):
-            return (OneOf(self.numbers.of(self.key)),)
+            return self.numbers.computed(self.key, token)
+        number = OneNumber(self.key, self.numbers)
+        if token == BOUND:
+            return (number,)
+        if token == MINUS:  # "-9" or "-9..-6"
+            nearer = Sequel(OneOf((MINUS,)), (number,))
+            return (number, Sequel(OneOf(("..",)), (nearer,), is_open=True))
         above = replace(self, low=token, may_be_empty=True)
-        return (Sequel(OneOf(("..",)), (above,), is_open=True),)
+        return (*self.numbers.computed(self.key, token), Sequel(OneOf(("..",)), (above,), is_open=True))

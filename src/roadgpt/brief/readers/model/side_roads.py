@@ -8,13 +8,21 @@ from roadgpt.brief.junctions import JunctionClause, Side
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model.denial import TAKEN_BACK, says
-from roadgpt.brief.readers.model.exit_words import EXIT
 from roadgpt.brief.readers.model.junction_nouns import SIDE_STREETS
 from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.ordinals import OTHERS, PLACE, WHICH, place_of, places_in
 from roadgpt.brief.readers.model.slots import SlottedText
 
+SIDE_STREET = re.compile(
+    r"\b(?:out of|from|leav\w+) (?:an?|the|my|our) side (?:street|road)|"
+    r"\baus (?:einer|der|meiner|unserer) (?:neben|seiten)stra(?:ss|ß)e|"
+    r"\b(?:d'une|de la|de ma) (?:petite )?(?:rue|route) (?:laterale|secondaire)|"
+    r"\b(?:de|desde) (?:una|la|mi) (?:calle|carretera|via) (?:lateral|secundaria)|"
+    r"\bda(?:lla| una) (?:strada|via|stradina) (?:laterale|secondaria)"
+)
+"""Phrases for a route that begins on a side street, which ends at the next junction, a T-junction."""
+EXIT = r"(?:exit|off - ramp|off ramp|slip road|ausfahrt|abfahrt|sortie|salida|uscita|svincolo)"
 SIDES: tuple[Side, ...] = ("left", "right")
 ENGLISH = frozenset(["left", "right"])
 BEFORE_SIDE = frozenset(["the", "my", "our", "your", "its"])
@@ -207,3 +215,13 @@ def _with_ways(brief: Brief, sides: dict[int, Side]) -> Brief:
         for n, each in enumerate(brief.junctions)
     )
     return brief.model_copy(update={"junctions": junctions})
+
+
+def with_end_of_side_street(brief: Brief, words: str) -> Brief:
+    """Returns the Brief with a T-junction where a side street ends and the kind of the junction is open."""
+    first = brief.junctions[0] if brief.junctions else None
+    is_open = first is not None and first.kind == "junction" and first.take in ("left", "right")
+    if first is None or not is_open or first.arms or not SIDE_STREET.search(plain(words)):
+        return brief
+    known = first.model_copy(update={"kind": "t_junction"})
+    return brief.model_copy(update={"junctions": (known, *brief.junctions[1:])})

@@ -21,7 +21,6 @@ from roadgpt.brief.readers.model.measures import (
     take_unit_of_all,
     unit_at,
 )
-from roadgpt.brief.readers.model.multiples import with_differences, with_multiples
 from roadgpt.brief.readers.model.number_words import LONGEST, SIZES, number_word, numbers_in_words
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.slope_angles import as_grade
@@ -113,7 +112,6 @@ def slotted(text: str, is_change: bool = False) -> SlottedText:
     numbers = with_tolerances(numbers, tokens)
     for number in numbers:
         as_grade(number, tokens)
-    numbers = numbers if is_change else with_multiples(with_differences(numbers, tokens), tokens)
     found = _replaced(tokens, said, numbers, is_change)
     return SlottedText((Word(CHANGE, ""), *found.words), found.slots) if is_change else found
 

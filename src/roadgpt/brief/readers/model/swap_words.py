@@ -1,6 +1,4 @@
-"""Recognises change requests that ask two turns to change places, for which the network has no word, or two
-parts to exchange a value.
-"""
+"""Recognises change requests that ask two turns to change places, for which the network has no word."""
 
 import re
 
@@ -13,30 +11,14 @@ TURNS = (
 )
 NUMBER = rf"(?:(?:the|die|der|le|la|les|las|el|il) )?(\d|{PLACE})(?:st|nd|rd|th| \.|e|eme|a)?"
 AND = r"(?:and|with|und|mit|et|avec|y|con|e)"
-STRAIGHTS = r"(?:straights?|geraden?|lignes? droites?|rectas?|rettiline[oi])"
 
 
-def _two(nouns: str) -> re.Pattern[str]:
-    """Returns the pattern of two things that are named by their numbers, such as "turn 1 and the third"."""
-    return re.compile(
-        rf"\b{nouns} (?:no |nr |number )?{NUMBER} {AND} (?:{nouns} )?{NUMBER}\b|"
-        rf"\b{NUMBER} (?:{nouns} )?{AND} {NUMBER} {nouns}\b|"
-        rf"\b{NUMBER} {nouns} {AND} {NUMBER}(?= |$)"
-    )
-
-
-TWO = _two(TURNS)
-VALUES = {
-    "radius": r"radi\w*|raggi\w*|rayons?",
-    "angle": r"angles?|winkel\w*|angul\w*|angol\w*",
-    "length": r"lengths?|lange\w*|longueurs?|longitud\w*|lunghezz\w*",
-}
-"""Words for the values that two parts may exchange: turns a radius or an angle, straights a length."""
-TWO_WITH = {
-    "radius": ("turn", TWO),
-    "angle": ("turn", TWO),
-    "length": ("straight", _two(STRAIGHTS)),
-}
+TWO = re.compile(
+    rf"\b{TURNS} (?:no |nr |number )?{NUMBER} {AND} (?:{TURNS} )?{NUMBER}\b|"
+    rf"\b{NUMBER} (?:{TURNS} )?{AND} {NUMBER} {TURNS}\b|"
+    rf"\b{NUMBER} {TURNS} {AND} {NUMBER}(?= |$)"
+)
+"""Two turns that are named by their numbers, such as "turn 1 and the third"."""
 BOTH = re.compile(
     rf"\b(?:the (?:two|2|both)|both|die (?:2|zwei|beiden)|les (?:2|deux)|las (?:2|dos)|le (?:2|due)) "
     rf"{TURNS}\b"
@@ -74,22 +56,3 @@ def turns_to_swap(text: SlottedText) -> str | None:
         one, other = (place_of(word) or int(word) for word in found[0] if word)
         return f"turn {one},{other}"
     return "turn all" if BOTH.search(said) else None
-
-
-def exchanged_values(text: SlottedText) -> str | None:
-    """Returns the plan in which two turns exchange their radii or angles, or two straights their lengths;
-    None for other requests.
-    """
-    said = STAYS.sub("", " ".join(word.text for word in text.words if word.written))
-    values = [value for value, words in VALUES.items() if re.search(rf"\b(?:{words})\b", said)]
-    if not SWAP.search(said) or len(values) != 1 or len(said.split()) > WORDS:
-        return None
-    noun, two = TWO_WITH[values[0]]
-    rest = re.sub(rf"\b(?:{VALUES[values[0]]}|{STRAIGHTS})\b", "", said)
-    found = two.findall(said)
-    named = [word for word in found[0] if word] if len(found) == 1 else []
-    others = len(re.findall(rf"\b(?:\d+|{PLACE})\b", said)) - len(named)
-    if MORE.search(rest) or not named or others:
-        return None
-    one, other = (place_of(word) or int(word) for word in named)
-    return f"{noun} {one}: {values[0]} ={noun} {other}; {noun} {other}: {values[0]} ={noun} {one}"

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from roadgpt.brief.map_clause import MAP
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.bounds import bounded
 from roadgpt.brief.readers.model.mirror import in_mirror, in_mirror_tokens
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork, WrittenPlan
 from roadgpt.brief.readers.model.route_words import asks_for_map
@@ -161,7 +160,6 @@ def _plans_of_variant(
     for written in network.write(network.encode(text), text, refuse_from, barred=barred):
         chance = written.refusal
         tokens = in_mirror_tokens(written.tokens) if is_mirrored else written.tokens
-        tokens = tokens if text.is_change else bounded(tokens, text)
         if ROUNDABOUT in tokens and not text.is_change:
             from roadgpt.brief.readers.model.ring_sizes import with_ring_sizes  # only for networks
 

@@ -7,7 +7,7 @@ usually asks for.
 
 from collections.abc import Collection, Mapping, Sequence
 
-from roadgpt.brief.readers.model.bounds import NOT
+from roadgpt.brief.readers.model.denial import NEGATIONS
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.slots import SlottedText, Word
 from roadgpt.brief.readers.model.vocabulary import RING_SIZES, SLOT_TOKENS
@@ -17,7 +17,7 @@ from roadgpt.brief.readers.model.word_set import word_set
 NOTICED = 0.02
 """If leaving a word out lowers the log-probability of the plan by more than this, the word counts as used,
 even if the plan stays the likeliest."""
-NEGATORS = NOT | word_set(
+NEGATORS = NEGATIONS | word_set(
     "don doesn isn shouldn only except weder nur ausser ni rien seulement sauf nessuna nessuno solo soltanto",
     "tranne salvo excepto",
 )

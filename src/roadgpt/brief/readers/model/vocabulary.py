@@ -4,9 +4,11 @@ turn x3 left; straight len=91.4 | up        ->  turn x 3 left ; straight len= [1
 """
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from roadgpt.brief.halfway import with_halfway
+from roadgpt.brief.readers.model.computed_numbers import KEYS as COMPUTED_KEYS
+from roadgpt.brief.readers.model.computed_numbers import ONE, Compared, computed, with_values
 from roadgpt.brief.readers.model.measures import LARGEST_SEEN
 from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot
 
@@ -127,13 +129,19 @@ CLOSE = 0.0051
 """A factor is taken for a number in the text, or for a usual factor, if it differs by less than this."""
 
 
-def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
+def tokens_of(plan: str, slots: Sequence[NumberSlot], compared: Compared | None = None) -> list[str] | None:
     """Returns the tokens of a plan; None if the plan has a number for which there is neither a slot nor a
     token.
+
+    Args:
+        plan: the plan.
+        slots: the numbers of the text.
+        compared: how the words may tell numbers by other numbers; None if no number is computed.
     """
     out: list[str] = []
     key = ""
-    taken: set[int] = set()
+    taken: dict[int, str] = {}
+    known = compared.plain if compared else frozenset()
     line = WAYS.sub(lambda ways: ways[0].replace("+", " "), with_halfway(plan))
     for piece in PIECE.findall(LISTED.sub(" ", line)):
         if NUMERIC.fullmatch(piece):
@@ -143,7 +151,12 @@ def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
             else:
                 is_count = out[-1] in ("x", *NOUNS, *KINDS, *NUMBERS)
                 found = _number_tokens(piece, "" if is_count else key, slots, taken)
-            if out[-1] == "r=" and (found is None or found[0] not in SLOT_TOKENS):
+                is_said = found is not None and (found[-1] in SLOT_TOKENS or found[-1] in known)
+                if compared and key in COMPUTED_KEYS and not (is_count or is_said or "roundabout" in out):
+                    sign, value = ["-"] * piece.startswith("-"), abs(float(piece))
+                    made = computed(value, _bases(key, slots, taken, known), slots, compared)
+                    found = [*sign, *made] if made else found
+            if out[-1] == "r=" and "roundabout" in out and (found is None or found[0] not in SLOT_TOKENS):
                 across = _number_tokens(f"{2 * float(piece):g}", key, slots, taken)
                 if across and across[0] in SLOT_TOKENS:  # the text gives the diameter
                     out[-1], found = "d=", across
@@ -157,6 +170,21 @@ def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
             key = ""
         out.append(piece)
     return out
+
+
+def _bases(
+    key: str, slots: Sequence[NumberSlot], taken: Mapping[int, str], plain: Iterable[str]
+) -> list[str]:
+    """Returns the tokens of the numbers from which a number may be computed: first those already used for the
+    same key, the last one first, then those of the same unit, then those without a unit.
+    """
+    used = [index for index in reversed(list(taken)) if taken[index] == key]
+    free = [index for index in range(len(slots)) if index not in taken]
+    alike = [index for index in free if slots[index].unit == UNIT_OF[key]]
+    bare = [index for index in free if not slots[index].unit]
+    small = sorted((number for number in plain if number in NUMBERS and number not in FIXED), key=int)
+    one = ["1"] if key in ONE and "1" not in small else []
+    return [*(SLOT_TOKENS[index] for index in (*used, *alike, *bare)), *reversed(small), *one]
 
 
 def _factor_tokens(factor: float, slots: Sequence[NumberSlot]) -> list[str] | None:
@@ -174,7 +202,9 @@ def _factor_tokens(factor: float, slots: Sequence[NumberSlot]) -> list[str] | No
     return ["x", usual] if usual else None
 
 
-def _number_tokens(piece: str, key: str, slots: Sequence[NumberSlot], taken: set[int]) -> list[str] | None:
+def _number_tokens(
+    piece: str, key: str, slots: Sequence[NumberSlot], taken: dict[int, str]
+) -> list[str] | None:
     sign, digits = (["-"], piece[1:]) if piece.startswith("-") else ([], piece)
     value = float(digits)
     fits = [index for index, slot in enumerate(slots) if abs(slot.value - value) < 0.051]
@@ -186,7 +216,7 @@ def _number_tokens(piece: str, key: str, slots: Sequence[NumberSlot], taken: set
         fits = [index for index in fits if not slots[index].unit]
     free = [index for index in fits if index not in taken]
     if fits:
-        taken.add((free or fits)[0])
+        taken[(free or fits)[0]] = key
         return [*sign, SLOT_TOKENS[(free or fits)[0]]]
     return [*sign, digits] if digits in NUMBERS else None
 
@@ -194,7 +224,7 @@ def _number_tokens(piece: str, key: str, slots: Sequence[NumberSlot], taken: set
 def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
     """Returns the plan that the tokens represent, with the values of the slots filled in."""
     out: list[str] = []
-    for word in tokens:
+    for word in with_values(tokens, slots):
         value = slots[SLOT_TOKENS.index(word)].value if _is_filled(word, slots) else 0.0
         percent = out[-1] if out and out[-1] in PERCENTS else ""
         if percent:

@@ -1,0 +1,26 @@
+"""Batches made by several processes: complete, and the same for the same seed."""
+
+from itertools import islice
+
+import numpy as np
+
+from roadgpt.brief.readers.model import WEIGHTS
+from roadgpt.brief.readers.model.wordpiece import WordPieces
+from roadgpt.learn.data import batches, examples
+from roadgpt.learn.feed import fed_batches
+from roadgpt.learn.generator import Pair
+from roadgpt.learn.pretrained import read_vocabulary
+
+HAND = [Pair(f"{word} bends to the left", f"turn x{n} left", "test", "en") for n, word in enumerate(
+    ("two", "three", "four"), 2
+)]  # fmt: skip
+SHARES = {"hand": 1.0}
+
+
+def test_batches_come_from_each_process_in_turn() -> None:
+    pieces = read_vocabulary(WEIGHTS / "pieces.txt")
+    found = list(islice(fed_batches(2, 5, HAND, pieces, SHARES, 4, 2), 4))
+    for first in (0, 1):
+        alone = batches(examples(10 + first, HAND, WordPieces(pieces), SHARES), 4, 2, 10 + first)
+        for mine, theirs in zip(found[first::2], alone, strict=False):
+            assert all(np.array_equal(*both) for both in zip(mine, theirs, strict=True))
