@@ -131,3 +131,13 @@ def test_no_map_helps_against_slopes_that_change_too_fast() -> None:
     brief = read_plan("straight steeply_up len=12; straight steeply_down len=12; straight steeply_up len=12")
     with short_searches():
         assert world_for(brief, World(limits=Limits(speed_limit=60))).site.map_size == 250
+
+
+def test_a_long_road_with_an_open_number_of_turns_gets_a_larger_map() -> None:
+    """On the largest map, more turns are drawn than fit into the length; a smaller one has room."""
+    brief = read_plan("| turns=8.. lefts=1.. rights=1.. len=1000")
+    found = world_for(brief, World())
+    assert 250 < found.site.map_size < 1000
+    for seed in range(6):
+        length = sum(segment.distance for segment in draft(brief, found, seed=seed).segments)
+        assert 900 < length < 1100

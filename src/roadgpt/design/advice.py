@@ -28,6 +28,7 @@ HALVINGS = 2  # of the range between the last length that failed and the first t
 SURE = 0.92  # share of the longest drafted length that is offered
 LIKELY = 0.4  # ratio of the side of a map to the length of a winding road that may fit on it
 LARGER = 1.3  # ratio of each map size tried to the one before
+FIRST_SIZES = 2  # map sizes that are tried before the largest, on which an open count of turns may not fit
 FEWEST_METRES = 30.0
 
 Fits = Callable[[Brief, World], bool]
@@ -185,10 +186,12 @@ def larger_map(brief: Brief, world: World, fits: Fits, likely: float) -> float |
     """
     if likely > 2 * LARGEST_MAP or world.site.map_size == LARGEST_MAP:
         return None
-    if not fits(brief, world.changed(map_size=LARGEST_MAP)):  # then no smaller one needs to be tried
-        return None
     size = ceil(max(likely, world.site.map_size + ROUND_MAP) / ROUND_MAP) * ROUND_MAP
+    tried = 0
     while size < LARGEST_MAP and not fits(brief, world.changed(map_size=size)):
+        tried += 1
+        if tried == FIRST_SIZES and not fits(brief, world.changed(map_size=LARGEST_MAP)):
+            return None  # no larger map would help either
         size = ceil(LARGER * size / ROUND_MAP) * ROUND_MAP
     return min(size, LARGEST_MAP)
 

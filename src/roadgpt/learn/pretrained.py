@@ -44,7 +44,8 @@ nreimers/MiniLM-L6-H384-uncased, and that on microsoft/MiniLM-L12-H384-uncased),
 model.safetensors has the SHA-256
 {HASH}.
 Changes: the vocabulary was cut to Latin letters, one encoder was grown to twelve layers, all layers
-were trained further, and the weights were rounded to 7 bits. pieces.txt is a part of the vocabulary of BERT (Google, Apache-2.0).
+were trained further, and the weights were rounded to 7 bits. pieces.txt is a part of the vocabulary
+of BERT (Google, Apache-2.0).
 """
 """The text of the licence notice that is distributed with the weights."""
 
