@@ -173,6 +173,8 @@ def train(
     roadgpt learn train runs/reader --weights MINILM
     roadgpt learn train runs/reader --installed --steps 2000 --own my-pairs
     """
+    if rest["encoder_layers"] and not (installed or second):
+        raise LearnError("--encoder-layers deepens the installed reader; add --installed or --second")
     try:
         from roadgpt.learn.train import TrainingSettings, train_together
     except ImportError as error:
