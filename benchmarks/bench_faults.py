@@ -27,9 +27,8 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.campaign.faults.fault import Fault, faults_in
-from roadgpt.campaign.faults.remedy import Removed, remedies_of
-from roadgpt.campaign.faults.remedy_log import stored_remedies, task_of
-from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.faults.remedy import Removed, remedies_of, stored_remedies
+from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.rerun import kept_run
 from roadgpt.campaign.unordered_map import unordered_map
 
@@ -117,7 +116,7 @@ def measured(folder: Path, driver: str, condition: str, tests: int, seed: int, w
         ready.touch()
     found = faults_in(place)
     faults = tuple(each for each in found.them if each.remedy)
-    known = [[stored_remedies(task_of(place, each)) for each in fault.members] for fault in found.them]
+    known = [[stored_remedies(place, each) for each in fault.members] for fault in found.them]
     tested = [[each for each in its if each is not None] for its in known]
     alone = sum(len(each.members) for each in found.them if not each.remedy)
     within, across = pairs(faults, held_back(place, faults, seed, workers))
@@ -137,7 +136,7 @@ def held_back(place: Path, faults: Sequence[Fault], seed: int, workers: int) -> 
     kinds = frozenset(str(fault.remedy).split()[0] for fault in faults)
     drawn: list[list[RemedyTrial]] = []
     for fault in faults:
-        others = [each for each in fault.members if stored_remedies(task_of(place, each)) is None]
+        others = [each for each in fault.members if stored_remedies(place, each) is None]
         some = sorted(rng.permutation(len(others))[:OTHERS])
         drawn.append([RemedyTrial(place, others[at].name, kinds) for at in some])
     tasks = [each for some in drawn for each in some]

@@ -26,11 +26,10 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.design import draft
 from roadgpt.errors import BriefError, DesignError
-from roadgpt.learn.calibrate import normal_change
 from roadgpt.learn.data import is_for_roads_only
 from roadgpt.learn.evaluate import HEAD, readings, score
-from roadgpt.learn.generator import Pair
 from roadgpt.learn.labels import read_pairs
+from roadgpt.learn.pair import Pair, normal_change
 from roadgpt.road import Design, World, build
 
 HAND = Path(__file__).parents[1] / "data" / "descriptions"

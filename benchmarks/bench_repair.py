@@ -14,8 +14,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from authorities import roadgpt_checks
 from llm_like import random_lists
 from roadgpt import check
+from roadgpt.chat.model import Repair
 from roadgpt.check.measures import measure, way
-from roadgpt.design.repair import How, repair
+from roadgpt.design.repair import repair
 from roadgpt.road import Design, World, build, read_design
 
 WORLD = World()
@@ -34,11 +35,11 @@ def main() -> None:
     print(f"    of those, {wrong} are not strictly valid as arcs")
     print("       valid       as proposed  change of lengths    change of angles     ms")
     print("                                median, mean, 95 %   median, mean, 95 %   median, most")
-    for how in get_args(How):
+    for how in get_args(Repair):
         print(_row(how, designs))
 
 
-def _row(how: How, designs: Sequence[Design]) -> str:
+def _row(how: Repair, designs: Sequence[Design]) -> str:
     valid = kept = 0
     lengths, angles, took = [], [], []
     for design in designs:

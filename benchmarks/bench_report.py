@@ -12,9 +12,8 @@ from pathlib import Path
 from roadgpt.brief import read
 from roadgpt.campaign.model import Cell, CellBudget, Proposal, Result
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.record import Record
+from roadgpt.campaign.record import Record, Store
 from roadgpt.campaign.single_test import FinishedTest
-from roadgpt.campaign.store import Store
 from roadgpt.design import draft
 from roadgpt.road import World
 from roadgpt.run.model import Request

@@ -280,9 +280,9 @@ def test_help_answers_at_once(words: list[str]) -> None:
 
 
 ONLY_IN_BRIEF = (
-    "junction_check arm_check lane_sequence junction_ranges junction_sentence map_plan motorway change"
+    "junction_check arm_check junction_ranges junction_sentence map_plan motorway change"
     " readers.model.junction_nouns readers.model.change_grammar readers.model.change_reading"
-    " readers.model.reverse_words readers.model.route_rules"
+    " readers.model.map_words readers.model.map_signs readers.model.side_roads"
 )
 """What only routes, maps, motorways and change requests need. A network that reads a road may weigh the plan
 'crossroads' or 'roundabout' and drop it, so ``junction_plan`` and ``ring_sizes`` are not here."""
@@ -299,7 +299,7 @@ def test_a_road_without_junctions_loads_nothing_that_builds_networks_or_reads_fi
     assert {"roadgpt.drive.simulators.mujoco", "roadgpt.report.overview", "roadgpt.verdict.judging"} <= loaded
     of_networks = {name for name in loaded if name.startswith("roadgpt.network")}
     assert of_networks == {"roadgpt.network", "roadgpt.network.road_or_route"}
-    of_others = ("road.opendrive", "road.source", "report.network_view", "verdict.incidents", "design.advice")
+    of_others = ("road.opendrive", "report.network_view", "verdict.incidents", "design.advice")
     of_others += ("drive.isolation.", "chat.strict_json", "campaign.stored_run", "campaign.traces")
     assert not {name for name in loaded if name.removeprefix("roadgpt.").startswith(of_others)}
     of_brief = {f"roadgpt.brief.{name}" for name in ONLY_IN_BRIEF.split()}

@@ -15,7 +15,8 @@ from roadgpt import reading
 from roadgpt.cli import app
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
-from roadgpt.road import Road, read_design, read_road
+from roadgpt.network import read_road
+from roadgpt.road import Road, read_design
 
 SEGMENT = {"distance": 30, "direction": "left", "incline": 2, "turn_degrees": 40}
 

@@ -21,11 +21,8 @@ _running: "set[subprocess.Popen[bytes]]" = set()
 
 
 def start(words: Sequence[str], **how: Any) -> "subprocess.Popen[bytes]":
-    """Starts a process in a new session, so that Ctrl-C in the terminal does not reach it.
-
-    Args:
-        words: The command and its arguments.
-        **how: Further arguments of ``subprocess.Popen``.
+    """Starts a process in a new session, so that Ctrl-C in the terminal does not reach it. ``how`` has
+    further arguments of ``subprocess.Popen``.
 
     Raises:
         OSError: The operating system cannot start the process.
@@ -38,10 +35,8 @@ def start(words: Sequence[str], **how: Any) -> "subprocess.Popen[bytes]":
 def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
     """Starts a Python process that runs ``main()`` of a module and communicates through its standard streams.
 
-    Args:
-        entry: The name of the module.
-        **how: Further arguments of ``subprocess.Popen``; the variables in ``env`` are added to the current
-            environment.
+    ``how`` has further arguments of ``subprocess.Popen``; the variables in its ``env`` are added to the
+    current environment.
 
     Raises:
         OSError: The operating system cannot start the process.

@@ -112,13 +112,10 @@ class UnparsableError(ReplyError):
 
 @contextmanager
 def explained(kind: type[RoadGPTError], what: str, advice: str) -> Iterator[None]:
-    """Catches an OSError that is raised in a ``with`` block, and raises an error with a one-sentence message
-    instead.
+    """Catches an OSError that is raised in a ``with`` block, and raises an error of another kind instead.
 
-    Args:
-        kind: the class of the error to raise.
-        what: beginning of the message, such as "cannot write FILE"; the reason follows.
-        advice: end of the message, which says what the user can do.
+    Its message is one sentence: ``what``, such as "cannot write FILE", then the reason, and ``advice``, which
+    says what the user can do.
     """
     try:
         yield

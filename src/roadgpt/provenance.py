@@ -52,17 +52,13 @@ class NameOrigins:
         self._files.clear()
 
 
-def _nobody(question: str) -> bool:
-    return False
-
-
 class Confirmation:
     """Asks the user to confirm something. Until a program sets ``ask``, the user is not asked and the
     answer is always no.
     """
 
     def __init__(self) -> None:
-        self.ask: Callable[[str], bool] = _nobody
+        self.ask: Callable[[str], bool] = lambda question: False
 
 
 CODE = NameOrigins()

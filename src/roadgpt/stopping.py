@@ -13,8 +13,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from types import FrameType
 from typing import Any
 
@@ -68,21 +67,6 @@ def status() -> int:
     as 130 for Ctrl-C; 0 if no signal was received.
     """
     return 128 + _State.number if _State.number else 0
-
-
-@contextmanager
-def shielded() -> Iterator[None]:
-    """Returns a context manager. Processes that are started inside its ``with`` block do not receive
-    Ctrl-C from the terminal, so this process must end them itself.
-    """
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def forget() -> None:

@@ -13,7 +13,7 @@ from outside_judge import SHARED, load_referee
 from roadgpt.check.measures import measure
 from roadgpt.design.designers.planner import Planner
 from roadgpt.road import World, build
-from roadgpt.study.prompts import read_prompts
+from roadgpt.study.plan import read_prompts
 from roadgpt.study.truth import Truth, holds
 from strategies import designs, sensible_briefs
 

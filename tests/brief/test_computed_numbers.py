@@ -7,8 +7,8 @@ import pytest
 from roadgpt.brief import read
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model.computed_numbers import Compared
-from roadgpt.brief.readers.model.evidence import Evidence
 from roadgpt.brief.readers.model.plan_automaton import PlanAutomaton
+from roadgpt.brief.readers.model.plan_numbers import Evidence
 from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText, slotted
 from roadgpt.brief.readers.model.vocabulary import TOKENS, plan_of, tokens_of
 

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
+from roadgpt.brief.readers.model.change_reading import is_denial
+from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.used_words import left_out

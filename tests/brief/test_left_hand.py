@@ -3,7 +3,7 @@
 import pytest
 
 from roadgpt.brief import normal, read
-from roadgpt.brief.left_hand import says_left_hand, with_driving_side
+from roadgpt.brief.expressions import says_left_hand, with_driving_side
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.sentence import sentence

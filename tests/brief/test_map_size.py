@@ -3,7 +3,7 @@
 import pytest
 
 from roadgpt.brief import read
-from roadgpt.brief.map_size import said_map_size
+from roadgpt.brief.expressions import said_map_size
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.design import draft
 from roadgpt.design.room import world_for, world_remarks

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from roadgpt import check
 from roadgpt.brief import read, remarks, sentence
-from roadgpt.brief.motorway_words import says_motorway
+from roadgpt.brief.expressions import says_motorway
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.cli.app import app
 from roadgpt.design import draft

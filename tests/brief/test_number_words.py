@@ -4,8 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadgpt.brief.readers.model.number_words import numbers_in_words
-from roadgpt.brief.readers.model.numerals import LANGUAGES, plain, spell
+from roadgpt.brief.readers.model.numerals import LANGUAGES, numbers_in_words, plain, spell
 from roadgpt.brief.readers.model.slots import slotted
 
 IN_METRES = {

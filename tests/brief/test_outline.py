@@ -6,6 +6,7 @@ import pytest
 
 from roadgpt.brief.model import Brief, Clause, at_least, at_most, between, exactly
 from roadgpt.brief.outline import Outline, outline
+from roadgpt.brief.plan import read_plan
 from roadgpt.brief.ranges import Range
 
 
@@ -150,3 +151,30 @@ def test_gentle_for_every_turn_leaves_hairpins_their_angle() -> None:
 )
 def test_two_ends_that_no_turn_can_be_at_once_are_two_turns(first: Clause, last: Clause, least: int) -> None:
     assert of(starts=first, ends=last).turns.lo == least
+
+
+@pytest.mark.parametrize(
+    ("plan", "same"),
+    [
+        ("straight up len=60; crest; straight down len=60", "straight up len=60; straight down len=60"),
+        ("straight steeply_down; dip; straight up", "straight steeply_down; straight up"),
+    ],
+)
+def test_a_crest_between_a_climb_and_a_fall_is_where_they_meet(plan: str, same: str) -> None:
+    assert outline(read_plan(plan)) == outline(read_plan(same))
+
+
+@pytest.mark.parametrize(
+    "plan",
+    [
+        "straight up; crest len=40; straight down",
+        "straight down; crest; straight up",
+        "turn up; crest; straight down",
+        "straight up; crest; turn down",
+        "straight up; crest",
+        "straight; crest; straight down",
+    ],
+)
+def test_other_crests_have_two_slopes_of_their_own(plan: str) -> None:
+    without = "; ".join(part for part in plan.split("; ") if not part.startswith("crest"))
+    assert outline(read_plan(plan)).groups != outline(read_plan(without)).groups

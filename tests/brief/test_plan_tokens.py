@@ -11,11 +11,10 @@ from random_plans import random_plan
 from roadgpt.brief.beside import BESIDE
 from roadgpt.brief.change import parser as language
 from roadgpt.brief.change.plan import change_plan, read_change_plan
-from roadgpt.brief.change.request import HALVES, SUPERLATIVES
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
 from roadgpt.brief.readers.model.slots import slotted
-from roadgpt.brief.readers.model.token_grammar import InOrder, ListTail, OneOf, Sequel, allowed, pushed
+from roadgpt.brief.readers.model.token_grammar import allowed, in_order, list_tail, one_of, pushed, sequel
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of, tokens_of
 from roadgpt.brief.refusal import OF_CAUSES, refused
 
@@ -98,8 +97,8 @@ def test_a_change_request_is_told_from_a_description_by_its_mark() -> None:
 
 def test_a_grammar_allows_each_part_once_in_its_order() -> None:
     stack = (
-        InOrder((OneOf(("a",)), Sequel(OneOf(("b",)), (OneOf(("c",)),)), OneOf(("d",))), least=1),
-        OneOf(("end",)),
+        in_order(one_of("a"), sequel(one_of("b"), one_of("c")), one_of("d"), least=1),
+        one_of("end"),
     )
     assert allowed(stack) == ["a", "b", "d"]  # nothing can be left out yet
     stack = pushed(stack, "b")
@@ -111,7 +110,7 @@ def test_a_grammar_allows_each_part_once_in_its_order() -> None:
 
 
 def test_a_list_of_a_grammar_ends_when_it_is_full() -> None:
-    stack = (ListTail(",", OneOf(("x",)), 2), OneOf(("end",)))
+    stack = (list_tail(",", one_of("x"), 2), one_of("end"))
     for token in (",", "x", ",", "x"):
         stack = pushed(stack, token)
     assert allowed(stack) == ["end"]
@@ -127,9 +126,8 @@ def test_the_network_has_a_token_for_every_word_of_changes() -> None:
     words = {
         *language.NOUNS,
         *language.KINDS,
-        *language.PROPERTIES,
-        *HALVES,
-        *SUPERLATIVES,
+        *language.OF_TARGETS,
+        *language.OF_NEW,
     }
     words |= {
         *language.ENDS,

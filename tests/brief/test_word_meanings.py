@@ -5,10 +5,9 @@ import pytest
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.readers.model.slots import slotted
-from roadgpt.brief.readers.model.used_words import NEGATORS
+from roadgpt.brief.readers.model.used_words import understood, with_groups
 from roadgpt.brief.readers.model.vocabulary import tokens_of
-from roadgpt.brief.readers.model.word_meanings import understood, with_groups
-from roadgpt.learn.generator import Pair
+from roadgpt.learn.pair import Pair
 from roadgpt.learn.word_meanings import filler_words, word_meanings
 
 MEANINGS = {
@@ -26,7 +25,7 @@ def covered(words: str, plan: str) -> set[str]:
     """The words that count as understood if the plan depends on none of them."""
     text = slotted(words)
     assert read_plan(plan)
-    places = understood(text, tokens_of(plan, text.slots) or (), range(len(text.words)), MEANINGS, NEGATORS)
+    places = understood(text, tokens_of(plan, text.slots) or (), range(len(text.words)), MEANINGS)
     return {text.words[place].written for place in places}
 
 

@@ -17,10 +17,10 @@ from roadgpt.campaign import lifecycle, scheduler
 from roadgpt.campaign.executors import FinishedJob, Job, RunningJob, WorkerConfig
 from roadgpt.campaign.model import Cell, CellBudget, Pool, Proposal, Result
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.record import STORE
+from roadgpt.campaign.record import STORE, Store
 from roadgpt.campaign.single_test import FinishedTest, Task
-from roadgpt.campaign.store import Store
-from roadgpt.road import Design, Segment
+from roadgpt.campaign.surrogate_features import RoadSamples, features_of_samples
+from roadgpt.road import Design, Road, Segment, World
 
 OUTCOMES = ("PASS", "FAIL", "INVALID", "ERROR", "VALID")
 
@@ -32,6 +32,13 @@ def a_design(number: int) -> Design:
         theta=number % 360,
         segments=(Segment(distance=50 + number / 7, direction="straight"),),
     )
+
+
+def features_of_road(road: Road, world: World) -> Any:
+    """What a surrogate sees of a road that is built."""
+    found = road.sample()
+    middle = world.profile_of(road).middle(found.s)
+    return features_of_samples(RoadSamples(found.s, found.curvature, found.grade, middle), world)
 
 
 def made(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTest:

@@ -52,7 +52,7 @@ def test_the_table_does_not_depend_on_who_worked_and_who_was_interrupted(
         Inline.rng = np.random.default_rng(order)
         begin(plan(33, cells), folder)
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("roadgpt.campaign.store.Store.group_seconds", 0.0)  # keep each group at once
+            patch.setattr("roadgpt.campaign.record.Store.group_seconds", 0.0)  # keep each group at once
             for stop in stops:
                 steps = work(folder, workers, "inline")
                 for _, _ in zip(range(stop), steps, strict=False):
@@ -195,7 +195,7 @@ def test_a_power_cut_loses_whole_transactions_that_are_done_again(tmp_path: Path
     begin(plan(60), folder)
     steps = work(folder, 3, "inline")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("roadgpt.campaign.store.Store.group_seconds", 0.0)
+        patch.setattr("roadgpt.campaign.record.Store.group_seconds", 0.0)
         for _ in zip(range(8), steps, strict=False):
             pass
     store, log = (folder / name for name in ("campaign.sqlite", "campaign.sqlite-wal"))

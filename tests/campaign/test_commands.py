@@ -149,7 +149,7 @@ def test_status_and_top_tell_of_a_finished_campaign(driven: Path) -> None:
 
 def test_status_tells_of_a_campaign_at_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     put_on_shelves(monkeypatch.setattr)
-    monkeypatch.setattr("roadgpt.campaign.store.Store.group_seconds", 0.0)
+    monkeypatch.setattr("roadgpt.campaign.record.Store.group_seconds", 0.0)
     begin(plan(60), tmp_path)
     steps = work(tmp_path, 2, "inline")
     next(steps)

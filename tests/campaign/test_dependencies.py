@@ -57,7 +57,7 @@ def test_nothing_imports_them_but_the_reader_of_old_traces() -> None:
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             names += [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
             found |= {(path.name, name.partition(".")[0]) for name in names}
-    assert {(file, name) for file, name in found if name in WITHOUT} == {("parquet_traces.py", "pyarrow")}
+    assert {(file, name) for file, name in found if name in WITHOUT} == {("traces.py", "pyarrow")}
     assert ("surrogate.py", "numpy") in found
 
 

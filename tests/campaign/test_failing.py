@@ -11,15 +11,14 @@ import pytest
 from click.testing import CliRunner, Result
 
 from roadgpt.campaign.faults import fault as fault_module
-from roadgpt.campaign.faults import fault_log, remedy, remedy_log, told_apart
-from roadgpt.campaign.faults.disturbed import disturbance_of
+from roadgpt.campaign.faults import fault_log, remedy, told_apart
 from roadgpt.campaign.faults.failures import failures_of
 from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.faults.fault_log import FailureAnalysis
 from roadgpt.campaign.faults.minimise import Simplest
 from roadgpt.campaign.faults.remedy import REMEDIES, Removed
-from roadgpt.campaign.faults.stability import Repeated, Stability
-from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.faults.stability import Repeated, Stability, disturbance_of
+from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.rerun import kept_run, read_trace, run_again
 from roadgpt.campaign.workers.in_process import InProcess
 from roadgpt.cli import app
@@ -201,7 +200,7 @@ def test_failures_that_one_small_change_removes_are_one_fault(
     two more of the fault, with half of the kinds of changes.
     """
     few = tuple(each for each in remedy.REMEDIES if each.kind in ("wider", "eased", "apart", "slower"))
-    for module in (remedy, remedy_log, told_apart):
+    for module in (remedy, told_apart):
         monkeypatch.setattr(module, "REMEDIES", few)
     monkeypatch.setattr(fault_module, "MOST_FIRST", 1)
     monkeypatch.setattr(fault_module, "CHECKED", 2)
@@ -241,7 +240,7 @@ def test_a_fault_is_tested_on_twelve_more_failures_and_those_that_stay_leave_it(
     stays: set[NumberedTest] = set()
     none = {remedy.name: False for remedy in REMEDIES}
     monkeypatch.setattr(fault_module, "has_remedies", lambda folder: bool(tested))
-    monkeypatch.setattr(fault_module, "stored_remedies", lambda task: tested.get(task.name))
+    monkeypatch.setattr(fault_module, "stored_remedies", lambda folder, each: tested.get(each.name))
     found = faults_in(many)
     first = len(found.to_test)
     while found.to_test:
@@ -263,13 +262,13 @@ def test_a_fault_is_tested_on_twelve_more_failures_and_those_that_stay_leave_it(
 
 
 def test_of_very_many_failures_an_even_sample_is_compared(many: Path) -> None:
-    every, some = failures_of(many), failures_of(many, 9)
-    assert (len(every.known), every.every) == (every.every, some.every)
-    assert len(some.known) == 9
-    assert [each.name for each in some.known][::8] == [every.known[0].name, every.known[-1].name]
+    (every, count), (some, their_count) = failures_of(many), failures_of(many, 9)
+    assert len(every) == count == their_count
+    assert len(some) == 9
+    assert [each.name for each in some][::8] == [every[0].name, every[-1].name]
     found = faults_in(many, 9)
     groups = f"at least {len(found.them)} groups of similar failures"
-    assert found.sentence == f"{every.every} failures in {groups} (9 of them compared)"
+    assert found.sentence == f"{count} failures in {groups} (9 of them compared)"
 
 
 def test_the_report_begins_with_the_faults(reported: tuple[Path, Path]) -> None:

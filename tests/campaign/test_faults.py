@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import binomtest
 
+from campaign.quick import features_of_road
 from roadgpt.campaign.faults import minimise as minimising
 from roadgpt.campaign.faults import stability
 from roadgpt.campaign.faults.change import smallest_change
@@ -19,17 +20,24 @@ from roadgpt.campaign.faults.distinct import (
     GRADE,
     SHIFT,
     Surroundings,
-    distances,
+    between,
     groups_of,
     surroundings,
     typical,
 )
-from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, disturbance_of
 from roadgpt.campaign.faults.fault import WAYS
 from roadgpt.campaign.faults.minimise import simplest
 from roadgpt.campaign.faults.reason import lane_curvature, manner_of, reason_of
-from roadgpt.campaign.faults.stability import Repeated, Stability, drive_disturbed, repeated
-from roadgpt.campaign.surrogate_features import NAMES, surrogate_features_of
+from roadgpt.campaign.faults.stability import (
+    Disturbance,
+    LateDriver,
+    Repeated,
+    Stability,
+    disturbance_of,
+    drive_disturbed,
+    repeated,
+)
+from roadgpt.campaign.surrogate_features import NAMES
 from roadgpt.check import inspect
 from roadgpt.cli.app import app
 from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View
@@ -106,7 +114,7 @@ def test_a_car_that_runs_wide_is_told_with_what_its_lane_asks_for() -> None:
 def test_the_bend_that_counts_is_that_of_the_driven_lane(world: World, middle: float) -> None:
     road = world.lay(build(design(straight(60), bend(-80, 40))))
     assert lane_curvature(road, world, np.array([80.0]))[0] == pytest.approx(-1 / (40 + middle), rel=1e-3)
-    features = dict(zip(NAMES, surrogate_features_of(road, world), strict=True))
+    features = dict(zip(NAMES, features_of_road(road, world), strict=True))
     assert features["right_3"] * 0.06 == pytest.approx(1 / (40 + middle), rel=0.01)
 
 
@@ -189,9 +197,10 @@ def test_distances_are_those_of_a_plain_loop(one: list[float], other: list[float
                     its.append(((0 if math.isnan(x) else x) - (0 if math.isnan(y) else y)) ** 2)
         squares = np.mean(total["bends"]) / BEND**2 + np.mean(total["grades"]) / GRADE**2
         best = min(best, math.sqrt(squares))
-    assert distances(a, [b])[0] == pytest.approx(best, abs=1e-9)
-    assert distances(b, [a])[0] == pytest.approx(best, abs=1e-9)
-    assert distances(a, [replace(b, kind="y")])[0] == math.inf
+    apart = between([a, b], [a, b, replace(b, kind="y")])
+    assert apart[0, 1] == pytest.approx(best, abs=1e-9)
+    assert apart[1, 0] == pytest.approx(best, abs=1e-9)
+    assert apart[0, 2] == math.inf
 
 
 def test_the_same_bend_reached_otherwise_is_one_fault_and_its_mirror_image_another() -> None:

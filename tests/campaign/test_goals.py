@@ -6,9 +6,9 @@ import pytest
 from click.testing import CliRunner, Result
 
 from roadgpt import plugins
-from roadgpt.campaign.cell_status import CellStatus
 from roadgpt.campaign.model import GOALS, CellBudget
 from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.status import CellStatus
 from roadgpt.cli import app
 
 PLAN = Plan(prompts=("hairpin x2",), reader="plan", budget=CellBudget(tests=3))

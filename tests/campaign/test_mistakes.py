@@ -210,7 +210,7 @@ def test_the_command_on_the_card_makes_the_same_campaign(
 def test_the_pace_counts_tests_of_cells_that_were_done_a_moment_ago(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("roadgpt.campaign.store.Store.group_seconds", 0.0)
+    monkeypatch.setattr("roadgpt.campaign.record.Store.group_seconds", 0.0)
     begin_quickly(tmp_path / "c", monkeypatch, plan(5, cells=8))
     steps = work(tmp_path / "c", 1, "inline")
     while next(steps).done < 30:

@@ -83,7 +83,7 @@ def test_a_node_is_killed_in_the_middle_and_the_table_is_that_of_one_process(
 ) -> None:
     quick.put_on_shelves(monkeypatch.setattr, seconds=0.05)
     quick.Inline.rng = np.random.default_rng(0)
-    monkeypatch.setattr("roadgpt.campaign.store.Store.group_seconds", 0.2)
+    monkeypatch.setattr("roadgpt.campaign.record.Store.group_seconds", 0.2)
     tables = []
     for executor in ("inline", "ray"):
         folder = tmp_path / executor

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from roadgpt.campaign.faults.fault import faults_in
-from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.rerun import run_again
 from roadgpt.campaign.selection import chosen, selection_of
 from roadgpt.campaign.workers.in_process import InProcess

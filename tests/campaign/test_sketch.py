@@ -7,11 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from campaign.quick import features_of_road
 from roadgpt import check
 from roadgpt.brief import read
 from roadgpt.campaign.behaviour import behaviour_of
 from roadgpt.campaign.sketch import Sketch, candidate_of, sketch, sketch_of
-from roadgpt.campaign.surrogate_features import NAMES, STEERING, surrogate_features_of
+from roadgpt.campaign.surrogate_features import NAMES, STEERING
 from roadgpt.campaign.variation import Kind, VariationContext, VariationTask
 from roadgpt.check import sbft_verdict
 from roadgpt.design import draft
@@ -74,7 +75,7 @@ def test_a_sketch_says_what_the_built_road_has(kind: Kind) -> None:
         assert one.features["LENGTH"] == pytest.approx(measured["LENGTH"], abs=0.5)
         assert one.features["DIR_COV"] == pytest.approx(measured["DIR_COV"], abs=1.5 / 26)
         assert one.features["TURNED"] == pytest.approx(measured["TURNED"], abs=8)
-        seen, real = one.surrogate_features, surrogate_features_of(road, WORLD)
+        seen, real = one.surrogate_features, features_of_road(road, WORLD)
         steers_alike = seen[STEERING[0]] == pytest.approx(real[STEERING[0]], rel=0.05, abs=0.02)
         curvatures = [
             i for i, name in enumerate(NAMES) if name.startswith(("left_", "right_", "mean", "root"))

@@ -17,13 +17,11 @@ from hypothesis import strategies as st
 
 from campaign.quick import a_design, plan
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.executors import RunningJob
+from roadgpt.campaign.csv_tables import write_tables
 from roadgpt.campaign.model import Proposal, Result
-from roadgpt.campaign.record import STORE, Record
+from roadgpt.campaign.record import STORE, Record, Store
 from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.campaign.status import status_of
-from roadgpt.campaign.store import Store
-from roadgpt.campaign.table import write_tables
 from roadgpt.campaign.traces import STEPS, drive_of, read_traces, trace_of, write_traces
 from roadgpt.chat import Spent, Usage
 from roadgpt.cli.campaigns import outside_lines
@@ -79,11 +77,11 @@ def test_results_cells_and_proposals_come_out_as_they_went_in(data: st.DataObjec
     with TemporaryDirectory() as name, a_store(Path(name)) as store:
         store.begin_session(1)
         store.add_batch("c01", 0, 1, asked)
-        assert [made for _, _, made in store.waiting("c01")] == asked
+        assert [task.proposal for task in store.waiting("c01")] == asked
         store.keep([("c01", FinishedTest(result)) for result in done[:kept]], None, [], {"c01": 1.5})
         with Record.opened(Path(name)) as record:
             assert [*record.results("c01")] == done[:kept]
-            assert [number for number, _, _ in record.waiting("c01")] == [*range(kept + 1, len(done) + 1)]
+            assert [task.number for task in record.waiting("c01")] == [*range(kept + 1, len(done) + 1)]
             assert record.batches("c01")[0].left == len(done) - kept
             assert record.cells() == plan(99).cells(BRIEFS)
             assert record.feature_names() == sorted({name for one in done[:kept] for name in one.features})
@@ -107,7 +105,7 @@ def test_who_was_at_which_test_is_forgotten_by_the_next_sitting(tmp_path: Path) 
     with a_store(tmp_path) as store:
         store.begin_session(1)
         store.add_batch("c01", 0, 1, [Proposal(None, 1, "draft")] * 3)
-        store.keep([], None, [("c01", 2, RunningJob(7, "worker 1", 3.0), 1e12)], {})
+        store.keep([], None, [("c01", 2, "worker 1", 1e12)], {})
         assert store.query("SELECT cell, number, worker FROM leases") == [("c01", 2, "worker 1")]
     with Store.opened(tmp_path) as store:  # the process was killed, and another one goes on
         store.begin_session(1)

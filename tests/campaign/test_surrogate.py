@@ -9,10 +9,11 @@ from sklearn.datasets import make_friedman1, make_friedman2, make_friedman3, mak
 from sklearn.ensemble import ExtraTreesRegressor
 from sklearn.metrics import r2_score
 
+from campaign.quick import features_of_road
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.extra_trees import grow
 from roadgpt.campaign.surrogate import FAILED, LEAF, TREES, Surrogate, target_of
-from roadgpt.campaign.surrogate_features import NAMES, WINDOWS, hazard_of, surrogate_features_of
+from roadgpt.campaign.surrogate_features import NAMES, WINDOWS, hazard_of
 from roadgpt.design import draft
 from roadgpt.road import Design, Segment, World, build
 
@@ -141,7 +142,7 @@ def curved(turn: float, radius: float, length: float) -> Design:
 
 
 def sign(name: str, design: Design) -> float:
-    return float(surrogate_features_of(build(design), WORLD)[NAMES.index(name)])
+    return float(features_of_road(build(design), WORLD)[NAMES.index(name)])
 
 
 @given(st.floats(18, 60), st.floats(40, 65), st.sampled_from([-1, 1]))
@@ -152,7 +153,7 @@ def test_signs_show_the_lanes_curvature(radius: float, turn: float, hand: int) -
     design = curved(hand * turn, radius, 60)
     assert sign(f"{side}_{WINDOWS[0]}", design) * 0.06 == pytest.approx(lane, rel=0.05)
     assert sign(f"{other}_{WINDOWS[0]}", design) == pytest.approx(0, abs=0.01)
-    assert hazard_of([surrogate_features_of(build(design), WORLD)])[0] > 0
+    assert hazard_of([features_of_road(build(design), WORLD)])[0] > 0
 
 
 def test_where_the_car_is_slow_nothing_counts() -> None:
@@ -168,7 +169,7 @@ def test_a_run_up_is_the_straight_before_the_tightest_place() -> None:
 
 def test_signs_of_any_draft_are_finite_and_small() -> None:
     for seed in range(5):
-        found = surrogate_features_of(build(draft(Brief(), WORLD, seed=seed)), WORLD)
+        found = features_of_road(build(draft(Brief(), WORLD, seed=seed)), WORLD)
         assert found.shape == (len(NAMES),)
         assert np.isfinite(found).all()
         assert np.abs(found).max() < 10

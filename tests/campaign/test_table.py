@@ -10,11 +10,10 @@ from hypothesis import strategies as st
 
 from campaign.quick import a_design, plan
 from campaign.test_store import BRIEFS, a_store, proposals, results
+from roadgpt.campaign.csv_tables import COLUMNS, write_tables
 from roadgpt.campaign.model import Proposal, Result
-from roadgpt.campaign.record import Record
+from roadgpt.campaign.record import Record, Store
 from roadgpt.campaign.single_test import FinishedTest, seed_of_driver
-from roadgpt.campaign.store import Store
-from roadgpt.campaign.table import COLUMNS, write_tables
 
 
 def slowly(record: Record) -> str:

@@ -10,7 +10,7 @@ import pytest
 
 from chat.stub_server import StubServer, says, serving
 from roadgpt import provenance
-from roadgpt.chat import server_quirks
+from roadgpt.chat.providers.openai import forget
 
 KEY = "sk-canary-0123456789abcdefghijklmnop"
 OURS = ("OPENAI_", "ROADGPT_", "AZURE_OPENAI_")
@@ -24,10 +24,10 @@ def alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     place = tmp_path / "here"
     place.mkdir()
     monkeypatch.chdir(place)
-    server_quirks.forget()
+    forget()
     provenance.SERVERS.forget()
     yield
-    server_quirks.forget()
+    forget()
     provenance.SERVERS.forget()
 
 

@@ -12,7 +12,7 @@ from roadgpt.brief.readers.chat import PlanAnswer
 from roadgpt.chat.json_schema import schema_of
 from roadgpt.design.answer import AnswerRoad, AnswerStart, AnswerStep
 from roadgpt.design.edit.chatting import EditedRoad
-from roadgpt.design.network_answer import AnswerNetwork
+from roadgpt.design.network_dialogue import AnswerNetwork
 
 TAKEN = {"type", "enum", "description", "properties", "required", "additionalProperties", "items", "anyOf"}
 

@@ -21,7 +21,7 @@ from chat.stub_server import (
     says,
 )
 from roadgpt.chat import Chat, ChatError, ChatSettings, Message, RefusedError, UnparsableError, open_chat
-from roadgpt.chat.server_quirks import UNUSABLE_IN_A_ROW
+from roadgpt.chat.providers.openai import UNUSABLE_IN_A_ROW
 
 
 class Sum(BaseModel):

@@ -67,6 +67,17 @@ def test_openai_variables_are_heeded_and_ours_come_first(monkeypatch: pytest.Mon
     assert configured().base_url == "http://two:2/v1"
 
 
+@pytest.mark.parametrize("name", ["model", "timeout", "base_url", "price", "rounds"])
+def test_variables_of_other_programs_set_nothing(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(name, "http://other:1/v1" if name == "base_url" else "7")
+    assert configured() == ChatSettings()
+
+
+def test_a_key_of_another_program_is_not_used(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("api_key", "sk-of-another-program")
+    assert key_for(None) is None
+
+
 @pytest.mark.parametrize(
     ("line", "value"),
     [
@@ -96,6 +107,7 @@ def test_lines_of_dotenv(line: str, value: str | None) -> None:
         ('model = "m"', "'model' in roadgpt.toml is outside of a table"),
         ('[chat]\ntimeout = "soon"', "cannot be used: it is not a number"),
         ("[chat]\ntimeout = 0", "cannot be used: give a number above 0"),
+        ("[chat]\nmax_completion = 40", "cannot be used: give 64 or more"),
         ("[chat]\nrounds = 2.5", "cannot be used: it is not a whole number"),
         ('[chat]\napi = "assistants"', "cannot be used: use 'chat' or 'responses'"),
         ("[chat]\nmodel = 5", "cannot be used: it is not text"),

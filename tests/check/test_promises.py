@@ -173,3 +173,27 @@ def test_a_complaint_says_whether_other_heights_could_mend_it(brief: Brief, on_h
     found = complaints(measure(LEFT_RIGHT.centreline()), outline(brief, World().site.map_size))
     assert found
     assert all(complaint.on_heights == on_heights for complaint in found)
+
+
+RAMPS = road_of(straight(50, 0), straight(60, 8), straight(70, 4), straight(60, 8))
+
+
+def ramp(metres: float, percent: float) -> Clause:
+    return Clause(kind="straight", slope="up", length=exactly(metres), incline=exactly(percent))
+
+
+def test_straights_that_go_the_same_way_are_told_apart_by_their_grades() -> None:
+    assert not said(Brief(clauses=(ramp(60, 8), ramp(70, 4), ramp(60, 8))), RAMPS)
+
+
+@pytest.mark.parametrize(
+    "wanted",
+    [
+        (ramp(70, 4), ramp(60, 8), ramp(60, 4)),
+        (ramp(60, 8), ramp(110, 4), ramp(60, 8)),
+        (ramp(60, 8), ramp(70, 4), ramp(60, 8), ramp(60, 4)),
+        (ramp(60, 8), ramp(70, 12)),
+    ],
+)
+def test_other_grades_lengths_or_orders_of_such_straights_are_not(wanted: tuple[Clause, ...]) -> None:
+    assert any("asked for a straight" in each for each in said(Brief(clauses=wanted), RAMPS))

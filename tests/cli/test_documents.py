@@ -144,10 +144,10 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     from roadgpt.drive.drive import UNPACKED
     from roadgpt.drive.driver_guard import BEFORE_START, ONE_ANSWER, WHOLE_DRIVE
     from roadgpt.errors import ChatError, GivenUpError
+    from roadgpt.network.source import LARGEST
     from roadgpt.report.overview import MOST_PAGES, PER_PAGE
     from roadgpt.road.design import MAX_SEGMENTS
     from roadgpt.road.road import MOST_POINTS, STEEPEST
-    from roadgpt.road.source import LARGEST
     from roadgpt.run import MOST_ROUNDS
     from roadgpt.run.lost_drives import MOST
 
@@ -180,7 +180,7 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
 
 
 def test_the_columns_of_results_in_the_docs_are_those_of_the_table() -> None:
-    from roadgpt.campaign.table import COLUMNS
+    from roadgpt.campaign.csv_tables import COLUMNS
 
     text = (ROOT / "docs" / "reference" / "campaign-folder.md").read_text(encoding="utf-8")
     (table,) = re.findall(r"^\| columns of `results.csv`.*?\n\n", text, flags=re.MULTILINE | re.DOTALL)

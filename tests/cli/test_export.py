@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from roadgpt.cli import app
-from roadgpt.road import read_road
+from roadgpt.network import read_road
 
 DESIGN = {
     "starting_point": [60, 60, 0],

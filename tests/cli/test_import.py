@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 
 from roadgpt.cli import app
 from roadgpt.cli.commands.import_ import _on_a_map
+from roadgpt.network import read_road
 from roadgpt.plugins import find
-from roadgpt.road import read_opendrive, read_road
+from roadgpt.road import read_opendrive
 
 LANES = """<lanes><laneSection s="0"><left>
 <lane id="1" type="driving"><width sOffset="0" a="{width}"/></lane></left><right>

@@ -10,20 +10,16 @@ from roadgpt.brief import AnotherRoadError, Brief, ContradictionError, NotBuiltE
 from roadgpt.brief.plan import read_plan
 from roadgpt.campaign import single_test
 from roadgpt.cli import app
-from roadgpt.cli.commands.run import RunJob
-from roadgpt.road import World
-from roadgpt.run import Setup
+from roadgpt.cli.commands import run
+
+QUICK = {"no_drive": True, "no_plot": True}
 
 
 @pytest.fixture(autouse=True)
 def quick_and_in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(
-        "roadgpt.cli.commands.run.usual_job",
-        lambda words, roads, is_plan=False: RunJob(
-            words, roads, World(), Setup(drives=False, reader="plan" if is_plan else "model"), pictures=()
-        ),
-    )
+    usual = run.usual_values
+    monkeypatch.setattr(run, "usual_values", lambda *asked, **more: usual(*asked, **more) | QUICK)
 
 
 def say(*answers: str) -> Result:

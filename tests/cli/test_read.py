@@ -10,6 +10,7 @@ from roadgpt.brief import Brief
 from roadgpt.brief.plan import read_plan
 from roadgpt.cli.app import app
 from roadgpt.cli.commands.run import understood
+from roadgpt.road import World
 
 WORDS = "two left turns uphill, then a straight of 60 metres"
 PLAN = "turn x2 left up; straight len=60"
@@ -87,18 +88,19 @@ def test_a_plan_has_one_reading() -> None:
 
 def test_doubt_and_words_that_were_not_used_are_said() -> None:
     brief = read_plan("turn x3")
-    assert "not sure" not in understood(brief)
+    assert "not sure" not in understood(brief, World(), World())
     doubtful = brief.model_copy(update={"confidence": 0.4, "unused": ("purple",)})
-    assert "not used: 'purple'" in understood(doubtful)
-    assert "perhaps not understood as meant (40 % sure)" in understood(doubtful)
+    told = understood(doubtful, World(), World())
+    assert "not used: 'purple'" in told
+    assert "perhaps not understood as meant (40 % sure)" in told
 
 
 def test_the_second_reading_is_shown_with_its_plan() -> None:
     brief = read_plan("turn x3").model_copy(update={"confidence": 0.4, "other": "turn x2; hairpin"})
-    told = understood(brief)
+    told = understood(brief, World(), World())
     assert "it could also mean: a road with 2 turns, then a hairpin" in told
     assert "--plan 'turn x2; hairpin'" in told
-    assert "also mean" not in understood(read_plan("turn x3"))
+    assert "also mean" not in understood(read_plan("turn x3"), World(), World())
 
 
 def test_json_says_whether_the_reading_is_sure() -> None:

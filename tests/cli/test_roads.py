@@ -165,7 +165,8 @@ def test_the_competition_s_rules_still_stop_a_drive() -> None:
 
 
 def test_python_and_campaigns_keep_invalid() -> None:
-    from roadgpt.road import Road, read_road
+    from roadgpt.network import read_road
+    from roadgpt.road import Road
     from roadgpt.run import prove, read_run, write_run
 
     road = read_road("corner.json")

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from roadgpt import stopping
-from roadgpt.cli.result_row import COLOURS, Row, metres, summary
+from roadgpt.cli.result_row import COLOURS, Row, colour_of, metres, summary
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
 from roadgpt.verdict import graded
@@ -66,7 +66,7 @@ def test_a_pass_outside_the_lane_does_not_look_like_one_inside() -> None:
     assert replace(NEARLY, beyond_m=None).to_line().startswith("PASS (62 % out) ")
     assert replace(NEARLY, max_oob=1e-5).to_line().startswith("PASS (0.001 % out, ")
     slightly = replace(NEARLY, max_oob=0.2, beyond_m=0.3)
-    assert len({row.colour for row in (KEPT, slightly, NEARLY, LEFT, WRONG)}) == 5
+    assert len({colour_of(row.outcome) for row in (KEPT, slightly, NEARLY, LEFT, WRONG)}) == 5
     assert summary([NEARLY, KEPT, slightly, replace(NEARLY, max_oob=0.9, beyond_m=1.5)]) == [
         ("PASS", 1, "25 %", "+0.620 m", "inside"),
         ("PASS (partly outside)", 1, "25 %", "+0.620 m", "20 % out, 0.30 m"),

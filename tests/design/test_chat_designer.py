@@ -11,9 +11,8 @@ from roadgpt import check
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
 from roadgpt.chat import BudgetError, ChatSettings, Message, RefusedError, UnparsableError
-from roadgpt.design.asking import demands, drawn_start, request, rules
+from roadgpt.design.asking import demands, drawn_start, objections, request, rules
 from roadgpt.design.designers.chat import ChatDesigner
-from roadgpt.design.objections import objections
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, Limits, Site, World, build, read_design
 

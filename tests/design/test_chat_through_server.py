@@ -12,7 +12,8 @@ import pytest
 from chat.stub_server import Scene, StubServer, drops, fails, floods, says, serving
 from planned import planned
 from roadgpt.campaign import campaign
-from roadgpt.chat import ChatSettings, server_quirks
+from roadgpt.chat import ChatSettings
+from roadgpt.chat.providers.openai import forget
 from roadgpt.errors import RoadGPTError
 from roadgpt.run import Setup, perform
 
@@ -82,9 +83,9 @@ def _alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     clock = SimpleNamespace(sleep=lambda seconds: None, time=time.time)
     monkeypatch.setattr("openai._base_client.time", clock)
     monkeypatch.chdir(tmp_path)
-    server_quirks.forget()
+    forget()
     yield
-    server_quirks.forget()
+    forget()
 
 
 def setup(stub: StubServer, designer: str = "chat", **more: object) -> Setup:

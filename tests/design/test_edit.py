@@ -44,7 +44,7 @@ def test_blocks_are_the_segments_in_order_and_the_turns_that_are_seen(name: str)
     design = ROADS[name]
     blocks, found = elements_on_road(design)
     assert joined(blocks) == design.segments
-    turns = [block for block in blocks if block.kind == "turn"]
+    turns = [block for block in blocks if block.is_turn]
     assert [turn.side for turn in turns] == [turn.side for turn in found.turns]
     for block, turn in zip(turns, found.turns, strict=True):
         written = sum(segment.turn_degrees for segment in block.segments)

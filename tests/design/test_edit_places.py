@@ -298,3 +298,18 @@ def test_limits_of_a_stretch_concern_its_own_slopes() -> None:
 def test_no_climb_at_all_is_a_climb() -> None:
     rising = edited(STRAIGHT, "road: slope up =5").design
     assert abs(grades(edited(rising, "road: climb x0").design, 0.1, 0.9)).max() < 0.2
+
+
+def test_the_second_half_behind_a_turn_is_both() -> None:
+    before = turns(WINDING)
+    after = turns(edited(WINDING, "road half2 after(turn 4): radius x0.8").design)
+    ratios = [new.radius / old.radius for old, new in zip(before, after, strict=True)]
+    assert ratios == pytest.approx([1, 1, 1, 1, 0.8], rel=0.02)
+
+
+def test_the_turns_of_a_road_alternate_whatever_lies_between_them() -> None:
+    before = draft(
+        read_plan("turn left; straight len=40; turn left; straight len=40; turn left"), WORLD, seed=1
+    )
+    after = edited(before, "road: alternate").design
+    assert [turn.side for turn in turns(after)] == ["left", "right", "left"]

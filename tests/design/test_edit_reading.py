@@ -19,7 +19,7 @@ from roadgpt.brief import SURE as SURE_ENOUGH
 from roadgpt.brief.change import read_request
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import Change, EditRequest, Target
-from roadgpt.brief.readers.model.reverse_words import asks_to_reverse
+from roadgpt.brief.readers.model.change_reading import asks_to_reverse
 from roadgpt.errors import EditError
 
 TRAINING = Path(__file__).resolve().parents[2] / "data" / "changes" / "train"

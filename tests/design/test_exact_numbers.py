@@ -79,3 +79,44 @@ def test_a_number_stays_with_its_range_as_long_as_it_lies_inside() -> None:
     near = four.drawn_in(0.5, 1.0).around(0.5)
     assert near == Range(3.75, 4.25)
     assert Range(3, 5).around(0.5) == Range(3, 5)
+
+
+@pytest.mark.parametrize(
+    ("plan", "metres", "climbs"),
+    [
+        ("straight up len=60 pct=4; straight up len=60 pct=8", 120, 7.2),
+        ("straight up len=80 pct=3; straight up len=80 pct=9; straight up len=80 pct=3", 240, 12),
+        ("straight down len=80 pct=8; straight down len=50 pct=4 | turns=0", 130, -8.4),
+    ],
+)
+def test_straights_of_two_grades_follow_each_other_without_a_level_piece(
+    plan: str, metres: float, climbs: float
+) -> None:
+    for found in measured(plan):
+        assert found.length == pytest.approx(metres, rel=0.03)
+        assert found.climb == pytest.approx(climbs, rel=0.06)
+
+
+def test_of_two_climbs_in_words_the_steep_one_is_steeper() -> None:
+    for found in measured("straight up len=70; straight steeply_up len=70"):
+        heights = np.interp([20, 50, 90, 120], found.line.s, found.line.z)
+        assert 2 < 100 * (heights[1] - heights[0]) / 30 < 100 * (heights[3] - heights[2]) / 30
+
+
+@pytest.mark.parametrize(
+    ("plan", "least"),
+    [
+        ("turn x5 r=25.. | lefts=3 rights=2 steepest=6 climb=18 len=450", 25),
+        ("| turns=6 r=30..", 30),
+        ("turn left r=50..; turn x2 right r=50..", 50),
+    ],
+)
+def test_a_bound_of_the_radius_of_several_turns_is_reached_by_one(plan: str, least: float) -> None:
+    for found in measured(plan):
+        assert least <= found.radius <= 1.1 * least
+
+
+def test_a_single_turn_uses_the_whole_range_above_a_bound() -> None:
+    radii = [found.radius for found in measured("turn left r=50..")]
+    assert min(radii) >= 50
+    assert max(radii) > 60

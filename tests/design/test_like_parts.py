@@ -2,8 +2,7 @@
 
 import pytest
 
-from roadgpt.brief.like_numbers import with_like_numbers
-from roadgpt.brief.normal import normal
+from roadgpt.brief.normal import normal, with_like_numbers
 from roadgpt.brief.outline import outline
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.check.measures import Measures, measure

@@ -5,7 +5,7 @@ import pytest
 from roadgpt.brief.plan import read_plan
 from roadgpt.check.junction_measures import measured_junctions
 from roadgpt.design import draft
-from roadgpt.design.route_room import room_for_route
+from roadgpt.design.network_draft import room_for_network
 from roadgpt.errors import BriefError
 from roadgpt.network import build_route
 from roadgpt.road import World
@@ -50,7 +50,7 @@ def test_a_priority_road_may_go_on_at_a_t_junction() -> None:
 def test_maps_grow_for_the_usual_exit_with_traffic_on_the_left() -> None:
     asked = "| lanes=2 against=2 motorway len=400 // diverge ramp side={} {}"
     sizes = [
-        room_for_route(read_plan(asked.format(*each)), WORLD)
+        room_for_network(read_plan(asked.format(*each)), WORLD)
         for each in (("right", ""), ("left", "|| left_hand"))
     ]
     assert sizes[0] == sizes[1]

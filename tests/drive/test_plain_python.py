@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from roadgpt.drive import compiled, native
+from roadgpt.drive import compiled
 
 SCRIPT = """
 import ctypes, sys, warnings
@@ -106,9 +106,9 @@ class Broken(MetaPathFinder):
 def anew(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """The choice may be made once more, in this process."""
     monkeypatch.setenv("ROADGPT_NO_NUMBA", "0")
-    native.addresses.cache_clear()
+    compiled.addresses.cache_clear()
     yield
-    native.addresses.cache_clear()
+    compiled.addresses.cache_clear()
 
 
 @pytest.mark.usefixtures("anew")

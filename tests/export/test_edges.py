@@ -1,6 +1,6 @@
 """Lines beside the road: near enough to it, not more points than that takes, and never folded."""
 
-from itertools import pairwise
+from itertools import chain, pairwise
 
 import numpy as np
 import pytest
@@ -69,11 +69,11 @@ def test_numbers_that_are_not_finite_are_refused() -> None:
 def test_sections_meet_and_cover_the_road(name: str) -> None:
     road = ROADS[name]
     found = lanelet_sections(road, WORLD)
-    assert found[0].start == 0
-    assert found[-1].end == pytest.approx(road.length)
+    middles = found[0][-1][1].points, found[-1][-1][1].points  # between the lanes
+    assert middles[0][0] == pytest.approx(road.at(0.0), abs=1e-4)
+    assert middles[1][-1] == pytest.approx(road.at(road.length), abs=1e-4)
     assert len(found) == max(1, round(road.length / 50))
     for one, other in pairwise(found):
-        assert one.end == other.start
-        assert one.lanes == other.lanes == (-1, 1)
-        for before, after in zip(one.bounds, other.bounds, strict=True):
+        assert [*one] == [*other] == [-1, 1]
+        for before, after in zip(chain(*one.values()), chain(*other.values()), strict=True):
             assert (before.points[-1] == after.points[0]).all()

@@ -10,7 +10,8 @@ import pytest
 from exported import ROADS, WORLD, drive
 from roadgpt.export import save
 from roadgpt.export.georeference import FLATTENING, LATITUDE, LONGITUDE, SEMI_MAJOR, degrees
-from roadgpt.road import Profile, read_road
+from roadgpt.network import read_road
+from roadgpt.road import Profile
 
 
 def test_the_table_has_the_road_every_metre(tmp_path: Path) -> None:

@@ -4,7 +4,8 @@ from itertools import islice
 
 import pytest
 
-from roadgpt.learn.generator import Pair, pairs
+from roadgpt.learn.generator import pairs
+from roadgpt.learn.pair import Pair
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ from roadgpt.brief.readers.model.mirror import mirrored
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.learn.augmentation import joined, recounted
-from roadgpt.learn.generator import Pair
+from roadgpt.learn.pair import Pair
 
 
 def test_hardly_any_generated_plan_has_a_number_that_its_text_has_not(generated: tuple[Pair, ...]) -> None:
@@ -30,7 +30,8 @@ def test_a_mirror_swaps_sides_in_text_and_plan() -> None:
 def test_another_number_changes_text_and_plan() -> None:
     pair = Pair("gimme two hairpins", "hairpin x2", "f", "en")
     new = [recounted(pair, np.random.default_rng(seed)) for seed in range(5)]
-    assert ("gimme five hairpins", "hairpin x5") in new or all(n and n[1] != "turn" for n in new)
+    five = Pair("gimme five hairpins", "hairpin x5", "f", "en")
+    assert five in new or all(n and n.plan != "turn" for n in new)
     assert (
         recounted(
             Pair("four turns, the first two uphill", "turn x2 up; turn x2", "f", "en"),
@@ -47,6 +48,12 @@ def test_two_descriptions_are_joined_in_order() -> None:
         np.random.default_rng(1),
     )
     assert both is not None
-    assert both[1] == "turn left; hairpin"
-    assert both[0].startswith("a left")
-    assert both[0].endswith("a hairpin")
+    assert both.plan == "turn left; hairpin"
+    assert both.text.startswith("a left")
+    assert both.text.endswith("a hairpin")
+
+
+def test_pairs_in_a_language_without_phrases_are_not_joined() -> None:
+    one = Pair("een bocht naar links", "turn left", "own", "nl")
+    other = Pair("rechtdoor", "straight", "own", "nl")
+    assert joined(one, other, np.random.default_rng(1)) is None

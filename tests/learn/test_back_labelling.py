@@ -11,8 +11,7 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.learn.back_labelling import measured_pairs
-from roadgpt.learn.generator import Pair
-from roadgpt.learn.standard import standard
+from roadgpt.learn.pair import Pair, standard
 
 
 @pytest.fixture(scope="module")

@@ -10,10 +10,9 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.normal import turns_of
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.learn.compositions import WAYS, composed
+from roadgpt.learn.compositions.counted import numbered_sides, ranged, sided_sum
+from roadgpt.learn.compositions.in_a_row import spaced_turns
 from roadgpt.learn.compositions.limits import limited
-from roadgpt.learn.compositions.numbered import numbered_sides
-from roadgpt.learn.compositions.spaced_turns import spaced_turns
-from roadgpt.learn.compositions.sums import ranged, sided_sum
 from roadgpt.learn.compositions.voice import ORDINALS, Composition, Voice
 
 ADJECTIVES = "(?:alternating|left|right|sharp|tight|gentle|easy)"

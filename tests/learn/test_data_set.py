@@ -11,9 +11,9 @@ from click.testing import CliRunner
 
 from roadgpt.cli import app
 from roadgpt.learn import labels
-from roadgpt.learn.generator import Pair
 from roadgpt.learn.labels import read_pairs
 from roadgpt.learn.near_duplicates import report
+from roadgpt.learn.pair import Pair
 
 HAND = Path(__file__).parents[2] / "data" / "descriptions"
 SPLITS = ("train", "validation", "test", "exam")

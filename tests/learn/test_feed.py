@@ -1,14 +1,14 @@
 """Batches made by several processes: complete, and the same for the same seed."""
 
+from functools import partial
 from itertools import islice
 
 import numpy as np
 
 from roadgpt.brief.readers.model import WEIGHTS
-from roadgpt.brief.readers.model.wordpiece import WordPieces
-from roadgpt.learn.data import batches, examples
+from roadgpt.learn.data import training_batches
 from roadgpt.learn.feed import fed_batches
-from roadgpt.learn.generator import Pair
+from roadgpt.learn.pair import Pair
 from roadgpt.learn.pretrained import read_vocabulary
 
 HAND = [Pair(f"{word} bends to the left", f"turn x{n} left", "test", "en") for n, word in enumerate(
@@ -19,8 +19,8 @@ SHARES = {"hand": 1.0}
 
 def test_batches_come_from_each_process_in_turn() -> None:
     pieces = read_vocabulary(WEIGHTS / "pieces.txt")
-    found = list(islice(fed_batches(2, 5, HAND, pieces, SHARES, 4, 2), 4))
+    make = partial(training_batches, hand=HAND, pieces=pieces, shares=SHARES, size=4, pool=2)
+    found = list(islice(fed_batches(2, 5, make), 4))
     for first in (0, 1):
-        alone = batches(examples(10 + first, HAND, WordPieces(pieces), SHARES), 4, 2, 10 + first)
-        for mine, theirs in zip(found[first::2], alone, strict=False):
+        for mine, theirs in zip(found[first::2], make(10 + first), strict=False):
             assert all(np.array_equal(*both) for both in zip(mine, theirs, strict=True))

@@ -1,5 +1,6 @@
 """Generated pairs: seeded, sensible, and none of those that are held out."""
 
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
@@ -12,12 +13,11 @@ from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.brief.refusal import refused
 from roadgpt.errors import LearnError
 from roadgpt.learn.data import with_shared_values
-from roadgpt.learn.generator import Pair, assembled, draw, pairs
+from roadgpt.learn.generator import assembled, draw, pairs
 from roadgpt.learn.grammar import Discarded, Speaker, grammar_of, read_grammar
-from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.labels import REFUSALS
 from roadgpt.learn.negative_examples import contradicted, overdone
-from roadgpt.learn.standard import makes_sense, standard
+from roadgpt.learn.pair import Pair, is_held_out, makes_sense, standard
 
 
 def test_the_same_seed_gives_the_same_pairs_and_another_others() -> None:
@@ -102,13 +102,13 @@ def test_sense_is(line: str) -> None:
 
 def test_what_spoils_a_wish_fits_it() -> None:
     rng = np.random.default_rng(2)
-    assert contradicted("a road", "| turns=1..", "en", rng) is None
-    spoiled = contradicted("three left turns", "turn x3 left", "en", rng)
+    assert contradicted(Pair("a road", "| turns=1..", "f", "en"), rng) is None
+    lefts = Pair("three left turns", "turn x3 left", "f", "en")
+    spoiled = contradicted(lefts, rng)
     assert spoiled is not None
-    text, refusal = spoiled
-    assert "three left turns" in text.lower()
-    assert refusal in ("!contradiction turns", "!contradiction sides")
-    beyond = overdone("three left turns", "turn x3 left", "en", rng)
+    assert "three left turns" in spoiled.text.lower()
+    assert spoiled.plan in ("!contradiction turns", "!contradiction sides")
+    beyond = overdone(lefts, rng)
     assert beyond is not None
-    assert "has no refusal" not in str(refused(beyond[1]))
-    assert overdone("three left turns", "!nonsense", "en", rng) is None
+    assert "has no refusal" not in str(refused(beyond.plan))
+    assert overdone(replace(lefts, plan="!nonsense"), rng) is None

@@ -5,8 +5,8 @@ import pytest
 torch = pytest.importorskip("torch", reason="comes with the extra 'learn'")
 
 from roadgpt.errors import LearnError  # noqa: E402
-from roadgpt.learn.growing import decoder_layers, deepened, encoder_layers, grown  # noqa: E402
-from roadgpt.learn.network import NetworkSizes, ReaderNetwork  # noqa: E402
+from roadgpt.learn.growing import deepened, grown  # noqa: E402
+from roadgpt.learn.network import DECODER, ENCODER, NetworkSizes, ReaderNetwork, layers_of  # noqa: E402
 
 SMALL = NetworkSizes(pieces=40, tokens=9, width=24, heads=3, inner=32, layers=1, decoder_layers=2,
                      decoder_inner=32, decoder_heads=3)  # fmt: skip
@@ -22,7 +22,7 @@ def test_more_layers_and_tokens_change_no_score_of_an_old_token() -> None:
     with torch.no_grad():
         old, new = small(pieces, tokens), large(pieces, tokens)
     assert torch.allclose(old, new[..., :9], atol=1e-5)
-    assert decoder_layers(large.state_dict()) == 6
+    assert layers_of(large.state_dict(), DECODER) == 6
     assert any(not torch.equal(new[..., 9], new[..., other]) for other in (10, 11))
 
 
@@ -47,7 +47,7 @@ def test_a_deeper_encoder_hardly_changes_the_scores_at_first() -> None:
     pieces, tokens = torch.randint(1, 40, (8, 7)), torch.randint(1, 9, (8, 5))
     with torch.no_grad():
         old, new = small(pieces, tokens), large(pieces, tokens)
-    assert encoder_layers(large.state_dict()) == 6
+    assert layers_of(large.state_dict(), ENCODER) == 6
     assert torch.corrcoef(torch.stack([old.ravel(), new.ravel()]))[0, 1] > 0.99
     with pytest.raises(LearnError, match="cannot grow"):
         deepened(weights, 3)

@@ -1,4 +1,4 @@
-"""Hand-written pairs: read, split, checked for originality, and readers held against them."""
+"""Hand-written pairs: read, checked for originality, and readers held against them."""
 
 import json
 from pathlib import Path
@@ -10,9 +10,9 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import read_plan
 from roadgpt.errors import BriefError, LearnError
 from roadgpt.learn.evaluate import HEAD, confusion, readings, score, worst
-from roadgpt.learn.generator import Pair
-from roadgpt.learn.labels import read_pair, read_pairs, split
+from roadgpt.learn.labels import read_pair, read_pairs
 from roadgpt.learn.near_duplicates import masked, near_duplicates, report
+from roadgpt.learn.pair import Pair
 
 
 def line(text: str, plan: str, family: str = "f") -> str:
@@ -43,17 +43,6 @@ def test_files_are_read_with_a_sentence_for_each_bad_line(tmp_path: Path) -> Non
     good, problems = read_pairs(tmp_path.glob("*.jsonl"))
     assert [pair.text for pair in good] == ["a left"]
     assert [problem.split(":")[1] for problem in problems] == ["2", "3", "4"]
-
-
-def test_no_family_is_on_two_sides() -> None:
-    every = [Pair(f"text {n}", "turn", f"family {n % 40}", "en") for n in range(2000)]
-    sides = split(every)
-    families = {name: {pair.family for pair in its} for name, its in sides.items()}
-    assert sum(len(its) for its in sides.values()) == 2000
-    assert not families["train"] & families["test"]
-    assert not families["train"] & families["validation"]
-    assert 500 <= len(sides["test"]) <= 550
-    assert split(every) == sides
 
 
 def test_templates_with_other_words_are_found() -> None:

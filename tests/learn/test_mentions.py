@@ -7,6 +7,7 @@ import numpy as np
 from roadgpt.brief.beside import BESIDE
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.learn.mentions import DENIED, SAID, TALK, names_in, with_mention, with_names, with_talk
+from roadgpt.learn.pair import Pair
 
 LANGUAGES = {"en", "de", "fr", "es", "it"}
 
@@ -31,8 +32,8 @@ def test_the_flag_alike_is_kept_once() -> None:
     assert with_names("turn x3 | alike", ["rain", "alike"]) == plan(read_plan("turn x3 | alike beside(rain)"))
     rng = np.random.default_rng(1)
     for _ in range(400):
-        made = with_mention("three equal turns", "turn x3 | alike", "en", rng)
-        assert made is None or read_plan(made[1]).alike
+        made = with_mention(Pair("three equal turns", "turn x3 | alike", "f", "en"), rng)
+        assert made is None or read_plan(made.plan).alike
 
 
 def test_what_is_said_is_named_and_what_is_denied_is_not() -> None:
@@ -40,9 +41,9 @@ def test_what_is_said_is_named_and_what_is_denied_is_not() -> None:
     named = denied = 0
     for _ in range(1500):
         language = sorted(LANGUAGES)[int(rng.integers(5))]
-        found = with_mention("two bends", "turn x2 | up", language, rng)
+        found = with_mention(Pair("two bends", "turn x2 | up", "f", language), rng)
         assert found is not None
-        text, line = found
+        text, line = found.text, found.plan
         assert "two bends" in text.lower()
         assert "{" not in text
         if line == "turn x2 | up":
@@ -68,9 +69,9 @@ def test_what_is_named_on_a_route_stands_behind_two_bars_and_no_junction_is_deni
     route = "turn left // crossroads straight"
     for language in sorted(LANGUAGES):
         for _ in range(200):
-            found = with_mention("a left, then a crossroads", route, language, rng)
+            found = with_mention(Pair("a left, then a crossroads", route, "f", language), rng)
             assert found is not None
-            text, line = found
+            text, line = found.text, found.plan
             if line == route:
                 assert not {"junctions", "Kreuzung", "roundabout", "rond-point", "rotonda"} & {*text.split()}
             else:
@@ -81,7 +82,7 @@ def test_what_is_named_on_a_route_stands_behind_two_bars_and_no_junction_is_deni
 
 
 def test_a_refusal_mentions_nothing() -> None:
-    assert with_mention("hello", "!nonsense", "en", np.random.default_rng(0)) is None
+    assert with_mention(Pair("hello", "!nonsense", "f", "en"), np.random.default_rng(0)) is None
 
 
 def test_talk_stands_around_the_text_and_leaves_it_whole() -> None:

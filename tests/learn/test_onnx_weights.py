@@ -74,17 +74,11 @@ def test_bert_written_down_in_numpy_gives_what_the_graph_gives(weights: dict[str
 def test_every_parameter_of_the_network_is_there(weights: dict[str, np.ndarray]) -> None:
     torch = pytest.importorskip("torch", reason="comes with the extra 'learn'")
     from roadgpt.brief.readers.model.vocabulary import OF_ROADS
-    from roadgpt.learn.network import NetworkSizes, ReaderNetwork
+    from roadgpt.learn.network import DECODER, ENCODER, layers_of, network_of
 
-    reader = ReaderNetwork(
-        NetworkSizes(
-            pieces=len(weights["pieces.weight"]),
-            tokens=len(OF_ROADS),
-            layers=ENCODER_LAYERS,
-            decoder_layers=LAYERS,
-        )
-    )
-    reader.load_state_dict({name: torch.from_numpy(array) for name, array in weights.items()})
+    tensors = {name: torch.from_numpy(array) for name, array in weights.items()}
+    network_of(tensors, len(weights["pieces.weight"]), len(OF_ROADS))
+    assert (layers_of(tensors, ENCODER), layers_of(tensors, DECODER)) == (ENCODER_LAYERS, LAYERS)
 
 
 def test_a_folder_without_a_reader_is_told_so(tmp_path: Path) -> None:

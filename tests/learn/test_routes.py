@@ -16,9 +16,8 @@ from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import OF_ROADS, TOKENS, plan_of, tokens_of
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.learn.data import NETWORK, example, examples, is_for_roads_only
-from roadgpt.learn.generator import Pair
+from roadgpt.learn.pair import Pair, standard
 from roadgpt.learn.routes import route_of, routes
-from roadgpt.learn.standard import standard
 from roadgpt.reading import read_text
 
 DATA = Path(__file__).parents[2] / "data"

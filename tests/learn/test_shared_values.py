@@ -6,7 +6,7 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.learn.data import with_shared_values
-from roadgpt.learn.generator import Pair
+from roadgpt.learn.pair import Pair
 
 
 @pytest.mark.parametrize(

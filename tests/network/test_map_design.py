@@ -240,3 +240,12 @@ def _spoil(data: Any, rng: random.Random) -> None:
         else:
             data[key] = rng.choice(ODD)
         return
+
+
+def test_a_mirrored_map_has_its_own_order_of_roads() -> None:
+    design, _ = read_map_design(GOOD)
+    before = design.neighbours, design.chains
+    mirrored = design.mirrored(100.0)
+    fresh = MapDesign.model_validate(mirrored.model_dump())
+    assert (mirrored.neighbours, mirrored.chains) == (fresh.neighbours, fresh.chains)
+    assert mirrored.neighbours != before[0]

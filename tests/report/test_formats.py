@@ -201,7 +201,7 @@ for value in (design, roadgpt.build(design), roadgpt.prove(design)):
 def test_the_verb_campaign_can_be_called_whatever_room_was_imported_and_pyplot_never_is(
     tmp_path: Path,
 ) -> None:
-    code = "import sys, roadgpt.campaign.numbered_test, roadgpt.run; from roadgpt.run import Setup; "
+    code = "import sys, roadgpt.campaign.model, roadgpt.run; from roadgpt.run import Setup; "
     code += (
         "print(len(list(roadgpt.campaign('a straight road', 1, setup=Setup(drives=False), out=sys.argv[1]))))"
         "; import roadgpt.report; print('matplotlib.pyplot' in sys.modules, 'matplotlib' in sys.modules)"

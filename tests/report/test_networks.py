@@ -13,10 +13,10 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from roadgpt.drive.outlook import passages
 from roadgpt.network import NetworkDesign, Route, made_from, read_network_design
 from roadgpt.network.arrows import arrows
 from roadgpt.report import birds_eye, draw, height_profile, strip, view
-from roadgpt.report.junctions import junction_stretches
 from roadgpt.report.network_view import ASPHALT, GRASS, KERB, PAINT, TINT
 from roadgpt.report.overview import pages
 from roadgpt.report.page.failure_site import draw_site, site_of
@@ -162,8 +162,8 @@ def test_from_far_away_all_roads_are_lines(route: Route) -> None:
 
 
 def test_stretches_are_those_where_the_route_is_inside(route: Route) -> None:
-    one, two = junction_stretches(route)
-    assert (one.name, two.name) == ("crossroads", "roundabout")
+    one, two = route.passages
+    assert (one.entered.kind, two.entered.kind) == ("crossroads", "roundabout")
     inside = [
         (a, b)
         for a, b, leg in zip(route.starts, route.starts[1:], route.legs, strict=False)
@@ -182,7 +182,7 @@ def test_heights_and_curvature_name_the_junctions(driven: Run) -> None:
 
 
 def test_a_road_without_junctions_has_no_stretches(driven: Run) -> None:
-    assert junction_stretches(Road.through([[0, 0], [50, 0], [100, 10], [160, 0]])) == ()
+    assert passages(Road.through([[0, 0], [50, 0], [100, 10], [160, 0]])) == ()
 
 
 @pytest.mark.parametrize("shoulder", [0.0, 3.0])
@@ -242,7 +242,7 @@ def test_the_limit_of_curvature_is_not_drawn_in_junctions(driven: Run, route: Ro
         lines = [each for each in axes.collections if isinstance(each, LineCollection)]
         return sorted({tuple(piece[:, 0].tolist()) for each in lines for piece in each.get_segments()})
 
-    one, two = junction_stretches(route)
+    one, two = route.passages
     assert drawn(curvature) == [(0.0, one.start), (one.end, two.start), (two.end, route.length)]
     assert drawn(grade) == [(0.0, route.length)]
 

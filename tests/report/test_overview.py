@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection
 
 from roadgpt.errors import UsageError
 from roadgpt.report import overview
-from roadgpt.report.overview import Entry, page_of
+from roadgpt.report.overview import Thumbnail, page_of
 
 OUTCOMES = ["PASS", "FAIL", "INVALID", "ERROR", None]
 
@@ -46,7 +46,7 @@ def test_a_page_holds_a_hundred_roads(tmp_path: Path, count: int, pages: int) ->
 
 def test_every_road_lies_on_its_own_map_to_scale() -> None:
     square = np.array([[0.0, 0.0], [250.0, 0.0], [250.0, 250.0], [0.0, 250.0]])
-    entries = [Entry(i, "FAIL", square, (125.0, 125.0)) for i in range(1, 8)]
+    entries = [Thumbnail(i, "FAIL", square, (125.0, 125.0)) for i in range(1, 8)]
     figure = page_of(entries, ("squares", "seed 1"), "", 250.0)
     axes = figure.axes[0]
     lines = [segment for c in axes.findobj(LineCollection) for segment in c.get_segments()]
@@ -66,7 +66,7 @@ def test_the_page_counts_outcomes_in_words(tmp_path: Path) -> None:
     card = {"request": {"words": "a $strange$ road", "seed": 4, "world": {"map_size": 200.0}}}
     (tmp_path / "campaign.json").write_text(json.dumps(card))
     assert overview(tmp_path)
-    entries = [Entry(1, "PASS", np.empty((0, 2)), None)]
+    entries = [Thumbnail(1, "PASS", np.empty((0, 2)), None)]
     figure = page_of(entries, ("words", "seed 4"), "page 2 of 3", 200.0)
     said = [text.get_text() for text in figure.axes[0].texts]
     assert {"1 PASS", "words", "PASS"} <= set(said)
@@ -76,13 +76,13 @@ def test_the_page_counts_outcomes_in_words(tmp_path: Path) -> None:
 def test_the_page_says_what_its_signs_mean() -> None:
     line = np.array([[10.0, 20.0], [30.0, 40.0]])
 
-    def said(entries: list[Entry]) -> set[str]:
+    def said(entries: list[Thumbnail]) -> set[str]:
         return {text.get_text() for text in page_of(entries, ("", ""), "", 200.0).axes[0].texts}
 
-    kept, failed = Entry(1, "PASS", line, None), Entry(2, "FAIL", line, (20.0, 30.0))
+    kept, failed = Thumbnail(1, "PASS", line, None), Thumbnail(2, "FAIL", line, (20.0, 30.0))
     assert {"start", "where the car failed"} <= said([kept, failed])
     assert "where the car failed" not in said([kept, kept])
-    assert "start" not in said([Entry(1, "ERROR", np.empty((0, 2)), None)])
+    assert "start" not in said([Thumbnail(1, "ERROR", np.empty((0, 2)), None)])
 
 
 def test_no_tests_no_page(tmp_path: Path) -> None:
@@ -97,7 +97,7 @@ def test_an_outcome_of_another_tool_is_shown_as_it_is(tmp_path: Path) -> None:
     test = test_file(1) | {"test_outcome": "NOT_EXECUTED"}
     (tmp_path / "test.0001.json").write_text(json.dumps(test))
     assert overview(tmp_path)
-    entries = [Entry(1, "NOT_EXECUTED", np.array([[1.0, 2.0], [30.0, 40.0]]), None)] * 2
+    entries = [Thumbnail(1, "NOT_EXECUTED", np.array([[1.0, 2.0], [30.0, 40.0]]), None)] * 2
     said = [text.get_text() for text in page_of(entries, ("", ""), "", 200.0).axes[0].texts]
     assert said.count("NOT_EXECUTED") == 2
     assert "2 NOT_EXECUTED" in said

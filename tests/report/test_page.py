@@ -13,7 +13,16 @@ import pytest
 from matplotlib.image import imread
 
 from roadgpt.errors import RoadGPTError
-from roadgpt.report.page import (
+from roadgpt.report.overview import Thumbnail
+from roadgpt.report.page import write
+from roadgpt.report.page.chart import palette
+from roadgpt.report.page.failure_site import draw_site, site_of
+from roadgpt.report.page.forest import Share, forest
+from roadgpt.report.page.gallery import gallery
+from roadgpt.report.page.heat import AxisRange, heat, is_map
+from roadgpt.report.page.html import STYLE, html_of
+from roadgpt.report.page.lines import bars, lines
+from roadgpt.report.page.model import (
     Cards,
     Details,
     Figure,
@@ -23,20 +32,9 @@ from roadgpt.report.page import (
     ShellCommand,
     Table,
     cell,
-    csv_of,
-    html_of,
-    latex_of,
     linked,
-    markdown_of,
-    write,
 )
-from roadgpt.report.page.chart import palette
-from roadgpt.report.page.failure_site import draw_site, site_of
-from roadgpt.report.page.forest import Share, forest
-from roadgpt.report.page.gallery import Thumbnail, gallery
-from roadgpt.report.page.heat import AxisRange, heat, is_map
-from roadgpt.report.page.html import STYLE
-from roadgpt.report.page.lines import bars, lines
+from roadgpt.report.page.text import csv_of, latex_of, markdown_of
 from roadgpt.road import CrossSection, Road, World
 
 NASTY = "<script>alert(1)</script> & \"100 %\" | $x_1$ \\ {y} 'z'"

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from chromium import FOUND, BrowserTab, browser
-from roadgpt.report.page import Figure, Page, Section, Table, cell, write
+from roadgpt.report.page import write
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.report.page.heat import AxisRange, heat
+from roadgpt.report.page.model import Figure, Page, Section, Table, cell
 
 pytestmark = pytest.mark.skipif(FOUND is None, reason="there is no chromium")
 SIDES = ((1100, 800, False), (360, 740, True))

@@ -14,8 +14,8 @@ from roadgpt.drive import Columns
 from roadgpt.report import drawing
 from roadgpt.report.birds_eye import severities
 from roadgpt.report.canvas import OUTCOMES, SEVERE, outcome_of
-from roadgpt.report.overview import _entry, overview
-from roadgpt.report.page.gallery import Thumbnail, gallery
+from roadgpt.report.overview import Thumbnail, _entry, overview
+from roadgpt.report.page.gallery import gallery
 from roadgpt.report.places import places_of
 from roadgpt.report.view.scene import scene
 from roadgpt.road import Road
@@ -117,10 +117,7 @@ def test_the_gallery_of_a_page_tells_them_apart() -> None:
 def test_reports_count_them(runs: dict[str, Run]) -> None:
     def looked(run: Run) -> RoadRecord:
         assert run.verdict is not None
-        return RoadRecord(
-            1, "", run.outcome, "", True, True, True, "", False, 0.0, np.empty((0, 2)), None, {}, None,
-            max_oob=run.verdict.max_oob, beyond=run.verdict.beyond,
-        )  # fmt: skip
+        return RoadRecord(1, run.outcome, "", True, True, True, "", run.verdict, np.empty((0, 2)), {}, None)
 
     every = [looked(run) for run in runs.values()]
     found = passed_roads([*every, every[2]])

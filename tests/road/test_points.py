@@ -11,7 +11,8 @@ from click.testing import CliRunner
 from roadgpt.cli import app
 from roadgpt.errors import UsageError
 from roadgpt.export import save
-from roadgpt.road import Road, World, build, read_design, read_road
+from roadgpt.network import read_road
+from roadgpt.road import Road, World, build, read_design
 
 PLAN = [[60.0, 100.0], [80.0, 100.0], [110.0, 112.0], [140.0, 130.0]]
 HEIGHTS = [0.0, 1.5, 2.0, 4.25]
@@ -49,7 +50,8 @@ HILLY_FILES: dict[str, Any] = {
 }
 UNREADABLE = {
     "many.json": ([{"road_points": PLAN}, {"road_points": PLAN}], "holds 2 roads"),
-    "network.json": ({"network": {"nodes": {}}}, "it holds no road"),
+    "model.json": ({"model": {"nodes": {}}}, "it holds no road"),
+    "network.json": ({"network": {"nodes": {}}}, "the network cannot be read: 'roads' is missing"),
     "earth.csv": ("lat,lon\n48.1,11.5\n48.2,11.6\n", "in metres"),
     "names.csv": ("a,b\n1,2\n3,4\n", "there are: a, b"),
     "words.csv": ("x,y\n1,2\n3,four\n5,6\n", "row 3 .*'four'"),

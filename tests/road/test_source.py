@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from roadgpt.errors import UsageError
-from roadgpt.road import Road, build, read_design, read_road
-from roadgpt.road.source import read_blueprint
+from roadgpt.network import read_blueprint, read_road
+from roadgpt.road import Road, build, read_design
 
 DESIGN = {
     "starting_point": [20, 20, 0],

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from roadgpt.errors import UsageError
 from roadgpt.run.folder_names import new_folder, slug
-from roadgpt.run.seeds import seed_of
+from roadgpt.run.model import seed_of
 
 
 @given(st.text(max_size=300))

@@ -104,7 +104,7 @@ def turned(points: list[list[float]]) -> float:
 @pytest.fixture
 def few(monkeypatch: pytest.MonkeyPatch) -> None:
     """A third of the usual sketches for each road."""
-    monkeypatch.setattr("roadgpt.sbft.search.Cell", partial(Cell, settings={"candidates": 4}))
+    monkeypatch.setattr("roadgpt.sbft.generator.Cell", partial(Cell, settings={"candidates": 4}))
 
 
 @pytest.mark.usefixtures("few")

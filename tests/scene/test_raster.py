@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from roadgpt.scene.mesh import Mesh, Patch
-from roadgpt.scene.raster import NEAR, OFFSETS, PLANE, draw
+from roadgpt.scene.raster import NEAR, OFFSETS, PLANE, RenderBuffers, draw
 
 WIDE, HIGH, FOCAL = 20, 12, 14.0
 
@@ -24,10 +24,8 @@ def drawn(
     planes, kinds = np.empty((len(mesh.triangles), PLANE)), np.empty(len(mesh.triangles), np.int64)
     numbers = np.concatenate([eye, turn.ravel(), [FOCAL]])
     room = np.empty((max(np.ptp(mesh.ranges[:, :2], axis=1)), 3))
-    draw(
-        mesh.points, mesh.attributes, mesh.triangles, mesh.kinds, mesh.ranges, mesh.spheres, numbers, depth,
-        ids, planes, room, kinds, 0,
-    )  # fmt: skip
+    picture = np.empty((HIGH, WIDE, 3), np.float32)
+    draw(mesh, numbers, RenderBuffers(depth, ids, planes, kinds, room, picture), 0)
     rows, columns = np.mgrid[0 : 4 * HIGH, 0:WIDE]
     x, y = columns + np.array(OFFSETS)[rows % 4], (rows + 0.5) / 4
     p = planes[np.maximum(ids, 0)]

@@ -11,8 +11,8 @@ from click.testing import CliRunner
 
 from roadgpt.campaign.model import Cell, CellBudget, Proposal, Result
 from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.record import Store
 from roadgpt.campaign.single_test import FinishedTest
-from roadgpt.campaign.store import Store
 from roadgpt.cli import app
 from roadgpt.road import Design, Segment
 from roadgpt.run.model import Request, Seconds

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from roadgpt.study.prompts import Prompt
+from roadgpt.study.plan import Prompt
 from roadgpt.study.truth import Truth
 
 GUIDE = (Path(__file__).resolve().parents[2] / "docs" / "how-to" / "evaluate-roads.md").read_text(

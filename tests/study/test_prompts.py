@@ -7,7 +7,7 @@ import pytest
 
 from roadgpt.errors import UsageError
 from roadgpt.study.chapters.validity import THESIS
-from roadgpt.study.prompts import read_prompts, thesis_prompts
+from roadgpt.study.plan import read_prompts, thesis_prompts
 
 
 def written(folder: Path, *lines: object) -> Path:

@@ -21,8 +21,7 @@ from roadgpt.run import Setup
 from roadgpt.run.atomic import alone_in
 from roadgpt.study.chapters.validity import Count, Source, chi_squared_blocks
 from roadgpt.study.execution import work
-from roadgpt.study.plan import StudyPlan, open_folder, read_plan
-from roadgpt.study.prompts import Prompt, thesis_prompts
+from roadgpt.study.plan import Prompt, StudyPlan, open_folder, read_plan, thesis_prompts
 from roadgpt.study.study_report import keep_problems, write_run_report, write_study
 from roadgpt.study.truth import Truth
 

@@ -16,10 +16,9 @@ from typing import Protocol, cast, runtime_checkable
 
 from roadgpt import plugins
 from roadgpt.brief import beside
+from roadgpt.brief.expressions import said_map_size, says_motorway, with_driving_side
 from roadgpt.brief.feasible import check, is_possible
-from roadgpt.brief.left_hand import with_driving_side
 from roadgpt.brief.map_fit import LARGEST_MAP, ROAD_WIDTH
-from roadgpt.brief.map_size import said_map_size
 from roadgpt.brief.model import (
     Amount,
     Brief,
@@ -34,7 +33,6 @@ from roadgpt.brief.model import (
     between,
     exactly,
 )
-from roadgpt.brief.motorway_words import says_motorway
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.plan import plan, read_plan
@@ -48,7 +46,7 @@ from roadgpt.brief.refusal import (
 )
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP
-from roadgpt.chat import ChatSettings, instantiate, settings_for
+from roadgpt.chat import ChatSettings, plugin_of
 from roadgpt.errors import PartError
 
 __all__ = [
@@ -158,7 +156,10 @@ def read(
         brief, too_much = reader_of(reader, chat).read(sized.rest if sized else words), None
     except TooMuchError as refusal:
         brief, too_much = refusal.brief, refusal
-    brief = _on_map(brief, words, sized.metres) if sized else brief
+    if sized:
+        size = {"map_size": sized.metres}
+        other = plan(read_plan(brief.other).model_copy(update=size)) if brief.other else ""
+        brief = brief.model_copy(update={"words": words, "other": other, **size})
     if brief.map_size is not None and not is_map_fixed:
         map_size, is_map_fixed = brief.map_size, True
     check(brief, map_size if is_map_fixed else LARGEST_MAP, min_radius, max_grade, road_width)
@@ -172,13 +173,6 @@ def read(
     if reader != PLAN:
         brief = with_driving_side(brief, words)
     return brief.model_copy(update={"motorway": True}) if is_road and says_motorway(words) else brief
-
-
-def _on_map(brief: Brief, words: str, metres: float) -> Brief:
-    """Returns the Brief of a description whose words also give the size of the map, and its other reading."""
-    size = {"map_size": metres}
-    other = plan(read_plan(brief.other).model_copy(update=size)) if brief.other else ""
-    return brief.model_copy(update={"words": words, "other": other, **size})
 
 
 def alternatives(
@@ -237,7 +231,7 @@ def remarks(brief: Brief, map_size: float, friction: float | None = None) -> tup
         map_size: side of the square map in metres.
         friction: friction coefficient of the road; with None, a surface named in the description sets it.
     """
-    told = (*beside.remarks(brief.beside, friction),)
+    told = tuple(beside.remarks(brief.beside, friction))
     if not brief.motorway:
         return told
     from roadgpt.brief import motorway  # only for motorways
@@ -256,15 +250,13 @@ def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:
         PartError: no such reader is installed, the reader takes no folder, or the folder holds no weights.
     """
     part, _, folder = name.partition(":")
-    return _made(part, settings_for(plugins.find("readers", part), chat), folder)
+    return _from_folder(part, folder) if folder else cast(Reader, plugin_of("readers", part, chat))
 
 
 @cache
-def _made(name: str, chat: ChatSettings | None, folder: str) -> Reader:
-    """Creates a reader; the cache makes sure that a network is loaded only once."""
+def _from_folder(name: str, folder: str) -> Reader:
+    """Creates a reader with weights of its own; the cache makes sure that they are loaded only once."""
     part = plugins.find("readers", name)
-    if not folder:
-        return cast(Reader, instantiate(part, chat))
     if not callable(getattr(part, "from_folder", None)):
         raise PartError(f"the reader '{name}' takes no folder; say --reader {name}")
     return cast(Reader, part.from_folder(folder))

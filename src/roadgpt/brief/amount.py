@@ -1,12 +1,17 @@
 """Defines Amount, a number as a description gives it, and Frozen, the base class of immutable values."""
 
+import re
 from collections.abc import Iterator
 from math import inf
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from roadgpt.brief.ranges import Range
+from roadgpt.errors import BriefError
+
+NUMBER = r"-?\d+(?:\.\d+)?"
+AMOUNT = re.compile(rf"({NUMBER})?(\.\.)?({NUMBER})?")
 
 
 class Frozen(BaseModel):
@@ -49,6 +54,12 @@ class Amount(Frozen):
         """True if the amount is a single number, not a bound or a range."""
         return self.lo == self.hi
 
+    def times(self, factor: float) -> "Amount":
+        """Returns the Amount of all numbers that this one allows, each multiplied by ``factor``."""
+        ends = [None if end is None else end * factor + 0.0 for end in (self.lo, self.hi)]  # never -0
+        lo, hi = ends if factor > 0 else ends[::-1]
+        return Amount(lo=lo, hi=hi)
+
 
 def span(amount: Amount | None) -> Range:
     """Returns the range of numbers that an amount allows; None allows every number."""
@@ -62,9 +73,29 @@ def meets(amount: Amount | None, possible: Range) -> bool:
     return max(own.lo, possible.lo) <= min(own.hi, possible.hi)
 
 
-def figure(number: float) -> str:
-    """Formats a number with at most four decimals and no trailing zeros."""
-    return f"{number:.4f}".rstrip("0").rstrip(".")
+def figure(number: float, decimals: int = 4) -> str:
+    """Formats a number in plain decimals, never with an exponent, and without trailing zeros."""
+    return f"{number:.{decimals}f}".rstrip("0").rstrip(".")
+
+
+def amount_text(amount: Amount) -> str:
+    """Returns an amount as it is written in a plan: 3, 3.., ..3 or 3..5."""
+    low, high = ("" if end is None else figure(end, 6) for end in (amount.lo, amount.hi))
+    return low if amount.exact else f"{low}..{high}"
+
+
+def read_amount(text: str) -> Amount:
+    """Returns the amount that a plan gives; raises BriefError if the text is none, or a range is reversed."""
+    match = AMOUNT.fullmatch(text)
+    if not match or not (match[1] or match[3]) or (match[1] and match[3] and not match[2]):
+        raise BriefError(f"'{text[:40]}' is not a number in a plan; write 3, 3.., ..3 or 3..5")
+    low, high = (float(bound) if bound else None for bound in (match[1], match[3]))
+    try:
+        return Amount(lo=low, hi=high if match[2] else low)
+    except ValidationError as error:
+        raise BriefError(
+            f"the range '{text[:40]}' in a plan is reversed; write the smaller number first"
+        ) from error
 
 
 def exactly(number: float) -> Amount:

@@ -32,18 +32,8 @@ TURNS: dict[JunctionKind, Range] = {
 FORK_GAPS = (87.0, 153.0)  # degrees between neighbouring arms of a fork for which an angle is required
 
 
-def check_arms(junction: JunctionClause) -> None:
-    """Checks the requirements for the arms of a junction.
-
-    Raises:
-        BriefError: The requirements contradict each other, or no junction has such arms; the message says
-            what to change.
-    """
-    _check_one_way(junction)
-    _check_angles(junction)
-
-
-def _check_one_way(junction: JunctionClause) -> None:
+def check_one_way_arms(junction: JunctionClause) -> None:
+    """Raises BriefError if the requirements for one-way arms contradict each other or cannot be met."""
     into, out = {*junction.only_in}, {*junction.only_out}
     if not into and not out:
         return
@@ -71,7 +61,8 @@ def _check_one_way(junction: JunctionClause) -> None:
         )
 
 
-def _check_angles(junction: JunctionClause) -> None:
+def check_angles(junction: JunctionClause) -> None:
+    """Raises BriefError if no junction has the angles that are required between its arms."""
     name, kind = junction.name, junction.kind
     if junction.angle is None and junction.degrees is None:
         return

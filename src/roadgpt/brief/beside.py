@@ -67,21 +67,19 @@ these names come only from plans and from readers that do not know routes."""
 NETWORKS = (*ON_ROUTES, "loop")
 """Names of the things that are not a single road. If a reader other than ``plan`` puts one of them into
 ``Brief.beside``, ``brief.read`` raises NotBuiltError, which proposes the road without this thing."""
-NEEDS_NUMBERS = {
+SAID_OTHERWISE = {
+    # wishes that cannot be built without a number
     "size": "a long or a short road is not a number; ask for its length, such as 'a 300 m road'",
     "place": "what kind of road it is, such as a country lane, changes nothing by itself; say how it bends",
     "compared": "how one part compares with another is not built yet; give each its own number",
     "alike": "only parts that are alike in everything are built by words; give each its own number",
-}
-"""Wishes that RoadGPT understands but cannot build without a number, by name, with the remark for each."""
-OPTIONS = {
+    # properties that are set by an option
     "lanes": "the number of lanes is set with --lanes, such as --lanes 2+1",
     "lane_width": "the width of lanes is set with --lane-width, such as --lane-width 3",
     "bank": "superelevation is set with --bank, such as --bank auto",
     "speed": "the speed limit is set with --speed-limit, such as --speed-limit 50",
 }
-"""Properties that are set by an option, not by a description, by name, with the remark for each."""
-SAID_OTHERWISE = NEEDS_NUMBERS | OPTIONS
+"""Wishes that RoadGPT understands but does not build from these words, by name, with the remark for each."""
 BESIDE = frozenset({*NOT_BUILT, *SAID_OTHERWISE, *SURFACES})
 
 
@@ -107,10 +105,8 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
 
 
 def networks_in(names: Iterable[str]) -> str:
-    """Returns a sentence that says why things in ``NETWORKS`` are not built; empty if none of them is named.
-
-    The sentence has no full stop, for example: "it is not clear where a roundabout should be; say it in
-    driving order, such as 'a roundabout, second exit'".
+    """Returns a sentence, without a full stop, that says why things in ``NETWORKS`` are not built; empty if
+    none of them is named.
     """
     named = [name for name in names if name in NETWORKS]
     if not named:

@@ -6,8 +6,7 @@ from math import inf
 from typing import NamedTuple
 
 from roadgpt.brief.amount import meets
-from roadgpt.brief.map_fit import ROAD_WIDTH, check_room
-from roadgpt.brief.minimum_length import least_length
+from roadgpt.brief.map_fit import ROAD_WIDTH, check_room, least_length
 from roadgpt.brief.model import Amount, Brief, Clause, Slope, exactly, span
 from roadgpt.brief.normal import BUMPS, SINGLE, STRAIGHT, clauses_turn, normal, total, turns_of
 from roadgpt.brief.part_climb import check_climb
@@ -85,7 +84,7 @@ def check(
     _limits_of_every_turn(brief)
     brief = normal(brief)
     limits = _Limits(min_radius, min(100 * max_grade, STEEPEST))
-    for clause in (*brief.clauses, *(c for c in (brief.starts, brief.ends) if c)):
+    for clause in (*brief.clauses, *brief.both_ends):
         _shape(clause, limits)
     each = Clause(kind="turn", sharpness=brief.sharpness, degrees=brief.degrees, radius=brief.radius)
     _shape(each, limits)
@@ -217,16 +216,12 @@ def _exclude(one: Range | None, other: Range | None) -> bool:
 
 def _incline(slope: Slope | None, incline: Amount | None, limits: _Limits) -> None:
     least = span(incline).lo
-    _not_too_steep(least, limits)
-    if slope in LEVEL and least > GRADES[slope].hi:
-        raise BriefError(f"a level road cannot have a slope of {least:g} percent; leave out one of the two")
-
-
-def _not_too_steep(least: float, limits: _Limits) -> None:
     if least > limits.steepest:
         raise BriefError(
             f"a slope of {least:g} percent is too steep; ask for {limits.steepest:g} percent or less"
         )
+    if slope in LEVEL and least > GRADES[slope].hi:
+        raise BriefError(f"a level road cannot have a slope of {least:g} percent; leave out one of the two")
 
 
 def _number_of_turns(brief: Brief) -> None:
@@ -239,10 +234,9 @@ def _number_of_turns(brief: Brief) -> None:
                 f"the description names {_many(said, 'turn')}, but asks for {brief.turns} in all;"
                 " make the numbers agree"
             )
-    if asked.hi == 0:
-        ends = clauses_turn([c for c in (brief.starts, brief.ends) if c])
-        if ends or brief.alternating or span(brief.left).lo > 0 or span(brief.right).lo > 0:
-            raise BriefError("turns and no turns are asked for: leave out one of the two")
+    has_sides = brief.alternating or span(brief.left).lo > 0 or span(brief.right).lo > 0
+    if asked.hi == 0 and (has_sides or clauses_turn(brief.both_ends)):
+        raise BriefError("turns and no turns are asked for: leave out one of the two")
     if max(span(said).lo, asked.lo) > MOST_TURNS:
         raise BriefError(f"no map holds so many turns; ask for {MOST_TURNS:g} or fewer")
 
@@ -328,8 +322,8 @@ def _sure(clause: Clause, side: str) -> float:
 def _slopes(brief: Brief, limits: _Limits) -> None:
     climb, steepest = span(brief.climb), span(brief.steepest)
     _incline(brief.slope, brief.incline, limits)
-    _not_too_steep(steepest.lo, limits)
-    for clause in (*brief.clauses, *(end for end in (brief.starts, brief.ends) if end)):
+    _incline(None, brief.steepest, limits)
+    for clause in (*brief.clauses, *brief.both_ends):
         _slope_within(brief, clause)
     asked = max([span(brief.incline).lo, *(span(clause.incline).lo for clause in brief.clauses)])
     if asked > steepest.hi:

@@ -1,20 +1,15 @@
 """Finds contradictions and impossible requirements in the junctions of a Brief, and says what to change."""
 
 from math import isfinite
-from typing import TYPE_CHECKING
 
 from roadgpt.brief.amount import Amount, meets, span
-from roadgpt.brief.arm_check import check_arms
-from roadgpt.brief.junction_plan import word_of
+from roadgpt.brief.arm_check import check_angles, check_one_way_arms
+from roadgpt.brief.junction_plan import KEY_OF
 from roadgpt.brief.junction_ranges import ACROSS, ARMS, SIZES
-from roadgpt.brief.junctions import LANE_KINDS, NAMES, RAMPS, JunctionClause, JunctionKind, Way
-from roadgpt.brief.lane_sequence import check_lane_sequence
-from roadgpt.brief.map_clause import SIGNS, MapClause
+from roadgpt.brief.junctions import LANE_KINDS, NAMES, RAMPS, SIGNS, JunctionClause, JunctionKind, MapClause
+from roadgpt.brief.model import Brief
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.errors import BriefError
-
-if TYPE_CHECKING:
-    from roadgpt.brief.model import Brief
 
 POSSIBLE: dict[JunctionKind, tuple[str, ...]] = {
     "t_junction": ("left", "right", "straight"),
@@ -28,36 +23,31 @@ POSSIBLE: dict[JunctionKind, tuple[str, ...]] = {
 }
 """The values of ``take`` that are possible at a kind of junction. At kinds that are not listed, the route can
 go every way except "ramp" and "main", and back only at a roundabout."""
-FIXED_ARMS: dict[JunctionKind, int] = {
-    kind: int(arms.lo) for kind, arms in ARMS.items() if arms.lo == arms.hi and kind not in RAMPS
-}
-"""The number of arms of each kind that always has the same number, except for merges and exits."""
 MOST_BLOCKS = 8
 MOST_OF_KIND = 12
 MOST_ARMS_OF_MINI = 4  # with more, kerbs between them would have radii below 3 m
 CIRCULATORY = 10.0  # m, about: the outer diameter of a roundabout minus the diameter of its island
+STEPS = {"lane_drop": -1, "lane_gain": 1, "lane_change": 0}
+"""The number of lanes of the road behind a place where lanes change, minus that of the road before it."""
+LEAST_BESIDE_RAMP = 28.0  # m; source: the rule ``ramp_too_short``
+LEAST_LANE = 17.0  # m, before the taper; with the wide part of a taper of 60 m, these are the required 28 m
+WIDE_IN_TAPER = 0.196  # of the taper: the share in which the lane is still wider than 0.9 of its full width
 
 
-def check_network(brief: "Brief") -> None:
-    """Checks the junctions of a route and its lanes there, or the map that a Brief requires.
-
-    Raises:
-        BriefError: The requirements contradict each other or cannot be met; the message says what to change.
+def check_network(brief: Brief) -> None:
+    """Raises BriefError if the junctions and lanes of a route, or the map, contradict themselves or cannot be
+    built; the message says what to change.
     """
     for junction in brief.junctions:
         check_junction(junction)
     _check_turning_back(brief)
-    check_lane_sequence(brief)
+    _check_lane_sequence(brief)
     if brief.map is not None and not brief.junctions:
         _check_map(brief.map)
 
 
 def check_junction(junction: JunctionClause) -> None:
-    """Checks whether a junction can meet its requirements.
-
-    Raises:
-        BriefError: The junction cannot meet its requirements; the message says what to change.
-    """
+    """Raises BriefError if a junction cannot meet its requirements; the message says what to change."""
     name, possible = junction.name, ARMS[junction.kind]
     is_ring = junction.kind == "roundabout"
     if junction.kind in (*RAMPS, *LANE_KINDS):
@@ -100,7 +90,8 @@ def check_junction(junction: JunctionClause) -> None:
     if junction.skew and junction.kind != "crossroads":
         raise BriefError(f"only crossroads are skew, not a {name}; leave it out")
     _check_diameter(junction)
-    check_arms(junction)
+    check_one_way_arms(junction)
+    check_angles(junction)
 
 
 LENGTHS = Range(10, 1500)  # m, of a lane for acceleration or deceleration, and of tapers
@@ -113,8 +104,8 @@ def _check_fields_of_lanes(junction: JunctionClause) -> None:
     usual = JunctionClause(kind=junction.kind)
     for field in JunctionClause.model_fields:
         if field not in OF_LANES and getattr(junction, field) != getattr(usual, field):
-            raise BriefError(f"a {junction.name} has no {word_of(field)}; leave it out")
-    is_short = junction.kind in RAMPS and span(junction.length).hi < LENGTHS.lo  # see check_lane_sequence
+            raise BriefError(f"a {junction.name} has no {KEY_OF.get(field, field)}; leave it out")
+    is_short = junction.kind in RAMPS and span(junction.length).hi < LENGTHS.lo  # see _check_lane_sequence
     for word, metres in (("len", None if is_short else junction.length), ("taper", junction.taper)):
         if not meets(metres, LENGTHS):
             raise BriefError(f"{word} of a {junction.name} is {LENGTHS} m, not {metres} m; change it")
@@ -124,17 +115,45 @@ def _check_fields_of_lanes(junction: JunctionClause) -> None:
         )
 
 
-def _check_turning_back(brief: "Brief") -> None:
-    """Checks that a route ends after it has turned back at a roundabout.
-
-    Raises:
-        BriefError: Another junction, or requirements for the road, follow after turning back.
-    """
+def _check_turning_back(brief: Brief) -> None:
+    """Raises BriefError if anything follows after a route has turned back at a roundabout."""
     backs = [n for n, junction in enumerate(brief.junctions) if junction.take == "back"]
     if backs and (backs[0] < len(brief.junctions) - 1 or not brief.stretches[-1].is_open):
         raise BriefError(
             "a route that turns back at a roundabout ends on the road on which it came; leave out what "
             "follows"
+        )
+
+
+def _check_lane_sequence(brief: Brief) -> None:
+    """Checks the number of lanes along a route, and the length of the additional lanes at ramps."""
+    for n, place in enumerate(brief.junctions):
+        before, after = brief.stretches[n : n + 2]
+        step = 0 if place.take == "main" else STEPS.get(place.kind)
+        if step is not None:
+            _check_step(place, before, after, step)
+        if place.kind in RAMPS and span(place.length).hi < LEAST_BESIDE_RAMP:
+            raise BriefError(
+                f"the additional lane of a {place.name} is {LEAST_BESIDE_RAMP:g} m long or longer, not "
+                f"{place.length} m; change it"
+            )
+        least = LEAST_LANE + WIDE_IN_TAPER / (1 - WIDE_IN_TAPER) * max(span(place.taper).lo, 0.0)
+        if place.taper is not None and span(place.length).hi < least:
+            raise BriefError(
+                f"with a taper of {place.taper} m, the additional lane of a {place.name} is {least:.0f} m "
+                f"long or longer, not {place.length} m; change one of them"
+            )
+
+
+def _check_step(place: JunctionClause, before: Brief, after: Brief, step: int) -> None:
+    if before.lanes is None or after.lanes is None:
+        return
+    own = span(before.lanes)
+    if not meets(after.lanes, Range(own.lo + step, own.hi + step)):
+        what = {-1: "one lane fewer", 0: "as many lanes", 1: "one lane more"}[step]
+        raise BriefError(
+            f"behind a {place.name} the road has {what}, but the road before it has {before.lanes} and the "
+            f"one behind it {after.lanes}; change one of them"
         )
 
 
@@ -156,15 +175,10 @@ def _check_take(junction: JunctionClause, name: str) -> None:
     if len(ways) not in needed or len(set(ways)) != len(ways) or (possible and not {*ways} <= {*possible}):
         raise BriefError(f"a {name} has {needed} different ways on, other than {' and '.join(ways)}")
     if take in ("left", "right", "straight") and take not in ways:
-        raise BriefError(f"a {name} with ways on {_said(ways)} has none {take}; change one of them")
+        raise BriefError(f"a {name} with ways on {' and '.join(ways)} has none {take}; change one of them")
 
 
 def _check_map(asked: MapClause) -> None:
-    """Checks the map of roads that a Brief requires.
-
-    Raises:
-        BriefError: No such map can be built; the message says what to change.
-    """
     for blocks in (asked.columns, asked.rows):
         if not meets(blocks, Range(1, MOST_BLOCKS)):
             raise BriefError(f"a grid has 1 to {MOST_BLOCKS} blocks a side, not {blocks}; change it")
@@ -250,7 +264,7 @@ def least_ends(asked: MapClause) -> float:
 
 def has_fixed_arms(asked: MapClause) -> bool:
     """Returns whether the number of arms of all junctions of a map is fixed."""
-    return all(each.kind in FIXED_ARMS and each.count.exact for each in asked.junctions)
+    return all(ARMS[each.kind].lo == ARMS[each.kind].hi and each.count.exact for each in asked.junctions)
 
 
 def _check_dead_ends(asked: MapClause, wanted: Range) -> None:
@@ -291,29 +305,18 @@ def _check_diameter(junction: JunctionClause) -> None:
         raise BriefError("the radius of the island and the outer diameter are given; leave one of them out")
     if not meets(junction.outer, ACROSS):
         raise BriefError(f"a roundabout is {ACROSS} m across, not {junction.outer} m; change it")
-    if junction.size is not None and not meets(junction.outer, _around(SIZES[junction.size])):
+    if junction.size is None:
+        return
+    size = SIZES[junction.size]
+    if not meets(junction.outer, Range(size.lo - 1, size.hi + 1)):  # so that none lies between two sizes
         raise BriefError(
-            f"a {junction.size} roundabout is {SIZES[junction.size]} m across, not {junction.outer} m; leave "
-            "one of them out"
+            f"a {junction.size} roundabout is {size} m across, not {junction.outer} m; leave one of them out"
         )
-    if junction.size is not None and junction.radius is not None:
-        island = span(junction.radius)
-        outer = Range(2 * island.lo + CIRCULATORY, 2 * island.hi + CIRCULATORY)
-        both = overlap(outer, SIZES[junction.size])
-        if both is None or both.lo > both.hi:
-            raise BriefError(
-                f"a {junction.size} roundabout is {SIZES[junction.size]} m wide; with a radius of "
-                f"{junction.radius} m it is not; leave one of them out"
-            )
-
-
-def _around(size: Range) -> Range:
-    """Returns the range of a size, 1 m wider at both ends, so that no diameter lies between two sizes."""
-    return Range(size.lo - 1, size.hi + 1)
-
-
-def _said(ways: tuple[Way, ...]) -> str:
-    return " and ".join(ways)
+    if not meets(junction.radius, Range((size.lo - CIRCULATORY) / 2, (size.hi - CIRCULATORY) / 2)):
+        raise BriefError(
+            f"a {junction.size} roundabout is {size} m wide; with a radius of {junction.radius} m it is not; "
+            "leave one of them out"
+        )
 
 
 def _check_exit(number: Amount, arms: Range) -> None:

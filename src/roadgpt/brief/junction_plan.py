@@ -10,9 +10,8 @@ from typing import get_args
 
 from pydantic import ValidationError
 
-from roadgpt.brief.amount import Amount
+from roadgpt.brief.amount import amount_text, read_amount
 from roadgpt.brief.junctions import Control, IslandSize, JunctionClause, Side, Take, Way
-from roadgpt.brief.plan_amount import amount_text, read_amount
 from roadgpt.errors import BriefError
 
 WORDS = {
@@ -20,13 +19,20 @@ WORDS = {
     **dict.fromkeys(get_args(IslandSize), "size"),
     **dict.fromkeys(get_args(Control), "control"),
 }
-KEYS = ("degrees", "angle", "exit", "arms", "radius", "outer", "lanes", "length", "taper")
-SHORT = {"degrees": "deg", "radius": "r", "length": "len"}
-LONG = {short: name for name, short in SHORT.items()}
-SIDES = {"ways": "ways", "only_in": "in", "only_out": "out"}
-"""The fields of a JunctionClause that list sides, with their keys in a plan."""
-FIELDS = {key: name for name, key in SIDES.items()}
-SIDE = "side="
+KEYS = {
+    "deg": "degrees",
+    "angle": "angle",
+    "exit": "exit",
+    "arms": "arms",
+    "r": "radius",
+    "outer": "outer",
+    "lanes": "lanes",
+    "len": "length",
+    "taper": "taper",
+}
+SIDES = {"ways": "ways", "in": "only_in", "out": "only_out"}
+"""The keys of a plan that list sides, with their fields of a JunctionClause."""
+KEY_OF = {name: key for key, name in (KEYS | SIDES).items()}
 DIAMETER = "d"
 FLAGS = ("skew", "all_way", "crosswalk", "others_stop")
 
@@ -36,55 +42,42 @@ def junction_plan(junction: JunctionClause) -> str:
     words: list[str] = [junction.kind]
     words += [value for name in ("take", "size", "control") if (value := getattr(junction, name))]
     words += [flag for flag in FLAGS if getattr(junction, flag)]
-    words += [f"{SIDE}{junction.side}"] if junction.side else []
-    words += [f"{key}={'+'.join(ways)}" for name, key in SIDES.items() if (ways := getattr(junction, name))]
-    for name in KEYS:
+    words += [f"side={junction.side}"] if junction.side else []
+    words += [f"{key}={'+'.join(ways)}" for key, name in SIDES.items() if (ways := getattr(junction, name))]
+    for key, name in KEYS.items():
         if (amount := getattr(junction, name)) is not None:
-            words.append(f"{SHORT.get(name, name)}={amount_text(amount)}")
+            words.append(f"{key}={amount_text(amount)}")
     return " ".join(words)
 
 
-def word_of(field: str) -> str:
-    """Returns the key with which plans write a field of JunctionClause, such as "len" for "length"."""
-    return SHORT.get(field, SIDES.get(field, field))
-
-
-def _half(amount: Amount) -> Amount:
-    lo, hi = (None if bound is None else bound / 2 for bound in (amount.lo, amount.hi))
-    return Amount(lo=lo, hi=hi)
-
-
 def read_junction(text: str) -> JunctionClause:
-    """Returns the junction that a part of a plan describes; the part must not be empty.
-
-    Raises:
-        BriefError: A word or number is not part of the plan language, or a field is given twice.
+    """Returns the junction that a part of a plan describes, which must not be empty. Raises BriefError if a
+    word or number is not part of the plan language, or a field is given twice.
     """
     kind, *words = text.split()
     fields: dict[str, object] = {"kind": kind}
     for word in words:
         key, equals, value = word.partition("=")
-        name = LONG.get(key, key)
-        if equals and name in KEYS:
+        name = KEYS.get(key, key)
+        if equals and name in KEYS.values():
             found: tuple[str, object] = (name, read_amount(value))
         elif equals and key == DIAMETER:
-            found = ("radius", _half(read_amount(value)))
-        elif equals and key in SIDES.values():
-            found = (FIELDS[key], tuple(value.split("+")))
-        elif word.startswith(SIDE):
+            found = ("radius", read_amount(value).times(0.5))
+        elif equals and key in SIDES:
+            found = (SIDES[key], tuple(value.split("+")))
+        elif equals and key == "side":
             found = ("side", value)
         elif word in FLAGS:
             found = (word, True)
         elif word in WORDS:
             found = (WORDS[word], word)
         else:
-            keys = (f"{key}=" for key in (*(SHORT.get(name, name) for name in KEYS), *FIELDS))
-            known = ", ".join(sorted((*WORDS, *FLAGS, *keys, SIDE)))
+            keys = (f"{key}=" for key in (*KEYS, *SIDES, "side"))
+            known = ", ".join(sorted((*WORDS, *FLAGS, *keys)))
             raise BriefError(f"a plan has no word '{word[:40]}' for a junction; there are {known}")
         if found[0] in fields:
-            raise BriefError(
-                f"a plan gives {word_of(found[0])} of a junction twice: '{word[:40]}'; give it once"
-            )
+            said = KEY_OF.get(found[0], found[0])
+            raise BriefError(f"a plan gives {said} of a junction twice: '{word[:40]}'; give it once")
         fields[found[0]] = found[1]
     try:
         return JunctionClause.model_validate(fields)

@@ -38,18 +38,15 @@ BENDS = {"slight": Range(SIDE, 75), "sharp": Range(95, 180)}
 
 
 def side_of(turn: float) -> Way:
-    """Returns the way that a change of direction leads: "left", "right", or "straight" if it is small.
-
-    ``turn`` is the change of direction in degrees, positive to the left.
+    """Returns the way that a change of direction in degrees, positive to the left, leads; a small one leads
+    straight on.
     """
     return "left" if turn > SIDE else "right" if turn < -SIDE else "straight"
 
 
 def bends_as(take: Take | None, turn: float) -> bool:
-    """Returns whether a change of direction in degrees is as slight or as sharp as ``take`` requires.
-
-    ``take`` is the way that a route takes at a junction, such as "slight_left". Its side is not compared.
-    Without "slight" or "sharp" in ``take``, the result is True.
+    """Returns whether a change of direction in degrees is as slight or as sharp as ``take``, such as
+    "slight_left", requires; its side is not compared.
     """
     return abs(turn) in BENDS.get((take or "").partition("_")[0], Range())
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from roadgpt.brief.amount import Amount
-from roadgpt.brief.junctions import LANE_KINDS, Control, JunctionClause, Take
+from roadgpt.brief.junctions import LANE_KINDS, Control, JunctionClause, Take, Way
 
 TAKES: Mapping[Take, str] = {
     "left": "turn left",
@@ -25,57 +25,49 @@ CONTROLS: Mapping[Control, str] = {
     "none": "without signs",
 }
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
+TO: Mapping[Way, str] = {"left": "to the left", "right": "to the right", "straight": "straight on"}
+FROM: Mapping[Way, str] = {
+    "left": "from the left",
+    "right": "from the right",
+    "straight": "from straight ahead",
+}
 
 
 def junction_text(junction: JunctionClause) -> str:
     """Returns a junction and what the route does there, such as 'at a crossroads with traffic lights turn
     left'.
     """
-    adjectives = [junction.size or "", "skew" if junction.skew else ""]
-    noun = " ".join([*filter(None, adjectives), junction.name])
-    place = [f"at {_article(noun)} {noun}"]
-    if junction.arms is not None:
-        place.append(f"with {junction.arms} arms")
-    if junction.radius is not None:
-        place.append(f"whose island has a radius of {junction.radius} metres")
-    if junction.outer is not None:
-        place.append(f"{junction.outer} metres across")
-    if junction.ways:
-        place.append(f"with ways on {_listed(junction.ways)}")
-    if junction.only_in:
-        place.append(f"with {_one_way(junction.only_in, 'comes')} {_from(junction.only_in)}")
-    if junction.only_out:
-        place.append(f"with {_one_way(junction.only_out, 'leads')} {_listed(junction.only_out)}")
-    if junction.angle is not None:
-        place.append(f"whose closest roads are {junction.angle} degrees apart")
-    if junction.lanes is not None:
-        place.append(f"with {junction.lanes} lanes around it")
-    if junction.side is not None:
-        place.append(f"on the {junction.side}")
-    if junction.length is not None:
-        place.append(f"{junction.length} metres long")
-    if junction.taper is not None:
-        place.append(f"with a taper of {junction.taper} metres")
-    if junction.control is not None:
-        place.append(CONTROLS[junction.control])
-    if junction.all_way:
-        place.append("at every arm")
-    if junction.others_stop:
-        place.append("with stop signs for the others")
-    if junction.crosswalk:
-        place.append("with a crosswalk")
-    return f"{' '.join(place)} {_way_on(junction)}".strip()
-
-
-LEADS = {"straight": "straight on"}
+    parts = [
+        "at a",
+        junction.size,
+        "skew" if junction.skew else "",
+        junction.name,
+        f"with {junction.arms} arms" if junction.arms else "",
+        f"whose island has a radius of {junction.radius} metres" if junction.radius else "",
+        f"{junction.outer} metres across" if junction.outer else "",
+        f"with ways on {_listed(junction.ways, TO)}" if junction.ways else "",
+        _one_way(junction.only_in, "come", FROM),
+        _one_way(junction.only_out, "lead", TO),
+        f"whose closest roads are {junction.angle} degrees apart" if junction.angle else "",
+        f"with {junction.lanes} lanes around it" if junction.lanes else "",
+        f"on the {junction.side}" if junction.side else "",
+        f"{junction.length} metres long" if junction.length else "",
+        f"with a taper of {junction.taper} metres" if junction.taper else "",
+        CONTROLS[junction.control] if junction.control else "",
+        "at every arm" if junction.all_way else "",
+        "with stop signs for the others" if junction.others_stop else "",
+        "with a crosswalk" if junction.crosswalk else "",
+        _way_on(junction),
+    ]
+    return " ".join(filter(None, parts))
 
 
 def _way_on(junction: JunctionClause) -> str:
     if junction.kind in LANE_KINDS:
         return f"to the {junction.take}" if junction.take else ""
     if junction.exit is not None:
-        leads = f", which leads {LEADS.get(junction.take, junction.take)}" if junction.take else ""
-        return f"take {exit_text(junction.exit)}{leads.replace('_', ' ')}"
+        way = "straight on" if junction.take == "straight" else (junction.take or "").replace("_", " ")
+        return f"take {exit_text(junction.exit)}" + (f", which leads {way}" if way else "")
     otherwise = "go on somewhere" if junction.degrees is None else "turn"
     way = TAKES[junction.take] if junction.take is not None else otherwise
     return way if junction.degrees is None else f"{way} by {junction.degrees} degrees"
@@ -88,19 +80,10 @@ def exit_text(number: Amount) -> str:
     return f"exit {number}"
 
 
-def _listed(ways: tuple[str, ...]) -> str:
-    said = {"left": "to the left", "right": "to the right", "straight": "straight on"}
-    return " and ".join(said[way] for way in ways)
+def _listed(ways: tuple[Way, ...], texts: Mapping[Way, str]) -> str:
+    return " and ".join(texts[way] for way in ways)
 
 
-def _one_way(ways: tuple[str, ...], verb: str) -> str:
-    return f"a one-way road that {verb}" if len(ways) == 1 else f"one-way roads that {verb.removesuffix('s')}"
-
-
-def _from(ways: tuple[str, ...]) -> str:
-    said = {"left": "from the left", "right": "from the right", "straight": "from straight ahead"}
-    return " and ".join(said[way] for way in ways)
-
-
-def _article(noun: str) -> str:
-    return "an" if noun[:1].lower() in "aei" else "a"
+def _one_way(ways: tuple[Way, ...], verb: str, texts: Mapping[Way, str]) -> str:
+    roads = f"a one-way road that {verb}s" if len(ways) == 1 else f"one-way roads that {verb}"
+    return f"with {roads} {_listed(ways, texts)}" if ways else ""

@@ -1,12 +1,11 @@
 """Checks from the numbers of a Brief whether its road can fit on the map, and proposes what would fit."""
 
-from math import ceil, floor, sqrt
+from math import ceil, floor, inf, radians, sqrt
 
-from roadgpt.brief.minimum_length import least_length
-from roadgpt.brief.model import Brief, span
-from roadgpt.brief.normal import STRAIGHT
+from roadgpt.brief.model import Brief, Clause, span
+from roadgpt.brief.normal import STRAIGHT, total, turns_of
 from roadgpt.brief.refusal import NoRoomError
-from roadgpt.brief.words import LENGTH_SLACK, ROAD_LENGTH_SLACK
+from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, LENGTH_SLACK, ROAD_LENGTH_SLACK, SHARPNESS, SIZES
 from roadgpt.errors import BriefError
 
 ROAD_WIDTH = 8.0  # metres: two lanes of 4 m
@@ -16,31 +15,20 @@ SIDES_OF_ROAD = 1.3  # a road with turns fits if it is this many sides of the ma
 BESIDE_TURNS = 0.6  # share of the longest straight that still fits on a road with turns
 ROUND_MAP = 50.0  # metres: map sizes are proposed in these steps
 LARGEST_MAP = 10_000.0  # metres
+WAY_OF_A_TURN = 30.0  # metres that a turn and the straight after it need at least
+GAP = 16.0  # metres of straight between two turns to the same side
 
 
 def longest_straight(map_size: float, road_width: float = ROAD_WIDTH) -> float:
-    """Returns the length of the longest straight that fits on the map, in metres.
-
-    The straight runs from corner to corner, far enough from the border that the whole carriageway lies on the
-    map.
+    """Returns the length in metres of the longest straight on the map: from corner to corner, as far from the
+    border as the whole carriageway needs.
     """
     return sqrt(2) * (map_size - road_width - 2 * EDGE)
 
 
-def map_for_straight(metres: float, road_width: float = ROAD_WIDTH) -> float:
-    """Returns the side in metres of the smallest map for a straight of this length, in steps of 50 m."""
-    return ceil((metres / sqrt(2) + road_width + 2 * EDGE) / ROUND_MAP) * ROUND_MAP
-
-
 def check_room(brief: Brief, map_size: float, min_radius: float, road_width: float = ROAD_WIDTH) -> None:
-    """Checks that a map is not obviously too small for a Brief; only the design shows whether the road really
-    fits.
-
-    Args:
-        brief: the requirements, in normal form.
-        map_size: side of the square map in metres.
-        min_radius: radius of the tightest turn allowed, in metres.
-        road_width: width of the carriageway in metres.
+    """Checks that a map is not obviously too small for a Brief in normal form; only the design shows whether
+    the road really fits. Lengths are in metres.
 
     Raises:
         NoRoomError: the road cannot fit; the message says what would.
@@ -83,7 +71,8 @@ def _straights(brief: Brief, map_size: float, road_width: float) -> None:
 
 
 def _too_long(what: str, metres: float, brief: Brief, map_size: float, road_width: float) -> NoRoomError:
-    longest, size = longest_straight(map_size, road_width), map_for_straight(metres, road_width)
+    longest = longest_straight(map_size, road_width)
+    size = ceil((metres / sqrt(2) + road_width + 2 * EDGE) / ROUND_MAP) * ROUND_MAP
     is_all = brief.turns is not None and brief.turns.hi == 0
     offer = floor(longest if is_all else BESIDE_TURNS * longest)
     size *= 1 if is_all else round(1 / BESIDE_TURNS)
@@ -93,3 +82,30 @@ def _too_long(what: str, metres: float, brief: Brief, map_size: float, road_widt
         f" corner to corner; ask for {offer} m{larger}",
         brief,
     )
+
+
+def least_length(brief: Brief, min_radius: float) -> float:
+    """Returns a lower bound, in metres, on the length of a road with the clauses and turns of a Brief, whose
+    turns have a radius of ``min_radius`` metres or more.
+    """
+    metres = sum(_way(clause, min_radius) for clause in brief.clauses)
+    extra = span(brief.turns).lo - span(total(brief.clauses)).lo
+    return metres + max(extra, 0) * WAY_OF_A_TURN
+
+
+def _way(clause: Clause, min_radius: float) -> float:
+    """Returns the least length of a clause in metres."""
+    if clause.kind in STRAIGHT:
+        size = SIZES[clause.size].length if clause.size else None
+        least = (1 - LENGTH_SLACK) * span(clause.length).lo
+        return least if least > -inf else size.lo if size else LEAST_STRAIGHT
+    least, _ = turns_of(clause)
+    own, sharp = KINDS[clause.kind].degrees, SHARPNESS[clause.sharpness] if clause.sharpness else None
+    angle = clause.degrees.lo if clause.degrees and clause.degrees.lo else own.lo if own else 25.0
+    if sharp and sharp.degrees and not clause.degrees and clause.kind == "turn":
+        angle = sharp.degrees.lo
+    radius = sharp.radius.lo if sharp and sharp.radius else 0.0
+    if clause.radius and clause.radius.lo:
+        radius = (1 - LENGTH_SLACK) * clause.radius.lo
+    arc = radians(angle) * max(radius, min_radius)
+    return least * max(arc + (0 if clause.kind in ("s_bend", "chicane") else GAP), WAY_OF_A_TURN * 0.8)

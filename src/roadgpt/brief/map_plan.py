@@ -14,9 +14,18 @@ from typing import get_args
 
 from pydantic import ValidationError
 
-from roadgpt.brief.junctions import Control, MapJunctionKind, Way
-from roadgpt.brief.map_clause import LONGEST_ROUTE, MAP, ONE, ROUTE, JunctionCount, MapClause
-from roadgpt.brief.plan_amount import amount_text, read_amount
+from roadgpt.brief.amount import amount_text, read_amount
+from roadgpt.brief.junctions import (
+    LONGEST_ROUTE,
+    MAP,
+    ONE,
+    ROUTE,
+    Control,
+    JunctionCount,
+    MapClause,
+    MapJunctionKind,
+    Way,
+)
 from roadgpt.errors import BriefError
 
 KEYS = {"columns": "columns", "rows": "rows", "len": "length", "blocks": "blocks", "dead_ends": "dead_ends"}
@@ -43,11 +52,9 @@ def _kind_text(each: JunctionCount) -> str:
 
 
 def read_map(line: str) -> MapClause:
-    """Returns the map that a plan describes.
-
-    Raises:
-        BriefError: A word or number is not part of the plan language, a field is given twice, or the plan
-            gives neither a grid nor junctions, or a grid whose kinds of junctions have no signs.
+    """Returns the map that a plan describes. Raises BriefError if a word or number is not part of the plan
+    language, a field is given twice, or the plan gives neither a grid nor junctions, or a grid whose kinds of
+    junctions have no signs.
     """
     fields: dict[str, object] = {}
     counts: list[JunctionCount] = []
@@ -98,10 +105,8 @@ def read_map(line: str) -> MapClause:
 
 
 def read_ways(text: str) -> tuple[Way, ...]:
-    """Returns the ways that a route takes at junctions, from a text such as "left, straight".
-
-    Raises:
-        BriefError: A word is neither left, right nor straight, or there are no words or more than 12.
+    """Returns the ways that a route takes at junctions, from a text such as "left, straight"; raises
+    BriefError unless the text is 1 to 12 of left, right and straight.
     """
     words = [word for word in re.split(r"[+,\s]+", text) if word]
     ways: list[Way] = [way for word in words for way in get_args(Way) if way == word]
@@ -114,10 +119,8 @@ def read_ways(text: str) -> tuple[Way, ...]:
 
 
 def with_route(asked: MapClause | None, text: str) -> MapClause:
-    """Returns the map ``asked`` with the route that a text such as "left,straight" describes.
-
-    Raises:
-        BriefError: ``asked`` is None, because the description asks for no map, or the text cannot be read.
+    """Returns the map ``asked`` with the route that a text such as "left,straight" describes. Raises
+    BriefError if the description asks for no map (None), or the text cannot be read.
     """
     if asked is None:
         raise BriefError(

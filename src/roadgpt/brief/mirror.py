@@ -7,14 +7,16 @@ Brief exactly if the mirror image of the route meets the mirrored Brief.
 from typing import get_args
 
 from roadgpt.brief.junctions import JunctionClause, Take
-from roadgpt.brief.model import OTHER_SIDE, Brief, Clause
+from roadgpt.brief.model import Brief, Clause
 
-OTHER_TAKE: dict[Take, Take] = {
-    take: other
-    for take in get_args(Take)
-    for other in get_args(Take)
-    if take.replace("left", "?").replace("right", "left").replace("?", "right") == other
+OTHER: dict[str | None, str | None] = {
+    None: None,
+    **{
+        take: take.replace("left", "?").replace("right", "left").replace("?", "right")
+        for take in get_args(Take)
+    },
 }
+"""Every side, way and take, and the one that is its mirror image."""
 
 
 def mirrored(brief: Brief) -> Brief:
@@ -38,8 +40,8 @@ def _with_other_sides(road: Brief) -> Brief:
     return road.model_copy(
         update={
             "clauses": tuple(map(_clause, road.clauses)),
-            "starts": None if road.starts is None else _clause(road.starts),
-            "ends": None if road.ends is None else _clause(road.ends),
+            "starts": road.starts and _clause(road.starts),
+            "ends": road.ends and _clause(road.ends),
             "left": road.right,
             "right": road.left,
         }
@@ -47,17 +49,13 @@ def _with_other_sides(road: Brief) -> Brief:
 
 
 def _clause(clause: Clause) -> Clause:
-    return clause if clause.side is None else clause.model_copy(update={"side": OTHER_SIDE[clause.side]})
+    return clause.model_copy(update={"side": OTHER[clause.side]})
 
 
 def _junction(junction: JunctionClause) -> JunctionClause:
-    update: dict[str, object] = {
-        name: tuple("straight" if way == "straight" else OTHER_SIDE[way] for way in getattr(junction, name))
-        for name in ("ways", "only_in", "only_out")
+    lists = {
+        name: tuple(OTHER[way] for way in getattr(junction, name)) for name in ("ways", "only_in", "only_out")
     }
-    update |= {
-        "take": None if junction.take is None else OTHER_TAKE[junction.take],
-        "side": None if junction.side is None else OTHER_SIDE[junction.side],
-    }
+    sides = {"take": OTHER[junction.take], "side": OTHER[junction.side]}
     # made anew, because the ways are kept in a fixed order
-    return JunctionClause.model_validate({**junction.model_dump(), **update})
+    return JunctionClause.model_validate({**junction.model_dump(), **lists, **sides})

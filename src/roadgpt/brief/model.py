@@ -9,8 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exactly, figure, span
 from roadgpt.brief.beside import BESIDE, friction_of
-from roadgpt.brief.junctions import JunctionClause, Side
-from roadgpt.brief.map_clause import MapClause
+from roadgpt.brief.junctions import JunctionClause, MapClause, Side
 from roadgpt.brief.ranges import Range, nearest
 from roadgpt.brief.words import MOST_LANES, Kind, Sharpness, Size, Slope
 
@@ -215,6 +214,11 @@ class Brief(Frozen):
             return self.stretches
         needs_turn = not self.clauses and self.turns is None
         return (self.model_copy(update={"turns": at_least(1)}) if needs_turn else self,)
+
+    @property
+    def both_ends(self) -> tuple[Clause, ...]:
+        """``starts`` and ``ends``, as far as they are given."""
+        return tuple(end for end in (self.starts, self.ends) if end is not None)
 
     @property
     def has_free_shape(self) -> bool:

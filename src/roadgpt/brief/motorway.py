@@ -11,7 +11,6 @@ mph (1,050 ft, 320 m). RAA 2008, design classes EKA 1 A, 1 B, 2 and 3: radii of 
 m, grades up to 4, 4.5, 4.5 and 6 percent.
 """
 
-from collections.abc import Iterator
 from math import ceil, radians
 
 from roadgpt.brief.map_fit import LARGEST_MAP
@@ -41,7 +40,7 @@ def has_low_grades(brief: Brief) -> bool:
     """Returns True if the Brief asks for a motorway and requires no grade that is too steep for one."""
     if not brief.motorway:
         return False
-    things: list[Brief | Clause] = [brief, *_clauses(brief)]
+    things: list[Brief | Clause] = [brief, *brief.clauses, *brief.both_ends]
     steep = any(thing.slope in STEEP and not thing.incline for thing in things)
     amounts = [brief.steepest, *(thing.incline for thing in things)]
     return not steep and not any(span(amount).lo > MOTORWAY_GRADE for amount in amounts)
@@ -55,16 +54,14 @@ def remarks(brief: Brief, map_size: float) -> tuple[str, ...]:
     if not brief.motorway:
         return ()
     wide, low = f"turns of {MOTORWAY_RADIUS:g} m radius or more", f"grades of {MOTORWAY_GRADE:g} % or less"
-    if not has_low_grades(brief):
-        slopes = "this one is steeper, as was asked for"
-    else:
-        slopes = f"{low} are still met"
+    is_low = has_low_grades(brief)
+    slopes = f"{low} are still met" if is_low else "this one is steeper, as was asked for"
     if _needed(brief) == 0:
-        return (f"a motorway has {low}" if has_low_grades(brief) else slopes,)
+        return (f"a motorway has {low}" if is_low else slopes,)
     lack = "but tighter ones are asked for" if _is_tighter(brief) else _lack_of_room(brief, map_size)
-    if lack:
-        return (f"a motorway has {wide}, {lack}; {slopes}",)
-    return (f"a motorway has {wide}" + (f", and {low}" if has_low_grades(brief) else f"; {slopes}"),)
+    if is_low and not lack:
+        return (f"a motorway has {wide}, and {low}",)
+    return (f"a motorway has {wide}{f', {lack}' if lack else ''}; {slopes}",)
 
 
 def _lack_of_room(brief: Brief, map_size: float) -> str:
@@ -106,19 +103,12 @@ def _curve(clause: Clause) -> float:
 
 def _is_tighter(brief: Brief) -> bool:
     """True if the Brief asks for a turn that no motorway has."""
-    shapes: list[Brief | Clause] = [brief, *_clauses(brief)]
-    return any(clause.kind not in OPEN_KINDS | STRAIGHT for clause in _clauses(brief)) or any(
-        thing.sharpness == "sharp" or _below(thing) for thing in shapes
+    clauses = (*brief.clauses, *brief.both_ends)
+    things: tuple[Brief | Clause, ...] = (brief, *clauses)
+    return any(clause.kind not in OPEN_KINDS | STRAIGHT for clause in clauses) or any(
+        thing.sharpness == "sharp" or span(thing.radius).hi * (1 + LENGTH_SLACK) < MOTORWAY_RADIUS
+        for thing in things
     )
-
-
-def _below(thing: Brief | Clause) -> bool:
-    return span(thing.radius).hi * (1 + LENGTH_SLACK) < MOTORWAY_RADIUS
-
-
-def _clauses(brief: Brief) -> Iterator[Clause]:
-    yield from brief.clauses
-    yield from (end for end in (brief.starts, brief.ends) if end)
 
 
 def _up(metres: float, step: float) -> float:

@@ -22,9 +22,9 @@
   all other Briefs.
 """
 
+from collections.abc import Iterable
 from math import inf
 
-from roadgpt.brief.like_numbers import with_like_numbers
 from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, Kind, Side, Slope, at_least, exactly, span
 from roadgpt.brief.words import KINDS
 
@@ -34,9 +34,11 @@ SINGLE: frozenset[Kind] = frozenset({"turn", "hairpin", "switchback", "u_turn"})
 SHAPED: frozenset[Kind] = frozenset({"turn", "s_bend", "winding", "serpentine", "zigzag"})
 """The kinds of turns whose sharpness is not fixed by their kind."""
 MOST_SINGLE = 60
-MOST_STEPS = 8  # one step may enable another; contradictory Briefs need the most steps
+MOST_STEPS = 9  # one step may enable another; contradictory Briefs need the most steps
 UNSAID = {"words": "", "unused": (), "confidence": 1.0, "other": ""}
 """The fields of a Brief that require nothing."""
+NAMED_BY = {"degrees": "sharpness", "radius": "sharpness", "length": "size"}
+"""The numbers that like parts share, and the field whose word stands in the place of such a number."""
 PLAIN: dict[Slope, Slope] = {
     "steeply_up": "up",
     "steeply_down": "down",
@@ -53,12 +55,11 @@ def normal(brief: Brief) -> Brief:
     if brief.junctions or brief.map is not None:
         stretches = tuple(map(_normal_stretch, brief.stretches))
         return brief.model_copy(update={**UNSAID, "stretches": stretches})
-    before, after = brief, _simpler(brief)
     for _ in range(MOST_STEPS):
-        if after == before:
+        before, brief = brief, _simpler(brief)
+        if brief == before:
             break
-        before, after = after, _simpler(after)
-    return after
+    return brief
 
 
 def _normal_stretch(brief: Brief) -> Brief:
@@ -69,60 +70,81 @@ def _normal_stretch(brief: Brief) -> Brief:
 
 
 def _simpler(brief: Brief) -> Brief:
-    clauses = [one for clause in with_like_numbers(brief).clauses for one in _singles(_plain(clause))]
-    whole = _plain_slope(_without_empty_bounds(brief))
-    whole = whole.model_copy(update=UNSAID)
-    whole, clauses = _ends(whole, clauses)
-    whole, clauses = _turns_as_clause(whole, clauses)
-    whole, clauses = _sided(whole, clauses)
-    whole, clauses = _pushed_down(whole, clauses)
-    whole = _with_one_slope(whole, clauses)
-    clauses = _merged([_without_slope_of(whole, clause) for clause in clauses])
-    whole = _without_repeats(whole, clauses)
-    whole, clauses = _turns_as_wish(whole, clauses)
-    if whole.turns is None:
-        whole = whole.model_copy(update={"turns": _unsaid_turns(whole, clauses)})
-    if whole.turns == exactly(0) and not clauses_turn(clauses):
-        whole = whole.model_copy(update={"alternating": False})
-    return whole.model_copy(update={"clauses": tuple(clauses)})
+    clauses = tuple(one for clause in with_like_numbers(brief).clauses for one in _singles(_plain(clause)))
+    whole = {**UNSAID, "slope": _slope(brief.slope, brief.incline is not None), "clauses": clauses}
+    brief = _without_empty_bounds(brief).model_copy(update=whole)
+    for step in (
+        _with_ends_as_clauses,
+        _with_turns_as_clause,
+        _sided,
+        _pushed_down,
+        _with_one_slope,
+        _merged,
+        _without_repeats,
+        _with_clause_as_turns,
+        _with_unsaid_turns,
+    ):
+        brief = step(brief)
+    return brief
 
 
-def clauses_turn(clauses: list[Clause] | tuple[Clause, ...]) -> bool:
+def with_like_numbers(brief: Brief) -> Brief:
+    """Returns a Brief whose clauses of one kind have the angle, radius or length that one of them is given.
+
+    Clauses with a word instead, such as "sharp", keep it, and so do all if several numbers are given. A Brief
+    that does not ask for like parts is returned unchanged.
+    """
+    if not brief.alike:
+        return brief
+    clauses = brief.clauses
+    for name, word in NAMED_BY.items():
+        given = {(each.kind, number) for each in clauses if (number := getattr(each, name)) is not None}
+        kinds = [kind for kind, _ in given]
+        only = {kind: number for kind, number in given if kinds.count(kind) == 1}
+        clauses = tuple(
+            each.model_copy(update={name: only.get(each.kind)})
+            if getattr(each, name) is None and getattr(each, word) is None
+            else each
+            for each in clauses
+        )
+    return brief.model_copy(update={"clauses": clauses})
+
+
+def clauses_turn(clauses: Iterable[Clause]) -> bool:
     """Returns True if any of the clauses contains a turn."""
     return any(clause.kind not in STRAIGHT for clause in clauses)
 
 
-def _unsaid_turns(whole: Brief, clauses: list[Clause]) -> Amount | None:
-    neither = all(side == exactly(0) for side in (whole.left, whole.right))
-    if not clauses:
-        return exactly(0) if neither else at_least(1)
-    turning = whole.hard or whole.left or whole.right or _turns(whole.starts) or _turns(whole.ends)
-    return exactly(0) if total(clauses) == exactly(0) and not turning else None
+def _turns_beside_clauses(brief: Brief) -> bool:
+    return bool(brief.left or brief.right or brief.hard) or clauses_turn(brief.both_ends)
+
+
+def _with_unsaid_turns(brief: Brief) -> Brief:
+    """Requires a turn of a road without features, and forbids turns on a road of straights."""
+    turns, is_straight = brief.turns, not clauses_turn(brief.clauses)
+    if turns is None and not brief.clauses:
+        turns = exactly(0) if brief.left == brief.right == exactly(0) else at_least(1)
+    elif turns is None and is_straight and not _turns_beside_clauses(brief):
+        turns = exactly(0)
+    alternating = brief.alternating and not (is_straight and turns == exactly(0))
+    return brief.model_copy(update={"turns": turns, "alternating": alternating})
 
 
 def _without_empty_bounds(brief: Brief) -> Brief:
     """'0 to 4 turns' becomes at most 4; '0 or more' requires nothing and is removed."""
     update: dict[str, Amount | None] = {}
+    # if only straights are named, "0 or more turns" allows turns that are excluded otherwise
+    is_straight = brief.clauses and not clauses_turn(brief.clauses) and not _turns_beside_clauses(brief)
     for name in ("turns", "left", "right", "hills"):
         amount: Amount | None = getattr(brief, name)
         if amount and amount.hi == 0:
             update[name] = exactly(0)
-        elif amount and amount.lo == 0 and not (name == "turns" and _only_straights(brief, amount)):
+        elif amount and amount.lo == 0 and not (name == "turns" and amount.hi is None and is_straight):
             update[name] = None if amount.hi is None else Amount(hi=amount.hi)
     return brief.model_copy(update=update)
 
 
-def _only_straights(brief: Brief, amount: Amount) -> bool:
-    """True if only straights are named; '0 or more turns' then allows turns that are excluded otherwise."""
-    turning = brief.left or brief.right or brief.hard or _turns(brief.starts) or _turns(brief.ends)
-    return bool(brief.clauses) and amount.hi is None and not clauses_turn(brief.clauses) and not turning
-
-
-def _turns(clause: Clause | None) -> bool:
-    return clause is not None and clause.kind not in STRAIGHT
-
-
-def total(clauses: list[Clause] | tuple[Clause, ...]) -> Amount:
+def total(clauses: Iterable[Clause]) -> Amount:
     """Returns the total number of turns of the clauses; exactly 0 if none of them contains a turn."""
     lo, hi = 0.0, 0.0
     for clause in clauses:
@@ -145,41 +167,26 @@ def turns_of(clause: Clause) -> tuple[float, float]:
 
 def _plain(clause: Clause) -> Clause:
     kind, count = clause.kind, clause.count
-    said = {"slope": clause.slope, "incline": clause.incline, **_slope(clause.slope, clause.incline)}
-    if clause.climb and kind not in BUMPS:  # metres replace "steep" and "gentle", as a grade does
-        said["slope"] = PLAIN.get(clause.slope, clause.slope) if clause.slope else "up"
-    if kind in STRAIGHT:
-        return Clause(
-            kind=kind,
-            count=count,
-            climb=clause.climb,
-            length=clause.length,
-            size=clause.size if kind == "straight" and not clause.length else None,
-            **(said if kind == "straight" else {"incline": clause.incline}),
-        )
+    figures = {name: getattr(clause, name) for name in ("count", "climb", "length", "incline")}
+    if kind in BUMPS:
+        return Clause(kind=kind, **figures)
+    slope = _slope(clause.slope, bool(clause.incline or clause.climb))
+    if kind == "straight":
+        return Clause(kind=kind, slope=slope, size=None if clause.length else clause.size, **figures)
     own = KINDS[kind]
-    if (
-        own.turns
-        and own.turns.lo > 1
-        and kind not in ("s_bend", "chicane")
-        and count == at_least(own.turns.lo)
-    ):
+    least = own.turns.lo if own.turns else 1
+    if least > 1 and kind not in ("s_bend", "chicane") and count == at_least(least):
         count = exactly(1)
     one = count == exactly(1) and (own.turns is None or own.turns.hi == 1)
     alternating = clause.alternating and not own.alternating and not one
-    return clause.model_copy(update={**said, "count": count, "alternating": alternating, "size": None})
+    return clause.model_copy(
+        update={"slope": slope, "count": count, "alternating": alternating, "size": None}
+    )
 
 
-def _slope(slope: Slope | None, incline: Amount | None) -> dict[str, Slope]:
-    if incline is None:
-        return {}
-    if slope in (None, "flat", "nearly_flat"):
-        return {} if slope else {"slope": "up"}
-    return {"slope": PLAIN.get(slope, slope)} if slope else {}
-
-
-def _plain_slope(brief: Brief) -> Brief:
-    return brief.model_copy(update=_slope(brief.slope, brief.incline))
+def _slope(slope: Slope | None, has_figure: bool) -> Slope | None:
+    """Returns a slope without its adverb if it has a grade or a height; without a direction, that is up."""
+    return PLAIN.get(slope or "up", slope or "up") if has_figure else slope
 
 
 def _singles(clause: Clause) -> list[Clause]:
@@ -195,35 +202,33 @@ def _singles(clause: Clause) -> list[Clause]:
     return [clause]
 
 
-def _ends(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
+def _with_ends_as_clauses(brief: Brief) -> Brief:
     """Converts the first and last feature to clauses where possible."""
-    starts, ends = (None if c is None else _plain(c) for c in (whole.starts, whole.ends))
-    if not clauses and (whole.turns is None or whole.turns == at_least(1)):
-        return whole.model_copy(update={"starts": starts, "ends": ends}), clauses
-    if not clauses and whole.turns and (starts or ends):
-        if whole.turns == exactly(0):
-            return _ends_of_a_straight(whole, [c for c in (starts, ends) if c])
-        clauses = [Clause(kind="turn", count=whole.turns)]
-        whole = whole.model_copy(update={"turns": None})
+    clauses = brief.clauses
+    starts, ends = (None if end is None else _plain(end) for end in (brief.starts, brief.ends))
+    if not clauses and (brief.turns is None or brief.turns == at_least(1)):
+        return brief.model_copy(update={"starts": starts, "ends": ends})
+    if not clauses and brief.turns == exactly(0) and (starts or ends):
+        things = tuple(end for end in (starts, ends) if end)
+        if clauses_turn(things):  # a contradiction; ``check`` reports it
+            return brief
+        return brief.model_copy(update={"starts": None, "ends": None, "clauses": things})
+    if not clauses and brief.turns and (starts or ends):
+        clauses = (Clause(kind="turn", count=brief.turns),)
+        brief = brief.model_copy(update={"turns": None})
     if starts and (folded := _folded(clauses[:1], starts)) is not None:
         clauses, starts = folded + clauses[1:], None
     if ends and (folded := _folded(clauses[-1:], ends)) is not None:
         clauses, ends = clauses[:-1] + folded[::-1], None
-    return whole.model_copy(update={"starts": starts, "ends": ends}), clauses
+    return brief.model_copy(update={"starts": starts, "ends": ends, "clauses": clauses})
 
 
-def _ends_of_a_straight(whole: Brief, things: list[Clause]) -> tuple[Brief, list[Clause]]:
-    if clauses_turn(things):  # a contradiction; ``check`` reports it
-        return whole, []
-    return whole.model_copy(update={"starts": None, "ends": None}), things
-
-
-def _folded(edge: list[Clause], thing: Clause) -> list[Clause] | None:
+def _folded(edge: tuple[Clause, ...], thing: Clause) -> tuple[Clause, ...] | None:
     """Returns the first or last feature and the rest of the clause there; None if they cannot be split."""
     if not edge or edge[0] == thing:
         return edge or None
     if thing.kind in STRAIGHT:
-        return [thing, *edge]
+        return (thing, *edge)
     first = edge[0]
     number = thing.count.lo or 1
     more = (first.count.lo or 0) > number and thing.count.exact
@@ -232,97 +237,79 @@ def _folded(edge: list[Clause], thing: Clause) -> list[Clause] | None:
     count = Amount(
         lo=(first.count.lo or 1) - number, hi=None if first.count.hi is None else first.count.hi - number
     )
-    return [thing, first.model_copy(update={"count": count})]
+    return (thing, first.model_copy(update={"count": count}))
 
 
-def _is_plain(clause: Clause) -> bool:
-    return clause.kind == "turn" and not any((clause.side, clause.slope, clause.length))
-
-
-def _turns_as_clause(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
+def _with_turns_as_clause(brief: Brief) -> Brief:
     """Converts 'exactly 3 turns', or '3 turns or more, none to the right', to a clause."""
-    turns, side = whole.turns, _forced_side(whole)
-    if clauses or not turns or not turns.lo or whole.starts or whole.ends or not (turns.exact or side):
-        return whole, clauses
-    alternating = whole.alternating and turns.exact
-    return whole.model_copy(update={"turns": None, "alternating": alternating}), [
-        Clause(kind="turn", count=turns, side=None if turns.exact else side)
-    ]
+    turns, side = brief.turns, _forced_side(brief)
+    if brief.clauses or not turns or not turns.lo or brief.both_ends or not (turns.exact or side):
+        return brief
+    clause = Clause(kind="turn", count=turns, side=None if turns.exact else side)
+    alternating = brief.alternating and turns.exact
+    return brief.model_copy(update={"turns": None, "alternating": alternating, "clauses": (clause,)})
 
 
-def _sided(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """Fills in the sides of turns where the numbers leave no choice."""
-    if not clauses_turn(clauses):
-        return whole, clauses
-    whole = _with_other_side(whole, total(clauses))
-    side = _forced_side(whole)
-    open_kinds = SINGLE - {"switchback"}
-    if not side:
-        return whole, clauses
-    return whole, [
-        c.model_copy(update={"side": side}) if c.kind in open_kinds and not (c.side or c.alternating) else c
-        for c in clauses
-    ]
-
-
-def _with_other_side(whole: Brief, turns: Amount) -> Brief:
-    """Fills in the number of turns in one direction, if the total and the number in the other direction
-    are exact.
-    """
+def _sided(brief: Brief) -> Brief:
+    """Fills in the sides of turns, and the number of turns to a side, where the numbers leave no choice."""
+    turns = total(brief.clauses)
+    if turns == exactly(0):
+        return brief
     for one, other in OTHER_SIDE.items():
-        counted: Amount | None = getattr(whole, one)
-        if turns.exact and counted and counted.exact and getattr(whole, other) is None:
-            rest = span(turns).lo - span(counted).lo
-            if rest >= 0:
-                return whole.model_copy(update={other: exactly(rest)})
-    return whole
+        counted: Amount | None = getattr(brief, one)
+        rest = span(turns).lo - span(counted).lo
+        if turns.exact and counted and counted.exact and getattr(brief, other) is None and rest >= 0:
+            brief = brief.model_copy(update={other: exactly(rest)})
+    side = _forced_side(brief)
+    open_kinds = SINGLE - {"switchback"}
+    clauses = tuple(
+        c.model_copy(update={"side": side}) if c.kind in open_kinds and not (c.side or c.alternating) else c
+        for c in brief.clauses
+    )
+    return brief.model_copy(update={"clauses": clauses}) if side else brief
 
 
-def _forced_side(whole: Brief) -> Side | None:
+def _forced_side(brief: Brief) -> Side | None:
     """Returns the direction of all turns if turns in the other direction are excluded; None if they are
     not.
     """
-    sides = [one for one, other in OTHER_SIDE.items() if getattr(whole, other) == exactly(0)]
+    sides = [one for one, other in OTHER_SIDE.items() if getattr(brief, other) == exactly(0)]
     return sides[0] if len(sides) == 1 else None
 
 
-def _turns_as_wish(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
+def _with_clause_as_turns(brief: Brief) -> Brief:
     """Converts the clause '3 turns or more' to a requirement for the whole road."""
-    if len(clauses) != 1 or not _is_plain(clauses[0]) or clauses[0].count.exact or whole.turns:
-        return whole, clauses
-    only = clauses[0]
-    update = {"turns": only.count, "alternating": whole.alternating or only.alternating}
+    if len(brief.clauses) != 1 or brief.turns:
+        return brief
+    only = brief.clauses[0]
+    if only.kind != "turn" or only.count.exact or only.side or only.slope or only.length:
+        return brief
     shape = {"sharpness": only.sharpness, "degrees": only.degrees, "radius": only.radius}
-    return whole.model_copy(update={**update, **shape}), []
+    alternating = brief.alternating or only.alternating
+    return brief.model_copy(update={"turns": only.count, "alternating": alternating, **shape, "clauses": ()})
 
 
-def _pushed_down(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
+def _pushed_down(brief: Brief) -> Brief:
     """Moves requirements for every turn to the clauses that turn."""
-    turning = [clause for clause in clauses if clause.kind not in STRAIGHT]
+    turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
     if not turning:
-        return whole, clauses
-    stays = _radius_stays(whole, turning)
-    shared = whole.model_copy(update={"radius": None}) if stays else whole
-    pushed = [clause if clause.kind in STRAIGHT else _shaped(shared, clause) for clause in clauses]
-    if whole.alternating and len(turning) == 1:
-        pushed = [one for c in pushed for one in _singles(_plain(c.model_copy(update={"alternating": True})))]
-    alternating = whole.alternating and len(turning) > 1
-    gone = {"sharpness": None, "degrees": None, **({} if stays else {"radius": None})}
-    return whole.model_copy(update={**gone, "alternating": alternating}), pushed
-
-
-def _radius_stays(whole: Brief, turning: list[Clause]) -> bool:
-    """Returns whether a radius of "at least" or "at most" for every turn stays a limit of the road, because
-    turns have a word such as "sharp" instead of a radius of their own.
-    """
+        return brief
+    # a bound stays a limit of the road if turns have a word such as "sharp" instead of a radius of their own
     is_worded = any(clause.sharpness and not clause.radius for clause in turning)
-    return is_worded and whole.radius is not None and not whole.radius.exact
+    radius = brief.radius if is_worded and brief.radius and not brief.radius.exact else None
+    shared = brief.model_copy(update={"radius": None}) if radius else brief
+    clauses = [clause if clause.kind in STRAIGHT else _shaped(shared, clause) for clause in brief.clauses]
+    if brief.alternating and len(turning) == 1:
+        alternate = [clause.model_copy(update={"alternating": True}) for clause in clauses]
+        clauses = [one for clause in alternate for one in _singles(_plain(clause))]
+    whole = {"sharpness": None, "degrees": None, "radius": radius}
+    alternating = brief.alternating and len(turning) > 1
+    return brief.model_copy(update={**whole, "alternating": alternating, "clauses": tuple(clauses)})
 
 
-def _shaped(whole: Brief, clause: Clause) -> Clause:
-    said = {
-        name: getattr(clause, name) or getattr(whole, name) for name in ("sharpness", "degrees", "radius")
-    }
+def _shaped(brief: Brief, clause: Clause) -> Clause:
+    shape = ("sharpness", "degrees", "radius")
+    said = {name: getattr(clause, name) or getattr(brief, name) for name in shape}
     if clause.radius or clause.sharpness:  # its own shape is not mixed with the shape asked of the whole road
         said["sharpness"], said["radius"] = clause.sharpness, clause.radius
     if clause.kind not in SHAPED:
@@ -330,35 +317,31 @@ def _shaped(whole: Brief, clause: Clause) -> Clause:
     return clause.model_copy(update=said)
 
 
-def _with_one_slope(whole: Brief, clauses: list[Clause]) -> Brief:
-    said = {(clause.slope, clause.incline) for clause in clauses}
-    rises_and_falls = any(clause.kind in BUMPS for clause in clauses)
-    has_height = any(clause.climb for clause in clauses)  # its grade need not be the usual one of the word
-    if whole.slope or whole.hills or whole.starts or whole.ends or len(said) != 1 or rises_and_falls:
-        return whole
-    if has_height:
-        return whole
+def _with_one_slope(brief: Brief) -> Brief:
+    """Gives the whole road the slope of its clauses if they all have the same one."""
+    said = {(clause.slope, clause.incline) for clause in brief.clauses}
+    # the grade of a part with a height need not be the usual one of the word
+    is_apart = any(clause.kind in BUMPS or clause.climb for clause in brief.clauses)
+    if brief.slope or brief.hills or brief.both_ends or len(said) != 1 or is_apart:
+        return brief
     slope, incline = said.pop()
-    return whole.model_copy(update={"slope": slope, "incline": incline or whole.incline})
+    return brief.model_copy(update={"slope": slope, "incline": incline or brief.incline})
 
 
-def _without_slope_of(whole: Brief, clause: Clause) -> Clause:
-    is_said_alone = clause.incline in (None, whole.incline) and clause.climb is None
-    if clause.slope and clause.slope == whole.slope and is_said_alone:
-        return clause.model_copy(update={"slope": None, "incline": None})
-    return clause
-
-
-def _merged(clauses: list[Clause]) -> list[Clause]:
+def _merged(brief: Brief) -> Brief:
+    """Merges like clauses in a row, without the slope that is that of the whole road."""
     out: list[Clause] = []
-    for clause in clauses:
+    for clause in brief.clauses:
+        is_said_alone = clause.incline in (None, brief.incline) and clause.climb is None
+        if clause.slope and clause.slope == brief.slope and is_said_alone:
+            clause = clause.model_copy(update={"slope": None, "incline": None})
         last = out[-1] if out else None
         if last is not None and _like(last, clause):
             count = exactly((last.count.lo or 0) + (clause.count.lo or 0))
             out[-1] = last.model_copy(update={"count": count})
         else:
             out.append(clause)
-    return out
+    return brief.model_copy(update={"clauses": tuple(out)})
 
 
 def _like(one: Clause, other: Clause) -> bool:
@@ -370,26 +353,25 @@ def _like(one: Clause, other: Clause) -> bool:
     return both_exact and one.model_copy(update={"count": other.count}) == other
 
 
-def _without_repeats(whole: Brief, clauses: list[Clause]) -> Brief:
+def _without_repeats(brief: Brief) -> Brief:
+    """Clears the fields that only repeat the clauses."""
+    clauses = brief.clauses
     turning = [clause for clause in clauses if clause.kind not in STRAIGHT]
     if not turning:
-        return whole
+        return brief
     gone: list[str] = []
-    if whole.turns and _within(total(clauses), whole.turns):
+    if brief.turns and _within(total(clauses), brief.turns):
         gone.append("turns")
-    sides: tuple[Side, Side] = ("left", "right")
-    for side in sides:
-        wished: Amount | None = getattr(whole, side)
-        told = all(
-            c.kind in SINGLE and c.side and not (c.alternating and c.count != exactly(1)) for c in turning
-        )
+    told = all(c.kind in SINGLE and c.side and not (c.alternating and c.count != exactly(1)) for c in turning)
+    for side in OTHER_SIDE:
+        wished: Amount | None = getattr(brief, side)
         if wished and told and _within(total([c for c in turning if c.side == side]), wished):
             gone.append(side)
-    if whole.starts == clauses[0]:
+    if brief.starts == clauses[0]:
         gone.append("starts")
-    if whole.ends == clauses[-1]:
+    if brief.ends == clauses[-1]:
         gone.append("ends")
-    return whole.model_copy(update=dict.fromkeys(gone))
+    return brief.model_copy(update=dict.fromkeys(gone))
 
 
 def _within(one: Amount, other: Amount) -> bool:

@@ -10,10 +10,15 @@ from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, Literal, TypeVar
 
-from roadgpt.brief.like_numbers import with_like_numbers
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
-from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of
-from roadgpt.brief.part_climb import climb_of_each, limits_of_climb, side_of_bump, sum_of
+from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of, with_like_numbers
+from roadgpt.brief.part_climb import (
+    climb_of_each,
+    limits_of_climb,
+    slopes_of_bump,
+    sum_of,
+    without_joints,
+)
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import (
     FEATURE,
@@ -77,16 +82,9 @@ def both(one: Feature, other: Feature) -> Feature:
     """Returns a feature with the requirements of two features; ranges are intersected and may become
     empty. The name is that of the first, unless it says nothing more than its kind.
     """
-    return replace(
-        one,
-        name=other.name if one.name == one.kind else one.name,
-        side=one.side or other.side,
-        degrees=overlap(one.degrees, other.degrees),
-        radius=overlap(one.radius, other.radius),
-        length=overlap(one.length, other.length),
-        grade=overlap(one.grade, other.grade),
-        climb=overlap(one.climb, other.climb),
-    )
+    name = other.name if one.name == one.kind else one.name
+    ranges: dict[str, Any] = {name: overlap(getattr(one, name), getattr(other, name)) for name in FEATURE}
+    return replace(one, name=name, side=one.side or other.side, **ranges)
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,7 +165,9 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
     """
     roomy = map_size >= ROOMY
     brief = _with_figures_first(with_like_numbers(brief))
-    groups = tuple(_merged(group for clause in brief.clauses for group in _groups(clause, roomy)))
+    groups = tuple(
+        _merged(group for clause in without_joints(brief.clauses) for group in _groups(clause, roomy))
+    )
     grade, grade_range = _whole_grade(brief)
     whole: dict[str, Any] = {name: _near(getattr(brief, name), row) for name, row in ROAD.items() if row.said}
     whole["hills"] = _count(brief.hills) if brief.hills else None
@@ -257,8 +257,7 @@ def _as_motorway(found: Outline, brief: Brief, map_size: float) -> Outline:
 def _groups(clause: Clause, roomy: bool) -> list[Group]:
     """Returns the groups of a clause; a crest or a dip becomes two straights."""
     if clause.kind in BUMPS:
-        slopes: tuple[Slope, Slope] = ("up", "down") if clause.kind == "crest" else ("down", "up")
-        one = [Group(_straight(side_of_bump(clause, slope))) for slope in slopes]
+        one = [Group(_straight(slope)) for slope in slopes_of_bump(clause)]
         return int(max(span(clause.count).lo, 1)) * one
     if clause.kind == "straight":
         return [Group(_straight(clause))]
@@ -369,7 +368,7 @@ def _turn_count(brief: Brief, groups: Sequence[Group]) -> Range:
         return overlap(Range(sum(g.lo for g in turning), most), wished) or NO_LIMIT
     if brief.turns:
         return wished
-    ends_turn = clauses_turn([c for c in (brief.starts, brief.ends) if c])
+    ends_turn = clauses_turn(brief.both_ends)
     sides = [_count(side) for side in (brief.left, brief.right) if side]
     if sides or ends_turn or brief.hard:
         return Range(max(sum(max(side.lo, 0) for side in sides), 1 if ends_turn or brief.hard else 0))

@@ -1,16 +1,19 @@
-"""Heights of single turns and straights: what a climb in metres says of their lengths and grades, and when it
-contradicts them.
+"""Heights of single turns and straights: what a climb in metres says of their lengths and grades, when it
+contradicts them, and the slopes of crests and dips.
 """
 
+from collections.abc import Mapping
 from math import inf
 
-from roadgpt.brief.model import Amount, Clause, Slope, span
+from roadgpt.brief.model import Amount, Clause, Kind, Slope, span
 from roadgpt.brief.normal import BUMPS, SHAPED, STRAIGHT
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import KINDS, LEAST_GRADE, LENGTH_SLACK, PART_CLIMB_SLACK, PERCENT_SLACK, STEEPEST
 from roadgpt.errors import BriefError
 
 USUALLY_STEEPEST = 12.0  # percent, of a part whose height is given and whose length and grade are open
+BUMP_SLOPES: Mapping[Kind, tuple[Slope, Slope]] = {"crest": ("up", "down"), "dip": ("down", "up")}
+STRAIGHT_ON = Clause(kind="straight")
 TOGETHER = frozenset({"s_bend", "chicane"}) | (SHAPED - {"turn"}) | {"slalom"}
 """The kinds that are several turns, which share the height."""
 
@@ -25,12 +28,28 @@ def climb_of_each(clause: Clause) -> Amount | None:
     share = turns.lo if turns else 1.0
     if clause.kind not in ("s_bend", "chicane"):
         share = max(share, span(clause.count).lo)
-    return _scaled(clause.climb, 1 / share)
+    return clause.climb.times(1 / share)
 
 
-def side_of_bump(clause: Clause, slope: Slope) -> Clause:
-    """Returns one slope of a crest or a dip: it has the whole height, and half of the length."""
-    return clause.model_copy(update={"slope": slope, "length": _scaled(clause.length, 0.5)})
+def slopes_of_bump(clause: Clause) -> list[Clause]:
+    """Returns the two slopes of a crest or a dip: each has the whole height, and half of the length."""
+    length = clause.length and clause.length.times(0.5)
+    return [clause.model_copy(update={"slope": way, "length": length}) for way in BUMP_SLOPES[clause.kind]]
+
+
+def without_joints(clauses: tuple[Clause, ...]) -> list[Clause]:
+    """Leaves out each crest between a straight that climbs and one that falls, and each dip between one that
+    falls and one that climbs: it is the place where the two meet. One with figures of its own stays.
+    """
+    around = zip((STRAIGHT_ON, *clauses), clauses, (*clauses[1:], STRAIGHT_ON), strict=False)
+    return [clause for before, clause, after in around if not _is_joint(before, clause, after)]
+
+
+def _is_joint(before: Clause, clause: Clause, after: Clause) -> bool:
+    if clause != Clause(kind=clause.kind) or not before.kind == after.kind == "straight":
+        return False
+    slopes = tuple((each.slope or "").rpartition("_")[2] for each in (before, after))
+    return slopes == BUMP_SLOPES.get(clause.kind)
 
 
 def sum_of(one: Range | None, other: Range | None) -> Range | None:
@@ -41,24 +60,13 @@ def sum_of(one: Range | None, other: Range | None) -> Range | None:
     return Range(one.lo + other.lo, one.hi + other.hi, number)
 
 
-def _scaled(amount: Amount | None, factor: float) -> Amount | None:
-    if amount is None:
-        return None
-    return Amount(
-        **{end: None if (n := getattr(amount, end)) is None else n * factor for end in ("lo", "hi")}
-    )
-
-
 def limits_of_climb(
     climb: Range, length: Range | None, grade: Range | None, has_radius: bool
 ) -> tuple[Range | None, Range]:
     """Returns the ranges of length (metres) and grade (percent, positive) of a part of a given height.
 
-    Args:
-        climb: the height in metres, positive.
-        length: the range of lengths asked for; None if the length is open.
-        grade: the range of grades asked for in figures, positive; None if there is none.
-        has_radius: True for a turn whose radius is given, so that its angle and radius give the length.
+    ``length`` and ``grade`` are what is asked for in figures, or None. A turn ``has_radius`` if its radius is
+    given, so that its angle and radius give the length.
     """
     allowed = grade or Range(LEAST_GRADE, STEEPEST)
     low, high = max(climb.lo, 0.0), climb.hi
@@ -76,14 +84,8 @@ def limits_of_climb(
 
 
 def check_climb(clause: Clause, steepest: float) -> None:
-    """Checks the height that is asked of a clause against its slope, length and grade.
-
-    Args:
-        clause: the clause, in normal form.
-        steepest: the steepest grade allowed, in percent.
-
-    Raises:
-        BriefError: they contradict each other, or such a height needs a steeper grade.
+    """Raises BriefError if the height that is asked of a clause in normal form contradicts its slope, length
+    or grade, or needs a grade above ``steepest`` percent.
     """
     if clause.climb is None:
         return
@@ -94,7 +96,7 @@ def check_climb(clause: Clause, steepest: float) -> None:
         )
     if clause.slope in ("flat", "nearly_flat"):
         raise BriefError(f"a level {noun} cannot rise or fall by {clause.climb} m; leave out one of the two")
-    slope = side_of_bump(clause, "up") if clause.kind in BUMPS else clause
+    slope = slopes_of_bump(clause)[0] if clause.kind in BUMPS else clause
     length, grade = span(slope.length), span(clause.incline)
     longest, least = length.hi * (1 + LENGTH_SLACK), height.lo * (1 - PART_CLIMB_SLACK)
     if least > longest * steepest / 100:

@@ -13,13 +13,12 @@ from typing import TypeVar, get_args
 
 from pydantic import ValidationError
 
-from roadgpt.brief.halfway import without_halfway
-from roadgpt.brief.junctions import JunctionKind
-from roadgpt.brief.map_clause import MAP
-from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Kind, exactly, span
+from roadgpt.brief.amount import amount_text, figure, read_amount
+from roadgpt.brief.junctions import MAP, JunctionKind, Side
+from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, exactly, span
 from roadgpt.brief.normal import BUMPS
-from roadgpt.brief.plan_amount import amount_text, read_amount
 from roadgpt.brief.refusal import refused
+from roadgpt.brief.words import Kind, Sharpness, Size, Slope
 from roadgpt.errors import BriefError
 
 KINDS = frozenset(get_args(Kind))
@@ -27,11 +26,10 @@ JUNCTIONS: frozenset[str] = frozenset(get_args(JunctionKind))
 BETWEEN = "//"
 WHOLE = "||"
 WORDS = {
-    **dict.fromkeys(("left", "right"), "side"),
-    **dict.fromkeys(("gentle", "sweeping", "sharp"), "sharpness"),
-    **dict.fromkeys(("long", "short"), "size"),
-    **dict.fromkeys(("up", "down", "flat", "nearly_flat", "gently_up", "gently_down"), "slope"),
-    **dict.fromkeys(("steeply_up", "steeply_down"), "slope"),
+    **dict.fromkeys(get_args(Side), "side"),
+    **dict.fromkeys(get_args(Sharpness), "sharpness"),
+    **dict.fromkeys(get_args(Size), "size"),
+    **dict.fromkeys(get_args(Slope), "slope"),
 }
 BARE: dict[str, str] = dict.fromkeys(("straight", *BUMPS), "length")
 """The field that a number without a key sets, by kind of clause; for turns, the number is their angle."""
@@ -61,20 +59,32 @@ INNER = "(starts|ends|beside)"
 ALIKE = "alike"
 """A flag of a road; plans of whole routes, and older plans, have it among the things beside the road."""
 ONE = Amount(lo=1, hi=1)
+HALFWAY = "halfway"
+"""The word for half of the length of the whole route, as in ``| halfway // t_junction left || len=400``."""
+HALF = re.compile(rf"\b{HALFWAY}\b")
+SHARES_OF_HALF = (0.45, 0.55)
+"""The shares of the length of the route that count as half of it."""
+WHOLE_LENGTH = re.compile(r"\|\|[^|]*\blen=(\d+(?:\.\d+)?)(?![\d.])")
 Model = TypeVar("Model", Brief, Clause)
 
 
 def plan(brief: Brief) -> str:
     """Returns the plan of a Brief, without ``words``, ``unused``, ``confidence`` and ``other``."""
+    mark, wishes = WHOLE, _wishes(brief)
     if brief.junctions:
-        return _network_plan(brief)
-    if brief.map is not None:
+        from roadgpt.brief.junction_plan import junction_plan  # only for networks
+
+        parts = [plan(brief.stretches[0])]
+        for junction, stretch in zip(brief.junctions, brief.stretches[1:], strict=True):
+            parts += [junction_plan(junction), plan(stretch)]
+        line = f" {BETWEEN} ".join(filter(None, parts))
+    elif brief.map is not None:
         from roadgpt.brief.map_plan import map_plan  # only for maps
 
-        return _with_whole(map_plan(brief.map), _wishes(brief))
-    wishes = _wishes(brief)
-    line = "; ".join(_clause(clause) for clause in brief.clauses)
-    return f"{line} | {' '.join(wishes)}".strip() if wishes else line
+        line = map_plan(brief.map)
+    else:
+        mark, line = "|", "; ".join(map(_clause, brief.clauses))
+    return f"{line} {mark} {' '.join(wishes)}".strip() if wishes else line
 
 
 def _wishes(brief: Brief) -> list[str]:
@@ -95,20 +105,6 @@ def _wishes(brief: Brief) -> list[str]:
     return wishes
 
 
-def _network_plan(brief: Brief) -> str:
-    from roadgpt.brief.junction_plan import junction_plan  # only for networks
-
-    parts = [plan(brief.stretches[0])]
-    for junction, stretch in zip(brief.junctions, brief.stretches[1:], strict=True):
-        parts += [junction_plan(junction), plan(stretch)]
-    line = f" {BETWEEN} ".join(part for part in parts if part)
-    return _with_whole(line, _wishes(brief))
-
-
-def _with_whole(line: str, wishes: list[str]) -> str:
-    return f"{line} {WHOLE} {' '.join(wishes)}" if wishes else line
-
-
 def _clause(clause: Clause) -> str:
     count = [] if clause.count == ONE else [f"x{amount_text(clause.count)}"]
     return " ".join([clause.kind, *count, *_mods(clause, CLAUSE_KEYS)])
@@ -127,18 +123,19 @@ def _mods(thing: Clause | Brief, keys: dict[str, str]) -> list[str]:
 def read_plan(line: str) -> Brief:
     """Returns the Brief that a plan describes.
 
-    Raises:
-        BriefError: a word, key or number is not part of the plan language, a field is given twice, roads and
-            junctions do not alternate, or the plan is a refusal.
+    Raises BriefError if a word, key or number is not part of the plan language, a field is given twice, roads
+    and junctions do not alternate, or the plan is a refusal.
     """
     if line.lstrip().startswith("!"):
         raise refused(line)
     if BETWEEN in line or is_junction(line):
-        return _read_network(without_halfway(line))
+        return _read_network(_without_halfway(line))
+    road, _, whole = line.partition(WHOLE)
     if is_map(line):
-        return _read_map(line)
-    road, _, whole = line.partition(WHOLE)  # for a single road, | and || mean the same
-    clauses, _, own = road.partition("|")
+        from roadgpt.brief.map_plan import read_map  # only for maps
+
+        return _made(Brief, {"map": read_map(road), **_read_whole(whole)}, line)
+    clauses, _, own = road.partition("|")  # for a single road, | and || mean the same
     wishes = f"{own} {whole}"
     fields: dict[str, object] = {
         "clauses": tuple(_read_clause(part) for part in clauses.split(";") if part.strip())
@@ -153,6 +150,28 @@ def read_plan(line: str) -> Brief:
     for word in re.sub(rf"{INNER}\([^()]*\)", " ", wishes).split():
         _read_mod(fields, word, ROAD_KEYS)
     return _made(Brief, fields, line)
+
+
+def _half_of_route(line: str) -> str:
+    """Returns the lengths that are half of the route of a plan, such as "len=180..220"; "" if the plan does
+    not give the length of the whole route as one number.
+    """
+    found = WHOLE_LENGTH.search(line)
+    return "len=" + "..".join(figure(share * float(found[1])) for share in SHARES_OF_HALF) if found else ""
+
+
+def _without_halfway(line: str) -> str:
+    """Returns a plan with a range of lengths in place of each word "halfway"."""
+    half = _half_of_route(line)
+    if HALF.search(line) and not half:
+        raise BriefError("'halfway' in a plan needs the length of the whole route, as in || len=400")
+    return HALF.sub(half, line)
+
+
+def with_halfway(line: str) -> str:
+    """Returns a plan with the word "halfway" in place of each length that means half of the whole route."""
+    half = _half_of_route(line)
+    return re.sub(rf"{re.escape(half)}(?![\d.])", HALFWAY, line) if half else line
 
 
 def is_junction(text: str) -> bool:
@@ -191,14 +210,6 @@ def _read_network(line: str) -> Brief:
         **_read_whole(whole),
     }
     return _made(Brief, fields, line)
-
-
-def _read_map(line: str) -> Brief:
-    """Returns the Brief of a plan that asks for a map."""
-    from roadgpt.brief.map_plan import read_map  # only for maps
-
-    roads, _, whole = line.partition(WHOLE)
-    return _made(Brief, {"map": read_map(roads), **_read_whole(whole)}, line)
 
 
 def _read_whole(text: str) -> dict[str, object]:
@@ -247,7 +258,7 @@ def _with_side_of_climb(fields: dict[str, object]) -> dict[str, object]:
     if falls and str(fields.get("slope", "down")).endswith("up"):
         raise BriefError(f"a plan gives '{fields['slope']}' and a climb of {climb} m; leave out the minus")
     if falls:
-        climb = Amount(**{n: None if v is None else abs(v) for n, v in (("lo", climb.hi), ("hi", climb.lo))})
+        climb = climb.times(-1)
     elif span(climb).lo < 0 < span(climb).hi and climb.lo is not None:
         raise BriefError(
             f"a part cannot both rise and fall: 'climb={amount_text(climb)}'; give one of the two"

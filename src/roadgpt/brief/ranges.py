@@ -33,6 +33,11 @@ class Range:
         return Range(self.lo + edge, self.hi - edge, self.number)
 
     @property
+    def usual(self) -> float:
+        """The number of which the range is the tolerance, or else its middle; infinite if an end is open."""
+        return (self.lo + self.hi) / 2 if self.number is None else self.number
+
+    @property
     def negative(self) -> Range:
         """The range of the negative numbers."""
         return Range(-self.hi, -self.lo, None if self.number is None else -self.number)

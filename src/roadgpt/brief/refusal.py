@@ -58,9 +58,7 @@ OF_CAUSES = {"!contradiction": CLASHING, "!impossible": NOT_BUILT | BEYOND | BY_
 
 def causes_of(line: str) -> tuple[str, str]:
     """Returns the kind of a refusal, such as "!impossible", and its causes in words ("" if it names none).
-
-    Raises:
-        BriefError: the plan is not a refusal, or has causes that this kind of refusal cannot have.
+    Raises BriefError if the plan is not a refusal, or has causes that this kind of refusal cannot have.
     """
     kind, *causes = line.split()
     known = OF_CAUSES.get(kind, {})
@@ -87,10 +85,8 @@ def refused(line: str) -> BriefError:
 
 
 class TooMuchError(BriefError):
-    """Raised if a description asks for more than the usual map of 250 m can hold; a larger map may hold it.
-
-    Attributes:
-        brief: the requirements; ``brief.read`` checks them against the actual map.
+    """Raised if a description asks for more than the usual map of 250 m can hold; ``brief.read`` checks the
+    requirements in ``brief`` against the actual map, which may be larger.
     """
 
     def __init__(self, sentence: str, brief: Brief) -> None:
@@ -124,11 +120,7 @@ class ContradictionError(AnotherRoadError):
 
 
 class NoRoomError(BriefError):
-    """Raised if the map is too small for the requirements.
-
-    Attributes:
-        brief: the requirements.
-    """
+    """Raised if the map is too small for the requirements, which are in ``brief``."""
 
     def __init__(self, sentence: str, brief: Brief) -> None:
         super().__init__(sentence)

@@ -1,7 +1,6 @@
 """Writes a Brief as one plain English sentence, which the model reader can read back."""
 
-from roadgpt.brief.junctions import NAMES
-from roadgpt.brief.map_clause import SIGNS, JunctionCount, MapClause
+from roadgpt.brief.junctions import NAMES, SIGNS, JunctionCount, MapClause
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import BUMPS, STRAIGHT, normal
 from roadgpt.brief.words import FEATURE, KINDS, ROAD, SLOPES, SURFACES
@@ -85,9 +84,11 @@ def _wishes(brief: Brief) -> list[str]:
     whole = {name: getattr(brief, name) for name, row in ROAD.items() if row.said}
     if _exact_metres(brief.length):
         whole["length"] = None
+    is_one_way = brief.against == exactly(0)
     out = [
         _turns(brief),
-        *(_side_count(amount, side) for side, amount in (("left", brief.left), ("right", brief.right))),
+        _in_all(brief.left, "left turn"),
+        _in_all(brief.right, "right turn"),
         "all turns alternating" if brief.alternating else "",
         _alike(brief),
         f"every turn {brief.sharpness}" if brief.sharpness else "",
@@ -98,33 +99,22 @@ def _wishes(brief: Brief) -> list[str]:
         f"it starts with {clause_text(brief.starts)}" if brief.starts else "",
         f"it ends with {clause_text(brief.ends)}" if brief.ends else "",
         "hard for a lane keeper" if brief.hard else "",
-        *_lanes(brief),
+        f"{_counted(brief.lanes, 'lane')} along" if brief.lanes else "",
+        "one-way" if is_one_way else "",
+        f"{_counted(brief.against, 'oncoming lane')}" if brief.against and not is_one_way else "",
+        "a median" if brief.divided else "",
+        CENTRES[brief.centre] if brief.centre else "",
+        "traffic on the left" if brief.left_hand else "",
         f"on a map of {brief.map_size:g} metres" if brief.map_size else "",
         *(surface.said for name, surface in SURFACES.items() if name in brief.beside),
     ]
     return [wish for wish in out if wish]
 
 
-def _lanes(brief: Brief) -> list[str]:
-    """Returns the requirements for lanes and their markings."""
-    return [
-        f"{_counted(brief.lanes, 'lane')} along" if brief.lanes else "",
-        "one-way" if brief.against == exactly(0) else "",
-        f"{_counted(brief.against, 'oncoming lane')}"
-        if brief.against and brief.against != exactly(0)
-        else "",
-        "a median" if brief.divided else "",
-        CENTRES[brief.centre] if brief.centre else "",
-        "traffic on the left" if brief.left_hand else "",
-    ]
-
-
 def _turns(brief: Brief) -> str:
-    if brief.turns == exactly(0):
-        return "no turns"
     if brief.turns == at_least(0):
         return "with or without turns"
-    return f"{_counted(brief.turns, 'turn')} in all" if brief.turns and brief.clauses else ""
+    return _in_all(brief.turns, "turn") if brief.clauses or brief.turns == exactly(0) else ""
 
 
 def _alike(brief: Brief) -> str:
@@ -141,10 +131,10 @@ def _alike(brief: Brief) -> str:
     return said + (", and the straights equally long" if straights > 1 else "")
 
 
-def _side_count(amount: Amount | None, side: str) -> str:
+def _in_all(amount: Amount | None, noun: str) -> str:
     if amount == exactly(0):
-        return f"no {side} turns"
-    return f"{_counted(amount, f'{side} turn')} in all" if amount else ""
+        return f"no {noun}s"
+    return f"{_counted(amount, noun)} in all" if amount else ""
 
 
 def _said(name: str, amount: Amount) -> str:
@@ -154,8 +144,7 @@ def _said(name: str, amount: Amount) -> str:
         said = said.replace("changes", "change")
     falls = amount.hi is not None and amount.hi <= 0 and amount.lo != 0
     if name == "climb" and (falls or (amount.hi is None and (amount.lo or 0) < 0)):
-        lo, hi = (None if number is None else 0.0 - number for number in (amount.hi, amount.lo))
-        said, amount = said.replace("climb", "drop"), Amount(lo=lo, hi=hi)
+        said, amount = said.replace("climb", "drop"), amount.times(-1)
     return said.format(amount)
 
 

@@ -38,17 +38,13 @@ class Predictions(NamedTuple):
 
 
 def select(goal: Goal, n: int, expected: Predictions, counts: Sequence[Counter[int]]) -> list[int]:
-    """Returns the indices of the n most valuable candidates, the most valuable first.
-
-    Args:
-        goal: what the search looks for.
-        n: largest number of candidates to return.
-        expected: the surrogate's predictions for the candidates.
-        counts: for each map, the number of failures so far in each cell; for the goal "coverage", the number
-            of tests.
-    """
+    """Returns the indices of the n most valuable candidates for a goal, the most valuable first; ``counts``
+    is for each map the number of failures so far in each cell, or of tests for the goal "coverage"."""
     weight = (expected.margins <= 0.0).astype(float) if goal != "coverage" else np.ones_like(expected.margins)
-    maps = [CountedCells.of(cells, known) for cells, known in zip(expected.cells, counts, strict=True)]
+    maps: list[tuple[NDArray[np.intp], Array]] = []
+    for cells, of_cells in zip(expected.cells, counts, strict=True):
+        used, index = np.unique(cells, return_inverse=True)  # numbered anew, so that counts fit in an array
+        maps.append((index.reshape(cells.shape), np.array([float(of_cells[int(cell)]) for cell in used])))
     is_left = np.ones(expected.margins.shape[1], bool)
     out: list[int] = []
     while len(out) < n and is_left.any():
@@ -56,7 +52,7 @@ def select(goal: Goal, n: int, expected: Predictions, counts: Sequence[Counter[i
             value = expected.margins.std(axis=0) - expected.margins.mean(axis=0)
         else:
             floor = 0.0 if goal == "coverage" else ANYWHERE
-            worth = sum(1 / (1 + one.known[one.cells]) ** NOVELTY for one in maps) / len(maps)
+            worth = sum(1 / (1 + known[cells]) ** NOVELTY for cells, known in maps) / len(maps)
             value = (weight * (floor + worth)).mean(axis=0)
             if goal == "failures" and len(out) % EXPLORING == EXPLORING - 1:
                 chance = np.maximum(weight.mean(axis=0), LEAST_TREES / len(weight))
@@ -65,25 +61,10 @@ def select(goal: Goal, n: int, expected: Predictions, counts: Sequence[Counter[i
                 value *= 1 - weight.mean(axis=0)
         best = int(np.argmax(np.where(is_left, value, -np.inf)))
         out.append(best)
-        for one in maps:
-            np.add.at(one.known, one.cells[:, best], weight[:, best] / len(weight))
+        for cells, known in maps:
+            np.add.at(known, cells[:, best], weight[:, best] / len(weight))
         is_left[best] = False
     return out
-
-
-class CountedCells(NamedTuple):
-    """The predicted cells of one map, numbered anew from 0, and the count in each cell."""
-
-    cells: NDArray[np.intp]
-    """New cell numbers, ``(trees, n)``."""
-    known: Array
-    """Number of failures, or of tests, in each cell, by new cell number."""
-
-    @classmethod
-    def of(cls, cells: NDArray[np.intp], counts: Counter[int]) -> "CountedCells":
-        """Returns the cells with new, consecutive numbers, so that the counts fit in an array."""
-        used, index = np.unique(cells, return_inverse=True)
-        return cls(index.reshape(cells.shape), np.array([float(counts[int(cell)]) for cell in used]))
 
 
 def is_far(shape: PlanShape, known: PlanShape | None, least: float) -> bool:
@@ -94,23 +75,13 @@ def is_far(shape: PlanShape, known: PlanShape | None, least: float) -> bool:
 
 
 def stacked(shapes: Sequence[PlanShape]) -> PlanShape:
-    """Stacks several shapes into one PlanShape; each of its arrays gets a new first axis, the index of the
-    shape.
-    """
+    """Stacks shapes into one PlanShape, whose arrays have the index of the shape as their first axis."""
     return PlanShape._make(np.stack(columns) for columns in zip(*shapes, strict=True))
 
 
 def spread_out(features: Sequence[Array], n: int, hazard: Array) -> list[int]:
-    """Returns the indices of candidates chosen without predictions, for use while the surrogate has too few
-    drives to learn from.
-
-    The chosen roads are among the half of the candidates that looks hardest, and their features are diverse.
-
-    Args:
-        features: the surrogate's features of each candidate.
-        n: number of candidates to choose; if there are fewer, all are chosen.
-        hazard: one number per candidate, ``(len(features),)``; the larger, the harder the road looks.
-    """
+    """Returns the indices of up to n candidates with diverse features, from the half of them that looks
+    hardest (``hazard``), as long as the surrogate has too few drives to learn from."""
     order = np.argsort(-hazard, kind="stable")[: max(n, (len(features) + 1) // 2)]
     signs = np.array([features[i] for i in order])
     if len(order) <= n:

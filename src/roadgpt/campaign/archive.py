@@ -8,8 +8,8 @@ Cells and centroids equal those of pyribs' GridArchive and CVTArchive; the tests
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from typing import Literal, Protocol
+from collections.abc import Callable, Mapping, Sequence
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,90 +25,58 @@ SETTLED = 1e-4  # of the samples' variance: k-means ends when the squared moves 
 EDGE = 1e-6  # added to a feature times the number of cells, so that rounding puts no edge into the cell below
 
 Cells = NDArray[np.intp]
-
-
-class _Map(Protocol):
-    def cells(self, places: Array) -> Cells: ...
+CellsOf = Callable[[Array], Cells]
+"""Returns the cell numbers ``(n,)`` of points ``(n, axes)`` in feature space."""
 
 
 class Archive:
     """A map of features that keeps the best test of every cell, and counts tests and failures per cell."""
 
     def __init__(self, axes: Sequence[str], cells: int, kind: Literal["grid", "cvt"] = "grid") -> None:
-        """Makes an empty archive.
-
-        Args:
-            axes: names of the features that span the map.
-            cells: number of cells along each axis of a grid, or number of centroids.
-            kind: "grid" or "cvt".
-        """
+        """Makes an empty archive of the features ``axes``; ``cells`` is the number of cells along each axis
+        of a grid, or the number of centroids."""
         self.axes = tuple(axes)
         bounds = np.array([bounds_of(axis) for axis in axes])
-        self._map: _Map = Grid(bounds, cells) if kind == "grid" else Niches(bounds, cells)
+        self.cells: CellsOf = grid(bounds, cells) if kind == "grid" else niches(bounds, cells)
         self._best: dict[int, tuple[float, int]] = {}
         self.tests: Counter[int] = Counter()
         self.failures: Counter[int] = Counter()
 
     def add(self, number: int, features: Mapping[str, float], quality: float, failed: bool) -> None:
-        """Adds a test; ignores a test that lacks one of the map's features.
-
-        Args:
-            number: number of the test.
-            features: the features of the road and its drive, by name.
-            quality: how good the test is; larger is better. Of equally good tests the first is kept.
-            failed: whether the car left its lane.
-        """
+        """Adds a test; ignores a test that lacks one of the map's features. The larger ``quality``, the
+        better the test; of equally good tests the first is kept."""
         place = np.array([features.get(axis, math.nan) for axis in self.axes])
         if not np.isfinite(place).all():
             return
-        cell = int(self._map.cells(place[None])[0])
+        cell = int(self.cells(place[None])[0])
         self.tests[cell] += 1
         self.failures[cell] += failed
         if cell not in self._best or quality > self._best[cell][0]:
             self._best[cell] = (quality, number)
-
-    def cells(self, places: Array) -> Cells:
-        """Returns the cell numbers ``(n,)`` of points ``(n, axes)`` in feature space."""
-        return self._map.cells(places)
 
     def elites(self) -> list[int]:
         """Returns the test number of the best test in each cell, in order of the cell numbers."""
         return [self._best[cell][1] for cell in sorted(self._best)]
 
 
-class Grid:
-    """A map with equally wide cells along each axis; a value out of range is counted in the outermost
-    cell.
-    """
+def grid(bounds: Array, along: int) -> CellsOf:
+    """Returns a map with ``along`` equally wide cells along each axis; the outermost cells also hold values
+    out of the bounds ``(axes, 2)``, lower and upper. The cell numbers vary fastest along the last axis."""
+    low, width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
 
-    def __init__(self, bounds: Array, cells: int) -> None:
-        """Takes the bounds ``(axes, 2)``, lower and upper, and the number of cells along each axis."""
-        self._low, self._width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
-        self._along = cells
+    def cells_of(places: Array) -> Cells:
+        each = np.clip((along * (places - low) + EDGE) / width, 0, along - 1).astype(np.intp)
+        return np.asarray(np.ravel_multi_index(tuple(each.T), (along,) * len(bounds)), np.intp)
 
-    def cells(self, places: Array) -> Cells:
-        """Returns the cell numbers ``(n,)`` of points ``(n, axes)``; the index along the last axis varies
-        fastest.
-        """
-        steps = (self._along * (places - self._low) + EDGE) / self._width
-        each = np.clip(steps, 0, self._along - 1).astype(np.intp)
-        return np.asarray(each @ self._along ** np.arange(each.shape[1])[::-1], np.intp)
+    return cells_of
 
 
-class Niches:
-    """A map whose cells are the neighbourhoods of evenly spread centroids."""
-
-    def __init__(self, bounds: Array, cells: int) -> None:
-        """Takes the bounds ``(axes, 2)``, lower and upper, and the number of centroids."""
-        samples = np.random.default_rng(NICHES_SEED).uniform(
-            bounds[:, 0], bounds[:, 1], (SAMPLES, len(bounds))
-        )
-        self.centroids = centroids_of(samples, cells)
-        self._tree = KDTree(self.centroids)
-
-    def cells(self, places: Array) -> Cells:
-        """Returns the index ``(n,)`` of the nearest centroid for each of the points ``(n, axes)``."""
-        return np.asarray(self._tree.query(places)[1], np.intp)
+def niches(bounds: Array, count: int) -> CellsOf:
+    """Returns a map whose cells are the neighbourhoods of ``count`` evenly spread centroids."""
+    rng = np.random.default_rng(NICHES_SEED)
+    samples = rng.uniform(bounds[:, 0], bounds[:, 1], (SAMPLES, len(bounds)))
+    tree = KDTree(centroids_of(samples, count))
+    return lambda places: np.asarray(tree.query(places)[1], np.intp)
 
 
 def centroids_of(samples: Array, count: int) -> Array:

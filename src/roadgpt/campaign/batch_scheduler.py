@@ -1,14 +1,11 @@
-"""Decides when to request the next batch of tests from a cell's generator, and passes results to the
-generator.
-"""
+"""Decides when to request the next batch of tests from a cell's generator, and tells it the results."""
 
 from bisect import bisect
-from collections.abc import Iterable
 
 from roadgpt import plugins
-from roadgpt.campaign.model import Cell, Generator, Pool, Proposal, Result
-from roadgpt.campaign.record import Batch
-from roadgpt.campaign.store import Store
+from roadgpt.campaign.model import Cell, Generator, Pool, Result
+from roadgpt.campaign.single_test import Task
+from roadgpt.campaign.store_tables import Batch, Tables
 from roadgpt.errors import RoadGPTError
 from roadgpt.road import Design
 
@@ -26,7 +23,7 @@ class BatchScheduler:
     consists of one test and is requested once all earlier tests have ended.
     """
 
-    def __init__(self, cell: Cell, store: Store) -> None:
+    def __init__(self, cell: Cell, store: Tables) -> None:
         self.cell = cell
         self._store = store
         self.batches: list[Batch] = store.batches(cell.name)
@@ -42,9 +39,7 @@ class BatchScheduler:
     @property
     def asked(self) -> int:
         """Number of tests that the generator has proposed so far."""
-        return sum(batch.n for batch in self.batches[-1:]) + (
-            self.batches[-1].first - 1 if self.batches else 0
-        )
+        return self.batches[-1].first + self.batches[-1].n - 1 if self.batches else 0
 
     @property
     def is_closed(self) -> bool:
@@ -75,15 +70,15 @@ class BatchScheduler:
             self._unfinished.remove(batch)
 
     def close(self, why: str) -> None:
-        """Closes the cell, so that no further batch is requested, and stores the reason."""
+        """Closes the cell and stores the reason: no further batch is requested."""
         self._store.close_cell(self.cell.name, why)
         self.closed = why
 
-    def ask(self, pool: Pool) -> list[tuple[int, Proposal]]:
-        """Requests the next batch, stores it, and returns its tests with their numbers.
+    def ask(self, pool: Pool) -> list[Task]:
+        """Requests the next batch, stores it, and returns its tests.
 
-        Closes the cell and returns an empty list if the generator has nothing left to propose, or if at
-        least three tests have ended and none of them has a road.
+        Closes the cell and returns nothing if the generator has nothing left to propose, or if at least three
+        tests have ended and none of them has a road.
 
         Raises:
             RoadGPTError: the generator proposes more tests than were requested, or asks for a draft in a cell
@@ -113,7 +108,7 @@ class BatchScheduler:
         self._store.add_batch(self.cell.name, batch, first, proposals)
         self.batches.append(Batch(batch, first, len(proposals), len(proposals)))
         self._unfinished.add(batch)
-        return [*enumerate(proposals, first)]
+        return [Task(number, batch, made) for number, made in enumerate(proposals, first)]
 
     def _taught(self, last: int) -> Generator:
         """Returns the generator after passing it the results of all batches up to number ``last``."""
@@ -144,10 +139,6 @@ class BatchScheduler:
         return range(begin, last + 1)
 
     def designs(self, batch: int) -> tuple[Design, ...]:
-        """Returns the designs of the tests in a batch; all these tests must have ended."""
-        return tuple(designs_of(self._results(self.batches[batch])))
-
-
-def designs_of(results: Iterable[Result]) -> list[Design]:
-    """Returns the designs that have no junctions; leaves out the results that have no such design."""
-    return [result.plain_design for result in results if result.plain_design is not None]
+        """Returns the designs without junctions of the tests in a batch; all these tests must have ended."""
+        designs = (result.plain_design for result in self._results(self.batches[batch]))
+        return tuple(design for design in designs if design is not None)

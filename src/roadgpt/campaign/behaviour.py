@@ -24,7 +24,7 @@ import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
-from roadgpt.check.measures import Measures, measure
+from roadgpt.check.measures import measure
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 from roadgpt.run.features import features_of
@@ -58,21 +58,15 @@ DEGREES = (0.0, 180.0)
 
 
 def behaviour_of(road: Road, brief: Brief | None) -> dict[str, float]:
-    """Returns the features of a road's geometry, by name.
-
-    Args:
-        road: the road.
-        brief: the requirements read from the road's description; None if there is no description.
-    """
+    """Returns the features of the geometry of a road for a Brief, by name."""
     samples = road.sample()
-    widest = outline(brief or Brief()).widest
-    return behaviour_of_measures(measure(samples.points, widest), samples.heading, brief)
+    return behaviour_of_samples(samples.points, samples.heading, brief)
 
 
-def behaviour_of_measures(found: Measures, heading: Array, brief: Brief | None) -> dict[str, float]:
-    """Returns the features of a road's geometry from its measures; ``heading`` holds headings in radians
-    at equally spaced stations.
-    """
+def behaviour_of_samples(points: Array, heading: Array, brief: Brief | None) -> dict[str, float]:
+    """Returns the same from points ``(n, 3)`` of the centre line, and headings in radians at equally spaced
+    stations."""
+    found = measure(points, outline(brief or Brief()).widest)
     turns = found.turns
     out = {
         "DIR_COV_360": directions(heading),
@@ -91,19 +85,13 @@ def behaviour_of_measures(found: Measures, heading: Array, brief: Brief | None) 
 
 
 def behaviour_of_line(points: Array, axes: Sequence[str], brief: Brief | None) -> dict[str, float]:
-    """Returns those of the features ``axes`` that can be computed without a drive, by name.
-
-    Args:
-        points: points of the road's centre line ``(n, 3)``, about one per metre.
-        axes: names of features.
-        brief: as for ``behaviour_of``.
-    """
+    """Returns those of the features ``axes`` that need no drive, by name, from points ``(n, 3)`` of the
+    centre line, about one per metre."""
     found = features_of(points)
     if not set(axes) <= {*found, *DRIVEN}:
         step = np.diff(points[:, :2], axis=0)
         heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
-        widest = outline(brief or Brief()).widest
-        found |= behaviour_of_measures(measure(points, widest), heading, brief)
+        found |= behaviour_of_samples(points, heading, brief)
     return {axis: found[axis] for axis in axes if axis in found}
 
 
@@ -116,19 +104,13 @@ def turns_asked(brief: Brief | None) -> int:
 
 
 def directions(heading: Array) -> float:
-    """Returns the share, 0 to 1, of the 36 sectors of 10 degrees that contain at least one of the headings
-    (radians).
-    """
+    """Returns the share, 0 to 1, of the 36 sectors of 10 degrees that contain a heading (radians)."""
     number = np.floor(np.degrees(heading) % 360 / (360 / DIRECTIONS)).astype(int) % DIRECTIONS
     return len(np.unique(number)) / DIRECTIONS
 
 
 def bounds_of(axis: str) -> tuple[float, float]:
-    """Returns the smallest and the largest value of a feature on its axis of the feature map.
-
-    Raises:
-        KeyError: there is no feature of that name.
-    """
+    """Returns the range of the feature map along an axis; raises KeyError if there is no such feature."""
     name, _, number = axis.rpartition("_")
     if number.isdecimal() and 0 < int(number) <= MOST_TURNS and name in ("RADIUS", "DEGREES"):
         return BOUNDS["RADIUS"] if name == "RADIUS" else DEGREES
@@ -136,15 +118,8 @@ def bounds_of(axis: str) -> tuple[float, float]:
 
 
 def cell_of(features: Mapping[str, float], axes: Sequence[str], cells: int) -> tuple[int, ...] | None:
-    """Returns the cell of the feature map to which a test belongs, as one index per axis.
-
-    Returns None if the test lacks one of the features.
-
-    Args:
-        features: the features of the test, by name.
-        axes: names of the features that are the axes of the feature map.
-        cells: the number of cells along each axis.
-    """
+    """Returns the cell of the feature map to which a test with some features belongs, as one index per axis;
+    None if it lacks one of them. ``cells`` is the number of cells along each axis."""
     if any(axis not in features for axis in axes):
         return None
     place = []

@@ -16,9 +16,7 @@ from roadgpt.design.elements import elements_of
 
 
 class Measure(NamedTuple):
-    """A numeric property of a turn or a straight, such as its radius, by which two turns or straights are
-    compared.
-    """
+    """A numeric property, such as a radius, by which two turns or two straights are compared."""
 
     field: str
     """Name of the field of ``Element`` that holds the property."""
@@ -113,13 +111,8 @@ def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
 
 
 def paired(roads: dict[int, Elements], kept: Sequence[int], lost: Sequence[int]) -> list[BoundaryPair]:
-    """Returns boundary pairs, as ``pairs_of`` does, but takes the elements of the roads instead of results.
-
-    Args:
-        roads: the elements of each road, by test number.
-        kept: numbers of the tests that passed.
-        lost: numbers of the tests that failed.
-    """
+    """Returns boundary pairs as ``pairs_of`` does, from the elements of each road by test number, and the
+    numbers of the tests that passed and of those that failed."""
     rows: dict[tuple[float, ...], list[int]] = {}
     for number in kept:
         rows.setdefault(_row(roads[number]), []).append(number)

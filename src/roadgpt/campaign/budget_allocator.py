@@ -1,13 +1,10 @@
-"""Divides a campaign's limits on tokens and money among the tests that run at the same time."""
-
 from roadgpt.campaign.single_test import Allowance
 from roadgpt.chat import ChatSettings, Spent
 
 
 class BudgetAllocator:
-    """Divides the limits on tokens and money among the running tests. The tests stay within the limits
-    even if each one spends its whole allowance.
-    """
+    """Divides a campaign's limits on tokens and money among the tests that run at the same time, which stay
+    within the limits even if each one spends its whole allowance."""
 
     def __init__(self, chat: ChatSettings | None, tokens: int, cost: float) -> None:
         """Takes the limits, and the tokens and USD that were spent before."""
@@ -15,32 +12,20 @@ class BudgetAllocator:
         self._spent = [float(tokens), cost]
         self._given: dict[int, Allowance] = {}
 
-    @property
-    def is_bounded(self) -> bool:
-        """True if tokens or money are limited."""
-        return self._limits != Allowance()
-
-    def share(self, tests: int) -> Allowance:
-        """Returns the allowance of one test if ``tests`` tests are about to start.
-
-        Together these tests get half of the remaining tokens and money; the other half is left for later
-        tests.
-        """
-        tokens, cost = self._left()
-        return Allowance(
-            None if tokens is None else int(tokens / (2 * tests)),
-            None if cost is None else cost / (2 * tests),
-        )
-
-    def all(self) -> Allowance:
-        """Returns an allowance with all remaining tokens and money."""
-        tokens, cost = self._left()
-        return Allowance(None if tokens is None else int(tokens), cost)
+    def share(self, parts: int = 1) -> Allowance:
+        """Returns an allowance of one of so many equal parts of the remaining tokens and money."""
+        tokens, cost = self._limits
+        if tokens is not None:
+            tokens -= int(self._spent[0] + sum(given.tokens or 0 for given in self._given.values()))
+            tokens = int(max(tokens, 0) / parts)
+        if cost is not None:
+            cost -= self._spent[1] + sum(given.cost or 0.0 for given in self._given.values())
+            cost = max(cost, 0.0) / parts
+        return Allowance(tokens, cost)
 
     def give(self, key: int, allowance: Allowance) -> None:
         """Reserves an allowance for a test that is about to start; ``key`` identifies the test."""
-        if self.is_bounded:
-            self._given[key] = allowance
+        self._given[key] = allowance
 
     def back(self, key: int, spent: Spent | None) -> None:
         """Releases the allowance of a test that has ended, and counts the tokens and money it spent."""
@@ -49,18 +34,12 @@ class BudgetAllocator:
             self._spent[0] += spent.usage.total
             self._spent[1] += spent.cost or 0.0
 
-    def _left(self) -> tuple[float | None, float | None]:
-        tokens, cost = self._limits
-        if tokens is not None:
-            tokens -= int(self._spent[0] + sum(given.tokens or 0 for given in self._given.values()))
-        if cost is not None:
-            cost -= self._spent[1] + sum(given.cost or 0.0 for given in self._given.values())
-        return None if tokens is None else max(tokens, 0), None if cost is None else max(cost, 0.0)
-
     def sentence(self, folder: object) -> str:
         """Returns a message that says which limit was reached and how to continue the campaign."""
         tokens, cost = self._limits
-        limit = f"{cost:g} USD" if tokens is None or (cost and self._left()[1] == 0) else f"{tokens:,} tokens"
+        limit = (
+            f"{cost:g} USD" if tokens is None or (cost and self.share().cost == 0) else f"{tokens:,} tokens"
+        )
         so_far = f"{self._spent[0]:,.0f} tokens and {self._spent[1]:.4f} USD are spent"
         return (
             f"the limit of {limit} leaves no room for the next question ({so_far}); "

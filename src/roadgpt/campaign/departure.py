@@ -22,6 +22,7 @@ from roadgpt.campaign.surrogate_features import (
     ENTERING,
     GENTLY,
     RoadSamples,
+    before,
     lane_curvature,
     moving_mean,
     squared_speed,
@@ -77,13 +78,13 @@ def stations_of(samples: RoadSamples, world: World) -> RoadStations:
     """Returns the stations of a road; there is at least one."""
     s, lane = samples.s, lane_curvature(samples)
     square = squared_speed(s, lane, world, GENTLY)
-    entering = _before(square, ENTERING)
+    entering = before(square, ENTERING)
     bend = moving_mean(lane, 5)
     rush = entering * moving_mean(lane, 7)
-    sudden = (bend - _before(bend, SUDDEN)) * entering**1.5
+    sudden = (bend - before(bend, SUDDEN)) * entering**1.5
     signs = []
     for values, scale, lags in zip((rush, bend, sudden), SCALES, (LAGS, LAGS[:2], LAGS), strict=True):
-        signs += [_before(scale * values, lag) for lag in lags]
+        signs += [before(scale * values, lag) for lag in lags]
     places = np.arange(FIRST, max(s[-1] - ENDING, FIRST + 1), SPACING)
     at = np.minimum(np.searchsorted(s, places), len(s) - 1)
     both = np.array(signs).T[at]
@@ -97,12 +98,8 @@ class DepartureModel:
     """Knows where a car left its lane on driven roads."""
 
     def __init__(self, roads: Sequence[RoadStations], failed_at: Sequence[float | None]) -> None:
-        """Learns from the last 300 roads.
-
-        Args:
-            roads: the stations of each driven road.
-            failed_at: station in metres where the car left its lane; None if it did not.
-        """
+        """Learns from the last 300 driven roads; ``failed_at`` is the station in metres where the car left
+        its lane on each of them, or None."""
         rows, leaves = [], []
         for road, end in zip(roads[-MOST:], failed_at[-MOST:], strict=True):
             reached = road.s < end if end is not None else np.ones(len(road.s), bool)
@@ -131,12 +128,9 @@ class DepartureModel:
 
 
 def logistic(rows: Array, leaves: Array) -> Array:
-    """Returns the coefficients ``(signs,)`` of a logistic regression. For columns scaled to a standard
-    deviation of 1, the penalty is half of RIDGE times the sum of their squares; the last one is free.
-
-    Args:
-        rows: signs ``(n, signs)``; the last column is 1.
-        leaves: 1 where the car left its lane, else 0, ``(n,)``.
+    """Returns the coefficients ``(signs,)`` of a logistic regression of ``leaves`` ``(n,)``, 1 where the car
+    left its lane, on signs ``(n, signs)``, whose last column is 1. For columns scaled to a standard deviation
+    of 1, the penalty is half of RIDGE times the sum of their squares; the last one is free.
     """
     scale = rows.std(axis=0)
     scale[scale < 1e-9] = 1.0
@@ -173,8 +167,3 @@ def _logits(table: Array, weights: Array, blocks: Sequence[slice]) -> Array:
 def _misfit(logits: Array, leaves: Array, weights: Array, ridge: Array) -> float:
     """Returns what the regression makes small: the surprise at what happened, and the penalty."""
     return float((np.logaddexp(0.0, logits) - leaves * logits).sum() + (ridge * weights**2).sum() / 2)
-
-
-def _before(values: Array, lag: int) -> Array:
-    """Returns the values of ``lag`` samples before; the first value is repeated before the start."""
-    return np.asarray(values[np.maximum(np.arange(len(values)) - lag, 0)])

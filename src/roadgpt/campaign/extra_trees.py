@@ -33,9 +33,7 @@ class Forest(NamedTuple):
     trees: int
 
     def predict(self, samples: Array) -> Array:
-        """Returns the prediction of every tree, ``(trees, n, k)``, for each of the samples ``(n,
-        features)``.
-        """
+        """Returns the prediction of every tree, ``(trees, n, k)``, for samples ``(n, features)``."""
         at = np.tile(np.arange(self.trees)[:, None], len(samples))
         every = np.arange(len(samples))
         while (inner := self.feature[at] >= 0).any():

@@ -4,11 +4,12 @@ from collections.abc import Generator, Iterator, Mapping
 from contextlib import ExitStack, closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.folder_store import FolderStore
-from roadgpt.campaign.jobs import Executor, WorkerConfig
+from roadgpt.campaign.jobs import WorkerConfig
 from roadgpt.campaign.model import PATIENCE
 from roadgpt.campaign.run_folder import FinishedRun, RunFolder, RunWriter
 from roadgpt.campaign.scheduler import Scheduler
@@ -24,6 +25,9 @@ from roadgpt.run import PLAIN, USUAL, Draw, Request, Run, Setup, brief_of, check
 from roadgpt.run.atomic import alone_in, refuse_links
 from roadgpt.run.folder import run_folder
 
+if TYPE_CHECKING:
+    from roadgpt.campaign.executors import Executor
+
 
 def work_in(
     home: Path,
@@ -33,7 +37,8 @@ def work_in(
     workers: int = 0,
     with_earlier: bool = False,
 ) -> Generator[tuple[str, FinishedRun], None, None]:
-    """Runs the remaining tests of folders of runs, lazily: each test runs while the caller iterates.
+    """Runs the remaining tests of folders of runs, lazily: each test runs while the caller iterates. Yields
+    the name of the folder and the test, as soon as the files of the test are complete.
 
     If no road can be designed for a folder, ``RunFolder.failure`` gives the reason, and the folder stays
     without tests.
@@ -43,12 +48,8 @@ def work_in(
         folders: the folders, by name.
         draw: draws pictures and saves them in the folders; None: no pictures.
         meter: counts the use of language models, if the tests run in this process; None: a new one.
-        workers: number of worker processes; 0: the tests run in this process. This number does not change the
-            content of the files.
-        with_earlier: True: yields the tests of earlier sessions first; False: yields only new tests.
-
-    Yields:
-        The name of the folder and the test, as soon as the files of the test are complete.
+        workers: number of worker processes, on which no file depends; 0: the tests run in this process.
+        with_earlier: whether the tests of earlier sessions are yielded first.
 
     Raises:
         ChatError: a language model cannot be reached, or a token or cost limit is reached; finished

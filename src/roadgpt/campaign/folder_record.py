@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from roadgpt.campaign.folder_store import FolderStore
-from roadgpt.campaign.model import Cell, Result
-from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.model import Cell, NumberedTest, Result
 from roadgpt.campaign.record import STORE, Record, no_tests
 from roadgpt.campaign.run_folder import RunFolder, finished_run
 from roadgpt.errors import UsageError
@@ -43,21 +42,25 @@ def open_record(folder: Path) -> Record:
     return FolderRecord(folder)
 
 
-class FolderRecord(FolderStore):
+class FolderRecord(FolderStore, Record):
     """The tests in a folder of runs, open for reading.
 
     All Runs are read when the tables are first queried; if one of them cannot be read, that query fails.
     """
 
+    has_run = "1"
+
     def __init__(self, folder: Path) -> None:
         """Opens a folder of runs, or the folder of one Run.
 
         Raises:
-            UsageError: the folder's ``campaign.json`` is damaged, or the folder has no ``campaign.json`` and
-                its first Run cannot be read.
+            UsageError: ``campaign.json`` is damaged, or it is missing and the first Run cannot be read.
         """
         self._is_entered = False
-        self._places = {read_run(folder).index: folder} if is_run(folder) else _places_in(folder)
+        if is_run(folder):
+            self._places = {read_run(folder).index: folder}
+        else:
+            self._places = {number: run_folder(folder, number) for number in finished(folder)}
         card = read_card(folder) if (folder / CARD).is_file() else None
         first = next(iter(self._places.values()), None)
         brief, request = None, card and card.request
@@ -104,20 +107,12 @@ class FolderRecord(FolderStore):
             raise UsageError(f"there is no run {number} in {self.folder}; {its}")
 
     def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
-        """Returns the Run of a test. The Run includes its drive, even if ``has_drive`` is False.
-
-        Raises:
-            UsageError: there is no such run, or it cannot be read.
-        """
+        """Returns the Run of a test, always with its drive; raises UsageError if it cannot be read."""
         self.check_ended(cell, number)
         return read_run(self._places[number])
 
     def result(self, cell: str, number: int) -> Result:
-        """Returns the result of one test.
-
-        Raises:
-            UsageError: there is no such run, or it cannot be read.
-        """
+        """Returns the result of one test; raises UsageError if its Run cannot be read."""
         return finished_run(self.run(cell, number)).result
 
     def road(self, cell: Cell, result: Result) -> Road | None:
@@ -131,7 +126,3 @@ class FolderRecord(FolderStore):
     def file(self, number: int) -> str:
         """Returns the path of a test's ``test.NNNN.json``."""
         return str(self.folder / test_name(number))
-
-
-def _places_in(folder: Path) -> dict[int, Path]:
-    return {number: run_folder(folder, number) for number in finished(folder)}

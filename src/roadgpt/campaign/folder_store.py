@@ -1,10 +1,4 @@
-"""The store of campaigns whose tests are written into folders of runs: one folder for each cell. A cell is
-one combination of description, driver and other settings.
-
-The folders are the only record of the tests, and each can be copied on its own. The tables of
-``campaign.store`` are built in memory from the folders, so that the same code schedules, resumes and counts
-both kinds of campaigns.
-"""
+"""Stores tests in folders of runs, as ``roadgpt run`` and studies do."""
 
 import sqlite3
 from collections.abc import Iterable, Mapping, Sequence
@@ -14,25 +8,22 @@ from typing import Any
 from roadgpt.campaign.model import Cell, Proposal
 from roadgpt.campaign.run_folder import FinishedRun, RunFolder, RunWriter
 from roadgpt.campaign.single_test import FinishedTest, Task, error_run
-from roadgpt.campaign.store import SCHEMA, Store
+from roadgpt.campaign.store_tables import SCHEMA, Tables
 from roadgpt.run.card import CARD
 
 
-class FolderStore(Store):
-    """A store whose tests lie in folders of runs."""
+class FolderStore(Tables):
+    """A store whose tests lie in folders of runs: one folder for each cell, which is one combination of
+    description, driver and other settings.
+
+    The folders are the only record of the tests, and each can be copied on its own. The tables are built in
+    memory from the folders, so that the same code schedules, resumes and counts both kinds of campaigns.
+    """
 
     group_seconds = 0.0
 
-    has_run = "1"
-
     def __init__(self, home: Path, folders: Mapping[str, RunFolder], cells: Sequence[Cell]) -> None:
-        """Builds the tables from the tests in the folders.
-
-        Args:
-            home: the folder that error messages name.
-            folders: the folder of each cell, by the cell's name.
-            cells: the cells.
-        """
+        """Builds the tables from the tests in the folder of each cell; messages name the folder ``home``."""
         super().__init__(home / CARD, sqlite3.connect(":memory:", isolation_level=None))
         self._folders = folders
         self._cells = {cell.name: cell for cell in cells}
@@ -58,14 +49,10 @@ class FolderStore(Store):
 
     @property
     def how_to_continue(self) -> str:
-        """Text at the end of an error message that explains how to continue the campaign."""
+        """The end of an error message: how to continue the campaign."""
         if all(each.folder == self.folder for each in self._folders.values()):
             return super().how_to_continue
         return f"continue with the same command and --out {self.folder}"
-
-    def close(self) -> None:
-        """Closes the database in memory that holds the tables; the folders stay as they are."""
-        self._db.close()
 
     def names(self) -> list[str]:
         """Returns the names of all cells."""
@@ -76,19 +63,11 @@ class FolderStore(Store):
         return [*self._cells.values()]
 
     def cell(self, name: str) -> Cell:
-        """Returns one cell.
-
-        Raises:
-            UsageError: there is no cell of that name.
-        """
+        """Returns one cell; raises UsageError if there is none of that name."""
         return self._cells[name] if name in self._cells else super().cell(name)
 
     def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
-        """Enters tests that have ended into the tables, and writes their files.
-
-        A test for which no road could be designed is held back until a road has been designed for another
-        test of the same cell.
-        """
+        """Enters tests that have ended into the tables, and writes their files; see ``RunFolder.add``."""
         super().keep(ended, *rest)
         for name, one in ended:
             if not isinstance(one, FinishedRun):  # its workers died, perhaps while they drew pictures

@@ -4,23 +4,23 @@ begin     makes a folder with a store; the store holds the plan, its cells and t
 work      runs the remaining tests; interruptions do not change the resulting tables
 """
 
-import sqlite3
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
+from roadgpt.campaign.csv_tables import CELLS, RESULTS, write_tables
+from roadgpt.campaign.executors import Executor
 from roadgpt.campaign.folder_campaign import campaign
 from roadgpt.campaign.folder_record import has_tests, is_store
-from roadgpt.campaign.jobs import Executor, WorkerConfig
+from roadgpt.campaign.jobs import WorkerConfig
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.record import STORE, no_tests
+from roadgpt.campaign.record import STORE, Store, no_tests
 from roadgpt.campaign.scheduler import Progress, Scheduler
 from roadgpt.campaign.single_test import WorkerSetup
-from roadgpt.campaign.store import Store, refused
-from roadgpt.campaign.table import CELLS, RESULTS, write_tables
+from roadgpt.campaign.store_tables import refusals
 from roadgpt.campaign.traces import OLD_SUFFIX, SUFFIX, TRACES
 from roadgpt.campaign.workers.worker_log import LOG
 from roadgpt.chat import ChatSettings, Meter, Spent
@@ -31,10 +31,10 @@ from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.permission import require_permission
 from roadgpt.errors import UsageError
 from roadgpt.road import World
-from roadgpt.run import Draw, Setup, brief_of
+from roadgpt.run import Draw, brief_of
 from roadgpt.run.atomic import LOCK, alone_in, refuse_links, sweep
 from roadgpt.run.card import read_card
-from roadgpt.run.versions import versions_of
+from roadgpt.run.model import versions_of
 
 USER_NAMES = {
     "prompts": "descriptions",
@@ -45,12 +45,8 @@ USER_NAMES = {
 
 
 def begin(plan: Plan, folder: Path) -> bool:
-    """Prepares a campaign's folder: makes it, or checks that it already holds the same campaign.
-
-    If the campaign is new, its descriptions are read into Briefs.
-
-    Returns:
-        True if the folder held the campaign already.
+    """Makes a campaign's folder, and reads its descriptions into Briefs; returns True if the folder already
+    held the same campaign.
 
     Raises:
         UsageError: the plan cannot be carried out, or the folder holds something other than this campaign.
@@ -60,7 +56,9 @@ def begin(plan: Plan, folder: Path) -> bool:
     """
     plan.check()
     _admit(plan)
-    _is_free(folder)
+    there = folder.iterdir() if folder.is_dir() and not (folder / STORE).is_file() else ()
+    if any(path.name != LOCK and not path.name.startswith(STORE) for path in there):
+        raise UsageError(f"{folder} is not empty and holds no campaign; name another folder")
     with alone_in(folder), _without_trace(folder):
         if (folder / STORE).is_file():
             _same(plan, folder)
@@ -74,14 +72,6 @@ def begin(plan: Plan, folder: Path) -> bool:
         versions = versions_of(cells[0].request.setup)
         Store.new(folder, plan.model_dump_json(), cells, versions, spent).close()
         return False
-
-
-def _is_free(folder: Path) -> None:
-    """Raises UsageError if the folder holds something other than a campaign."""
-    if not folder.is_dir() or (folder / STORE).is_file():
-        return
-    if any(path.name != LOCK and not path.name.startswith(STORE) for path in folder.iterdir()):
-        raise UsageError(f"{folder} is not empty and holds no campaign; name another folder")
 
 
 @contextmanager
@@ -98,13 +88,8 @@ def _without_trace(folder: Path) -> Iterator[None]:
 
 
 def _admit(plan: Plan) -> None:
-    """Requires the user's permission for drivers and servers that only a file names, before anything is
-    stored, paid for or begun.
-
-    Raises:
-        UsageError: the user does not permit a driver's file that only a plan or a store names.
-        ChatError: only a plan or a store names the server, and the user's API key must not be sent to it.
-    """
+    """Raises UsageError or ChatError for drivers and servers that only a file names and the user does not
+    permit, before anything is stored, paid for or begun."""
     if plan.drives:
         for driver in plan.drivers:
             require_permission(driver)
@@ -113,8 +98,7 @@ def _admit(plan: Plan) -> None:
 
 
 def _drivers_come(plan: Plan) -> None:
-    """Raises an error for a driver that cannot be loaded, or a setting that a simulator cannot apply, before
-    anything is paid for."""
+    """Loads the drivers and checks the settings of the World before anything is paid for."""
     _refuse_ignored(plan, plan.world)
     if plan.drives:
         for driver in dict.fromkeys(plan.drivers):
@@ -196,16 +180,15 @@ def work(
             store.set_plan(plan.model_dump_json())
         if not store.meta("finished"):
             _admit(plan)
-            try:
+            with refusals(folder):
                 _sweep(folder, store)
-                staff = WorkerConfig(
-                    workers, WorkerSetup(_setups(plan)), plan.patience, folder / LOG, address
-                )
+                setups = tuple(dict.fromkeys(request.setup for request, _ in plan.requests()))
+                staff = WorkerConfig(workers, WorkerSetup(setups), plan.patience, folder / LOG, address)
                 yield from Scheduler(store, staff, kind, plan.budget.tests, plan.chat).run()
-            except (OSError, sqlite3.Error) as error:
-                raise refused(folder, error) from error
         if not store.meta("finished") or not all((folder / name).is_file() for name in (RESULTS, CELLS)):
-            _conclude(folder, store)
+            with refusals(folder):
+                write_tables(store, folder)
+                store.finish()
 
 
 def _make_runs(folder: Path, chat: ChatSettings | None, draw: Draw | None) -> Iterator[Progress]:
@@ -228,18 +211,6 @@ def _make_runs(folder: Path, chat: ChatSettings | None, draw: Draw | None) -> It
         yield progress
 
 
-def _setups(plan: Plan) -> tuple[Setup, ...]:
-    return tuple(dict.fromkeys(request.setup for request, _ in plan.requests()))
-
-
-def _conclude(folder: Path, store: Store) -> None:
-    try:
-        write_tables(store, folder)
-        store.finish()
-    except (OSError, sqlite3.Error) as error:
-        raise refused(folder, error) from error
-
-
 def _sweep(folder: Path, store: Store) -> None:
     """Removes what a killed process left: partial files, and drives whose results were not stored."""
     refuse_links(folder / TRACES, folder / LOG, folder / RESULTS, folder / CELLS)
@@ -250,6 +221,3 @@ def _sweep(folder: Path, store: Store) -> None:
         for path in (folder / TRACES).iterdir():
             if path.name not in known and path.suffix in (SUFFIX, OLD_SUFFIX) and path.stem.isdecimal():
                 path.unlink()
-
-
-__all__: Sequence[str] = ("begin", "work")

@@ -1,10 +1,8 @@
-"""Data types of campaigns: budgets, cells, proposed tests and their results, and the interfaces of
-generators and workers.
-"""
+"""Budgets, cells, proposed tests and their results, and the interfaces of generators and workers."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol, TypeVar, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Protocol, TypeVar, get_args
 
 from pydantic import Field
 
@@ -27,6 +25,20 @@ MOST_TESTS = 10_000_000  # of one cell; numbers of tests have seven digits
 
 T = TypeVar("T")
 U = TypeVar("U")
+
+
+class NumberedTest(NamedTuple):
+    """Cell and number of a test.
+
+    Its text is the part after the folder's name in a command: ``c01/17`` in ``roadgpt view hard/c01/17``.
+    """
+
+    cell: str
+    """Name of the test's cell; empty for a run in a folder of runs."""
+    number: int
+
+    def __str__(self) -> str:
+        return f"{self.cell}/{self.number}" if self.cell else f"{self.number}"
 
 
 class CellBudget(Frozen):
@@ -97,9 +109,7 @@ class Result:
     side: Side | None = None
     cause: Cause | None = None
     features: Mapping[str, float] = field(default_factory=dict)
-    """Features of the road and of the drive, by name; see ``run.features.features_of`` and
-    ``campaign.behaviour.behaviour_of``.
-    """
+    """Features of the road and of the drive, by name: see ``run.features`` and ``campaign.behaviour``."""
 
     @property
     def plain_design(self) -> Design | None:
@@ -114,9 +124,8 @@ class Result:
 
 @dataclass(frozen=True)
 class Cell:
-    """One combination of a plan's prompts, designers, drivers and so on, with all settings that its
-    tests share.
-    """
+    """One combination of a plan's prompts, designers, drivers and so on: the settings that its tests
+    share."""
 
     name: str
     """'c01', 'c02', ..., in the order of the plan."""
@@ -130,9 +139,8 @@ class Cell:
     """The generator's settings; the documentation of each generator describes them."""
     budget: CellBudget = UNLIMITED
     in_sequence: bool = False
-    """True if each test is proposed only after the one before has ended, so that every draft differs from all
-    earlier ones, as in ``roadgpt run``.
-    """
+    """Whether each test is proposed only after the one before has ended, so that every draft differs from all
+    earlier ones, as in ``roadgpt run``."""
 
 
 class Pool(Protocol):
@@ -174,7 +182,5 @@ class Generator(Protocol):
         ...
 
     def tell(self, results: Sequence[Result]) -> None:
-        """Receives the results of one batch, in order of the test numbers; must take less than 1 ms per
-        result.
-        """
+        """Receives the results of one batch, in order of the test numbers, in less than 1 ms per result."""
         ...

@@ -51,11 +51,7 @@ class Mutation(NamedTuple):
 def mutated(elements: Elements, rng: Rng, world: World, numeric: float = 0.0) -> Elements:
     """Returns the elements after one to three random mutations, applied one after the other.
 
-    Args:
-        elements: the turns and straights of a road.
-        rng: the random generator.
-        world: determines the limits of radii and grades.
-        numeric: probability, 0 to 1, that only lengths, angles, radii and slopes change.
+    ``numeric`` is the probability, 0 to 1, that only lengths, angles, radii and slopes change.
     """
     some = NUMERIC_ONES if rng.random() < numeric else [*MUTATIONS.values()]
     weights = np.array([one.weight for one in some])
@@ -65,22 +61,15 @@ def mutated(elements: Elements, rng: Rng, world: World, numeric: float = 0.0) ->
 
 
 def crossed_over(one: Elements, other: Elements, rng: Rng) -> Elements:
-    """Returns the first elements of one road and then the last elements of another, at most 24 elements.
-
-    The position at which each road is cut is random.
-    """
+    """Returns the first elements of one road and then the last of another, at most 24; the cuts are
+    random."""
     first, last = int(rng.integers(1, len(one) + 1)), int(rng.integers(len(other)))
     return (one[:first] + other[last:])[:MOST_ELEMENTS]
 
 
 def interpolated(one: Elements, other: Elements, share: float) -> Elements | None:
-    """Interpolates between two roads; returns None if their sequences of turns and straights differ.
-
-    Args:
-        one: the road that is returned for share 0.
-        other: the road that is returned for share 1.
-        share: position between the two roads, from 0 to 1.
-    """
+    """Returns a road between one (share 0) and the other (share 1); None if their sequences of turns and
+    straights differ."""
     if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return None
 
@@ -97,12 +86,7 @@ def interpolated(one: Elements, other: Elements, share: float) -> Elements | Non
 def varied(parents: Sequence[Elements], rng: Rng, world: World, numeric: float, rounds: int = 1) -> Elements:
     """Returns a mutation of one parent, or a crossover of two parents; half of the crossovers are mutated.
 
-    Args:
-        parents: the elements of one road, or of two.
-        rng: the random generator.
-        world: determines the limits of radii and grades.
-        numeric: as for ``mutated``.
-        rounds: number of times that ``mutated`` is applied.
+    ``numeric`` is as for ``mutated``, which is applied ``rounds`` times.
     """
     elements = crossed_over(parents[0], parents[1], rng) if len(parents) > 1 else parents[0]
     if len(parents) > 1 and rng.random() >= CHANGED_TOO:
@@ -215,9 +199,8 @@ def _enlarged(elements: Elements, rng: Rng, world: World) -> Elements:
 
 
 def redrawn(elements: Elements, rng: Rng, world: World) -> Elements:
-    """Draws direction, angle, radius and transition of all turns anew, leaves out most straights, and draws
-    the lengths of the others anew, up to 30 m.
-    """
+    """Draws all turns anew, leaves out most straights, and draws the lengths of the others, up to 30 m,
+    anew."""
     least = world.limits.min_radius * OVER_LEAST_RADIUS
     most, spared = float(rng.uniform(*REDRAWN)), rng.uniform(0.0, SPARED)
     out = []
@@ -244,9 +227,7 @@ def _backwards(elements: Elements, rng: Rng, world: World) -> Elements:
     )
 
 
-def _of_one(
-    change: Callable[[Element, Rng, World], Element], kind: Literal["turn", "straight", "any"]
-) -> Make:
+def _of_one(change: Callable[[Element, Rng, World], Element], kind: Kind) -> Make:
     """Returns a mutation that changes one random element of a kind, if there is any."""
 
     def make(elements: Elements, rng: Rng, world: World) -> Elements:

@@ -83,12 +83,13 @@ class Plan(Frozen):
             return False
         return self.goal in getattr(plugins.find("generators", generator), "goals", ())
 
+    @property
+    def _lists(self) -> tuple[tuple[Any, ...], ...]:
+        return self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds
+
     def requests(self) -> Iterator[tuple[Request, str]]:
         """Yields the Request of each cell and the name of its generator, in the order of the cells."""
-        every = product(
-            self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds
-        )
-        for words, designer, driver, simulator, generator, seed in every:
+        for words, designer, driver, simulator, generator, seed in product(*self._lists):
             setup = Setup(
                 reader=self.reader,
                 designer=designer,
@@ -111,8 +112,7 @@ class Plan(Frozen):
                 limit is set, the plan has a goal but drives no roads, no generator supports the goal, or the
                 generator ``words`` has no description.
         """
-        lists = (self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds)
-        cells = math.prod(map(len, lists))
+        cells = math.prod(map(len, self._lists))
         if cells > MOST_CELLS:
             raise UsageError(
                 f"the plan has {cells:,} cells, more than {MOST_CELLS:,}; make several plans of it"
@@ -123,7 +123,7 @@ class Plan(Frozen):
             raise UsageError(
                 f"a search (--goal {self.goal}) learns from drives; leave out the goal, or drive the roads"
             )
-        for values in lists:
+        for values in self._lists:
             twice = [value for value, count in Counter(values).items() if count > 1]
             if twice:
                 raise UsageError(

@@ -3,7 +3,7 @@ it.
 """
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
@@ -164,16 +164,13 @@ def _sentence(error: ValidationError, within: tuple[str, ...]) -> str:
     place = (*within, *mistake["loc"])
     key = ".".join(str(part + 1 if isinstance(part, int) else part) for part in place)
     if mistake["type"] == "extra_forbidden":
-        return _unknown(key, str(place[-1]), _keys(place[:-1]))
+        known = _keys(place[:-1])
+        near = get_close_matches(str(place[-1]).lower(), known, 1, 0.5)
+        advice = f"did you mean '{near[0]}'?" if near else f"keys are {', '.join(known)}"
+        return f"'{key}' is not a key of a campaign; {advice}"
     advice = ADVICE.get(mistake["type"], "").format(**mistake.get("ctx", {}))
     message = str(mistake["msg"]).removeprefix("Value error, ")
     return f"{key}: {_short(mistake['input'])} is not possible; {advice or message[:1].lower() + message[1:]}"
-
-
-def _unknown(key: str, name: str, known: Sequence[str]) -> str:
-    near = get_close_matches(name.lower(), known, 1, 0.5)
-    advice = f"did you mean '{near[0]}'?" if near else f"keys are {', '.join(known)}"
-    return f"'{key}' is not a key of a campaign; {advice}"
 
 
 def _keys(place: tuple[Any, ...]) -> list[str]:

@@ -1,22 +1,26 @@
-"""Reads a campaign's store, even while another process is working on the campaign."""
+"""Opens the file of a campaign: for reading, even while a process works on the campaign, or for writing."""
 
+import json
 import sqlite3
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
-from roadgpt.campaign.model import Cell, Proposal, Result
-from roadgpt.campaign.numbered_test import NumberedTest
-from roadgpt.campaign.rows import RESULT, cell_of_text, design_of, result_of_row
+from roadgpt.campaign.model import Cell, NumberedTest, Result
+from roadgpt.campaign.rows import cell_text, reading_store
 from roadgpt.campaign.single_test import seed_of_driver
-from roadgpt.campaign.store_check import LATER, check_store, reading_store
+from roadgpt.campaign.store_check import LATER, check_store
+from roadgpt.campaign.store_tables import SCHEMA, Tables, refusals
+from roadgpt.chat import Spent
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.network import made_from
 from roadgpt.reading import json_of
 from roadgpt.road import Road
 from roadgpt.run import Run
+from roadgpt.run.atomic import refuse_links
 
 if TYPE_CHECKING:
     from roadgpt.campaign.plan import Plan
@@ -56,11 +60,6 @@ def _opened(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
     return db, version
 
 
-def _missing(db: sqlite3.Connection) -> tuple[str, ...]:
-    there = {row[1] for row in db.execute("PRAGMA table_info(tests)")}
-    return tuple(name for name in LATER if name not in there)
-
-
 def no_tests(folder: Path) -> UsageError:
     """Returns the error for a folder that holds neither a campaign nor runs."""
     return UsageError(
@@ -69,35 +68,18 @@ def no_tests(folder: Path) -> UsageError:
     )
 
 
-@dataclass
-class Batch:
-    """One batch of a cell, with the number of its tests that have not ended yet."""
-
-    number: int
-    first: int
-    n: int
-    left: int
-
-
-class Record:
-    """A campaign's store, open for reading; ``campaign.store`` describes its tables."""
+class Record(Tables):
+    """The tables in the file of a campaign, open for reading."""
 
     has_run = "design IS NOT NULL"
     """The SQL condition that selects the tests whose Runs the method ``run`` can return."""
-
-    def __init__(self, path: Path, db: sqlite3.Connection) -> None:
-        self.path = path
-        self._db = db
-        self.missing: tuple[str, ...] = ()
-        """Columns of ``tests`` that this store lacks; they read as empty."""
+    missing: tuple[str, ...] = ()
+    """Columns of ``tests`` that this store lacks; they read as empty."""
 
     @classmethod
     def opened(cls, folder: Path) -> Self:
-        """Opens the record of the campaign in a folder.
-
-        Raises:
-            UsageError: there is no store, or it is damaged or of another version.
-        """
+        """Opens the campaign in a folder; raises UsageError if there is no store, or it is damaged or of
+        another version."""
         return cls._opened(folder, "ro")
 
     @classmethod
@@ -120,7 +102,8 @@ class Record:
         try:
             check_store(path, db)
             record = cls(path, db)
-            record.missing = _missing(db)
+            there = {row[1] for row in db.execute("PRAGMA table_info(tests)")}
+            record.missing = tuple(name for name in LATER if name not in there)
         except BaseException:
             db.close()
             raise
@@ -128,44 +111,6 @@ class Record:
             empty = ", ".join(f"NULL AS {name}" for name in record.missing)
             db.execute(f"CREATE TEMP VIEW tests AS SELECT *, {empty} FROM main.tests")  # noqa: S608 - ours
         return record
-
-    @property
-    def folder(self) -> Path:
-        """The campaign's folder."""
-        return self.path.parent
-
-    def close(self) -> None:
-        """Closes the file."""
-        self._db.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def _execute(self, sql: str, values: Sequence[Any]) -> sqlite3.Cursor:
-        return self._db.execute(sql, values)
-
-    def query(self, sql: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
-        """Returns all rows of a SELECT as a list; use ``stream`` for large results."""
-        with reading_store(self.path):
-            return self._execute(sql, values).fetchall()
-
-    def stream(self, sql: str, values: Sequence[Any] = ()) -> Iterator[tuple[Any, ...]]:
-        """Yields the rows of a SELECT one by one."""
-        with reading_store(self.path):
-            cursor = self._execute(sql, values)
-        while True:
-            with reading_store(self.path):
-                row = cursor.fetchone()
-            if row is None:
-                return
-            yield row
-
-    def meta(self, name: str) -> str:
-        """Returns one value of the table ``meta``, by its key: ``plan``, ``versions`` or ``finished``."""
-        return str(self.query("SELECT value FROM meta WHERE name = ?", (name,))[0][0])
 
     def plan(self) -> "Plan":
         """Returns the campaign's plan."""
@@ -175,66 +120,12 @@ class Record:
             return Plan.model_validate_json(self.meta("plan")).came_with(self.path)
 
     def total(self) -> int | None:
-        """Returns the number of tests that the plan requests in all cells; None if the plan has only a time
-        limit.
-        """
+        """Returns the number of tests that the plan requests; None if it has only a time limit."""
         tests = self.plan().budget.tests
         return tests and tests * len(self.names())
 
-    def names(self) -> list[str]:
-        """Returns the names of all cells, in the order of the plan."""
-        return [name for (name,) in self.query("SELECT name FROM cells ORDER BY name")]
-
-    def cells(self) -> list[Cell]:
-        """Returns all cells, in the order of the plan."""
-        rows = self.query("SELECT name, cell FROM cells ORDER BY name")
-        return [self._cell(name, text) for name, text in rows]
-
-    def _cell(self, name: str, text: str) -> Cell:
-        with reading_store(self.path):
-            found = cell_of_text(text, self.path)
-            if found.name != name:
-                raise ValueError(f"cell {name} calls itself {found.name[:20]}")
-            return found
-
-    def cell(self, name: str) -> Cell:
-        """Returns one cell.
-
-        Raises:
-            UsageError: there is no cell of that name.
-        """
-        found = self.query("SELECT cell FROM cells WHERE name = ?", (name,))
-        if not found:
-            names = ", ".join(self.names()[:10])
-            raise UsageError(f"there is no cell '{name}' in {self.path.parent}; cells are {names}")
-        return self._cell(name, found[0][0])
-
-    def results(
-        self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()
-    ) -> Iterator[Result]:
-        """Yields one by one the results of tests that have ended, sorted by cell and number.
-
-        Args:
-            cell: name of the cell; None: all cells.
-            where: a condition in SQL on the columns of ``tests`` and ``details``.
-            values: the values of the condition's placeholders.
-        """
-        chosen, names = ("tests.cell = ? AND", [cell]) if cell is not None else ("", [])
-        sql = (
-            f"SELECT {RESULT} FROM tests JOIN details USING (cell, number) "  # noqa: S608 - our own words
-            f"WHERE {chosen} outcome IS NOT NULL AND ({where}) ORDER BY tests.cell, tests.number"
-        )
-        for row in self.stream(sql, (*names, *values)):
-            with reading_store(self.path):
-                found = result_of_row(row)
-            yield found
-
     def result(self, cell: str, number: int) -> Result:
-        """Returns the result of one test.
-
-        Raises:
-            UsageError: there is no such test, or it has not ended.
-        """
+        """Returns the result of one test; raises UsageError if there is none."""
         for result in self.results(cell, "tests.number = ?", (number,)):
             return result
         raise UsageError(f"{self.path.parent} holds no result of test {number} of {cell}")
@@ -256,8 +147,10 @@ class Record:
         """Returns the stored drive of a test; None if the test was not driven."""
         from roadgpt.campaign.traces import TRACES, read_traces
 
-        name = self.trace_file(cell, number)
-        return None if name is None else read_traces(self.folder / TRACES / name, cell, number)
+        rows = self.query(
+            "SELECT file FROM tests JOIN traces USING (trace) WHERE cell = ? AND number = ?", (cell, number)
+        )
+        return read_traces(self.folder / TRACES / str(rows[0][0]), cell, number) if rows else None
 
     def road(self, cell: Cell, result: Result) -> Road | None:
         """Returns the road of a test that has ended; None if the test has no road."""
@@ -275,12 +168,10 @@ class Record:
         return ""
 
     def tests(self, cell: str = "", which: str | None = None) -> list[NumberedTest]:
-        """Returns the names of tests that have ended and whose Runs can be read.
+        """Returns the names of tests, of a cell or of all, that have ended and whose Runs can be read.
 
-        Args:
-            cell: name of the cell; empty: all cells.
-            which: None: all tests, in order; "failures": those that failed; "worst": those that failed
-                and then those that passed, each by increasing margin.
+        ``which`` is None for all tests, in order; "failures" for those that failed; "worst" for those that
+        failed and then those that passed, each by increasing margin.
         """
         condition, order = WHICH[which]
         sql = (
@@ -301,39 +192,87 @@ class Record:
         there = "it has no tests yet" if low is None else f"its tests are {low} to {high}"
         raise UsageError(f"{self.folder} holds no result of test {number} of {cell}; {there}")
 
-    def batches(self, cell: str) -> list[Batch]:
-        """Returns the batches of a cell that have been requested, in order."""
-        rows = self.query("SELECT batch, first, n, left FROM batches WHERE cell = ? ORDER BY batch", (cell,))
-        return [Batch(*row) for row in rows]
-
-    def waiting(self, cell: str) -> list[tuple[int, int, Proposal]]:
-        """Returns the proposed tests of a cell that have not ended: the number, batch and proposal of each,
-        in order of the numbers.
-        """
-        rows = self.query(
-            "SELECT tests.number, batch, seed, origin, design FROM tests JOIN details USING (cell, number) "
-            "WHERE tests.cell = ? AND outcome IS NULL ORDER BY tests.number",
-            (cell,),
-        )
-        with reading_store(self.path):
-            return [
-                (number, batch, Proposal(design_of(text), seed, origin))
-                for number, batch, seed, origin, text in rows
-            ]
-
-    def spent(self) -> tuple[int, float]:
-        """Returns the tokens and the USD spent on language models so far."""
-        sql = "SELECT coalesce(sum(tokens), 0), coalesce(sum(cost), 0) FROM "
-        tests, other = (self.query(sql + table)[0] for table in ("tests", "sittings"))
-        return tests[0] + other[0], tests[1] + other[1]
-
-    def trace_file(self, cell: str, number: int) -> str | None:
-        """Returns the name of the file with the drive of a test; None if the test was not driven."""
-        rows = self.query(
-            "SELECT file FROM tests JOIN traces USING (trace) WHERE cell = ? AND number = ?", (cell, number)
-        )
-        return str(rows[0][0]) if rows else None
-
     def feature_names(self) -> list[str]:
         """Returns the names of all features that occur in the results, sorted."""
         return [name for (name,) in self.query("SELECT name FROM features ORDER BY name")]
+
+
+class Store(Record):
+    """The tables in the file of a campaign, open for writing. One process writes it; any process may read it.
+
+    The file uses WAL and synchronous=NORMAL: committed transactions survive if the process is killed. A power
+    cut may undo the last transactions, each as a whole. Their tests then count as not done and are run again
+    with the same results, since a batch depends only on the results of earlier batches.
+    """
+
+    @classmethod
+    def new(
+        cls,
+        folder: Path,
+        plan: str,
+        cells: Sequence[Cell],
+        versions: Mapping[str, str],
+        spent: Spent | None = None,
+    ) -> Self:
+        """Makes a store without tests.
+
+        Args:
+            folder: the campaign's folder.
+            plan: the campaign's plan as JSON.
+            cells: the cells of the plan.
+            versions: versions of RoadGPT and of the libraries that it uses.
+            spent: what a language model used to read the descriptions.
+
+        Raises:
+            RoadGPTError: the file cannot be written.
+        """
+        path = folder / STORE
+        draft = path.with_name(f"{path.name}.part")
+        with refusals(folder):
+            draft.unlink(missing_ok=True)
+            db = sqlite3.connect(draft, isolation_level=None)
+            meta = {"plan": plan, "versions": json.dumps(dict(versions)), "finished": ""}
+            db.executescript(SCHEMA)
+            db.execute("BEGIN")
+            db.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
+            db.executemany(
+                "INSERT INTO cells(name, cell) VALUES (?, ?)", [(c.name, cell_text(c)) for c in cells]
+            )
+            if spent is not None and spent.calls:
+                db.execute(
+                    "INSERT INTO sittings VALUES (?, ?, 0, 1, ?, ?)",
+                    (now := time.time(), now, spent.usage.total, spent.cost or 0.0),
+                )
+            db.execute(f"PRAGMA user_version = {FORMAT}")
+            db.execute("COMMIT")
+            db.close()
+            draft.replace(path)  # so that the store is complete or absent
+        return cls.opened(folder)
+
+    @classmethod
+    def opened(cls, folder: Path) -> Self:
+        """Opens the store in a folder for writing; raises UsageError, see ``Record.opened``."""
+        refuse_links(folder / STORE)
+        store = cls._opened(folder, "rw")
+        try:
+            for name in store.missing:  # an older version made this store
+                store._db.execute(f"ALTER TABLE tests ADD COLUMN {name} REAL")
+            store._db.execute("PRAGMA journal_mode = WAL")
+            store._db.execute("PRAGMA synchronous = NORMAL")
+        except sqlite3.Error as error:
+            store.close()
+            raise UsageError(f"{store.path} cannot be written ({error}); name another folder") from error
+        store._features = {*store.feature_names()}
+        return store
+
+    def close(self) -> None:
+        """Closes the file; once the campaign is finished, the file may be copied and made read-only."""
+        with suppress(sqlite3.Error):  # somebody reads it at this moment
+            if self.meta("finished"):
+                self._db.execute("PRAGMA journal_mode = DELETE")
+        super().close()
+
+    def set_plan(self, plan: str) -> None:
+        """Replaces the stored plan, as JSON, by one that differs only in limits and the like."""
+        with self._whole() as db:
+            db.execute("UPDATE meta SET value = ? WHERE name = 'plan'", (plan,))

@@ -2,14 +2,19 @@
 
 import json
 import math
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter, ValidationError
 
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.campaign.single_test import FinishedTest
+from roadgpt.errors import UsageError
 from roadgpt.reading import json_of
 from roadgpt.road import Design
 from roadgpt.run.atomic import to_bytes
@@ -23,6 +28,33 @@ SPENT = ("ended", "design_s", "drive_s", "tokens", "cost", "trace")
 """The columns of the table ``tests`` that depend on the clock or on the session."""
 RESULT = ", ".join(("tests.number, batch, seed, given", *MEASURED, "origin, design, description, features"))
 """The columns of a result in the joined tables ``tests`` and ``details``."""
+BUSY = {
+    sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_FULL, sqlite3.SQLITE_NOMEM,
+    sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_PERM, sqlite3.SQLITE_INTERRUPT,
+}  # fmt: skip
+"""SQLite's errors that do not mean that the store is damaged, such as a lock or a full disk."""
+
+
+def damaged(path: Path, why: object) -> UsageError:
+    """Returns the error to raise for a store with content that RoadGPT never writes."""
+    reason = " ".join(str(why).split())[:160]
+    return UsageError(
+        f"{path} is damaged, or not as roadgpt wrote it ({reason}); "
+        "start the campaign again in another folder"
+    )
+
+
+@contextmanager
+def reading_store(path: Path) -> Iterator[None]:
+    """Raises one clear error if code in a ``with`` block fails because a store's content is damaged."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        if getattr(error, "sqlite_errorcode", 0) & 0xFF in BUSY:
+            raise
+        raise damaged(path, error) from error
+    except (ValueError, TypeError, LookupError, AttributeError, OverflowError) as error:
+        raise damaged(path, f"{type(error).__name__}: {error}") from error
 
 
 def design_text(design: "AnyDesign | None") -> str | None:
@@ -47,40 +79,32 @@ def _designs() -> "TypeAdapter[AnyDesign]":
     return TypeAdapter(AnyDesign)
 
 
-def proposal_rows(
-    cell: str, batch: int, number: int, proposal: Proposal
-) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    """Returns the rows of a proposed test for the tables ``tests`` and ``details``."""
-    given = proposal.design is not None
+def test_values(ended: FinishedTest, now: float, trace: int | None) -> tuple[Any, ...]:
+    """Returns the values for the columns ``MEASURED`` and ``SPENT`` of a test that has ended now, where
+    ``trace`` is the number of the file with the drives."""
+    spent = ended.spent
     return (
-        (cell, number, batch, proposal.seed, given),
-        (cell, number, _plain(proposal.origin), design_text(proposal.design)),
+        *(getattr(ended.result, name) for name in MEASURED),  # SQLite stores NaN as NULL
+        now,
+        round(ended.seconds.design, 4),
+        round(ended.seconds.drive, 4),
+        spent and spent.usage.total,
+        spent and spent.cost,
+        None if ended.trace is None else trace,
     )
 
 
-def result_values(result: Result) -> tuple[Any, ...]:
-    """Returns a result's values for the columns listed in ``MEASURED``."""
-    return tuple(_stored(getattr(result, name)) for name in MEASURED)
-
-
 def detail_values(ended: FinishedTest) -> tuple[Any, ...]:
-    """Returns the values that are written to the table ``details`` when a test has ended."""
+    """Returns the values for the table ``details`` when a test has ended."""
     result = ended.result
     features = {name: float(value) for name, value in sorted(result.features.items()) if math.isfinite(value)}
-    texts = (_plain(result.description), json.dumps(features), _plain(ended.error) or None)
+    texts = (plain(result.description), json.dumps(features), plain(ended.error) or None)
     return (design_text(result.design), *texts)
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
     """Returns text that UTF-8 can encode; other characters, as from a broken terminal, become escapes."""
     return to_bytes(text).decode()
-
-
-def _stored(value: str | float | None) -> str | float | None:
-    """Returns None for NaN, which SQLite does not have, and other values unchanged."""
-    if value is None or isinstance(value, str):
-        return value
-    return None if math.isnan(value) else float(value)
 
 
 def result_of_row(row: tuple[Any, ...]) -> Result:
@@ -96,7 +120,7 @@ def result_of_row(row: tuple[Any, ...]) -> Result:
 
 
 def _features_of(text: str) -> dict[str, float]:
-    """Reads features as ``detail_values`` wrote them; raises TypeError if the text holds anything else."""
+    """Reads features as ``detail_values`` wrote them; raises TypeError if there is anything else."""
     values = json_of(text)
     if not isinstance(values, dict) or not all(
         isinstance(value, (int, float)) and math.isfinite(value) for value in values.values()

@@ -1,9 +1,8 @@
-"""Uses a folder of runs as the store of one cell, that is, of all tests with the same settings. The files in
-the folder are the only record of these tests.
+"""Uses a folder of runs, as ``roadgpt run`` and each part of a study write it, as the store of one cell.
 
-``roadgpt run`` and each part of a study write such a folder, with the files of the SBFT competition. A test
-has ended when its ``test.NNNN.json`` exists: this file is written last, by the process that holds the
-folder's lock.
+The files in the folder, which are those of the SBFT competition, are the only record of its tests. A test has
+ended when its ``test.NNNN.json`` exists: this file is written last, by the process that holds the folder's
+lock.
 """
 
 from collections.abc import Mapping
@@ -55,9 +54,7 @@ class RunWriter:
     def __call__(self, task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedRun:
         """Runs one test and writes the folder of its Run, but not its ``test.NNNN.json``.
 
-        Raises:
-            PartError, UsageError, ChatError: an error that would occur in every other test as well.
-            RoadGPTError: a file cannot be written.
+        Raises the errors of ``single_test.execute``, and RoadGPTError if a file cannot be written.
         """
         return self.written(run_test(task, cell, earlier, self.meter or Meter()), task, cell.name)
 
@@ -66,9 +63,10 @@ class RunWriter:
         with writing(self.folders[cell]):
             write_run_folder(run, self.folders[cell], self.draw)
         result, entry = result_of(run, task, {}), TallyEntry.of(run)
-        own = run if self.meter is not None else None
-        lost = run.is_lost
-        return FinishedRun(result, None, run.seconds, run.spent, run.trace, lost, test_text(run), entry, own)
+        made = FinishedRun(
+            result, None, run.seconds, run.spent, run.trace, run.is_lost, test_text(run), entry
+        )
+        return made if self.meter is None else replace(made, run=run)
 
 
 def finished_run(run: Run) -> FinishedRun:
@@ -79,7 +77,7 @@ def finished_run(run: Run) -> FinishedRun:
 
 
 def writing(folder: Path) -> AbstractContextManager[None]:
-    """Returns a context manager that turns a failure to write to a folder into one clear error message."""
+    """Turns a failure to write to a folder into one clear error message."""
     advice = "make room there and continue with the same command and --out"
     return explained(RoadGPTError, f"cannot write into {folder}", advice)
 
@@ -91,12 +89,12 @@ class RunFolder:
     folder: Path
     request: Request
     brief: Brief | None
-    """The requirements that were read from the description; None if there is no description."""
+    """The requirements read from the description; None if there is none."""
     roads: int
     """Number of roads requested."""
     made: tuple[Path, ...] = ()
-    """The folders that were created for this session, innermost first: this folder and perhaps some of its
-    parents. They are removed if no road can be designed.
+    """This folder and those of its parents that were created for this session, innermost first. They are
+    removed if no road can be designed.
     """
     tests: dict[int, FinishedRun] = field(default_factory=dict)
     """The tests that have ended, by number."""
@@ -137,10 +135,7 @@ class RunFolder:
 
     def take_up(self) -> Card:
         """Reads the folder's finished tests that are not in ``tests`` yet; ignores Runs that cannot be read.
-
-        Raises:
-            UsageError: the folder holds Runs of another request, or more than were requested.
-        """
+        Raises UsageError if the folder holds Runs of another request, or more than were requested."""
         card = read_card(self.folder)
         there_was = card.request.essence()
         other = [name for name, value in self.request.essence() if getattr(there_was, name) != value]
@@ -175,11 +170,8 @@ class RunFolder:
         return Cell(name, self.request, self.brief, generator, None, {}, budget, in_sequence=True)
 
     def begin(self) -> bool:
-        """Prepares the folder for a session. If all tests have ended, changes nothing and returns True.
-
-        Reads the folder's tests again first, because another process may have worked in the folder since it
-        was opened.
-        """
+        """Prepares the folder for a session. If all tests have ended, changes nothing and returns True."""
+        # another process may have worked in the folder since it was opened
         if (self.folder / CARD).is_file() and self.take_up().is_finished and self.is_complete:
             return True
         with writing(self.folder):
@@ -194,7 +186,7 @@ class RunFolder:
     def add(self, ended: FinishedRun) -> list[FinishedRun]:
         """Writes the file of a test that has ended, and then the tables; returns the tests that were written.
 
-        Tests without a road are held back until a road has been designed. The folder therefore stays without
+        Tests without a road are held back until a road has been designed, so that the folder stays without
         tests if no road can satisfy the description.
         """
         self._held_back.append(ended)
@@ -207,8 +199,7 @@ class RunFolder:
         return written
 
     def keep(self, ended: FinishedRun) -> None:
-        """Writes the ``test.NNNN.json`` of a test whose Run has already been written, then the tables; raises
-        OSError."""
+        """Writes the ``test.NNNN.json`` of a test, after its Run, and the tables; raises OSError."""
         write_whole(self.folder / test_name(ended.result.number), ended.test_file)
         self._count(ended)
         self._tally.write(self.folder)
@@ -238,8 +229,7 @@ class RunFolder:
 
     def drop_held_back(self) -> None:
         """Discards the tests that were held back because they have no road; removes the folder if it holds
-        no other test.
-        """
+        no other test."""
         with writing(self.folder):
             for one in self._held_back:
                 remove_run(one.result.number, self.folder)
@@ -251,10 +241,8 @@ class RunFolder:
                 self.take_away(LOCK)
 
     def take_away(self, *names: str) -> None:
-        """Removes ``campaign.json``, the tables and the files in ``names``.
-
-        Then removes ``runs/`` and the folders that were created for this session, if they are empty.
-        """
+        """Removes ``campaign.json``, the tables and the files in ``names``; then ``runs/`` and the folders
+        that were created for this session, if they are empty."""
         every = (CARD, DESCRIPTION, *TABLES, *names)
         take_away((self.folder / name for name in every), (self.folder / RUNS, *self.made))
 

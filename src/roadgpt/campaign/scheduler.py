@@ -1,16 +1,14 @@
-"""Schedules a campaign's tests: sends them to workers, stores their results in groups, and requests
-further tests.
-"""
+"""Schedules the tests of a campaign."""
 
 import time
 from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from roadgpt.campaign.batch_scheduler import BatchScheduler
 from roadgpt.campaign.budget_allocator import BudgetAllocator
-from roadgpt.campaign.jobs import Executor, FinishedJob, Job, RunningJob, WorkerConfig
+from roadgpt.campaign.jobs import FinishedJob, Job, WorkerConfig
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.single_test import (
     Allowance,
@@ -21,14 +19,14 @@ from roadgpt.campaign.single_test import (
     execute,
     result_of,
 )
-from roadgpt.campaign.store import Store
+from roadgpt.campaign.store_tables import Tables
 from roadgpt.chat import ChatSettings
 from roadgpt.errors import BudgetError, RoadGPTError
 from roadgpt.run.lost_drives import LostDrives
 from roadgpt.stopping import look
 
 if TYPE_CHECKING:
-    from roadgpt.campaign.traces import Trace
+    from roadgpt.campaign.executors import Executor
 
 WAIT = 0.25  # s to wait for results at a time
 GROUP = 128  # most results that are stored together: 10 MB of drives
@@ -50,30 +48,21 @@ class Progress:
         return self.outcomes.total()
 
 
-@dataclass(frozen=True)
-class _Out:
+class _Out(NamedTuple):
     """A test that was handed to a worker."""
 
     schedule: BatchScheduler
     task: Task
 
 
-def _lost(out: _Out, why: str) -> FinishedTest:
-    """Returns the test as a FinishedTest with the outcome ERROR, because its workers died."""
-    run = error_run(out.task, out.schedule.cell, why)
-    return FinishedTest(result_of(run, out.task, {}))
-
-
 class Scheduler:
-    """Runs one session of a campaign: distributes tests to the workers, and writes the results to the
-    store.
-    """
+    """Runs one session of a campaign: asks for tests, sends them to the workers, and stores their results."""
 
     def __init__(
         self,
-        store: Store,
+        store: Tables,
         staff: WorkerConfig,
-        kind: type[Executor],
+        kind: "type[Executor]",
         tests: int | None = None,
         chat: ChatSettings | None = None,
         run_test: Callable[..., FinishedTest | OutOfAllowance] | None = None,
@@ -81,14 +70,13 @@ class Scheduler:
         """Prepares the session.
 
         Args:
-            store: the campaign's store.
+            store: the tables of the campaign.
             staff: the workers to request.
             kind: the executor.
             tests: number of tests of each cell; None if only time limits them.
-            chat: this session's settings of the language model; all tests together stay within its limits.
+            chat: this session's settings of the language model, whose limits hold for all tests together;
                 None: the settings of each cell, without limits for the session.
-            run_test: runs a test on a worker, given its Task, its Cell and blocks of earlier designs; None:
-                ``single_test.execute``.
+            run_test: runs a test on a worker, as ``single_test.execute`` does, which None stands for.
         """
         self._store = store
         self._staff = staff
@@ -114,10 +102,8 @@ class Scheduler:
         self.executor = kind(staff)
 
     def run(self) -> Generator[Progress, None, None]:
-        """Runs tests until none is left; yields the progress after every group of results.
-
-        However the session ends, the results so far are stored and the workers are stopped.
-        """
+        """Runs tests until none is left; yields the progress after every group of results. However the
+        session ends, the results so far are stored and the workers are stopped."""
         try:
             yield from self._run()
         except BaseException:
@@ -174,9 +160,7 @@ class Scheduler:
         if schedule.is_late:
             schedule.close("its time limit was reached")
         else:
-            batch = len(schedule.batches)
-            tests = [Task(number, batch, proposal) for number, proposal in schedule.ask(self.executor)]
-            self._hand_out(schedule, tests)
+            self._hand_out(schedule, schedule.ask(self.executor))
         self._drop_if_done(schedule)
 
     def _open(self) -> bool:
@@ -190,8 +174,7 @@ class Scheduler:
             name = schedule.cell.name
             self.executor.share(name, self._with_chat(schedule.cell))
             self._shared[name] = set()
-            waiting = self._store.waiting(name)
-            self._hand_out(schedule, [Task(number, batch, made) for number, batch, made in waiting])
+            self._hand_out(schedule, self._store.waiting(name))
             return True
         return False
 
@@ -206,9 +189,9 @@ class Scheduler:
         self, schedule: BatchScheduler, tests: Sequence[Task], allowance: Allowance | None = None
     ) -> None:
         """Queues tests, each with the given allowance; if it is None, the tests share half of the tokens and
-        money that are left."""
+        money that are left, and the other half is left for later tests."""
         jobs = []
-        each = allowance or self._allocator.share(max(len(tests), 1))
+        each = allowance or self._allocator.share(2 * max(len(tests), 1))
         for test in [replace(test, allowance=each) for test in tests]:
             self._keys += 1
             self._out[self._keys] = _Out(schedule, test)
@@ -218,10 +201,8 @@ class Scheduler:
         self.executor.submit(jobs)
 
     def _earlier(self, schedule: BatchScheduler, test: Task) -> list[str]:
-        """Returns the names of the blocks of designs that a draft has to differ from.
-
-        Blocks that workers may lack are shared, and those that no later test needs are dropped.
-        """
+        """Returns the names of the blocks of designs that a draft has to differ from; shares those that
+        workers may lack, and drops those that no later test needs."""
         if test.proposal.design is not None:
             return []
         name = schedule.cell.name
@@ -242,7 +223,7 @@ class Scheduler:
         if self._out:
             return
         one = self._underfunded.pop(0)
-        everything = self._allocator.all()
+        everything = self._allocator.share()
         if one.task.allowance == everything:
             self._error = BudgetError(self._allocator.sentence(self._store.folder))
             return
@@ -256,7 +237,10 @@ class Scheduler:
             if done.error is not None:
                 self._error = self._error or done.error
                 continue
-            value: FinishedTest | OutOfAllowance = _lost(out, done.lost) if done.lost else done.value
+            value: FinishedTest | OutOfAllowance = done.value
+            if done.lost:  # its workers died
+                run = error_run(out.task, out.schedule.cell, done.lost)
+                value = FinishedTest(result_of(run, out.task, {}))
             self._allocator.back(done.key, value.spent)
             if isinstance(value, OutOfAllowance):
                 self._store.spend(value.spent)
@@ -290,7 +274,12 @@ class Scheduler:
         now = time.monotonic()
         drives = [(cell, one.result.number, one.trace) for cell, one in self._pending if one.trace]
         self._may_write = False  # until all is written
-        trace = self._kept_drives(drives) if drives else None
+        trace = None
+        if drives:
+            from roadgpt.campaign.traces import write_traces
+
+            number = self._store.next_trace()
+            trace = number, write_traces(self._store.folder, number, drives)
         taken = {schedule.cell.name: now - self._looked for schedule in self._schedules}
         self._store.keep(self._pending, trace, self._leases(), taken)
         self._may_write = True
@@ -303,30 +292,21 @@ class Scheduler:
         for schedule in [*self._schedules]:
             self._drop_if_done(schedule)
 
-    def _kept_drives(self, drives: "Sequence[tuple[str, int, Trace]]") -> tuple[int, str]:
-        from roadgpt.campaign.traces import write_traces
-
-        number = self._store.next_trace()
-        return number, write_traces(self._store.folder, number, drives)
-
-    def _leases(self) -> list[tuple[str, int, RunningJob, float]]:
-        now = time.time()
+    def _leases(self) -> list[tuple[str, int, str, float]]:
+        due = time.time() + self._staff.patience
         doing = [(self._out[one.key], one) for one in self.executor.under_way() if one.key in self._out]
         return [
-            (out.schedule.cell.name, out.task.number, one, now - one.seconds + self._staff.patience)
-            for out, one in doing
+            (out.schedule.cell.name, out.task.number, one.worker, due - one.seconds) for out, one in doing
         ]
 
     def _drop_if_done(self, schedule: BatchScheduler) -> None:
         if not schedule.is_done or schedule not in self._schedules:
             return
-        if any(out.schedule is schedule for out in self._underfunded) or self._has_pending(schedule):
+        name = schedule.cell.name
+        is_pending = any(cell == name for cell, _ in self._pending)
+        if is_pending or any(out.schedule is schedule for out in self._underfunded):
             return
         self._schedules.remove(schedule)
-        name = schedule.cell.name
         for batch in self._shared.pop(name):
             self.executor.forget(f"{name}/{batch}")
         self.executor.forget(name)
-
-    def _has_pending(self, schedule: BatchScheduler) -> bool:
-        return any(cell == schedule.cell.name for cell, _ in self._pending)

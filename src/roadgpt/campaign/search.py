@@ -1,7 +1,3 @@
-"""Code that the searching generators share: their settings, candidate roads, and proposals made from
-candidates.
-"""
-
 from collections.abc import Sequence
 from typing import Annotated, Literal
 
@@ -98,37 +94,36 @@ def settings_of(cell: Cell) -> SearchSettings:
         raise UsageError(f"setting '{name}' of the generator '{cell.generator}': {problem}") from error
 
 
-def context_of(cell: Cell) -> VariationContext:
-    """Returns the requirements, world and rules that all candidates of a cell share."""
-    axes = tuple(dict.fromkeys(axis for each in settings_of(cell).maps for axis in each))
-    return VariationContext(cell.brief, cell.request.world, cell.request.setup.rules, axes)
+class SearchGenerator:
+    """What the generators that search share: settings, requirements, candidate roads, and proposals."""
 
+    def __init__(self, cell: Cell) -> None:
+        """Reads the settings; raises UsageError if one cannot be used."""
+        self._cell, self._wanted = cell, settings_of(cell)
+        self.batch_size = self._wanted.batch
+        axes = tuple(dict.fromkeys(axis for each in self._wanted.maps for axis in each))
+        self._setting = VariationContext(cell.brief, cell.request.world, cell.request.setup.rules, axes)
 
-def batch_rng(cell: Cell, batch: int) -> np.random.Generator:
-    """Returns the random number generator of a batch."""
-    return np.random.default_rng([cell.request.seed, batch])
+    def _rng(self, batch: int) -> np.random.Generator:
+        """Returns the random number generator of a batch."""
+        return np.random.default_rng([self._cell.request.seed, batch])
 
+    def _candidates(self, tasks: Sequence[VariationTask], pool: Pool) -> list[Candidate]:
+        """Makes candidate roads on the workers, and returns those that satisfy all rules and requirements."""
+        return [candidate for candidate in pool.map(make_candidate, tasks) if candidate is not None]
 
-def make_candidates(tasks: Sequence[VariationTask], pool: Pool) -> list[Candidate]:
-    """Makes candidate roads on the workers, and returns those that satisfy all rules and requirements."""
-    return [candidate for candidate in pool.map(make_candidate, tasks) if candidate is not None]
-
-
-def proposals_of(cell: Cell, first: int, n: int, candidates: Sequence[Candidate]) -> list[Proposal]:
-    """Returns up to n proposals made from candidates.
-
-    If there are fewer than n candidates and the cell has a Brief, the remaining proposals have no design: the
-    workers that run these tests design the roads.
-    """
-    seed = cell.request.seed
-    found = [
-        Proposal(one.design, seed_of(seed, number), one.origin)
-        for number, one in enumerate(candidates[:n], first)
-    ]
-    if cell.brief is not None:
-        rest = range(first + len(found), first + n)
-        found += [Proposal(None, seed_of(seed, number), "draft") for number in rest]
-    return found
+    def _proposals(self, first: int, n: int, candidates: Sequence[Candidate]) -> list[Proposal]:
+        """Returns up to n proposals made from candidates. If there are too few and the cell has a Brief, the
+        workers design the roads of the remaining ones."""
+        seed = self._cell.request.seed
+        found = [
+            Proposal(one.design, seed_of(seed, number), one.origin)
+            for number, one in enumerate(candidates[:n], first)
+        ]
+        if self._cell.brief is not None:
+            rest = range(first + len(found), first + n)
+            found += [Proposal(None, seed_of(seed, number), "draft") for number in rest]
+        return found
 
 
 def is_usable(result: Result) -> bool:

@@ -14,7 +14,7 @@ from typing import Literal
 from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.faults.fault_log import kept_analysis
 from roadgpt.campaign.folder_record import has_tests, open_record
-from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import UsageError
@@ -42,9 +42,7 @@ class Selection:
     """Number of the test; None: all tests."""
 
     def of(self, name: NumberedTest) -> "Selection":
-        """Returns a Selection of the test ``name`` in the same folder. ``said`` of the new Selection is the
-        folder with the name, such as 'hard/c01/17'.
-        """
+        """Returns the Selection of one test in the same folder, as 'hard/c01/17' selects it."""
         return Selection(f"{self.folder}/{name}", self.folder, name.cell, name.number)
 
     @property
@@ -120,12 +118,8 @@ def _cell(record: Record, name: str) -> str:
 
 
 def chosen(place: Selection, choice: Choice | None) -> list[Selection]:
-    """Splits a Selection into Selections of one test each, in order.
-
-    Args:
-        place: the Selection to split.
-        choice: "failures": the failed tests; "worst": only the worst test; "faults": one typical failure of
-            each fault; None: all tests whose Runs can be read.
+    """Splits a Selection into Selections of one test each, in order: those of a Choice, or all tests whose
+    Runs can be read.
 
     Raises:
         UsageError: a file cannot be read.

@@ -2,13 +2,13 @@
 
 import traceback
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.chat import ChatError, Meter, ReplyError, Spent
 from roadgpt.errors import BudgetError, DesignError, PartError, RoadGPTError, UsageError
-from roadgpt.provenance import join, known
+from roadgpt.provenance import NameOrigins, join, known
 from roadgpt.road import Design
 from roadgpt.run import Run, Seconds, Setup, check_parts, perform, prove, seed_of
 
@@ -27,6 +27,8 @@ class Allowance(NamedTuple):
 
 BOUNDLESS = Allowance()
 NO_TIME = Seconds()
+OF_VERDICT = ("margin", "max_oob", "beyond", "at_s", "side", "cause")
+"""The fields that a Result takes over from a Verdict."""
 
 
 @dataclass(frozen=True)
@@ -41,9 +43,7 @@ class Task:
 
 @dataclass(frozen=True)
 class FinishedTest:
-    """A test that has ended: its result, and data that may differ when the test is repeated, such as
-    times.
-    """
+    """A test that has ended: its result, and data that may differ when it is repeated, such as times."""
 
     result: Result
     trace: "Trace | None" = None
@@ -60,17 +60,15 @@ class OutOfAllowance:
     """A test that did not finish because its allowance was too small; it has to be run again."""
 
     spent: Spent
-    sentence: str
 
 
+@dataclass(frozen=True)
 class WorkerSetup:
-    """Prepares a worker process: imports and compiles what the drivers and simulators of the campaign
-    need.
-    """
+    """Prepares a worker process: imports and compiles what the drivers and simulators of a campaign need."""
 
-    def __init__(self, setups: tuple[Setup, ...]) -> None:
-        self.setups = setups
-        self.known = known()
+    setups: tuple[Setup, ...]
+    known: tuple[NameOrigins, NameOrigins] = field(default_factory=known)
+    """The drivers and servers that the user has named."""
 
     def __call__(self) -> None:
         """Loads all plug-ins, after telling this process which drivers and servers the user has named.
@@ -84,16 +82,8 @@ class WorkerSetup:
 
 
 def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTest | OutOfAllowance:
-    """Runs one test of a campaign whose results go into a store.
-
-    Args:
-        task: the test to run.
-        cell: the test's cell.
-        earlier: the designs of earlier tests, one tuple per batch; a drafted road must differ from all of
-            them.
-
-    Returns:
-        The finished test; an OutOfAllowance if the test would have spent more than its allowance.
+    """Runs one test of a campaign whose results go into a store. A drafted road must differ from all of the
+    ``earlier`` designs, which are one tuple per batch.
 
     Raises:
         PartError, UsageError, ChatError: an error that would occur in every other test as well.
@@ -103,8 +93,8 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
     meter = Meter(task.allowance.tokens, task.allowance.cost)
     try:
         run = run_test(task, cell, earlier, meter)
-    except BudgetError as error:
-        return OutOfAllowance(meter.spent, str(error))
+    except BudgetError:
+        return OutOfAllowance(meter.spent)
     except CONCERNS_ALL:
         raise
     except Exception as error:  # whatever a part raises costs this test, not the campaign
@@ -121,9 +111,14 @@ def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], me
 
     All other errors of ``run.perform`` and ``run.prove`` are raised.
     """
-    before = meter.spent
+    before, request, proposal = meter.spent, cell.request, task.proposal
+    world, setup = request.world, request.setup
     try:
-        return run_of(cell, task.number, task.proposal, earlier, meter)
+        if proposal.design is not None:
+            return prove(proposal.design, proposal.seed, world, setup, task.number, cell.brief)
+        assert cell.brief is not None, "only a cell with words lets its tests be drafted"
+        known = [design for block in earlier for design in block]
+        return perform(cell.brief, proposal.seed, world, setup, task.number, known, meter)
     except (DesignError, ReplyError) as error:
         spent = meter.spent.since(before)
         return replace(error_run(task, cell, str(error)), spent=spent if spent.calls else None)
@@ -136,26 +131,8 @@ def error_run(task: Task, cell: Cell, sentence: str, trace: str = "") -> Run:
     return Run(cell.request, number, seed, "ERROR", sentence, design=proposal.design, trace=trace)
 
 
-def run_of(
-    cell: Cell,
-    number: int,
-    proposal: Proposal,
-    earlier: tuple[tuple[Design, ...], ...] = (),
-    meter: Meter | None = None,
-) -> Run:
-    """Returns the Run of a test; raises the errors that ``run.perform`` and ``run.prove`` raise."""
-    request = cell.request
-    if proposal.design is not None:
-        return prove(proposal.design, proposal.seed, request.world, request.setup, number, cell.brief)
-    assert cell.brief is not None, "only a cell with words lets its tests be drafted"
-    known = [design for block in earlier for design in block]
-    return perform(cell.brief, proposal.seed, request.world, request.setup, number, known, meter)
-
-
 def seed_of_driver(number: int, proposal: Proposal) -> int:
-    """Returns the driver's seed in test ``number``. If the proposal has no design, the worker also uses this
-    seed to design the road.
-    """
+    """Returns the driver's seed in test ``number``, with which the road is designed, too, if need be."""
     return seed_of(proposal.seed, number) if proposal.design is None else proposal.seed
 
 
@@ -174,7 +151,7 @@ def features_in(run: Run) -> dict[str, float]:
 
 def result_of(run: Run, task: Task, features: Mapping[str, float]) -> Result:
     """Returns the part of a Run that a campaign stores as the test's result."""
-    verdict = run.verdict
+    measured = {name: getattr(run.verdict, name) for name in OF_VERDICT} if run.verdict else {}
     return Result(
         number=task.number,
         batch=task.batch,
@@ -183,11 +160,6 @@ def result_of(run: Run, task: Task, features: Mapping[str, float]) -> Result:
         description=run.description,
         design=run.design,
         length=run.length,
-        margin=verdict.margin if verdict else None,
-        max_oob=verdict.max_oob if verdict else None,
-        beyond=verdict.beyond if verdict else None,
-        at_s=verdict.at_s if verdict else None,
-        side=verdict.side if verdict else None,
-        cause=verdict.cause if verdict else None,
         features=features,
+        **measured,
     )

@@ -6,15 +6,12 @@ A sketch takes about a tenth of the time of a candidate, because no road is buil
 a search can compare many sketches, and build only the roads that it wants to drive.
 """
 
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt.brief.element import Elements
-from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
-from roadgpt.brief.ranges import Range
 from roadgpt.campaign.behaviour import behaviour_of_line
 from roadgpt.campaign.departure import RoadStations, stations_of
 from roadgpt.campaign.mutation import redrawn, varied
@@ -25,7 +22,6 @@ from roadgpt.campaign.variation import (
     Candidate,
     VariationContext,
     VariationTask,
-    candidate,
     draft,
     room_for,
     validated,
@@ -63,9 +59,8 @@ class Sketch(NamedTuple):
 
 
 def sketch(task: VariationTask) -> Sketch | None:
-    """Returns the sketch that a task describes; None if every road that was tried leaves the map, overlaps
-    itself or has the wrong number of turns, or if the road to mutate could not be drafted.
-    """
+    """Returns the sketch that a task describes; None if the road to mutate could not be drafted, or if every
+    road that was tried leaves the map, overlaps itself or has the wrong number of turns."""
     rng = np.random.default_rng(task.seed)
     if task.kind == "wild":
         found = draft(task.setting, rng)
@@ -74,7 +69,7 @@ def sketch(task: VariationTask) -> Sketch | None:
             parents = [redrawn(parents[0], rng, task.setting.world)]
     else:
         parents = [elements_of(design.segments) for design in task.parents]
-    asked = _turns_of(task.setting.brief or NOBODY)
+    asked = outline(task.setting.brief or NOBODY).turns
     for attempt in range(TRIES if parents else 0):
         numeric = task.numeric if attempt < BOLD else NUMERIC[1]
         elements = varied(parents, rng, task.setting.world, numeric, ROUNDS if task.kind == "wild" else 1)
@@ -87,12 +82,7 @@ def sketch(task: VariationTask) -> Sketch | None:
 
 
 def sketch_of(known: tuple[Design, VariationContext]) -> tuple[Sketch, PlanShape]:
-    """Returns the sketch of an existing design, and the shape of its plan. The features are the same as if
-    the road had begun as a sketch.
-
-    Args:
-        known: the design, and the requirements, world and rules of its cell.
-    """
+    """Returns the sketch of an existing design of a cell, as if the road had begun as one, and its shape."""
     design, setting = known
     elements = elements_of(design.segments)
     x, y, _ = design.starting_point
@@ -103,14 +93,9 @@ def sketch_of(known: tuple[Design, VariationContext]) -> tuple[Sketch, PlanShape
 
 
 def candidate_of(work: tuple[Sketch, VariationContext]) -> Candidate | None:
-    """Builds the road of a sketch; returns None if it violates a requirement or a rule.
-
-    Args:
-        work: the sketch, and the requirements, world and rules of its cell.
-    """
+    """Builds the road of a sketch of a cell; returns None if it violates a requirement or a rule."""
     one, setting = work
-    found = validated(design_of(one.elements, one.place, setting.world), setting)
-    return candidate(*found, one.origin) if found else None
+    return validated(design_of(one.elements, one.place, setting.world), setting, one.origin)
 
 
 def _driven_line(room: PlacedPlan, setting: VariationContext) -> Complex:
@@ -124,11 +109,6 @@ def _driven_line(room: PlacedPlan, setting: VariationContext) -> Complex:
     points = walk(room.elements, FINER * between).z[::FINER]
     x, y = interpolate(np.stack([points.real, points.imag], axis=1)).T
     return np.asarray(x + 1j * y)
-
-
-@lru_cache(maxsize=16)  # every sketch of a cell asks
-def _turns_of(brief: Brief) -> Range:
-    return outline(brief).turns
 
 
 def _sketched(elements: Elements, room: PlacedPlan, origin: str, setting: VariationContext) -> Sketch:

@@ -3,13 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from roadgpt.campaign.model import Cell, Result
-from roadgpt.campaign.numbered_test import NumberedTest
-from roadgpt.campaign.single_test import seed_of_driver
+from roadgpt.campaign.model import Cell, NumberedTest, Result
+from roadgpt.campaign.single_test import OF_VERDICT, seed_of_driver
 from roadgpt.check import inspect
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
@@ -21,15 +19,8 @@ from roadgpt.verdict import Verdict, judge
 def stored_run(
     cell: Cell, result: Result, road: Road, drive: Drive | None, versions: Mapping[str, str]
 ) -> Run:
-    """Returns the Run of a test.
-
-    Args:
-        cell: the test's cell.
-        result: the stored result.
-        road: the road of the stored design.
-        drive: the stored drive; None: the Run has no drive and no verdict.
-        versions: the versions of the software with which the campaign was made.
-    """
+    """Returns the Run of a test from its stored result, the road of its design, and its stored drive. Without
+    a drive, it has no verdict; ``versions`` are those of the software that made the campaign."""
     request, brief = cell.request, cell.brief
     is_invalid = result.outcome == "INVALID"
     return Run(
@@ -57,13 +48,7 @@ def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict
     if result.at_s is not None and result.cause in ("out of lane", "fell"):
         step = int(np.argmin(np.abs(drive["s"] - result.at_s)))
     judged = judge(road, drive, cell.request.world, (step, result.cause))
-    kept: dict[str, Any] = {
-        "margin": result.margin,
-        "at_s": result.at_s,
-        "side": result.side,
-        "max_oob": result.max_oob,
-    }
-    kept |= {"outcome": result.outcome, "beyond": result.beyond}
+    kept = {name: getattr(result, name) for name in ("outcome", *OF_VERDICT)}
     return replace(judged, **{name: value for name, value in kept.items() if value is not None})
 
 

@@ -35,7 +35,7 @@ class Surrogate:
         """Learns from the last ``MOST`` roads.
 
         Args:
-            features: the features of each road, ``(n, features)``, as returned by ``surrogate_features_of``.
+            features: the features of each road, ``(n, features)``, see ``surrogate_features``.
             outcomes: the values to predict for each road, ``(n, k)``: the margin in metres, as returned by
                 ``target_of``, and features of the drive.
             guesses: for the column of each outcome that is nearly proportional to a feature, the columns of

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Road, World
+from roadgpt.road import World
 
 STARTING = 25.0  # m, in which the car is still slow
 ENDING = 8.0  # m, that are not driven
@@ -77,15 +77,8 @@ class RoadSamples(NamedTuple):
     """Offset of the middle of the driven lane in metres, positive to the left."""
 
 
-def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
-    """Returns the features of a road, each scaled to a magnitude of about 1; shape ``(len(NAMES),)``."""
-    found = road.sample()
-    middle = world.profile_of(road).middle(found.s)
-    return features_of_samples(RoadSamples(found.s, found.curvature, found.grade, middle), world)
-
-
 def features_of_samples(samples: RoadSamples, world: World) -> NDArray[np.float64]:
-    """Returns the features of a road's samples, as ``surrogate_features_of`` does."""
+    """Returns the features of a road, each scaled to a magnitude of about 1; shape ``(len(NAMES),)``."""
     length = float(samples.s[-1])
     kept = (samples.s >= STARTING) & (samples.s <= length - ENDING)
     if np.count_nonzero(kept) < 2:
@@ -98,8 +91,15 @@ def features_of_samples(samples: RoadSamples, world: World) -> NDArray[np.float6
     there = slice(max(tight - AROUND, 0), tight + AROUND)
     size = np.abs(means[1])
     steering = steering_so_far(samples.s, all_of_lane, world)
-    rush = _rush(samples.s, all_of_lane, world)[kept]
-    places = [int(np.flatnonzero(kept)[i]) for i in (*_places(means[2]), rush.argmax(), rush.argmin())]
+    # the lateral acceleration of a car that accelerates gently and does not brake before a bend
+    entering = before(squared_speed(samples.s, all_of_lane, world, GENTLY), ENTERING)
+    rush = (entering * moving_mean(all_of_lane, WINDOWS[1]))[kept]
+    # a car may leave its lane at the tightest places to the left and to the right, at the first that is
+    # nearly as tight as the tightest, and at the greatest rushes
+    bends = np.abs(means[2])
+    first = (bends >= NEARLY * bends.max()).argmax()
+    likely = (means[2].argmax(), means[2].argmin(), first, rush.argmax(), rush.argmin())
+    places = [int(np.flatnonzero(kept)[i]) for i in likely]
     return np.array(
         [
             *(max(float(mean.max()), 0.0) / 0.06 for mean in means),
@@ -127,18 +127,9 @@ def lane_curvature(samples: RoadSamples) -> Array:
     return samples.curvature / np.maximum(1 - samples.middle * samples.curvature, TIGHTEST)
 
 
-def _places(lane: Array) -> tuple[int, int, int]:
-    """Returns where a car may leave its lane: the tightest place to the left and to the right, and the first
-    that is nearly as tight as the tightest.
-    """
-    size = np.abs(lane)
-    return int(lane.argmax()), int(lane.argmin()), int((size >= NEARLY * size.max()).argmax())
-
-
 def steering_so_far(s: Array, lane: Array, world: World) -> Array:
-    """Returns the standard deviation over time of the wheels' angle from the start to each sample, in
-    radians.
-    """
+    """Returns the standard deviation over time of the wheels' angle from the start to each sample,
+    radians."""
     speed = np.sqrt(np.maximum(squared_speed(s, lane, world, SPEEDING_UP), 1.0))
     angle = np.arctan(WHEELBASE * lane)
     time = np.cumsum(1 / speed)
@@ -146,13 +137,9 @@ def steering_so_far(s: Array, lane: Array, world: World) -> Array:
     return np.sqrt(np.maximum(square - mean**2, 0.0))
 
 
-def _rush(s: Array, lane: Array, world: World) -> Array:
-    """Returns the lateral acceleration in m/s^2, positive to the left, of a car that accelerates gently and
-    does not brake before a bend.
-    """
-    square = squared_speed(s, lane, world, GENTLY)
-    entering = np.concatenate([np.zeros(min(ENTERING, len(s))), square[:-ENTERING]])
-    return entering * moving_mean(lane, WINDOWS[1])
+def before(values: Array, lag: int) -> Array:
+    """Returns the values of ``lag`` samples before; the first value is repeated before the start."""
+    return np.asarray(values[np.maximum(np.arange(len(values)) - lag, 0)])
 
 
 def squared_speed(s: Array, lane: Array, world: World, acceleration: float) -> Array:
@@ -166,12 +153,9 @@ def squared_speed(s: Array, lane: Array, world: World, acceleration: float) -> A
 
 
 def hazard_of(signs: Sequence[Array]) -> Array:
-    """Estimates without a drive how hard each of n roads is; returns an array of shape ``(n,)``.
+    """Estimates without a drive how hard each of n roads is from its features; returns shape ``(n,)``.
 
     The estimate is the largest curvature of the lane, averaged over about 13 m, as a multiple of 0.06 1/m.
-
-    Args:
-        signs: the features of each road, as ``surrogate_features_of`` returns them.
     """
     table = np.asarray(signs)
     columns = [NAMES.index(f"{side}_{WINDOWS[2]}") for side in ("left", "right")]
@@ -179,8 +163,7 @@ def hazard_of(signs: Sequence[Array]) -> Array:
 
 
 def moving_mean(values: Array, window: int) -> Array:
-    """Returns the moving average over ``window`` values; the first and last values are repeated beyond the
-    ends."""
+    """Returns the moving average over ``window`` values, with the first and the last repeated at the ends."""
     half = window // 2
     ends = np.full(half, values[0]), np.full(half, values[-1])
     total = np.concatenate([[0.0], np.cumsum(np.concatenate([ends[0], values, ends[1]]))])

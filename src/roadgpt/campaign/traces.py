@@ -7,7 +7,8 @@ integers ``(columns, n)``: the second differences of each column, in steps, whic
 motion and compress well (12 kB for a drive of 28 s). The cumulative sum of a row, taken twice and multiplied
 by its step, is the column of ``roadgpt.drive.COLUMNS`` in its unit.
 
-Stores of earlier versions hold Apache Parquet files instead (``parquet_traces``).
+Stores of earlier versions hold Apache Parquet files instead. In these, a row is one time step of a drive; the
+columns ``cell`` and ``number`` identify the test, and the metadata under ``roadgpt`` holds the headers.
 """
 
 import io
@@ -83,14 +84,10 @@ def _number(steps: Whole, step: float) -> NDArray[np.float64]:
 
 
 def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Trace]]) -> str:
-    """Writes a group of drives as one file, and returns the file's name; the same drives give the same bytes.
+    """Writes a group of drives (cell, number of the test, drive) as one file of a campaign's folder, and
+    returns the file's name. The same drives give the same bytes.
 
     When this returns, the complete file is on the disk and not only in a buffer.
-
-    Args:
-        folder: the campaign's folder.
-        number: number of the file.
-        drives: tuples of cell, number of the test, and drive.
     """
     header = {
         "format": FORMAT,
@@ -141,11 +138,7 @@ def read_traces(path: Path, cell: str, number: int) -> Drive:
             and pyarrow is not installed.
     """
     try:
-        if path.suffix == OLD_SUFFIX:
-            from roadgpt.campaign.parquet_traces import read_parquet
-
-            return drive_of(Trace(*read_parquet(path, cell, number)))
-        return drive_of(_trace_in(path, cell, number))
+        return drive_of((_parquet_trace if path.suffix == OLD_SUFFIX else _trace_in)(path, cell, number))
     except UsageError:
         raise
     except Exception as error:  # zipfile, its decoders, numpy, json and pyarrow raise anything
@@ -164,9 +157,27 @@ def _trace_in(path: Path, cell: str, number: int) -> Trace:
         raise ValueError("another version of roadgpt wrote it")
     if rows.dtype != np.int32 or rows.ndim != 2 or len(rows) != len(COLUMNS) or not rows.size:
         raise ValueError("a drive is a table of whole numbers")
+    steps = rows.cumsum(axis=1, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
+    return Trace(_header_of(contents, cell, number), dict(zip(COLUMNS, steps, strict=True)))
+
+
+def _header_of(contents: Any, cell: str, number: int) -> dict[str, Any]:
     (header,) = [
         dict(each) for each in contents["drives"] if (each["cell"], each["number"]) == (cell, number)
     ]
     del header["cell"], header["number"]
-    steps = rows.cumsum(axis=1, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
-    return Trace(header, dict(zip(COLUMNS, steps, strict=True)))
+    return header
+
+
+def _parquet_trace(path: Path, cell: str, number: int) -> Trace:
+    try:
+        import pyarrow.parquet as pq
+    except ImportError as error:
+        raise UsageError(
+            f"{path} was written by an earlier version of roadgpt, and reading its drives needs pyarrow; "
+            "say: pip install pyarrow"
+        ) from error
+    contents = json.loads(pq.read_metadata(path).metadata[b"roadgpt"])
+    table = pq.read_table(path, filters=[("cell", "=", cell), ("number", "=", number)])
+    header = _header_of(contents, cell, number)
+    return Trace(header, {name: table[name].to_numpy().astype(np.int32) for name in COLUMNS})

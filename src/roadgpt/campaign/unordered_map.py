@@ -1,12 +1,11 @@
-"""Runs a function on many items, on worker processes or in this process."""
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TypeVar
 
+from roadgpt.campaign.executors import Executor
 from roadgpt.campaign.executors.processes import Processes
-from roadgpt.campaign.jobs import Executor, Job, WorkerConfig
+from roadgpt.campaign.jobs import Job, WorkerConfig
 from roadgpt.campaign.single_test import WorkerSetup
 from roadgpt.campaign.workers.in_process import InProcess
 from roadgpt.errors import RoadGPTError
@@ -20,13 +19,12 @@ WAIT = 0.25  # s for results, between two looks for Ctrl-C
 
 
 def unordered_map(function: Callable[[T], U], items: Sequence[T], workers: int, log: Path) -> Iterator[U]:
-    """Yields the result of ``function`` for every item as soon as it is ready.
-
-    The workers end when the caller stops the iteration, for example with Ctrl-C.
+    """Runs a function on many items, on worker processes or in this process, and yields each result as soon
+    as it is ready. The workers end when the caller stops the iteration, for example with Ctrl-C.
 
     Args:
         function: a function at the top level of a module.
-        items: the arguments of ``function``; with several workers, items and results must be picklable.
+        items: its arguments; with several workers, items and results must be picklable.
         workers: number of processes; 1: the function runs in this process.
         log: the file that receives what worker processes print.
 

@@ -7,7 +7,6 @@ mutated road violates a requirement or leaves the map, another mutation is tried
 all requirements of the Brief and all rules: ``check.inspect`` checks the road that will be driven.
 """
 
-from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -22,7 +21,7 @@ from roadgpt.design.layout import MapPose, PlacedPlan, keeps_clear, place, walk
 from roadgpt.design.variety import PlanShape, shape_of
 from roadgpt.design.writing import design_of
 from roadgpt.errors import DesignError, RoadGPTError
-from roadgpt.road import Design, Road, World, build
+from roadgpt.road import Design, World, build
 
 TRIES = 8  # mutations that are tried for one candidate, at most
 BOLD = 3  # of TRIES; later tries mostly change only numbers, which violates fewer requirements
@@ -74,36 +73,24 @@ class Candidate(NamedTuple):
     origin: str
     """Text that says where the road comes from, taken from its task."""
     shape: PlanShape
-    """Shape of the road seen from above; the distance between two candidates is computed from their
-    shapes.
-    """
+    """Shape of the road seen from above, from which the distance between two candidates is computed."""
 
 
 def make_candidate(task: VariationTask) -> Candidate | None:
     """Returns the candidate that a task describes; None if no valid road was found that meets the Brief.
-
-    A task of the kind "wild" must be passed to ``sketch.sketch`` instead.
-    """
+    Tasks of the kind "wild" belong to ``sketch.sketch``."""
     rng = np.random.default_rng(task.seed)
     setting = task.setting
     if task.kind == "between":
-        found = _between(task)
-    elif task.kind == "draft":
+        return _between(task)
+    if task.kind == "draft":
         design = draft(setting, rng)
-        found = validated(design, setting) if design else None
-    else:
-        found = _changed([elements_of(design.segments) for design in task.parents], setting, rng)
-    return candidate(*found, task.origin) if found else None
-
-
-def _changed(
-    parents: Sequence[Elements], setting: VariationContext, rng: np.random.Generator
-) -> tuple[Design, Road] | None:
-    """Returns a mutation of one parent, or a crossover of two; None if no valid road was found."""
+        return validated(design, setting, task.origin) if design else None
+    parents = [elements_of(design.segments) for design in task.parents]
     for attempt in range(TRIES):
         elements = varied(parents, rng, setting.world, NUMERIC[attempt >= BOLD])
         room = room_for(elements, setting, rng)
-        found = room and validated(design_of(elements, room.place, setting.world), setting)
+        found = room and validated(design_of(elements, room.place, setting.world), setting, task.origin)
         if found:
             return found
     return None
@@ -117,23 +104,25 @@ def draft(setting: VariationContext, rng: np.random.Generator) -> Design | None:
         return None
 
 
-def _between(task: VariationTask) -> tuple[Design, Road] | None:
+def _between(task: VariationTask) -> Candidate | None:
     """Returns a road between the two parents, which starts at a place between their starts; None if the
     roads do not correspond or the new road is not valid."""
-    one, other = task.parents
-    elements = interpolated(elements_of(one.segments), elements_of(other.segments), task.share)
+    (one, other), share = task.parents, task.share
+    elements = interpolated(elements_of(one.segments), elements_of(other.segments), share)
     if elements is None:
         return None
-    return validated(
-        design_of(elements, _place_between(one, other, task.share), task.setting.world), task.setting
+    (x0, y0, _), (x1, y1, _) = one.starting_point, other.starting_point
+    turned = (other.theta - one.theta + 180) % 360 - 180
+    where = MapPose(
+        round(x0 + share * (x1 - x0), 2),
+        round(y0 + share * (y1 - y0), 2),
+        round((one.theta + share * turned) % 360, 1) % 360,
     )
+    return validated(design_of(elements, where, task.setting.world), task.setting, task.origin)
 
 
 def room_for(elements: Elements, setting: VariationContext, rng: np.random.Generator) -> PlacedPlan | None:
-    """Places a road with these elements at a random position on the map.
-
-    Returns None if the road does not fit on the map, or if two parts of the road overlap.
-    """
+    """Places a road at random on the map; returns None if it does not fit there, or if its parts overlap."""
     written = [as_written(element) for element in elements]
     line = walk(written)
     where = place(line, setting.world, rng)
@@ -142,10 +131,8 @@ def room_for(elements: Elements, setting: VariationContext, rng: np.random.Gener
     return PlacedPlan(written, line, where)
 
 
-def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] | None:
-    """Builds the road of a design; returns design and road if the road satisfies all requirements and rules,
-    otherwise None.
-    """
+def validated(design: Design, setting: VariationContext, origin: str) -> Candidate | None:
+    """Builds the road of a design; returns None if it violates a requirement or a rule."""
     try:
         road = setting.world.lay(build(design))
         if check.inspect(road, setting.brief, setting.world):
@@ -157,20 +144,5 @@ def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] 
             return None
     except (RoadGPTError, ValueError):  # a spline of this road cannot be laid: it is no candidate
         return None
-    return design, road
-
-
-def candidate(design: Design, road: Road, origin: str) -> Candidate:
-    """Returns the Candidate of a road that satisfies all rules."""
     samples = road.sample()
     return Candidate(design, origin, shape_of(samples.s, samples.x + 1j * samples.y))
-
-
-def _place_between(one: Design, other: Design, share: float) -> MapPose:
-    (x0, y0, _), (x1, y1, _) = one.starting_point, other.starting_point
-    turned = (other.theta - one.theta + 180) % 360 - 180
-    return MapPose(
-        round(x0 + share * (x1 - x0), 2),
-        round(y0 + share * (y1 - y0), 2),
-        round((one.theta + share * turned) % 360, 1) % 360,
-    )

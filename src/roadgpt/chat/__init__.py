@@ -12,6 +12,7 @@ and are sent to the server only.
 
 import inspect
 from collections.abc import Sequence
+from functools import cache
 from typing import Any, Protocol
 
 from pydantic import BaseModel
@@ -38,9 +39,8 @@ __all__ = [
     "asks_a_model",
     "configured",
     "counting",
-    "instantiate",
     "open_chat",
-    "settings_for",
+    "plugin_of",
 ]
 
 
@@ -66,7 +66,8 @@ class Chat(Protocol):
 
 
 def open_chat(settings: ChatSettings) -> Chat:
-    """Returns a Chat with the model that the settings name. The Chat counts what its questions cost.
+    """Returns a Chat with the model that the settings name. The Chat counts what its questions cost. The
+    user's own model and server are used where the settings name none.
 
     If the settings name a folder for recording, all exchanges are stored there; if they name a folder to
     replay, the answers come from that folder instead of a server.
@@ -82,20 +83,15 @@ def open_chat(settings: ChatSettings) -> Chat:
     if settings.replay is not None:
         replayed: Chat = plugins.find("providers", "replay")(settings)
         return replayed
-    settings = _filled(settings)
+    usual = configured()
+    open_fields = [name for name in ("model", "base_url") if getattr(settings, name) is None]
+    settings = settings.model_copy(update={name: getattr(usual, name) for name in open_fields})
     live: Chat = plugins.find("providers", settings.provider)(settings)
     if settings.record is None:
         return live
     from roadgpt.chat.recording import Recorder
 
     return Recorder(settings, live)
-
-
-def _filled(settings: ChatSettings) -> ChatSettings:
-    """Returns the settings with the user's own model and server filled in where none are given."""
-    usual = configured()
-    names = [name for name in ("model", "base_url") if getattr(settings, name) is None]
-    return settings.model_copy(update={name: getattr(usual, name) for name in names})
 
 
 def asks_a_model(part: Any) -> bool:
@@ -105,17 +101,18 @@ def asks_a_model(part: Any) -> bool:
     return isinstance(part, type) and "settings" in inspect.signature(part).parameters
 
 
-def settings_for(part: Any, settings: ChatSettings | None) -> ChatSettings | None:
-    """Returns the ChatSettings for creating a plug-in: ``settings`` or, if ``settings`` is None, those that
-    the user has configured. Returns None if the plug-in takes no ChatSettings.
+def plugin_of(kind: str, name: str, settings: ChatSettings | None = None) -> Any:
+    """Returns the plug-in of a kind and name, ready for use; it is created once and then reused.
+
+    If its class takes ChatSettings, it gets ``settings`` or, if these are None, those that the user has
+    configured. A plug-in that cannot be called is returned unchanged.
     """
-    return (settings or configured()) if asks_a_model(part) else None
+    return _made(kind, name, (settings or configured()) if asks_a_model(plugins.find(kind, name)) else None)
 
 
-def instantiate(part: Any, settings: ChatSettings | None = None) -> Any:
-    """Returns an instance of a plug-in, created with ``settings`` if its class takes ChatSettings. A plug-in
-    that cannot be called is returned unchanged.
-    """
-    if asks_a_model(part):
+@cache
+def _made(kind: str, name: str, settings: ChatSettings | None) -> Any:
+    part = plugins.find(kind, name)
+    if settings is not None:
         return part(settings)
     return part() if callable(part) else part

@@ -1,4 +1,6 @@
-"""Extracts the answer from the JSON that a server sends. Any field may be missing or have the wrong type."""
+"""What a server sends back: an error, or JSON from which the answer is extracted. Any field of this JSON may
+be missing or have the wrong type.
+"""
 
 from dataclasses import dataclass
 from typing import Any
@@ -8,6 +10,24 @@ from roadgpt.chat.strict_json import plain
 
 NOTHING = Usage()
 MOST_TOKENS = 100_000_000  # of one exchange; a larger number is not taken for a count
+BUSY = {408, 409, 425, 429, 500, 502, 503, 504, 529}  # statuses after which a retry may help
+SPENT_UP = ("insufficient_quota", "billing", "credit")  # words in a 429 for which waiting does not help
+
+
+@dataclass
+class RequestError(Exception):
+    """Raised if a request to a server fails."""
+
+    sentence: str
+    status: int | None = None
+    details: str = ""
+    """The server's own error message in lower case."""
+    parameter: str = ""
+
+
+def is_spent_up(status: int, message: str) -> bool:
+    """Returns True if a server's error message says that the account has no credit left."""
+    return status == 429 and any(word in message.lower() for word in SPENT_UP)
 
 
 @dataclass(frozen=True)
@@ -24,21 +44,13 @@ class Answer:
 def from_chat(body: dict[str, Any]) -> Answer:
     """Extracts the answer from a response of the Chat Completions API."""
     choices = body.get("choices")
-    choice = choices[0] if isinstance(choices, list) and choices and isinstance(choices[0], dict) else {}
-    message = choice.get("message")
-    message = message if isinstance(message, dict) else {}
+    choice = _fields(choices[0]) if isinstance(choices, list) and choices else {}
+    message = _fields(choice.get("message"))
     finish = _word(choice.get("finish_reason")) or "stop"
     refusal = message.get("refusal")
     refusal = refusal if isinstance(refusal, str) and refusal.strip() else None
-    if finish == "content_filter" and refusal is None:
-        refusal = "the server's filter stopped the answer"
-    return Answer(
-        _text_of(message.get("content")),
-        _word(body.get("model")),
-        finish,
-        _usage(body.get("usage"), "prompt_tokens", "completion_tokens"),
-        refusal,
-    )
+    usage = _usage(body, "prompt_tokens", "completion_tokens")
+    return _answer(body, _text_of(message.get("content")), finish, usage, refusal)
 
 
 def from_responses(body: dict[str, Any]) -> Answer:
@@ -47,20 +59,26 @@ def from_responses(body: dict[str, Any]) -> Answer:
     refusal: str | None = None
     output = body.get("output")
     for item in output if isinstance(output, list) else []:
-        content = item.get("content") if isinstance(item, dict) and item.get("type") == "message" else None
+        content = item.get("content") if _fields(item).get("type") == "message" else None
         for part in content if isinstance(content, list) else []:
-            if isinstance(part, dict) and part.get("type") == "refusal":
+            if _fields(part).get("type") == "refusal":
                 refusal = str(part.get("refusal") or "no reason given")
         said.append(_text_of(content))
     finish = "stop"
     if body.get("status") == "incomplete":
-        details = body.get("incomplete_details")
-        reason = _word(details.get("reason")) if isinstance(details, dict) else ""
+        reason = _word(_fields(body.get("incomplete_details")).get("reason"))
         finish = "length" if "token" in reason else reason or "length"
+    return _answer(body, "".join(said), finish, _usage(body, "input_tokens", "output_tokens"), refusal)
+
+
+def _answer(body: dict[str, Any], text: str, finish: str, usage: Usage, refusal: str | None) -> Answer:
     if finish == "content_filter" and refusal is None:
         refusal = "the server's filter stopped the answer"
-    usage = _usage(body.get("usage"), "input_tokens", "output_tokens")
-    return Answer("".join(said), _word(body.get("model")), finish, usage, refusal)
+    return Answer(text, _word(body.get("model")), finish, usage, refusal)
+
+
+def _fields(value: Any) -> dict[str, Any]:
+    return value if isinstance(value, dict) else {}
 
 
 def _text_of(content: Any) -> str:
@@ -68,17 +86,16 @@ def _text_of(content: Any) -> str:
     if isinstance(content, str):
         return content
     parts = content if isinstance(content, list) else []
-    return "".join(
-        part["text"] for part in parts if isinstance(part, dict) and isinstance(part.get("text"), str)
-    )
+    texts = [_fields(part).get("text") for part in parts]
+    return "".join(text for text in texts if isinstance(text, str))
 
 
 def _word(value: Any) -> str:
     return plain(value, 100) if isinstance(value, str) else ""
 
 
-def _usage(told: Any, prompt: str, completion: str) -> Usage:
-    told = told if isinstance(told, dict) else {}
+def _usage(body: dict[str, Any], prompt: str, completion: str) -> Usage:
+    told = _fields(body.get("usage"))
     return Usage(prompt=_count(told.get(prompt)), completion=_count(told.get(completion)))
 
 

@@ -10,13 +10,14 @@ import logging
 from collections.abc import Callable
 from email.utils import parsedate
 from importlib.metadata import PackageNotFoundError, version
+from operator import attrgetter
 from typing import Any
 
 from roadgpt.chat.address import address_of
+from roadgpt.chat.answer import BUSY, RequestError, is_spent_up
 from roadgpt.chat.config import DEFAULT, configured, key_for, settings_with_origin, untrusted_source
 from roadgpt.chat.model import ChatSettings
 from roadgpt.chat.prices import has_openai_prices
-from roadgpt.chat.request_error import BUSY, RequestError, is_spent_up
 from roadgpt.chat.secret import NO_KEY, Key, redacted
 from roadgpt.chat.strict_json import NotReadableError, plain
 from roadgpt.errors import ChatError
@@ -70,17 +71,11 @@ class ApiClient:
             why = plain(redacted(str(error), self._key), 200)
             raise ChatError(f"a connection to {self.place} cannot be made: {why}") from None
 
-    def chat(self, body: dict[str, Any]) -> dict[str, Any]:
-        """Sends a request to the Chat Completions API and returns the response."""
-        return self._sent(self._client.chat.completions.with_raw_response.create, body)
-
-    def respond(self, body: dict[str, Any]) -> dict[str, Any]:
-        """Sends a request to the Responses API and returns the response."""
-        return self._sent(self._client.responses.with_raw_response.create, body)
-
-    def begin_conversation(self) -> dict[str, Any]:
-        """Starts a conversation that the server stores; returns the server's answer, which holds the id."""
-        return self._sent(self._client.conversations.with_raw_response.create, {})
+    def send(self, api: str, body: dict[str, Any]) -> dict[str, Any]:
+        """Sends a request to one of the library's APIs, such as "chat.completions", and returns the response.
+        Raises RequestError if the request failed and so did its repetitions, if any could help.
+        """
+        return self._sent(attrgetter(f"{api}.with_raw_response.create")(self._client), body)
 
     def models(self) -> list[dict[str, Any]]:
         """Returns the models of the server, each as the dictionary that the server sends."""
@@ -88,28 +83,20 @@ class ApiClient:
         return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
 
     def _sent(self, call: Callable[..., Any], body: dict[str, Any]) -> dict[str, Any]:
-        """Sends a request and returns the response; the request is repeated if it fails and a retry may help.
-
-        Raises:
-            RequestError: the request failed, and so did its repetitions, if there were any.
-        """
         try:
             content: bytes = call(**body).content
         except Exception as error:
             raise self._fault_of(error) from None
-        return self._decoded(content)
-
-    def _decoded(self, content: bytes) -> dict[str, Any]:
         try:
             found = json.loads(content)
         except (ValueError, RecursionError):
             found = None
         if not isinstance(found, dict):
-            start = plain(redacted(content[:400].decode("utf-8", "replace"), self._key), 60)
+            start = plain(self.redacted(content[:400].decode("utf-8", "replace")), 60)
             raise RequestError(
                 f"{self.place} did not answer with JSON ('{start}'); does the base URL end in /v1?"
             )
-        answer: dict[str, Any] = redacted(found, self._key)
+        answer: dict[str, Any] = self.redacted(found)
         return answer
 
     def redacted(self, value: Any) -> Any:
@@ -187,10 +174,8 @@ def _tries(error: Any) -> str:
 
 
 def _asked_to_wait(said: str) -> str:
-    """Returns how long a server asks to wait, as an addition to a sentence; empty if it does not say.
-
-    Args:
-        said: the response header ``retry-after``: whole seconds or a date, if it is valid.
+    """Returns how long a server asks to wait, as an addition to a sentence; empty if the header
+    ``retry-after`` is neither whole seconds nor a date.
     """
     if not said.isdecimal() and parsedate(said) is None:
         return ""

@@ -16,7 +16,7 @@ written the file. ``key_for`` has the exact rules.
 import os
 import re
 import tomllib
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 from types import MappingProxyType
@@ -40,8 +40,22 @@ FOLDER = (DOTENV, PROJECT)
 """Files in the working folder, which may have been written by somebody else."""
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 LINE = re.compile(r"\s*(?:export\s+)?([A-Za-z_]\w*)\s*=\s*(.*?)\s*")
+PREFIXES = ("ROADGPT_", "OPENAI_", "AZURE_OPENAI_")
+"""The first letters of all variables that are looked up."""
 OF_OTHERS = "ROADGPT_NO_NUMBA"  # used in the room drive
 MOST_BYTES = 1_000_000  # of a settings file
+
+
+FAULTS = {
+    **dict.fromkeys(("float_parsing", "float_type", "finite_number"), "it is not a number"),
+    **dict.fromkeys(("int_parsing", "int_type", "int_from_float"), "it is not a whole number"),
+    "string_type": "it is not text",
+    "literal_error": "use {expected}",
+    "greater_than": "give a number above {gt:g}",
+    "greater_than_equal": "give {ge:g} or more",
+    "less_than_equal": "give {le:g} or less",
+}
+"""What is wrong with a value, or what to give instead, by the type of pydantic's error."""
 
 
 class Setting(NamedTuple):
@@ -79,60 +93,32 @@ def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None
 def settings_with_origin(
     flags: Mapping[str, Any] | None = None, plan: Layer | None = None
 ) -> dict[str, Setting]:
-    """Returns the value and the origin of every setting, from the source with the highest precedence.
-
-    Raises:
-        UsageError: a settings file cannot be read, or has a setting that does not exist.
+    """Returns the value and the origin of every setting, from the source with the highest precedence. Raises
+    UsageError if a settings file cannot be read, or has a setting that does not exist.
     """
-    if (flags or {}).get("base_url"):
-        SERVERS.add_from_user(str(origin_of(str((flags or {})["base_url"]))))
+    flags = flags or {}
+    if flags.get("base_url"):
+        SERVERS.add_from_user(str(origin_of(str(flags["base_url"]))))
     places = [_looked_up(layer) for layer in ([plan] if plan else []) + layers()]
-    found: dict[str, Setting] = {}
-    for name in FIELDS:
-        given = (flags or {}).get(name)
-        if given is not None:
-            found[name] = Setting(given, f"--{name.replace('_', '-')}")
-            continue
-        offers = (place[name] for place in places if name in place)
-        found[name] = next(offers, Setting(ChatSettings.model_fields[name].default, DEFAULT))
-    return found
+    found = {name: Setting(field.default, DEFAULT) for name, field in ChatSettings.model_fields.items()}
+    for place in reversed(places):
+        found |= place
+    given = {name: value for name, value in flags.items() if name in FIELDS and value is not None}
+    return found | {name: Setting(each, f"--{name.replace('_', '-')}") for name, each in given.items()}
 
 
 def settings_from(found: Mapping[str, Setting]) -> ChatSettings:
-    """Returns the ChatSettings with these values; ``found`` maps each field to its value and origin.
-
-    Raises:
-        UsageError: a value is not valid; the message says where it was found.
+    """Returns the ChatSettings with these values. Raises UsageError if one is not valid; the message says
+    where it was found.
     """
     try:
         return ChatSettings.model_validate({name: setting.value for name, setting in found.items()})
     except ValidationError as error:
         problem = error.errors(include_url=False, include_input=False)[0]  # the input may be a key
         name = str(problem["loc"][0])
-        said = _fault_in(problem)
+        fault = FAULTS.get(problem["type"], "").format(**problem.get("ctx", {}))
+        said = fault or str(problem["msg"]).removeprefix("Value error, ")
         raise UsageError(f"the setting '{name}' from {found[name].origin} cannot be used: {said}") from None
-
-
-def _fault_in(problem: Mapping[str, Any]) -> str:
-    """Returns what is wrong with a value, or what to give instead."""
-    bounds = problem.get("ctx", {})
-    match problem["type"]:
-        case "float_parsing" | "float_type" | "finite_number":
-            return "it is not a number"
-        case "int_parsing" | "int_type" | "int_from_float":
-            return "it is not a whole number"
-        case "string_type":
-            return "it is not text"
-        case "literal_error":
-            return f"use {bounds['expected']}"
-        case "greater_than":
-            return f"give a number above {bounds['gt']:g}"
-        case "greater_than_equal":
-            return f"give {bounds['ge']:g} or more"
-        case "less_than_equal":
-            return f"give {bounds['le']:g} or less"
-        case _:
-            return str(problem["msg"]).removeprefix("Value error, ")
 
 
 def key_for(base_url: str | None) -> Key | None:
@@ -170,16 +156,8 @@ def key_for(base_url: str | None) -> Key | None:
 
 
 def trust_server(base_url: str, wanted: str | None, place: object) -> None:
-    """Allows the server that a file names to receive the user's key, provided that the user has named the
-    same server.
-
-    Args:
-        base_url: the server that the user names.
-        wanted: the server that the file names; None if it names no server.
-        place: the file, or the folder it is in, for the error message.
-
-    Raises:
-        UsageError: the file names another server, or none.
+    """Allows the server that a file names (``wanted``) to receive the user's key if the user has named the
+    same server; raises UsageError if not. ``place`` is the file, or its folder, for the message.
     """
     if wanted is None or origin_of(base_url) != origin_of(wanted):
         told = wanted or "no server of its own"
@@ -210,13 +188,11 @@ def untrusted_source(base_url: str | None) -> str:
 
 def layers() -> list[Layer]:
     """Returns all sources of settings except options and plan files, beginning with the highest precedence.
-
-    Raises:
-        UsageError: A file of settings cannot be read, or its table ``[chat]`` has an unknown key.
+    Raises UsageError if a file cannot be read, or its table ``[chat]`` has an unknown key.
     """
     tables = {str(path): _toml(path) for path in (Path(PROJECT), user_file())}
     return [
-        Layer("environment", {name: value for name, value in os.environ.items() if value.strip()}),
+        Layer("environment", {name: value for name, value in os.environ.items() if _is_ours(name, value)}),
         Layer(DOTENV, _dotenv(Path(DOTENV))),
         *(Layer(place, _chat_table(whole, place), whole) for place, whole in tables.items()),
     ]
@@ -233,11 +209,10 @@ def _looked_up(layer: Layer) -> dict[str, Setting]:
     found: dict[str, Setting] = {}
     for name in FIELDS:
         variables = (f"ROADGPT_{name.upper()}", *(["OPENAI_BASE_URL"] if name == "base_url" else []))
-        for variable in variables:
-            if variable in layer.found:
-                found.setdefault(name, Setting(layer.found[variable], f"{layer.name} ({variable})"))
-        if name in layer.found:
-            found.setdefault(name, Setting(layer.found[name], layer.name))
+        for key in (*variables, name):
+            if key in layer.found:
+                origin = layer.name if key == name else f"{layer.name} ({key})"
+                found.setdefault(name, Setting(layer.found[key], origin))
     return found
 
 
@@ -259,12 +234,13 @@ def _dotenv(path: Path) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for line in _read(path).splitlines():
         match = LINE.fullmatch(line)
-        if not match or not match[1].startswith(("ROADGPT_", "OPENAI_", "AZURE_OPENAI_")):
-            continue
-        value = _unquoted(match[2])
-        if value:
+        if match and _is_ours(match[1], value := _unquoted(match[2])):
             found[match[1]] = value
     return found
+
+
+def _is_ours(name: str, value: str) -> bool:
+    return name.startswith(PREFIXES) and bool(value.strip())
 
 
 def _unquoted(text: str) -> str:
@@ -297,18 +273,22 @@ def _chat_table(whole: Mapping[str, Any], path: str) -> dict[str, Any]:
         raise UsageError(f'the settings in {path} need a table [chat], with lines like model = "gpt-5-mini"')
     for name in table:
         if name not in (*FIELDS, KEY):
-            near = get_close_matches(name, (*FIELDS, KEY), 1)
-            advice = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join((*FIELDS, KEY))}"
-            raise UsageError(f"the settings in {path} have no '{name[:40]}' under [chat]; {advice}")
+            raise unknown_key(path, "chat", name, (*FIELDS, KEY))
     return dict(table)
+
+
+def unknown_key(path: str, table: str, key: str, keys: Sequence[str]) -> UsageError:
+    """Returns the error for a key that a table of settings in a file cannot have; ``keys`` are those that it
+    can have.
+    """
+    near = get_close_matches(key, keys, 1)
+    advice = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(keys)}"
+    return UsageError(f"the settings in {path} have no '{key[:40]}' under [{table}]; {advice}")
 
 
 def unknown_variables(others: Collection[str] = ()) -> list[str]:
     """Returns the variables whose names begin with ``ROADGPT_`` but are unknown, as texts such as
-    "ROADGPT_MODLE in .env".
-
-    Args:
-        others: Names of variables that set options other than those of a language model.
+    "ROADGPT_MODLE in .env"; ``others`` are those that set other options than those of a language model.
     """
     known = {f"ROADGPT_{name.upper()}" for name in (*FIELDS, KEY)} | {OF_OTHERS, *others}
     places = (("the environment", os.environ), (DOTENV, _dotenv(Path(DOTENV))))

@@ -25,10 +25,8 @@ def fixed_description(text: str) -> ConfigDict:
 
 
 def schema_of(model: type[BaseModel]) -> dict[str, Any]:
-    """Returns the flat JSON schema of a model.
-
-    Raises:
-        TypeError: the model refers to itself or has objects without named fields (a bug in the caller).
+    """Returns the flat JSON schema of a model. Raises TypeError if the model refers to itself or has objects
+    without named fields (a bug in the caller).
     """
     whole = model.model_json_schema()
     return _flat(whole, whole.get("$defs", {}), 0)

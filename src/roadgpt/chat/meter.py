@@ -1,20 +1,21 @@
 """Holds the total cost of a campaign's questions, and stops before a limit is exceeded.
 
-Each reader and each designer has its own Chat; one Meter counts for all of them. ``counting`` makes a meter
-the current one inside a ``with`` block. A Chat counts its questions with an Account (``chat.account``).
+Each reader and each designer has its own Chat, which counts its questions with an Account; one Meter counts
+for all of them. ``counting`` makes a meter the current one inside a ``with`` block.
 """
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
+from math import ceil
 
-from roadgpt.chat.model import ChatSettings, Spent
+from roadgpt.chat.model import LEAST_REPLY, ChatSettings, Message, Spent, Usage
+from roadgpt.chat.prices import cost_of, price_of
 from roadgpt.errors import BudgetError
 
+LETTERS_PER_TOKEN = 4  # bytes of English and JSON; an estimate until the server has counted
 ENDLESS = 10**15
-LEAST_REPLY = 64  # tokens; a shorter answer is of no use
 
 
 class Meter:
@@ -37,19 +38,13 @@ class Meter:
         """Adds costs to the total."""
         self.spent = self.spent + spent
 
-    def reply_tokens(self, prompt: int, most: int, price: tuple[float, float] | None, model: str) -> int:
-        """Returns the largest number of tokens that an answer may have without exceeding a limit.
-
-        Args:
-            prompt: estimated number of tokens of the question.
-            most: the largest number of tokens allowed for any answer.
-            price: USD per million tokens of prompt and of completion; None if unknown.
-            model: name of the model, for the error message.
-
-        Raises:
-            BudgetError: too few tokens are left for an answer.
+    def reply_tokens(self, messages: Sequence[Message], settings: ChatSettings, model: str) -> int:
+        """Returns the largest number of tokens that the answer to these messages may have without exceeding a
+        limit; raises BudgetError if too few are left.
         """
-        reply_tokens = min(most, self._tokens_left(prompt), self._affordable(prompt, price, model))
+        prompt = tokens_in(*(message.text for message in messages))
+        affordable = self._affordable(prompt, price_of(settings, model), model)
+        reply_tokens = min(settings.max_completion, self._tokens_left(prompt), affordable)
         if reply_tokens >= LEAST_REPLY:
             return reply_tokens
         spent = self.spent
@@ -71,8 +66,10 @@ class Meter:
         if self.max_cost is None:
             return ENDLESS
         if price is None or self.spent.cost is None:
+            from roadgpt.chat.strict_json import plain  # only for the message
+
             raise BudgetError(
-                f"the price of '{model}' is not known, so --max-cost cannot be checked; "
+                f"the price of '{plain(model)}' is not known, so --max-cost cannot be checked; "
                 "give --price 0.15/0.60 (USD per million tokens of question and answer)"
             )
         left = self.max_cost - self.spent.cost - prompt * price[0] / 1e6
@@ -81,13 +78,7 @@ class Meter:
         return ENDLESS if left >= 0 else 0
 
 
-@dataclass(frozen=True)
-class _Now:
-    meter: Meter
-    occasion: str
-
-
-_now: ContextVar[_Now | None] = ContextVar("roadgpt_meter", default=None)
+_now: ContextVar[tuple[Meter | None, str]] = ContextVar("roadgpt_meter", default=(None, ""))
 
 
 @contextmanager
@@ -99,20 +90,44 @@ def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
         occasion: a label for what the questions are about, such as "road 3"; recordings use it to
             distinguish a question about one road from the same question about another.
     """
-    before = _now.set(_Now(meter, occasion))
+    before = _now.set((meter, occasion))
     try:
         yield meter
     finally:
         _now.reset(before)
 
 
-def meter_now() -> Meter | None:
-    """Returns the current meter; None if no campaign is counting."""
-    now = _now.get()
-    return now.meter if now else None
-
-
 def occasion() -> str:
     """Returns the label of the current questions, as given to ``counting``; empty if there is none."""
-    now = _now.get()
-    return now.occasion if now else ""
+    return _now.get()[1]
+
+
+class Account:
+    """Counts what one Chat spends, and adds the same amounts to the campaign's Meter. Without a campaign,
+    they are added to the Chat's own Meter.
+    """
+
+    def __init__(self, settings: ChatSettings) -> None:
+        self.settings = settings
+        self.spent = Spent()
+        self._own = Meter.of(settings)
+
+    @property
+    def meter(self) -> Meter:
+        """The meter of the current campaign; the Chat's own meter if there is no campaign."""
+        return _now.get()[0] or self._own
+
+    def count(self, model: str, usage: Usage, seconds: float) -> None:
+        """Counts one answered request."""
+        cost = cost_of(usage, price_of(self.settings, model))
+        self.add(Spent(calls=1, usage=usage, seconds=seconds, cost=cost))
+
+    def add(self, spent: Spent) -> None:
+        """Adds costs that are already known, such as those of a recorded exchange."""
+        self.spent = self.spent + spent
+        self.meter.add(spent)
+
+
+def tokens_in(*texts: str) -> int:
+    """Returns the estimated number of tokens of some texts."""
+    return sum(ceil(len(text.encode("utf-8", "replace")) / LETTERS_PER_TOKEN) for text in texts)

@@ -11,6 +11,7 @@ from roadgpt.provenance import SERVERS
 Api = Literal["chat", "responses"]
 Repair = Literal["none", "place", "full"]
 Strategy = Literal["whole", "stepwise"]
+LEAST_REPLY = 64  # tokens; a shorter answer is of no use
 DECIMALS = 9  # of seconds and USD, so that a difference of sums does not depend on earlier costs
 Role = Literal["system", "user", "assistant"]
 
@@ -117,7 +118,7 @@ class ChatSettings(ChatValue):
     """Time limit in seconds for one complete answer."""
     retries: Annotated[int, Field(ge=0, le=20)] = 3
     """The largest number of times that a request is repeated after a failure of the server."""
-    max_completion: Annotated[int, Field(ge=16, le=1_000_000)] = 4096
+    max_completion: Annotated[int, Field(ge=LEAST_REPLY, le=1_000_000)] = 4096
     """The largest number of tokens of one reply."""
     max_tokens: Annotated[int, Field(ge=1)] | None = None
     """The largest total number of tokens of all questions and answers of the campaign; None is no limit."""
@@ -182,10 +183,8 @@ class ChatSettings(ChatValue):
 
 
 def two_prices(text: str) -> tuple[float, float]:
-    """Parses a text such as "0.15/0.60" into two prices: USD per million tokens of prompt and of completion.
-
-    Raises:
-        ValueError: the text is not two numbers.
+    """Parses a text such as "0.15/0.60" into USD per million tokens of prompt and of completion; raises
+    ValueError if it is not two numbers.
     """
     try:
         prompt, completion = (float(part) for part in text.split("/"))

@@ -12,7 +12,6 @@ from urllib.parse import urlsplit
 from roadgpt.chat.address import OPENAI
 from roadgpt.chat.model import ChatSettings, Usage, two_prices
 
-TAKEN = "2026-11-20"
 PRICES: dict[str, tuple[float, float]] = {
     "gpt-3.5-turbo": (0.5, 1.5),
     "gpt-4": (30, 60),

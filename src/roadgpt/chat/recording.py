@@ -10,9 +10,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from roadgpt.chat.account import Account
 from roadgpt.chat.json_schema import schema_of
-from roadgpt.chat.meter import occasion
+from roadgpt.chat.meter import Account, occasion
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent
 from roadgpt.errors import ChatError, ReplyError, UsageError, explained
 from roadgpt.reading import read_json
@@ -30,10 +29,8 @@ class ExchangeStore:
 
     def keep(self, question: dict[str, Any], occasion: str, answer: dict[str, Any], turns: Turns) -> None:
         """Stores an answer to a question under its occasion. The first answer that a campaign stores for this
-        question and occasion replaces all answers from earlier campaigns.
-
-        Raises:
-            ChatError: the folder cannot be written to.
+        question and occasion replaces all answers from earlier campaigns. Raises ChatError if the folder
+        cannot be written to.
         """
         name = name_of(question)
         there = self._answers(name)
@@ -72,10 +69,7 @@ class ExchangeStore:
 
     def _answers(self, name: str) -> dict[str, list[dict[str, Any]]]:
         path = self._path(name)
-        answers: dict[str, list[dict[str, Any]]] = (
-            self._read(path).get("answers", {}) if path.is_file() else {}
-        )
-        return answers
+        return dict(self._read(path)["answers"]) if path.is_file() else {}
 
     def _path(self, name: str) -> Path:
         return self.folder / name[:2] / f"{name}.json"
@@ -104,17 +98,12 @@ def question_of(
     settings: ChatSettings, messages: Sequence[Message], schema: type[BaseModel] | None
 ) -> dict[str, Any]:
     """Returns everything that defines a question, including the name of the model, as a dictionary."""
-    parameters = {
-        "api": settings.api,
-        "temperature": settings.temperature,
-        "max_completion": settings.max_completion,
-    }
     return {
         "provider": settings.provider,
         "model": settings.model,
         "messages": [message.model_dump() for message in messages],
         "schema": None if schema is None else schema_of(schema),
-        "parameters": parameters,
+        "parameters": settings.model_dump(include={"api", "temperature", "max_completion"}),
     }
 
 

@@ -19,7 +19,7 @@ import httpx2
 from openai import DefaultHttpxClient
 
 from roadgpt.chat.address import origin_of
-from roadgpt.chat.request_error import BUSY, RequestError, is_spent_up
+from roadgpt.chat.answer import BUSY, RequestError, is_spent_up
 from roadgpt.chat.strict_json import NotReadableError, plain
 
 PACKED = {"gzip", "x-gzip"}

@@ -34,11 +34,8 @@ def masked(value: str) -> str:
 
 
 def usable(key: Key) -> Key:
-    """Returns the key without surrounding blanks.
-
-    Raises:
-        ChatError: the key is empty or has characters that an HTTP header cannot contain; the message does not
-            show the key.
+    """Returns the key without surrounding blanks. Raises ChatError, without showing the key, if the key is
+    empty or has characters that an HTTP header cannot contain.
     """
     value = key.value.strip()
     if not value or not re.fullmatch(r"[!-~]+", value):

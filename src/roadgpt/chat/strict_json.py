@@ -38,10 +38,8 @@ def plain(text: str, most: int = 80) -> str:
 
 
 def read_as(schema: type[Schema], text: str) -> Schema:
-    """Returns the first JSON object in a text as an instance of the schema.
-
-    Raises:
-        NotReadableError: there is no object, or the object does not fit the schema.
+    """Returns the first JSON object in a text as an instance of the schema; raises NotReadableError if there
+    is none, or it does not fit the schema.
     """
     data = read_object(text)
     try:
@@ -59,10 +57,8 @@ def read_as(schema: type[Schema], text: str) -> Schema:
 
 
 def read_object(text: str) -> dict[str, Any]:
-    """Returns the first JSON object in a text.
-
-    Raises:
-        NotReadableError: the text is blank, too long, or has no readable object.
+    """Returns the first JSON object in a text; raises NotReadableError if the text is blank, too long, or has
+    no readable object.
     """
     if not text.strip():
         raise NotReadableError("it is blank")
@@ -94,54 +90,39 @@ def _candidates(text: str) -> Iterator[str]:
         yield fence.strip()
     tries, at = 0, said.find("{")
     while at >= 0 and tries < MOST_TRIES:
-        end = _end_of_object(said, at)
+        end = next((end for end, depth in _depths(said, "{}", at) if depth == 0), None)
         if end is not None:
             yield said[at:end]
         tries, at = tries + 1, said.find("{", end or at + 1)
 
 
-def _end_of_object(text: str, start: int) -> int | None:
-    """Returns the index after the brace that closes the brace at ``start``; None if it is not closed."""
+def _depths(text: str, brackets: str, start: int = 0) -> Iterator[tuple[int, int]]:
+    """Yields, for each opening or closing bracket outside of strings, the index behind it and how many
+    brackets are open there.
+    """
     depth, in_string = 0, False
-    for match in re.compile(r'\\.|["{}]', re.DOTALL).finditer(text, start):
+    for match in re.compile(rf'\\.|["{re.escape(brackets)}]', re.DOTALL).finditer(text, start):
         sign = match.group()
         if sign == '"':
             in_string = not in_string
-        elif not in_string and sign in "{}":
-            depth += 1 if sign == "{" else -1
-            if depth == 0:
-                return match.end()
-    return None
+        elif not in_string and sign in brackets:
+            depth += 1 if sign in "{[" else -1
+            yield match.end(), depth
 
 
 def _loads(text: str) -> Any:
-    if _depth(text) > MOST_DEPTH:
+    if any(depth > MOST_DEPTH for _, depth in _depths(text, "{}[]")):
         raise NotReadableError(f"it has brackets inside brackets, more than {MOST_DEPTH} deep")
     try:
         return json.loads(
             text,
             object_pairs_hook=_object,
-            parse_constant=_constant,
+            parse_constant=_number,
             parse_float=_number,
             parse_int=_whole_number,
         )
     except json.JSONDecodeError as error:
         raise NotReadableError(f"it is not JSON ({error.msg} at character {error.pos:,})") from None
-
-
-def _depth(text: str) -> int:
-    depth = deepest = 0
-    in_string = False
-    for match in re.compile(r'\\.|["{}\[\]]', re.DOTALL).finditer(text):
-        sign = match.group()
-        if sign == '"':
-            in_string = not in_string
-        elif not in_string and sign in "{[":
-            depth += 1
-            deepest = max(deepest, depth)
-        elif not in_string and sign in "}]":
-            depth -= 1
-    return deepest
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -151,10 +132,6 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
             raise NotReadableError(f"it has '{plain(key, 40)}' twice, with different values")
         found[key] = value
     return found
-
-
-def _constant(name: str) -> float:
-    raise NotReadableError(f"it holds {name}, which is not a number")
 
 
 def _number(text: str) -> float:
@@ -175,17 +152,11 @@ def _finite(found: Schema) -> Schema:
 
     Pydantic accepts the text "NaN" and numbers that are too large for a float.
     """
-    if not all(math.isfinite(number) for number in _numbers(found.model_dump())):
-        raise NotReadableError("it holds a number that is not finite")
+    try:
+        json.dumps(found.model_dump(), allow_nan=False, default=str)
+    except ValueError:
+        raise NotReadableError("it holds a number that is not finite") from None
     return found
-
-
-def _numbers(value: Any) -> Iterator[float]:
-    if isinstance(value, float):
-        yield value
-    elif isinstance(value, (dict, list, tuple)):
-        for inner in value.values() if isinstance(value, dict) else value:
-            yield from _numbers(inner)
 
 
 def _with_numbers(data: dict[str, Any], error: ValidationError) -> bool:
@@ -201,9 +172,8 @@ def _with_numbers(data: dict[str, Any], error: ValidationError) -> bool:
 
 
 def _put(data: Any, place: tuple[int | str, ...], number: float) -> bool:
-    """Replaces the text at ``place`` by a number; names of union branches in ``place`` are skipped.
-
-    Returns False if there is no text at ``place``.
+    """Replaces the text at ``place`` by a number; names of union branches in ``place`` are skipped. Returns
+    False if there is no text.
     """
     holder: Any = None
     last: int | str = ""

@@ -14,6 +14,7 @@ are under ``network_rules/`` (entry points of the group ``roadgpt.network_rules`
     def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]
 """
 
+from collections.abc import Iterator
 from functools import cache
 from typing import TYPE_CHECKING, Protocol, cast
 
@@ -110,15 +111,16 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
         found_there = inspect_network(road.network, None if has_no_route(road) else road, world)
         if brief is None:
             return found_there
-        from roadgpt.check.network_promises import broken_network  # a single road does not need it
+        # a single road does not need these
+        if brief.map is not None:
+            from roadgpt.check.map_promises import broken_map
 
-        return (*found_there, *broken_network(road, brief, world.site.map_size))
-    road, found = world.lay(road), list[Finding]()
-    for _, rule in rules_of(rules):
-        found += rule(road, brief, world)
-        if any(finding.stops for finding in found):
-            break  # the other rules would have nothing to measure
-    return tuple(found)
+            return (*found_there, *broken_map(road, brief.map, brief.length))
+        from roadgpt.check.route_promises import broken_promises
+
+        return (*found_there, *broken_promises(road, brief, world.site.map_size))
+    laid = world.lay(road)
+    return _until_one_stops(rule(laid, brief, world) for _, rule in rules_of(rules))
 
 
 def inspect_network(network: "Network", route: "Route | None", world: World) -> tuple[Finding, ...]:
@@ -134,10 +136,15 @@ def inspect_network(network: "Network", route: "Route | None", world: World) -> 
     Raises:
         PartError: No rules of networks are installed, or a rule of ``NETWORK_RULES`` is missing.
     """
+    return _until_one_stops(rule(network, route, world) for _, rule in network_rules_of())
+
+
+def _until_one_stops(inspected: Iterator[tuple[Finding, ...]]) -> tuple[Finding, ...]:
+    """Returns the findings of all rules up to one that leaves the other rules nothing to measure."""
     found = list[Finding]()
-    for _, rule in network_rules_of():
-        found += rule(network, route, world)
-        if any(finding.stops for finding in found):
+    for findings in inspected:
+        found += findings
+        if any(finding.stops for finding in findings):
             break
     return tuple(found)
 

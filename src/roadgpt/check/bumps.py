@@ -6,7 +6,7 @@ In these parts the rule ``too_abrupt`` allows vertical accelerations of up to 1 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.outline import outline
-from roadgpt.check.measures import Measures, measure
+from roadgpt.check.measures import measure
 from roadgpt.road import Road
 
 CURVE = 30.0  # m by which a parabola may reach from its straight into the turns at its ends
@@ -29,7 +29,9 @@ def bumps_asked(road: Road, brief: Brief | None) -> list[tuple[float, float]]:
     if brief is None or not asks_for_bumps(brief):
         return []
     found = measure(road.centreline())
-    gaps = _gaps(found, road.length)
+    begins = [0.0, *(turn.end - CURVE for turn in found.turns)]
+    ends = [*(turn.start + CURVE for turn in found.turns), road.length]
+    gaps = list(zip(begins, ends, strict=True))
     wanted: set[int] = set()
     if brief.starts and brief.starts.kind in BUMPS:
         wanted.add(0)
@@ -49,10 +51,3 @@ def _turns_before(brief: Brief, index: int) -> int | None:
     before = outline(brief.model_copy(update={"clauses": brief.clauses[:index]})).groups
     counts = [(group.lo, group.hi) for group in before if group.feature.kind == "turn"]
     return sum(lo for lo, _ in counts) if all(lo == hi for lo, hi in counts) else None
-
-
-def _gaps(found: Measures, length: float) -> list[tuple[float, float]]:
-    turns = found.turns
-    begins = [0.0, *(turn.end - CURVE for turn in turns)]
-    ends = [*(turn.start + CURVE for turn in turns), length]
-    return list(zip(begins, ends, strict=True))

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from roadgpt.road import Road
+
 
 @dataclass(frozen=True, slots=True)
 class Finding:
@@ -18,3 +20,12 @@ class Finding:
     y: float | None = None
     stops: bool = False
     """Whether the road cannot be driven at all, for example because it is too short for a car."""
+
+
+def findings_at(rule: str, road: Road, place: tuple[float, str] | None) -> tuple[Finding, ...]:
+    """Returns the Finding for a station in metres and what is wrong there; no Finding for None."""
+    if place is None:
+        return ()
+    s, what = place
+    x, y, _ = (float(v) for v in road.at(s))
+    return (Finding(rule, f"at s = {s:.0f} m: {what}", s, x, y),)

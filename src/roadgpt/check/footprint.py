@@ -174,10 +174,8 @@ class Footprint:
 
     @cached_property
     def bounds(self) -> Array:
-        """The smallest x and y and the largest x and y in metres of each polygon of ``polygons``, shape
-        ``(n, 4)``.
-
-        The true carriageway may extend beyond its polygon by up to ``SLACK`` metres.
+        """The smallest x and y and the largest x and y in metres of each polygon, ``(n, 4)``. The true
+        carriageway may extend beyond its polygon by up to ``SLACK`` metres.
         """
         right, left, _, first = self._edges
         low = np.minimum.reduceat(np.minimum(right, left), first[:-1])
@@ -185,12 +183,9 @@ class Footprint:
         return np.concatenate((low, high), axis=1)
 
     def outermost(self, n: int, side: int) -> tuple[float, float, float]:
-        """Returns the point (x, y) where the carriageway of a road extends farthest to one side, and the
-        station of the road there, in metres.
-
-        Args:
-            n: index of the road in ``network.roads``.
-            side: 0 for the smallest x, 1 for the smallest y, 2 for the largest x, 3 for the largest y.
+        """Returns the point (x, y) where the carriageway of ``network.roads[n]`` extends farthest to one
+        side, and the station of the road there, in metres. Sides: 0 smallest x, 1 smallest y, 2 largest x, 3
+        largest y.
         """
         right, left, s, first = self._edges
         here = slice(first[n], first[n + 1])
@@ -206,14 +201,8 @@ class Footprint:
         import shapely
 
         right, left, _, first = self._edges
-        points = np.concatenate((right, left))
-        n = len(right)
-        at = np.arange(n)
-        sides = [(at[a:b], n + at[a:b][::-1]) for a, b in pairwise(first.tolist())]
-        order = np.concatenate([each for pair in sides for each in pair])
-        rings = np.repeat(np.arange(len(first) - 1), 2 * np.diff(first))
-        found: NDArray[Any] = shapely.polygons(shapely.linearrings(points[order], indices=rings))
-        return found
+        corners = [np.concatenate((right[a:b], left[a:b][::-1])) for a, b in pairwise(first.tolist())]
+        return np.array([shapely.Polygon(each) for each in corners], object)
 
     @cached_property
     def overlaps(self) -> tuple[Overlap, ...]:
@@ -274,9 +263,7 @@ def _varies(member: NetworkRoad) -> bool:
 def _heights(member: NetworkRoad) -> tuple[tuple[float, float], tuple[float, float]]:
     """Returns the height in metres and the grade at the start of a road, and those at its end."""
     profile = member.road.elevation
-    if isinstance(profile, GradeProfile):
-        is_level = not any(profile.grades)
-        start = profile.z0, profile.grades[0]
-        return start, start if is_level else profile.at(member.road.length)
+    if isinstance(profile, GradeProfile) and not any(profile.grades):
+        return (profile.z0, 0.0), (profile.z0, 0.0)
     z, grade = (f(np.array([0.0, member.road.length])).tolist() for f in (profile.height, profile.grade))
     return (z[0], grade[0]), (z[1], grade[1])

@@ -13,8 +13,7 @@ import numpy as np
 
 from roadgpt.brief.junction_ranges import side_of
 from roadgpt.brief.junctions import RAMPS, Control, JunctionKind, LaneKind, Side, Way
-from roadgpt.geometry import CubicProfile, PieceCurve
-from roadgpt.geometry.pieces import along_all
+from roadgpt.geometry import CubicProfile
 from roadgpt.network import Connection, Junction, Network, NetworkRoad, Passage, RoadEnd, Route
 from roadgpt.network.lane_design import LEAST_WIDTH
 
@@ -151,10 +150,8 @@ def _narrow_part(member: NetworkRoad, at_end: bool) -> float:
 
 
 def is_beside_ramp(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool:
-    """Returns whether a change of lanes from road ``one`` to the next road, ``two``, belongs to a ramp.
-
-    This is so if ``one`` begins at a merge and has the lane for acceleration, or if ``two`` ends at an exit
-    and has the lane for deceleration.
+    """Returns whether a change of lanes between two roads belongs to a ramp: the first road begins at a merge
+    and has the lane for acceleration, or the second ends at an exit and has the lane for deceleration.
     """
     ends = (RoadEnd(one.id, "start"), "merge"), (RoadEnd(two.id, "end"), "diverge")
     return any(
@@ -227,7 +224,7 @@ def _measured(network: Network, passage: Passage, directions: Sequence[float]) -
         full,
         taper,
         0 if ring is None else network.road(ring.ring[0]).profile.count[0],
-        tuple(arm.control for arm in passage.entered.arms if _lanes(network, arm.end)[0]),
+        tuple(arm.control for arm in passage.entered.arms if network.lanes_into(arm.end)),
         *_one_way_sides(network, passage, ways),
     )
 
@@ -238,31 +235,24 @@ def _one_way_sides(
     """Returns the sides of the arms whose traffic only drives to a junction, or only away from it."""
     into, out = list[Way](), list[Way]()
     for end, turn in zip(passage.arms[1:], ways, strict=True):
-        lanes_in, lanes_out = _lanes(network, end)
-        if not lanes_out:
+        if not network.lanes_out_of(end):
             into.append(side_of(turn))
-        elif not lanes_in:
+        elif not network.lanes_into(end):
             out.append(side_of(turn))
     return tuple(into), tuple(out)
 
 
-def _lanes(network: Network, end: RoadEnd) -> tuple[int, int]:
-    """Returns the number of lanes of an arm that lead to its junction, and of those that lead away."""
-    forward, backward = network.road(end.road).profile.count
-    return (forward, backward) if end.contact == "end" else (backward, forward)
-
-
 def directions_of(network: Network, arms: Sequence[RoadEnd]) -> list[float]:
     """Returns the directions of arms out of their junctions, in degrees counter-clockwise from +x."""
-    plans, stations = [], []
+    found = []
     for end in arms:
         plan = network.road(end.road).road.plan
-        assert isinstance(plan, PieceCurve)
         far = min(OUT, plan.length)
-        plans.append(plan)
-        stations.append(np.array([0.0, far] if end.contact == "start" else [plan.length, plan.length - far]))
-    points = along_all(plans, stations)[0] if plans else np.empty((0, 2))
-    return [math.degrees(math.atan2(y, x)) for x, y in (points[1::2] - points[::2]).tolist()]
+        (x, y), (to_x, to_y) = plan.at(
+            [0.0, far] if end.contact == "start" else [plan.length, plan.length - far]
+        )
+        found.append(math.degrees(math.atan2(to_y - y, to_x - x)))
+    return found
 
 
 def _wrapped(angle: float) -> float:

@@ -1,16 +1,19 @@
 """Measures how tightly lines beside a centre line bend, such as the middle or the edge of a lane."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
+from roadgpt.check.finding import Finding
+from roadgpt.check.network_places import junction_finding
 from roadgpt.geometry import CubicProfile, PieceCurve
 from roadgpt.geometry.curve import Array
-from roadgpt.network import NetworkRoad
+from roadgpt.network import Junction, Network, NetworkRoad, Route
 
+ROUNDING = 1e-9  # m
 GRID = np.linspace(0.0, 1.0, 33)  # ratio of the length of a piece, where its lane varies in width
 INSIDE = 1e-9  # m before the end of a road, where the width is evaluated instead of at the end
 
@@ -22,21 +25,40 @@ class LaneBend(NamedTuple):
     radius: float
 
 
+def bends_below(
+    rule: str,
+    network: Network,
+    route: Route | None,
+    least: float,
+    what: str,
+    bends_at: Callable[[Network, Junction], Iterable[LaneBend | None]],
+) -> tuple[Finding, ...]:
+    """Returns a Finding for each junction or roundabout with a bend below ``least`` metres.
+
+    ``what`` says of what the radius is, with a gap for it. ``bends_at`` gives the bends of a junction, with
+    traffic on the right.
+    """
+    found = []
+    seen = network.right_hand
+    for _, junctions in network.nodes:
+        bends = [bend for each in junctions for bend in bends_at(seen, seen.junction(each.id))]
+        radius = min((bend.radius for bend in bends if bend is not None), default=least)
+        if radius < least - ROUNDING:
+            wanted = "give the island" if junctions[0].kind == "roundabout" else "ask for a kerb with"
+            advice = f"{wanted} a larger radius or turn the arms apart"
+            told = f"{what.format(radius)}, tighter than {least:g} m; {advice}"
+            found.append(junction_finding(rule, route, junctions[0], told))
+    return tuple(found)
+
+
 def tightest_bend(member: NetworkRoad, share: float, only_right: bool = False) -> LaneBend | None:
-    """Returns the tightest bend of a line along the right lane of a connecting road (through a junction).
+    """Returns the tightest bend of a line along the right lane of a connecting road (through a junction);
+    None if the line is straight or, with ``only_right``, never bends to the right. A radius of 0 means that
+    it folds.
 
     The line lies to the right of the centre line, at a distance of ``share`` times the width of the lane: 0.5
     for the middle of the lane, 1 for its right edge. Where the width varies, the line is not an arc even if
     the centre line is an arc. Source: the curvature of x(s) = c(s) + d(s) n(s), by Frenet's formulas.
-
-    Args:
-        member: The connecting road.
-        share: Distance from the centre line as a ratio of the width of the lane.
-        only_right: Whether to leave out bends to the left.
-
-    Returns:
-        The bend; None if the line is straight or, with ``only_right``, never bends to the right. A radius of
-        0 means that the line folds.
     """
     plan, width = member.road.plan, member.profile.right[0].width
     assert isinstance(plan, PieceCurve)

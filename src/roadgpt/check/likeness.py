@@ -24,13 +24,8 @@ class LikeGroup(list[int]):
 
 
 def like_groups(features: Wanted) -> list[LikeGroup]:
-    """Groups features that must be alike: those of one name whose ranges can be met by one and the same.
-
-    Args:
-        features: the required features; a place with None belongs to no group.
-
-    Returns:
-        The groups of two or more.
+    """Returns the groups of two or more features that must be alike: those of one name whose ranges can be
+    met by one and the same. A place with None belongs to no group.
     """
     groups: list[LikeGroup] = []
     for place, feature in enumerate(features):

@@ -4,6 +4,10 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
 from roadgpt.brief.junctions import Control, JunctionKind
 from roadgpt.check.junction_measures import directions_of, kinds_of
 from roadgpt.network import Junction, Network, RoadEnd
@@ -66,7 +70,8 @@ def measured_map(network: Network) -> MeasuredMap:
         if max(met) < len(found) and _is_straight(network, member.id):
             distances.append(math.dist(found[met[0]].place, found[met[1]].place))
     count = len(found) + ends
-    parts = _parts(count, joined)
+    graph = coo_array((np.ones(len(joined)), np.reshape(joined, (-1, 2)).T), (count, count))
+    parts, _ = connected_components(graph, directed=False)
     length = sum(member.road.length for member in roads)
     return MeasuredMap(tuple(found), len(roads) - count + parts, ends, parts, tuple(distances), length)
 
@@ -88,18 +93,3 @@ def _is_straight(network: Network, number: int) -> bool:
     return abs(float(road.heading(road.length) - road.heading(0.0))) < STRAIGHT and math.isclose(
         road.length, math.dist(road.at(0.0)[:2].tolist(), road.at(road.length)[:2].tolist()), rel_tol=0.01
     )
-
-
-def _parts(count: int, joined: list[tuple[int, int]]) -> int:
-    """Returns the number of parts of a graph with ``count`` vertices."""
-    parent = list(range(count))
-
-    def root(n: int) -> int:
-        while parent[n] != n:
-            parent[n] = parent[parent[n]]
-            n = parent[n]
-        return n
-
-    for one, other in joined:
-        parent[root(one)] = root(other)
-    return len({root(n) for n in range(count)})

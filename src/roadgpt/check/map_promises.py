@@ -5,11 +5,10 @@ Everything is measured on the finished network, by ``check.map_measures`` and ``
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.junctions import NAMES, Control, MapJunctionKind
-from roadgpt.brief.map_clause import SIGNS, JunctionCount, MapClause
+from roadgpt.brief.junctions import NAMES, SIGNS, Control, JunctionCount, MapClause, MapJunctionKind
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import ROAD
 from roadgpt.check.finding import Finding
@@ -26,13 +25,9 @@ NEVER_USUAL = ("lights", "stop")
 CORNERS = 4  # corners of a grid; at each, the road may bend without a junction
 
 
-def broken_map(route: Route, asked: MapClause, length: Amount | None = None) -> tuple[Finding, ...]:
-    """Returns one Finding for each requirement that the map of a route does not meet.
-
-    Args:
-        route: the route.
-        asked: the requirements.
-        length: the required length of all roads outside junctions, in metres.
+def broken_map(route: Route, asked: MapClause, length: Amount | None) -> tuple[Finding, ...]:
+    """Returns one Finding for each requirement that the map of a route does not meet; ``length`` is the
+    required length of all roads outside junctions, in metres.
     """
     found = measured_map(route.network)
     out = [Finding(RULE, text) for text in (*_complaints(found, asked), *_route(route, asked))]
@@ -89,25 +84,29 @@ def _grid(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
 
 def _kinds(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
     """Yields what is wrong with the kinds of the junctions of a map."""
-    spans = [span(each.count) for each in asked.junctions]
-    total = Range(sum(each.lo for each in spans), sum(each.hi for each in spans))
+    total = _in_all(asked.junctions)
     if len(found.nodes) not in total:
         yield f"asked for {total} junctions in all, has {len(found.nodes)}"
     free = sum(span(each.count).hi for each in asked.junctions if each.kind == "junction")
     named = [each for each in asked.junctions if each.kind != "junction"]
     for kind in dict.fromkeys(each.kind for each in named):
-        counts = [span(each.count) for each in named if each.kind == kind]
-        allowed = Range(sum(each.lo for each in counts), sum(each.hi for each in counts) + free)
+        own = _in_all(each for each in named if each.kind == kind)
+        allowed = Range(own.lo, own.hi + free)
         if found.number(kind) not in allowed:
             yield f"asked for {allowed} of the kind {NAMES[kind][0]}, has {found.number(kind)}"
+
+
+def _in_all(asked: Iterable[JunctionCount]) -> Range:
+    """Returns how many junctions there may be of some kinds together."""
+    counts = [span(each.count) for each in asked]
+    return Range(sum(each.lo for each in counts), sum(each.hi for each in counts))
 
 
 def _controls(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
     """Yields what is wrong with the signs of a map some of whose kinds of junctions have their own."""
     wanted = [asked.control_of(each) for each in asked.junctions]
     for control in dict.fromkeys(each for each in wanted if each is not None):
-        counts = [span(each.count) for each in asked.junctions if asked.control_of(each) == control]
-        allowed = Range(sum(each.lo for each in counts), sum(each.hi for each in counts))
+        allowed = _in_all(each for each in asked.junctions if asked.control_of(each) == control)
         number = sum(_is_controlled(node, control) for node in found.nodes)
         if number < allowed.lo or (control in NEVER_USUAL and number > allowed.hi):
             yield f"asked for {SIGNS[control]} at {allowed} junctions, has {number}"
@@ -115,14 +114,12 @@ def _controls(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
 
 
 def _controls_of_grid(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
-    """Yields what is wrong with the signs of a grid some of whose junctions have their own.
-
-    All others have the sign of the grid, or none.
+    """Yields what is wrong with the signs of a grid some of whose junctions have their own; all others have
+    that of the grid, or none.
     """
     left = len(found.nodes)
     for control in dict.fromkeys(each.control for each in asked.signed if each.control is not None):
-        counts = [span(each.count) for each in asked.signed if each.control == control]
-        allowed = Range(sum(each.lo for each in counts), sum(each.hi for each in counts))
+        allowed = _in_all(each for each in asked.signed if each.control == control)
         number = sum(_is_controlled(node, control) for node in found.nodes)
         left -= number
         if number not in allowed:
@@ -158,9 +155,8 @@ def _allowed(length: Amount) -> Range:
 
 
 def _is_controlled(node: MeasuredNode, control: Control) -> bool:
-    """Returns whether a junction has the requested signs.
-
-    Traffic lights and "no signs" are required at all arms, other signs at one arm at least.
+    """Returns whether a junction has the requested signs: lights and "none" at all arms, others at one at
+    least.
     """
     if control in ("none", "priority", "yield") and "roundabout" in node.kinds:
         return node.controls == {"yield"}  # everybody gives way to those on the ring

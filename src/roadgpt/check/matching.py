@@ -2,20 +2,21 @@
 
 Turns are matched one to one and in order. A requested straight matches either the whole straight between two
 turns of the road, or a piece of it that goes up, is flat or goes down throughout. If several straights are
-requested between two turns, they are matched with such pieces in order, each piece at most once.
+requested between two turns, they are matched with such pieces in order, each piece at most once. Straights in
+a row that go the same way, but differ in grade, may also be parts of one piece.
 """
 
 from collections.abc import Callable, Sequence
 from functools import cache
-from itertools import chain
-from math import inf
+from itertools import chain, pairwise
+from math import inf, isfinite
 from typing import Generic, NamedTuple, TypeVar
 
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature, Group, Outline
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import FEATURE
-from roadgpt.check.measures import MeasuredFeature, Measures
+from roadgpt.check.measures import LEVEL, GradeChange, MeasuredFeature, Measures
 
 
 class Complaint(NamedTuple):
@@ -71,14 +72,8 @@ def _is_rounded_off(stretch: MeasuredFeature, asked: Range | None) -> bool:
 def turn_complaints(
     number: int, turn: MeasuredFeature, feature: Feature, side: str | None = None
 ) -> tuple[Complaint, ...]:
-    """Returns one complaint for each requirement that a turn does not meet.
-
-    Args:
-        number: Number of the turn, from 1.
-        turn: The measured turn.
-        feature: The requested turn.
-        side: the required side ("left" or "right") if turns must alternate; None to require the side that
-            ``feature`` states.
+    """Returns one complaint for each requirement that a turn, counted from 1, does not meet. ``side`` is the
+    required side if turns must alternate; None for the side that ``feature`` states.
     """
     side, out = side or feature.side, list[Complaint]()
     if side and turn.side != side:
@@ -97,15 +92,12 @@ def best_match(
     of_turns: Callable[[Group, int, int], Match[T]],
     of_gap: Callable[[int, tuple[Feature, ...]], Match[T]],
 ) -> Match[T]:
-    """Returns the match of a road with an Outline in which the fewest features are not as requested.
+    """Returns the match of a road of ``count`` turns with an Outline in which the fewest features are not as
+    requested.
 
-    Args:
-        asked: the Outline. Each group requests straights, or turns in a row that meet the same limits.
-        count: number of turns of the road.
-        of_turns: function that matches a group with turns of the road, given the group, the index of the
-            first turn and the number of turns.
-        of_gap: function that matches requested straights with the gap before a turn, given the index of the
-            turn (``count`` for the last gap) and the straights.
+    ``of_turns`` matches a group with turns of the road, given the group, the index of the first turn and the
+    number of turns. ``of_gap`` matches requested straights with the gap before a turn, given the index of the
+    turn (``count`` for the last gap) and the straights.
     """
     groups, turns_are_free = asked.groups, not asked.names_all_turns
 
@@ -132,10 +124,8 @@ def best_match(
 
 
 def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
-    """Compares the turns and straights of a road with those of an Outline in driving order; returns one
-    Complaint for each requirement that the road does not meet.
-
-    If no match is possible, returns a single Complaint about the number of turns.
+    """Returns one Complaint for each turn or straight of an Outline that a road, in driving order, does not
+    have as requested; a single one about the number of turns if no match is possible.
     """
     turns, gaps = found.turns, found.gaps
 
@@ -148,7 +138,10 @@ def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...
         ]
         return Match(sum(map(bool, says)), tuple(chain.from_iterable(says)))
 
-    match = best_match(asked, len(turns), of_turns, lambda turn, wanted: _of_gap(gaps[turn], wanted, turn))
+    def of_gap(turn: int, wanted: tuple[Feature, ...]) -> Match[Complaint]:
+        return _of_gap(found, gaps[turn], wanted, turn)
+
+    match = best_match(asked, len(turns), of_turns, of_gap)
     if match.wrong == inf:
         return (Complaint(f"the {len(turns)} turns cannot be matched with what was asked for"),)
     return match.items
@@ -165,18 +158,25 @@ def sides_of(group: Group, sides: Sequence[Side | None]) -> list[Side | None]:
     return [(first, other)[index % 2] for index in range(len(sides))]
 
 
-def _of_gap(gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], turn: int) -> Match[Complaint]:
+def _of_gap(
+    found: Measures, gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], turn: int
+) -> Match[Complaint]:
     """Matches the wanted straights with the pieces before a turn (counted from 0)."""
     if not wanted or (len(wanted) == 1 and any(fits(straight, wanted[0]) for straight in gap)):
         return Match()
     pieces = [piece for straight in gap for piece in straight.pieces]
     at, missing = 0, list[Feature]()
-    for wish in wanted:
-        found = next((i for i in range(at, len(pieces)) if fits(pieces[i], wish)), None)
-        if found is None:
-            missing.append(wish)
-        else:
-            at = found + 1
+    for ramp in _ramps(wanted):
+        whole = next((i for i in range(at, len(pieces)) if _fit(found, pieces[i], ramp)), None)
+        if whole is not None:
+            at = whole + 1
+            continue
+        for wish in ramp:
+            place = next((i for i in range(at, len(pieces)) if fits(pieces[i], wish)), None)
+            if place is None:
+                missing.append(wish)
+            else:
+                at = place + 1
     where = f"after turn {turn}" if turn else "at the start"
     s = gap[0].start if gap else None
     has = _said(gap[0].pieces) if gap else "none"
@@ -187,8 +187,36 @@ def _of_gap(gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], turn:
     return Match(len(missing), tuple(says))
 
 
+def _ramps(wanted: tuple[Feature, ...]) -> list[list[Feature]]:
+    """Returns the wanted straights, those together that could be parts of one piece."""
+    out = [[wanted[0]]]
+    for one, other in pairwise(wanted):
+        if change_of_grade(one.grade, other.grade) is None:
+            out.append([])
+        out[-1].append(other)
+    return out
+
+
+def _fit(found: Measures, piece: MeasuredFeature, ramp: Sequence[Feature]) -> bool:
+    """Returns whether a piece, or as many parts of it as there are straights in the ramp, fit them."""
+    changes = [change_of_grade(one.grade, other.grade) for one, other in pairwise(ramp)]
+    parts = found.cut(piece, [change for change in changes if change is not None])
+    return len(parts) == len(ramp) and all(map(fits, parts, ramp))
+
+
+def change_of_grade(one: Range | None, other: Range | None) -> GradeChange | None:
+    """Returns the change of grade between two straights in a row if both go up or both go down, one of them
+    more steeply; None otherwise.
+    """
+    if one is None or other is None:
+        return None
+    if min(one.lo, other.lo) < LEVEL and max(one.hi, other.hi) > -LEVEL:
+        return None
+    grade = (one.usual + other.usual) / 2
+    return (
+        GradeChange(grade, one.usual < other.usual) if one.usual != other.usual and isfinite(grade) else None
+    )
+
+
 def _said(pieces: tuple[MeasuredFeature, ...]) -> str:
     return ", then ".join(f"{piece.length:.0f} m at {piece.grade:.1f} %" for piece in pieces)
-
-
-__all__ = ["Complaint", "Match", "best_match", "fits", "sequence_complaints", "sides_of", "turn_complaints"]

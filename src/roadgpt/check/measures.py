@@ -18,7 +18,8 @@ those of this module.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -80,6 +81,24 @@ class MeasuredFeature:
         return self.grade * self.length / 100
 
 
+class GradeChange(NamedTuple):
+    """A change of grade between two parts of a straight that both go up, or both go down."""
+
+    grade: float
+    """The grade in percent between those of the two parts."""
+    rises: bool
+    """Whether the grade of the second part is the larger one; -4 percent is larger than -8."""
+
+
+class CentreLine(NamedTuple):
+    """The resampled centre line: stations and heights in metres, heading in radians, curvature in 1/m."""
+
+    s: Array
+    z: Array
+    heading: Array
+    curvature: Array
+
+
 @dataclass(frozen=True, slots=True)
 class Measures:
     """The measured turns, straights, grades and lengths of a road."""
@@ -104,6 +123,8 @@ class Measures:
     """Radius in metres at the tightest place of the road."""
     turning: float
     """Sum of the absolute changes of heading along the road in degrees."""
+    line: CentreLine = field(repr=False, compare=False)
+    """The points that were measured."""
 
     @property
     def turns(self) -> tuple[MeasuredFeature, ...]:
@@ -132,14 +153,20 @@ class Measures:
         """Returns the number of turns to the given side, left or right."""
         return sum(turn.side == side for turn in self.turns)
 
+    def cut(self, piece: MeasuredFeature, changes: Sequence[GradeChange]) -> tuple[MeasuredFeature, ...]:
+        """Returns a piece of a straight, cut where its grade, over 10 m, changes in the ways given.
 
-class _Line(NamedTuple):
-    """The resampled centre line: stations and heights in metres, heading in radians, curvature in 1/m."""
-
-    s: Array
-    z: Array
-    heading: Array
-    curvature: Array
+        With n changes there are n + 1 parts, or fewer if the piece does not have all the changes in order.
+        """
+        first, last = (int(at) for at in np.searchsorted(self.line.s, (piece.start - 1e-6, piece.end - 1e-6)))
+        local = _local_grades(self.line, first, last)
+        cuts = [0]
+        for change in changes:
+            is_after = (local > change.grade) == change.rises
+            before = np.flatnonzero(~is_after[cuts[-1] :])[:1] + cuts[-1]
+            cuts += [int(at) for start in before for at in np.flatnonzero(is_after[start:])[:1] + start]
+        marks = [first + cut for cut in cuts] + [last]
+        return tuple(_feature(self.line, "straight", a, b) for a, b in pairwise(marks))
 
 
 class _Bend(NamedTuple):
@@ -177,6 +204,7 @@ def measure(points: ArrayLike, widest: float = USUALLY_WIDEST) -> Measures:
         hills=int(np.count_nonzero(ways[1:] != ways[:-1])),
         radius=_radius(line.curvature),
         turning=float(np.degrees(np.abs(np.diff(line.heading)).sum())),
+        line=line,
     )
 
 
@@ -187,7 +215,7 @@ def way(grade: float) -> Literal["up", "down", "flat"]:
     return "down" if grade <= -LEVEL else "flat"
 
 
-def _resampled(points: ArrayLike) -> _Line:
+def _resampled(points: ArrayLike) -> CentreLine:
     p = np.asarray(points, float)
     if p.ndim != 2 or p.shape[1] < 2 or not np.isfinite(p[:, :3]).all():
         raise UsageError("a centre line is two or more points of two or three finite numbers each")
@@ -204,19 +232,11 @@ def _resampled(points: ArrayLike) -> _Line:
     s = np.linspace(0.0, along[-1], max(round(float(along[-1]) / STEP), 3) + 1)
     x, y = np.interp(s, along, p[:, 0]), np.interp(s, along, p[:, 1])
     z = np.interp(s, along, p[:, 2]) if p.shape[1] > 2 else np.zeros_like(s)
-    heading = _heading(_slope(x), _slope(y))
-    bend = _slope(heading) / (s[1] - s[0])
+    heading = _heading(np.gradient(x), np.gradient(y))
+    bend = np.gradient(heading) / (s[1] - s[0])
     reach = SMOOTHED // 2
     padded = np.concatenate([np.full(reach, bend[0]), bend, np.full(reach, bend[-1])])
-    return _Line(s, z, heading, np.convolve(padded, np.full(SMOOTHED, 1 / SMOOTHED), "valid"))
-
-
-def _slope(values: Array) -> Array:
-    """Returns the change per station, by central differences that are one-sided at the ends."""
-    out = np.empty_like(values)
-    out[1:-1] = (values[2:] - values[:-2]) / 2
-    out[0], out[-1] = values[1] - values[0], values[-1] - values[-2]
-    return out
+    return CentreLine(s, z, heading, np.convolve(padded, np.full(SMOOTHED, 1 / SMOOTHED), "valid"))
 
 
 def _heading(dx: Array, dy: Array) -> Array:
@@ -231,7 +251,7 @@ def _radius(curvature: Array) -> float:
     return float(1 / max(np.abs(curvature).max(), 1e-9))
 
 
-def _windows(line: _Line, width: int) -> Array:
+def _windows(line: CentreLine, width: int) -> Array:
     """Returns the grade in percent over ``width`` stations, at every place."""
     return np.asarray(100 * (line.z[width:] - line.z[:-width]) / (line.s[width:] - line.s[:-width]))
 
@@ -247,7 +267,7 @@ def _signs(values: Array, least: float) -> NDArray[np.int8]:
     return (values > least).astype(np.int8) - (values < -least).astype(np.int8)
 
 
-def _turns(line: _Line, widest: float) -> list[_Bend]:
+def _turns(line: CentreLine, widest: float) -> list[_Bend]:
     signs, faint = _signs(line.curvature, 1 / widest), _signs(line.curvature, 1 / (FADES * widest))
     first, last = _stretches(signs)
     curved = signs[first] != 0
@@ -283,7 +303,7 @@ def _joined(bends: Sequence[_Bend], s: Array) -> list[_Bend]:
     return out
 
 
-def _features(line: _Line, bends: Sequence[_Bend]) -> tuple[MeasuredFeature, ...]:
+def _features(line: CentreLine, bends: Sequence[_Bend]) -> tuple[MeasuredFeature, ...]:
     s, out = line.s, list[MeasuredFeature]()
     marks = [0, *(index for bend in bends for index in (bend.first, bend.last)), len(s) - 1]
     gaps = list(zip(marks[::2], marks[1::2], strict=True))
@@ -297,7 +317,7 @@ def _features(line: _Line, bends: Sequence[_Bend]) -> tuple[MeasuredFeature, ...
 
 
 def _feature(
-    line: _Line,
+    line: CentreLine,
     kind: Literal["turn", "straight"],
     first: int,
     last: int,
@@ -312,24 +332,15 @@ def _feature(
     start, end = float(line.s[first]), float(line.s[last])
     grade = 100 * float(line.z[last] - line.z[first]) / (end - start)
     radius = _radius(line.curvature[first : last + 1])
-    inner_grade = _inner_grade(line, first, last)
+    off = (last - first) // 4
+    a, b = first + off, last - off
+    inner_grade = 100 * float(line.z[b] - line.z[a]) / float(line.s[b] - line.s[a])
     return MeasuredFeature(kind, start, end, side, degrees, radius, grade, inner_grade)
 
 
-def _inner_grade(line: _Line, first: int, last: int) -> float:
-    off = (last - first) // 4
-    a, b = first + off, last - off
-    return 100 * float(line.z[b] - line.z[a]) / float(line.s[b] - line.s[a])
-
-
-def _straight(line: _Line, first: int, last: int) -> MeasuredFeature:
-    """Returns a straight with its pieces.
-
-    If all pieces are too short to count, the whole straight is its only piece.
-    """
-    here = np.arange(first, last + 1)
-    before, after = np.maximum(here - HALF_WINDOW, 0), np.minimum(here + HALF_WINDOW, len(line.s) - 1)
-    local = 100 * (line.z[after] - line.z[before]) / (line.s[after] - line.s[before])
+def _straight(line: CentreLine, first: int, last: int) -> MeasuredFeature:
+    """Returns a straight with its pieces; if all of them are too short to count, it is its only piece."""
+    local = _local_grades(line, first, last)
     classes = (local >= LEVEL).astype(np.int8) - (local <= -LEVEL).astype(np.int8)
     whole, cuts = _feature(line, "straight", first, last), [*zip(*_stretches(classes), strict=True)]
     if len(cuts) == 1:
@@ -339,4 +350,8 @@ def _straight(line: _Line, first: int, last: int) -> MeasuredFeature:
     return replace(whole, pieces=pieces or (whole,))
 
 
-__all__ = ["MeasuredFeature", "Measures", "measure", "way"]
+def _local_grades(line: CentreLine, first: int, last: int) -> Array:
+    """Returns the grade in percent over 10 m around each station from ``first`` to ``last``."""
+    here = np.arange(first, last + 1)
+    before, after = np.maximum(here - HALF_WINDOW, 0), np.minimum(here + HALF_WINDOW, len(line.s) - 1)
+    return np.asarray(100 * (line.z[after] - line.z[before]) / (line.s[after] - line.s[before]))

@@ -10,10 +10,8 @@ from roadgpt.network import Junction, Network, NetworkRoad, Route
 
 
 def junction_finding(rule: str, route: Route | None, junction: Junction, what: str) -> Finding:
-    """Returns the Finding that something is wrong at a junction.
-
-    ``what`` describes the fault without the place. The station of the Finding is where the route enters the
-    junction; None if no route passes it.
+    """Returns the Finding that something is wrong at a junction; ``what`` describes it without the place. Its
+    station is where the route enters the junction; None if no route passes it.
     """
     x, y, _ = junction.node
     s = None
@@ -25,10 +23,8 @@ def junction_finding(rule: str, route: Route | None, junction: Junction, what: s
 def road_finding(
     rule: str, route: Route | None, member: NetworkRoad, s: float, what: str, stops: bool = False
 ) -> Finding:
-    """Returns the Finding that something is wrong at station ``s`` (m) of a road.
-
-    ``what`` describes the fault without the place. The station of the Finding is a station of the route; None
-    if the road is not on the route. ``stops`` is passed to the Finding.
+    """Returns the Finding that something is wrong at station ``s`` (m) of a road; ``what`` describes it
+    without the place. Its station is one of the route; None if the road is not on the route.
     """
     with np.errstate(invalid="ignore", over="ignore"):  # a number of the road may not be finite
         x, y, _ = member.road.at(s).tolist()
@@ -39,10 +35,8 @@ def road_finding(
 
 
 def station_on(route: Route | None, member: NetworkRoad, s: float) -> float | None:
-    """Returns the distance in metres along a route to the place that is ``s`` metres along a road.
-
-    If the route uses the road more than once, the first time counts. The result is None if there is no route,
-    or if the road is not on the route.
+    """Returns the distance in metres along a route to the place that is ``s`` metres along a road, the first
+    time that the route uses it; None if there is no route, or if the road is not on the route.
     """
     if route is None:
         return None
@@ -53,11 +47,7 @@ def station_on(route: Route | None, member: NetworkRoad, s: float) -> float | No
 
 
 def station_near(route: Route | None, member: NetworkRoad, x: float, y: float) -> float | None:
-    """Returns the distance in metres along a route to the place on a road that is nearest to (x, y).
-
-    If the route uses the road more than once, the first time counts. The result is None if there is no route,
-    or if the road is not on the route.
-    """
+    """Returns what ``station_on`` does, for the place on a road that is nearest to (x, y)."""
     if station_on(route, member, 0.0) is None:
         return None
     return station_on(route, member, float(member.road.locate(x, y)[0]))
@@ -69,20 +59,9 @@ def name_of(junction: Junction) -> str:
     return f"the {NAMES[junction.kind][0]} near ({x:.0f}, {y:.0f})"
 
 
-def more_room(junction: Junction) -> str:
-    """Returns advice, as part of a sentence, for a junction whose connecting roads are too tight."""
-    wanted = "give the island" if junction.kind == "roundabout" else "ask for a kerb with"
-    return f"{wanted} a larger radius or turn the arms apart"
-
-
 def owner_of(network: Network, member: NetworkRoad) -> str:
     """Returns the name of the junction or roundabout to which a road belongs, else of the road itself."""
     if member.junction is not None:
         return name_of(network.junction(member.junction))
     ring = network.roundabout_of.get(member.id)
     return f"road {member.id}" if ring is None else name_of(network.junction(ring.junctions[0]))
-
-
-def is_ring(network: Network, member: NetworkRoad) -> bool:
-    """Returns whether a road outside junctions is a piece of the ring of a roundabout."""
-    return member.junction is None and member.id in network.roundabout_of

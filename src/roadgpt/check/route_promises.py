@@ -6,7 +6,6 @@ with its own requirements in the same way as a single road in the rule ``promise
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import inf
 
 import numpy as np
 
@@ -36,15 +35,10 @@ SLACK = 0.15  # ratio, allowed deviation from the radius of an island that is gi
 ROUNDING = 0.5  # m, allowed deviation from a range of outer diameters
 
 
-def broken_promises(route: Route, brief: Brief, map_size: float = inf) -> tuple[Finding, ...]:
-    """Returns one Finding for each requirement that a route does not meet.
-
-    If the number of junctions and lane changes on the route is wrong, only this is reported.
-
-    Args:
-        route: the route.
-        brief: the requirements.
-        map_size: the side of the map in metres; "motorway" requires less of a road that it cannot hold.
+def broken_promises(route: Route, brief: Brief, map_size: float) -> tuple[Finding, ...]:
+    """Returns one Finding for each requirement that a route does not meet; only that for the number of
+    junctions and lane changes, if it is wrong. "motorway" requires less of a road that the map, a square with
+    sides of ``map_size`` metres, cannot hold.
     """
     found = measured_places(route)
     if len(found) != len(brief.junctions):
@@ -134,20 +128,15 @@ def _broken_lanes(start: float, road: Road, asked: Brief) -> Iterator[Finding]:
 def place_complaints(found: MeasuredJunction | MeasuredLanes, asked: JunctionClause) -> Iterator[str]:
     """Yields each requirement that a junction or a place where lanes change does not meet, as text."""
     if isinstance(found, MeasuredLanes):
-        yield from lane_complaints(found, asked)
+        if found.kind != asked.kind:
+            yield f"asked for a {asked.name}, has a {NAMES[found.kind][0]}"
+        side = asked.take or asked.side
+        if side is not None and found.side != side:
+            yield f"asked for the {side} side, is on the {found.side}"
     elif asked.kind in LANE_KINDS:
         yield f"asked for a {asked.name}, has a {found.kinds[0] if found.kinds else 'junction'}"
     else:
         yield from junction_complaints(found, asked)
-
-
-def lane_complaints(found: MeasuredLanes, asked: JunctionClause) -> Iterator[str]:
-    """Yields each requirement that a place where lanes change does not meet, as text."""
-    if found.kind != asked.kind:
-        yield f"asked for a {asked.name}, has a {NAMES[found.kind][0]}"
-    side = asked.take or asked.side
-    if side is not None and found.side != side:
-        yield f"asked for the {side} side, is on the {found.side}"
 
 
 def _length(route: Route, brief: Brief) -> Iterator[Finding]:

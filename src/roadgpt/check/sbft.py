@@ -135,38 +135,33 @@ def keeps_clear(quads: Array) -> bool:
     odd = np.flatnonzero(~plain)
     if odd.size and not _are_valid(quads[odd]):
         return False
-    if not _strangers_are_apart(quads, plain):
+    doubt = _doubt(quads)
+    if not all(_are_apart(quads, plain, i, j, doubt) for i, j in near_pairs(quads, reach=doubt)):
         return False
     # Two convex clockwise neighbours lie on either side of their common side, and so meet in it alone.
     joints = np.flatnonzero(~(plain[:-1] & plain[1:]))
     return not joints.size or _share_a_side(quads, joints)
 
 
-def _strangers_are_apart(quads: Array, plain: NDArray[np.bool_]) -> bool:
-    """Returns whether quads that are not neighbours are disjoint; equal quads are ignored."""
-    doubt = _doubt(quads)
-    return all(_are_apart(quads, plain, i, j, doubt) for i, j in near_pairs(quads, reach=doubt))
-
-
 def _are_apart(quads: Array, plain: NDArray[np.bool_], i: Indices, j: Indices, doubt: float) -> bool:
+    """Returns whether quads i and j, which are not neighbours, are disjoint; equal quads are ignored."""
     gap = np.where(plain[i] & plain[j], gaps(quads, i, j), 0.0)
     i, j, gap = i[gap <= doubt], j[gap <= doubt], gap[gap <= doubt]
     differ = (quads[i] != quads[j]).any(axis=(1, 2))
     if (differ & (gap < -doubt)).any():
         return False
-    return not differ.any() or _are_disjoint(quads, i[differ], j[differ])
+    if not differ.any():
+        return True
+    import shapely
+
+    one, other = shapely.polygons(quads[i[differ]]), shapely.polygons(quads[j[differ]])
+    return not shapely.intersects(one, other).any()
 
 
 def _are_valid(quads: Array) -> bool:
     import shapely
 
     return bool(np.isfinite(quads).all() and shapely.is_valid(shapely.polygons(quads)).all())
-
-
-def _are_disjoint(quads: Array, i: Indices, j: Indices) -> bool:
-    import shapely
-
-    return not shapely.intersects(shapely.polygons(quads[i]), shapely.polygons(quads[j])).any()
 
 
 def _share_a_side(quads: Array, joints: Indices) -> bool:
@@ -207,9 +202,8 @@ def smallest_radius(nodes: Array) -> tuple[float, int]:
 
 
 def radii(nodes: Array) -> Array:
-    """Returns radii ``(n - 5,)`` in metres of the circles through nodes i, i+2, i+4 of ``(n, 2)``.
-
-    A radius is infinite where the three nodes are collinear.
+    """Returns radii ``(n - 5,)`` in metres of the circles through nodes i, i+2, i+4 of ``(n, 2)``; infinite
+    where these are collinear.
     """
     a, b, c = nodes[:-5], nodes[2:-3], nodes[4:-1]
     (ax, ay), (bx, by), (cx, cy) = a.T, b.T, c.T

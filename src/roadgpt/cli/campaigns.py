@@ -11,15 +11,14 @@ import click
 from roadgpt.cli.next_steps import lines, of_status
 from roadgpt.cli.progress import duration, progress
 from roadgpt.cli.result_row import COLOURS, metres
-from roadgpt.cli.streams import apart, warn
+from roadgpt.cli.streams import apart, resumable
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from roadgpt.campaign.cell_status import CellStatus
     from roadgpt.campaign.faults.fault import Faults
     from roadgpt.campaign.scheduler import Progress
-    from roadgpt.campaign.status import Status
+    from roadgpt.campaign.status import CellStatus, Status
 
 COMPARED = 500  # largest number of failures, evenly spread, that are grouped (if untested): under a second
 MOST_CELLS = 40  # largest number of cells that are shown one by one
@@ -32,13 +31,10 @@ MOST_WATCHED, MOST_WORKERS = 12, 16  # rows of the screen
 
 def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool) -> None:
     """Runs a campaign, shows its progress and prints its results; after Ctrl-C, prints how to resume it."""
-    try:
-        with progress("tests", None, quiet, has_lines=False) as tell:
-            for step in apart(steps):
-                tell(step.done, total=step.total, rate=outcomes_line(step.outcomes))
-    except KeyboardInterrupt:
-        warn(f"stopped; finished tests are kept; continue with: roadgpt resume {folder}")
-        raise
+    advice = f"finished tests are kept; continue with: roadgpt resume {folder}"
+    with resumable(advice), progress("tests", None, quiet, has_lines=False) as tell:
+        for step in apart(steps):
+            tell(step.done, total=step.total, rate=outcomes_line(step.outcomes))
     from roadgpt.campaign.folder_record import is_store
     from roadgpt.campaign.status import status_of
 

@@ -64,13 +64,8 @@ EARLIER_VALUES = {"--view bonnet": "--view hood"}
 
 
 def renamed(args: Sequence[str]) -> tuple[list[str], str]:
-    """Replaces an earlier name of a command by its present name.
-
-    Returns the arguments, and a sentence that tells the user the present name; the sentence is empty if
-    nothing was replaced.
-
-    Args:
-        args: The arguments after ``roadgpt``.
+    """Returns the arguments after ``roadgpt`` with the present name of the command, and a sentence that tells
+    the user this name; the sentence is empty if nothing was replaced.
     """
     for words, (new, shown) in EARLIER.items():
         if tuple(args[: len(words)]) == words:
@@ -80,13 +75,8 @@ def renamed(args: Sequence[str]) -> tuple[list[str], str]:
 
 
 def renamed_options(args: Sequence[str], known: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Replaces earlier names of options by their present names.
-
-    Returns the arguments, and for each replaced name a sentence that tells the user the present one.
-
-    Args:
-        args: The arguments after a command.
-        known: Names of the options that the command has now.
+    """Returns the arguments after a command with the present names of options, and for each replaced name a
+    sentence that tells the user the present one. ``known`` are the names that the command has now.
     """
     new: list[str] = []
     told: list[str] = []

@@ -11,12 +11,9 @@ option.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-import click
 
 from roadgpt.errors import UsageError
 
@@ -27,7 +24,6 @@ TABLES = ("run", "world", "beamng")
 CHAT_TABLE = "chat"
 EARLIER_KEYS = {"verge": "shoulder"}
 """Maps the keys of campaign plans that have another name in configuration files to that name."""
-KEYS, LAYERS = "roadgpt.keys", "roadgpt.layers"  # keys of click's Context.meta
 
 OF_FOLDER, OF_USER, OF_ENVIRONMENT = "folder", "user", "environment"
 YOURSELF = "a file of this folder cannot decide that; say it yourself with the option"
@@ -38,30 +34,15 @@ the value is refused, or an empty text if the value is accepted.
 """
 
 
-def layers_of(ctx: click.Context) -> "Sequence[Layer]":
-    """Returns all sources of settings, highest precedence first; they are read once per command.
-
-    The command has put the known keys of each table into ``ctx.meta[KEYS]``.
-
-    Raises:
-        UsageError: A file cannot be read, or has an unknown table or key.
-    """
-    if LAYERS not in ctx.meta:
-        ctx.meta[LAYERS] = read_layers(ctx.meta[KEYS])
-    found: Sequence[Layer] = ctx.meta[LAYERS]
-    return found
-
-
 def read_layers(keys: Mapping[str, Sequence[str]]) -> "Sequence[Layer]":
-    """Reads all sources of settings, and returns them, highest precedence first.
-
-    Args:
-        keys: The known keys of each table.
+    """Reads all sources of settings, and returns them, highest precedence first. ``keys`` are the known keys
+    of each table.
 
     Raises:
         UsageError: A file cannot be read, or has an unknown table or key.
     """
     from roadgpt.chat.config import layers as all_layers
+    from roadgpt.chat.config import unknown_key
 
     layers = all_layers()
     for layer in layers:
@@ -76,13 +57,8 @@ def read_layers(keys: Mapping[str, Sequence[str]]) -> "Sequence[Layer]":
             if not isinstance(table, dict):
                 raise UsageError(f"the settings in {layer.name} need a table [{name}]")
             for key in table:
-                if EARLIER_KEYS.get(key, key) in keys[name]:
-                    continue
-                near = get_close_matches(key, keys[name], 1)
-                advice = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(keys[name])}"
-                raise UsageError(
-                    f"the settings in {layer.name} have no '{key[:40]}' under [{name}]; {advice}"
-                )
+                if EARLIER_KEYS.get(key, key) not in keys[name]:
+                    raise unknown_key(layer.name, name, key, keys[name])
     return layers
 
 

@@ -4,7 +4,6 @@ again.
 
 import re
 import sys
-from typing import TYPE_CHECKING
 
 import click
 
@@ -15,9 +14,6 @@ from roadgpt.cli.option_types import ROADS
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError
-
-if TYPE_CHECKING:
-    from roadgpt.brief import Brief
 
 USUAL_ROADS = 3
 ENOUGH = {"exit", "quit", "bye", "q"}
@@ -67,7 +63,8 @@ def converse() -> None:
             if roads is None:
                 break
             screen = Screen(roads)
-            run.carry_out(run.usual_job(meant or words, roads, is_plan=bool(meant)), screen)
+            given = run.usual_values(meant or words, roads, is_plan=bool(meant))
+            run.carry_out(screen, meant or words, given)
             if not _changed(screen):
                 break
         except RoadGPTError as error:
@@ -79,25 +76,21 @@ def converse() -> None:
 
 def _understood(words: str) -> str | None:
     """Returns the plan to build instead of the words, "" if the words can be built as they are, and None if
-    the user wants to say it in other words.
+    the user wants to say it in other words. If the reader is not sure, asks which of two readings is meant.
     """
     from roadgpt.brief import AnotherRoadError, read
+    from roadgpt.brief.plan import read_plan
 
     try:
-        return _meant(read(words, is_map_fixed=False))
+        brief = read(words, is_map_fixed=False)
     except AnotherRoadError as error:
         click.echo(f"{error.offer}: {run.reading(error.brief)}")
         answer = _asked("1 to build that, or an empty line to say it in other words> ")
         return error.plan if answer == "1" else None
-
-
-def _meant(brief: "Brief") -> str | None:
-    """Asks which of two readings is meant, if the reader is not sure; returns the plan of the second one, ""
-    for the first one, and None if the user wants to say it in other words.
-    """
     if not brief.other:
         return ""
-    click.echo(f"I am not sure what is meant:\n  1  {run.reading(brief)}\n  2  {run.other_reading(brief)}")
+    other = run.reading(read_plan(brief.other))
+    click.echo(f"I am not sure what is meant:\n  1  {run.reading(brief)}\n  2  {other}")
     answer = _asked("1, 2, or an empty line to say it in other words> ")
     return {"1": "", "2": brief.other}.get(answer)
 

@@ -1,6 +1,6 @@
 """``--junit``: writes tests as JUnit XML, for continuous integration."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -18,19 +18,11 @@ IN_CASE = ("seed", "max_oob", "beyond_m", "margin_m", "length_m", "at_s_m", "sid
 UNKNOWN = "roads that were given"
 
 
-def junit_writer(path: Path, request: "Request") -> "Callable[[Sequence[Row]], object]":
-    """Returns a function that writes result rows to a JUnit file, one test case each.
-
-    Args:
-        path: The JUnit file to write.
-        request: The request from which all the roads are made.
-
-    The returned function raises RoadGPTError if the file cannot be written.
-    """
+def write_rows(path: Path, request: "Request", rows: Sequence[Row]) -> None:
+    """Writes result rows of a request as a JUnit file; raises RoadGPTError if it cannot be written."""
     from roadgpt.report.junit import Suite, write_junit
 
-    name, shared = _named(request.words), common(request)
-    return lambda rows: write_junit(path, [Suite(name, shared, lambda: map(_case, rows))])
+    write_junit(path, [Suite(_named(request.words), common(request), lambda: map(_case, rows))])
 
 
 def write_folder(path: Path, folder: Path) -> None:
@@ -73,7 +65,7 @@ def _of_folder(folder: Path) -> Iterator["Suite"]:
 def _of_cell(folder: Path, cell: "Cell") -> Iterator["Case"]:
     """Yields the tests of a cell; reads them one at a time."""
     from roadgpt.campaign.folder_record import open_record
-    from roadgpt.campaign.numbered_test import NumberedTest
+    from roadgpt.campaign.model import NumberedTest
 
     times = (
         "SELECT number, coalesce(design_s, 0) + coalesce(drive_s, 0) FROM tests "

@@ -40,22 +40,16 @@ class WithoutFailure:
     brief: "Brief | None" = None
     """What was read from the description."""
 
-    @property
-    def is_worth_it(self) -> bool:
-        """Whether suggestions make sense: enough tests passed, and command-line options can express the
-        whole request.
-        """
-        values, usual = self.request.world.values(), type(self.request.world)().values()
-        others = values.keys() - {flag.field for flag in options.WORLD}
-        is_usual = all(values[name] == usual[name] for name in others)
-        return self.passed >= FEWEST and bool(self.request.words) and is_usual
-
 
 def next_steps(quiet: WithoutFailure | None) -> list[tuple[str, str]]:
     """Returns suggestions for results without a failure (``quiet``), each with the command that carries it
-    out. The list is empty if ``quiet`` is None, or if ``quiet.is_worth_it`` is False.
+    out; none if too few tests passed, or if command-line options cannot express the whole request.
     """
-    return [*_steps(quiet)] if quiet is not None and quiet.is_worth_it else []
+    if quiet is None or quiet.passed < FEWEST or not quiet.request.words:
+        return []
+    values, usual = quiet.request.world.values(), type(quiet.request.world)().values()
+    others = values.keys() - {flag.field for flag in options.WORLD}
+    return [*_steps(quiet)] if all(values[name] == usual[name] for name in others) else []
 
 
 def lines(quiet: WithoutFailure | None) -> Iterator[str]:

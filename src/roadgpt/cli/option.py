@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from roadgpt.cli.configuration import EARLIER_KEYS, OF_ENVIRONMENT, OF_FOLDER, OF_USER, Guard, layers_of
+from roadgpt.cli.configuration import EARLIER_KEYS, OF_ENVIRONMENT, OF_FOLDER, OF_USER, Guard
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -32,7 +32,8 @@ class Heading(StrEnum):
     OUTPUT = "Output and help"
 
 
-FROM_FILES = "roadgpt.from_files"  # key of click's Context.meta
+# keys of click's Context.meta: the settings that a command takes from files, and the function that reads all
+FROM_FILES, LAYERS = "roadgpt.from_files", "roadgpt.layers"
 
 
 class Option(click.Option):
@@ -93,13 +94,8 @@ class Option(click.Option):
         return given if given is None or isinstance(given, str) or self.unit == 1.0 else given / self.unit
 
     def written(self, value: Any, usual: Any = None, is_set: bool = False) -> list[str]:
-        """Returns the command-line arguments that give the field a value; empty if the value is the default.
-
-        Args:
-            value: The field's value.
-            usual: The field's default; None uses the option's default.
-            is_set: Whether a configuration file sets the option; then the arguments are returned even for the
-                default.
+        """Returns the command-line arguments that give the field a value; none for the default (``usual``, or
+        else the option's), unless a configuration file sets the option (``is_set``).
         """
         default = self.read(self.default) if usual is None else usual
         if value is None or (value == default and not is_set):
@@ -126,7 +122,7 @@ class Option(click.Option):
     def consume_value(self, ctx: click.Context, opts: Any) -> tuple[Any, ParameterSource]:
         """Returns the unconverted value and its source; a value on the command line takes precedence."""
         value, source = super().consume_value(ctx, opts)
-        setting = self.found(layers_of(ctx)) if self.table and source is ParameterSource.DEFAULT else None
+        setting = self.found(ctx.meta[LAYERS]()) if self.table and source is ParameterSource.DEFAULT else None
         if setting is None:
             return value, source
         ctx.meta.setdefault(FROM_FILES, {})[self.name] = (self, setting)
@@ -239,14 +235,10 @@ def words_of(
     usual: Mapping[str, Any] | None = None,
     told: Sequence[str] | set[str] = (),
 ) -> list[str]:
-    """Returns the command-line arguments that give options these values.
+    """Returns the command-line arguments that give options these values, by the names of the fields.
 
-    Args:
-        options: The options.
-        values: The value of each option, by the name of its field; an option without a value is left out.
-        usual: The defaults of these fields; None: the defaults are those of the options.
-        told: The keys of options that configuration files set; for these, the arguments contain even a
-            default value.
+    An option without a value is left out, as is a default: that in ``usual``, or else the option's own.
+    ``told`` are the keys of options that configuration files set; for these, even a default is given.
     """
     return [
         word

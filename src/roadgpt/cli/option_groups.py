@@ -3,14 +3,14 @@
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache
 from typing import Any
 
 import click
 
 from roadgpt.cli import options
 from roadgpt.cli.command_table import renamed_options
-from roadgpt.cli.configuration import KEYS
-from roadgpt.cli.option import FROM_FILES, Heading, Option
+from roadgpt.cli.option import FROM_FILES, LAYERS, Heading, Option
 from roadgpt.cli.streams import warn
 
 
@@ -86,7 +86,7 @@ class GroupedCommand(click.Command):
             click.UsageError: An argument is wrong; for a description that begins with a dash, the message
                 says where to put it.
         """
-        ctx.meta[KEYS] = options.settable_keys()
+        ctx.meta.setdefault(LAYERS, cache(options.layers))
         known = [name for parameter in self.params for name in parameter.opts]
         words, told = renamed_options(args, known)
         for sentence in () if ctx.resilient_parsing else told:
@@ -97,10 +97,20 @@ class GroupedCommand(click.Command):
             return super().parse_args(ctx, words)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Writes the options under their headings."""
-        shown = [*self._shown(ctx)]
-        for heading in Heading:
-            records = [record for its, record in shown if its == heading]
+        """Writes the options that this help lists under their headings."""
+        listed = [each for each in self.get_params(ctx) if isinstance(each, click.Option) and not each.hidden]
+        rare = {each for each in listed if isinstance(each, Option) and each.is_rare}
+        is_all = bool(ctx.meta.get(ALL))
+        left_out = {HELP_ALL} if not rare or len(listed) <= WHOLE else rare
+        shown: dict[Heading, list[tuple[str, str]]] = {heading: [] for heading in Heading}
+        for option in listed:
+            record = option.get_help_record(ctx)
+            if record is not None and (is_all or option not in left_out):
+                names = record[0] if is_all else record[0].partition(" / ")[0]
+                # only click's own option --help is no Option
+                heading = option.heading if isinstance(option, Option) else Heading.OUTPUT
+                shown[heading].append((names, record[1]))
+        for heading, records in shown.items():
             if records:
                 with formatter.section(heading):
                     formatter.write_dl(records)
@@ -115,19 +125,6 @@ class GroupedCommand(click.Command):
             parts = "; ".join(f"{place} sets {', '.join(values)}" for place, values in told.items())
             warn(parts)
         return super().invoke(ctx)
-
-    def _shown(self, ctx: click.Context) -> Iterator[tuple[str, tuple[str, str]]]:
-        """Yields the heading and the two columns of each option that this help lists."""
-        listed = [each for each in self.get_params(ctx) if isinstance(each, click.Option) and not each.hidden]
-        rare = {each for each in listed if isinstance(each, Option) and each.is_rare}
-        is_all = bool(ctx.meta.get(ALL))
-        left_out = {HELP_ALL} if not rare or len(listed) <= WHOLE else rare
-        for option in listed:
-            record = option.get_help_record(ctx)
-            if record is not None and (is_all or option not in left_out):
-                names = record[0] if is_all else record[0].partition(" / ")[0]
-                # only click's own option --help is no Option
-                yield option.heading if isinstance(option, Option) else Heading.OUTPUT, (names, record[1])
 
 
 class CommandGroup(click.Group):

@@ -1,31 +1,40 @@
 """Converts and checks the texts of options: numbers within bounds, folders, files, drivers and formats."""
 
-import math
 from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 import click
 
+N = TypeVar("N", int, float)
 PICTURES = ("png", "svg", "pdf")  # as report.FORMATS has them, which would load matplotlib
 
 
 def measure(low: float, high: float, unit: str = "", above: bool = False) -> Callable[[str], float]:
-    """Returns the type of an option that takes a finite number within bounds.
-
-    Args:
-        low, high: The bounds, inclusive unless ``above`` excludes ``low``.
-        unit: Unit of the number, for messages.
-        above: Whether ``low`` is excluded.
+    """Returns the type of an option that takes a finite number within bounds, which are included, or only the
+    upper one if ``above``. The unit is for messages.
     """
     bounds = f"above {low:g}, up to {high:g}" if above else f"from {low:g} to {high:g}"
-    advice = f"give a number {bounds}{unit and ' ' + unit}"
+    return _number(float, "number", low, high, f"give a number {bounds}{unit and ' ' + unit}", above)
 
-    def number(value: str) -> float:
+
+def whole(low: int, high: int, what: str) -> Callable[[str], int]:
+    """Returns the type of an option that takes a whole number within bounds, which are included.
+
+    ``what`` says in messages what the number is or counts, such as 'a seed' or 'metres'.
+    """
+    return _number(int, "whole number", low, high, f"give {what}, a whole number from {low} to {high}")
+
+
+def _number(
+    kind: Callable[[str], N], name: str, low: N, high: N, advice: str, above: bool = False
+) -> Callable[[str], N]:
+    def number(value: str) -> N:  # click shows this name in the help
         try:
-            found = float(value)
+            found = kind(value)
         except ValueError:
-            raise click.BadParameter(f"'{value}' is no number; {advice}") from None
-        if not math.isfinite(found) or not low <= found <= high or (above and found == low):
+            raise click.BadParameter(f"'{value}' is no {name}; {advice}") from None
+        if not low <= found <= high or (above and found == low):
             raise click.BadParameter(f"{value} is not possible; {advice}")
         return found
 
@@ -51,27 +60,6 @@ def bank(value: str) -> str | float:
         return measure(0, 12, "percent")(text)
     except click.BadParameter as error:
         raise click.BadParameter(f"{error.message}, or none, or auto") from None
-
-
-def whole(low: int, high: int, what: str) -> Callable[[str], int]:
-    """Returns the type of an option that takes a whole number within bounds, which are included.
-
-    Args:
-        low, high: The bounds.
-        what: What the number is or counts, for messages, such as 'a seed' or 'metres'.
-    """
-    advice = f"give {what}, a whole number from {low} to {high}"
-
-    def number(value: str) -> int:
-        try:
-            found = int(value)
-        except ValueError:
-            raise click.BadParameter(f"'{value}' is no whole number; {advice}") from None
-        if not low <= found <= high:
-            raise click.BadParameter(f"{value} is not possible; {advice}")
-        return found
-
-    return number
 
 
 ROADS = whole(1, 1_000_000, "the number of roads")

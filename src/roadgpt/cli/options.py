@@ -17,6 +17,7 @@ from roadgpt.cli.configuration import (
     driver_guard,
     path_guard,
     place_guard,
+    read_layers,
     reader_guard,
 )
 from roadgpt.cli.option import Argument, Heading, Option, named
@@ -36,10 +37,12 @@ from roadgpt.cli.option_types import (
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from roadgpt.campaign.selection import Choice
     from roadgpt.chat import ChatSettings
+    from roadgpt.chat.config import Layer
     from roadgpt.report import Drawing
     from roadgpt.road import World
 
@@ -252,9 +255,18 @@ SETTABLE = tuple(each for each in (*MAKING, *BEAMNG) if each.table)
 """The options that configuration files can set, in the order of ``roadgpt run``."""
 
 
-def settable_keys() -> dict[str, list[str]]:
-    """Returns the keys that each table of a configuration file may have."""
-    return {table: [each.key for each in SETTABLE if each.table == table] for table in TABLES}
+def layers() -> "Sequence[Layer]":
+    """Reads all sources of settings, and returns them, highest precedence first.
+
+    Raises:
+        UsageError: A file cannot be read, or has an unknown table or key.
+    """
+    return read_layers({table: [each.key for each in SETTABLE if each.table == table] for table in TABLES})
+
+
+def typed(ctx: click.Context) -> set[str]:
+    """Returns the names of the arguments that the user gave on the command line."""
+    return {name for name in ctx.params if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
 
 
 def world_of(values: dict[str, Any]) -> "World":
@@ -276,10 +288,15 @@ def reader_of(values: dict[str, Any]) -> str:
     """
     if not values.pop("is_plan"):
         return str(values["reader"])
-    source = click.get_current_context().get_parameter_source("reader")
-    if source is ParameterSource.COMMANDLINE and values["reader"] != "plan":
+    if "reader" in typed(click.get_current_context()) and values["reader"] != "plan":
         raise UsageError("--plan and --reader contradict each other; leave one of them out")
     return "plan"
+
+
+def chat_values(values: dict[str, Any]) -> dict[str, Any]:
+    """Returns the fields of ChatSettings that were given as options."""
+    given = {each.field: each.read(values.get(each.field)) for each in CHAT}
+    return {field: value for field, value in given.items() if value is not None}
 
 
 def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "ChatSettings | None":
@@ -291,8 +308,9 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
         UsageError: An option of language models is given but no language model is used, or a setting is
             invalid.
     """
-    given = {each: each.read(values.pop(each.field, None)) for each in CHAT}
-    told = {each.field: value for each, value in given.items() if value is not None}
+    told = chat_values(values)
+    for each in CHAT:
+        values.pop(each.field, None)
     from roadgpt import plugins
     from roadgpt.chat import asks_a_model, configured
 
@@ -300,7 +318,7 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
     if any(asks_a_model(plugins.find(shelf, name.partition(":")[0])) for shelf, name in shelves if name):
         return configured(told)
     if told:
-        flag = next(each.flag for each, value in given.items() if value is not None)
+        flag = next(each.flag for each in CHAT if each.field in told)
         advice = " or ".join(
             f"--{part} chat" for part, name in (("designer", designer), ("reader", reader)) if name
         )

@@ -19,13 +19,8 @@ def progress(
     """Shows on standard error, during a ``with`` block, how many steps are done and the remaining time.
 
     Yields a function, to be called with the number of steps that are done. Its keyword arguments change the
-    bar: ``total`` is a new total, and ``rate`` is a text to show after the numbers.
-
-    Args:
-        what: Name of the steps in the plural, such as 'faults'.
-        total: Number of steps; None if it is unknown.
-        quiet: Whether to show nothing.
-        has_lines: Whether to print lines if standard error is no terminal.
+    bar: ``total`` is a new total, and ``rate`` is a text to show after the numbers. ``what`` are the steps in
+    the plural, such as 'faults'. Lines are printed (``has_lines``) only if standard error is no terminal.
     """
     if quiet or not (has_lines or sys.stderr.isatty()):
         yield lambda *_, **__: None

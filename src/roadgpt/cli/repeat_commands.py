@@ -8,7 +8,6 @@ from pathlib import Path
 
 from roadgpt.brief.model import Brief
 from roadgpt.cli import options
-from roadgpt.cli.configuration import read_layers
 from roadgpt.cli.option import Option, named, words_of
 from roadgpt.road import World
 from roadgpt.run.model import Request, Run, Setup
@@ -30,12 +29,8 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
 
 
 def request_words(request: Request, roads: int, brief: Brief | None) -> list[str]:
-    """Returns the arguments with which ``roadgpt run`` makes the first ``roads`` roads of a request.
-
-    Args:
-        request: The request.
-        roads: The number of roads.
-        brief: What was read from the words. If it names a surface, the arguments always give the friction.
+    """Returns the arguments with which ``roadgpt run`` makes the first ``roads`` roads of a request. If the
+    Brief, which was read from the words, names a surface, the arguments always give the friction.
     """
     told = {"friction"} if brief is not None and brief.friction is not None else set[str]()
     rest = ["-n", str(roads), "--seed", str(request.seed)]
@@ -53,19 +48,16 @@ def option_words(
     asks: bool = True,
     also: Set[str] = frozenset(),
 ) -> list[str]:
-    """Returns the options that differ from their defaults or are set in a configuration file.
+    """Returns the options that differ from their defaults or are set in a configuration file, and those whose
+    keys are in ``also``.
 
-    Args:
-        setup: The Setup to express by options.
-        world: The World to express by options.
-        of_setup: The options of the command that set fields of the Setup.
-        asks: Whether the command has options for language models.
-        also: Keys of options that are returned in any case.
+    ``of_setup`` are the options of the command that set fields of the Setup; ``asks`` says whether it has
+    options for language models.
 
     Raises:
         UsageError: A configuration file cannot be used.
     """
-    layers = read_layers(options.settable_keys())
+    layers = options.layers()
     told = {each.key for each in options.SETTABLE if each.found(layers) is not None} | also
     words = words_of(of_setup, dict(setup), told=told)
     words += words_of(options.WORLD, world.values(), World().values(), told)

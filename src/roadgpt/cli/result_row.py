@@ -5,14 +5,13 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from roadgpt.campaign.model import Result
     from roadgpt.chat import Spent
-    from roadgpt.run.model import Run
-
-Outcome = Literal["PASS", "FAIL", "VALID", "INVALID", "ERROR"]
+    from roadgpt.run.model import Outcome, Run
+    from roadgpt.verdict import Verdict
 
 COLOURS = {
     "PASS": "green",
@@ -46,7 +45,7 @@ class Row:
     """The result of one road; the outcome VALID means that the road was checked but not driven."""
 
     file: str
-    test_outcome: Outcome
+    test_outcome: "Outcome"
     description: str
     """One sentence on the result: the verdict, the broken rule or the error."""
     is_valid: bool = True
@@ -96,11 +95,6 @@ class Row:
             return self.outcome
         return f"PASS ({outside(self.max_oob, self.beyond_m)})"
 
-    @property
-    def colour(self) -> str:
-        """The colour of the outcome on a terminal."""
-        return colour_of(self.outcome)
-
     def to_json(self) -> str:
         """Returns the row as one line of JSON."""
         told = {name: _rounded(getattr(self, name)) for name in IN_JSON}
@@ -118,14 +112,11 @@ class Row:
         line = f"{self.told:<{MOST_TOLD}} {length:>9}  {margin:<15}  {self.name or self.file}"
         if self.test_outcome in ("INVALID", "ERROR"):
             return f"{line}  {self.description.removeprefix(f'{self.file}: ')}"
-        return f"{line}{self._despite}" if self.findings else line
-
-    @property
-    def _despite(self) -> str:
-        """The first broken rule of a road that was driven in spite of it, and the number of further ones."""
-        rest = len(self.findings) - 1
+        if not self.findings:
+            return line
+        rest = len(self.findings) - 1  # the road was driven in spite of them
         more = f" and {rest} more finding{'s' * (rest > 1)}" if rest else ""
-        return f"  finding: {self.findings[0]}{more}"
+        return f"{line}  finding: {self.findings[0]}{more}"
 
 
 def outside(share: float | None, beyond: float | None) -> str:
@@ -179,14 +170,7 @@ def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
 
 
 def row_of(run: "Run", file: str, name: str = "") -> Row:
-    """Returns the row of a Run.
-
-    Args:
-        run: The Run.
-        file: The road file that the row names.
-        name: A shorter name to print in lines.
-    """
-    verdict = run.verdict
+    """Returns the row of a Run; ``file`` is the road file that it names, ``name`` a shorter one in lines."""
     return Row(
         file,
         run.outcome,
@@ -194,19 +178,14 @@ def row_of(run: "Run", file: str, name: str = "") -> Row:
         is_valid=run.is_valid,
         validation_message=run.validation_message,
         findings=tuple(finding.sentence for finding in run.findings),
-        cause=verdict.cause if verdict else None,
-        max_oob=verdict.max_oob if verdict else None,
-        beyond_m=verdict.beyond if verdict else None,
-        margin_m=verdict.margin if verdict else None,
         length_m=run.length if run.road else None,
-        at_s_m=verdict.at_s if verdict else None,
-        side=verdict.side if verdict else None,
         seconds=round(run.seconds.design, 4) + round(run.seconds.drive, 4),  # as tables of tests hold them
         name=name,
         spent=run.spent,
         words=run.words,
         seed=run.seed,
         trace=run.trace,
+        **(_measured(run.verdict) if run.verdict else {}),
     )
 
 
@@ -218,17 +197,17 @@ def row_of_result(result: "Result", words: str, seed: int, name: str) -> Row:
         result.outcome,
         result.description,
         is_valid=result.outcome not in ("INVALID", "ERROR"),
-        cause=result.cause,
-        max_oob=result.max_oob,
-        beyond_m=result.beyond,
-        margin_m=result.margin,
         length_m=result.length or None,
-        at_s_m=result.at_s,
-        side=result.side,
         name=name,
         words=words,
         seed=seed,
+        **_measured(result),
     )
+
+
+def _measured(found: "Verdict | Result") -> dict[str, Any]:
+    measures = {"max_oob": found.max_oob, "beyond_m": found.beyond, "margin_m": found.margin}
+    return {**measures, "cause": found.cause, "at_s_m": found.at_s, "side": found.side}
 
 
 def unreadable(file: str, error: Exception) -> Row:

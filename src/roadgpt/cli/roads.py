@@ -13,7 +13,7 @@ from roadgpt.cli.options import WORLD
 from roadgpt.cli.result_row import Row, unreadable
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
-from roadgpt.errors import ExportError, PartError, UsageError, explained
+from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError, explained
 
 if TYPE_CHECKING:
     from roadgpt.campaign.selection import Choice, Selection
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from roadgpt.road import Geometry, World
     from roadgpt.run import Run
 
+FAILED, UNREADABLE = 1, 2  # exit statuses: a format cannot hold a road; a name or a road cannot be used
+LANES = ("lanes", "lane_width", "lane_width_end", "shoulder", "bank")
+"""Fields of the World that have no effect on a road with a cross-section of its own."""
 ENDINGS = (".json", ".xodr", ".csv", ".tsv", ".sbft")
 NONE = {"failures": "no road failed in {}", "faults": "no road failed in {}", "worst": "nobody drove in {}"}
 
@@ -43,34 +46,51 @@ def roads_named(
     files: Sequence[str],
     choice: "Choice | None",
     takes_all: bool = False,
-    complain: "Callable[[UsageError], None] | None" = None,
+    seen: set[object] | None = None,
 ) -> Iterator[NamedRoad]:
-    """Yields the roads that the names refer to, each road once.
+    """Yields the roads that the names refer to, each road once, and none whose key is in ``seen``.
 
-    Args:
-        files: The names, as the user typed them.
-        choice: Which roads of a folder to yield, such as the failures; None if the user chose none.
-        takes_all: If ``choice`` is None: True yields all roads of a folder, False yields its only road.
-        complain: Called with the error if a name is wrong; the name is then skipped. If None, the error is
-            raised.
+    Of a folder, it yields the roads of the choice; without a choice, all roads if ``takes_all``, else its
+    only road.
 
     Raises:
         UsageError: A name is wrong, no road of a folder matches the choice, or the only road of a folder is
             to be yielded and the folder has none or several.
     """
-    seen = set()
+    seen = set() if seen is None else seen
     for file in files:
-        try:
-            found = [*_named(file, choice, takes_all)]
-        except UsageError as error:
-            if complain is None:
-                raise
-            complain(error)
-            continue
-        for each in found:
+        for each in _named(file, choice, takes_all):
             if each.key not in seen:
                 seen.add(each.key)
                 yield each
+
+
+def use_each(
+    files: Sequence[str],
+    choice: "Choice | None",
+    use: Callable[[NamedRoad], None],
+    takes_all: bool = False,
+) -> int:
+    """Calls ``use`` for each road that the names refer to; a name or a road that cannot be used is reported
+    and skipped. Returns the exit status.
+    """
+    errors, seen = list[RoadGPTError](), set[object]()
+    for file in files:
+        with _reported(errors):
+            for each in roads_named([file], choice, takes_all, seen):
+                with _reported(errors):
+                    use(each)
+    return max((FAILED if isinstance(error, ExportError) else UNREADABLE for error in errors), default=0)
+
+
+@contextmanager
+def _reported(errors: list[RoadGPTError]) -> Iterator[None]:
+    """Context manager: prints an error about a road instead of raising it, and appends it to ``errors``."""
+    try:
+        yield
+    except (UsageError, ExportError) as error:
+        warn(error)
+        errors.append(error)
 
 
 def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[NamedRoad]:
@@ -85,18 +105,15 @@ def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[Name
     found = chosen(place, choice)
     if choice is not None and not found:
         raise UsageError(NONE[choice].format(file))
-    if choice is None and not takes_all and len(found) != 1:
-        raise UsageError(_too_many(place, found))
+    if choice is None and not takes_all:
+        if not found:
+            raise UsageError(f"{place.said} holds no road yet")
+        if len(found) > 1:
+            raise UsageError(
+                f"{place.said} holds {len(found):,} roads; name one, as {found[0].said}, or say --worst, "
+                "--faults or --failures"
+            )
     yield from map(_test, found)
-
-
-def _too_many(place: "Selection", found: "Sequence[Selection]") -> str:
-    if not found:
-        return f"{place.said} holds no road yet"
-    return (
-        f"{place.said} holds {len(found):,} roads; name one, as {found[0].said}, or say --worst, --faults or "
-        "--failures"
-    )
 
 
 def _test(place: "Selection") -> NamedRoad:
@@ -144,18 +161,11 @@ def _single(file: str) -> NamedRoad:
     return NamedRoad(file, stem, Path(os.path.realpath(path)), None)
 
 
-LANES = ("lanes", "lane_width", "lane_width_end", "shoulder", "bank")
-"""Fields of the World that have no effect on a road with a cross-section of its own."""
-
-
 def blueprint_of(file: str, world: "World") -> tuple["Blueprint", tuple[str, ...]]:
     """Returns the design or the road in a file, and remarks on assumptions made in reading it.
 
-    If the file defines lanes, lane options have no effect; a remark then names the ones that were given.
-
-    Args:
-        file: The road file, or the folder of a run.
-        world: The World that the options describe.
+    If the file defines lanes, lane options have no effect; a remark then names the ones that were given in
+    ``world``, the World that the options describe. The file may also be the folder of a run.
 
     Raises:
         UsageError: The file holds no road, or the folder is not that of a run.
@@ -191,11 +201,8 @@ def shown_runs(
 ) -> "list[Run]":
     """Returns the named Runs, to show them together; a road file becomes a Run without a drive.
 
-    Args:
-        files, choice: As for ``roads_named``.
-        world, geometry: World and geometry for road files.
-        most: Maximum number of Runs that can be shown together.
-        what: The output that shows them, for messages, such as 'a page'.
+    ``world`` and ``geometry`` are for road files. ``what`` is the output that shows at most ``most`` Runs,
+    for messages, such as 'a page'.
 
     Raises:
         UsageError: A name is wrong, a road cannot be read, or there are more than ``most``.
@@ -275,13 +282,10 @@ def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) 
 
 
 def check_file(path: Path, kind: str, usual: Path, endings: Sequence[str] = ()) -> None:
-    """Checks that a path is suitable for a file to write, such as a page, a film or a picture.
+    """Checks that a path is suitable for a file to write, such as a page, a film or a picture (``kind``).
 
-    Args:
-        path: The path.
-        kind: What the file is, such as 'film'.
-        usual: An example of a file name, for the error message.
-        endings: The file name extensions that it may have, the usual one first; empty: any.
+    ``usual`` is an example of a name, for the message. ``endings`` are the extensions that the file may have,
+    the usual one first; empty: any.
 
     Raises:
         UsageError: The path is a folder, or has another extension.

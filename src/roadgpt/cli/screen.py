@@ -17,9 +17,9 @@ from roadgpt.cli.result_row import WIDEST, Row, colour_of, row_of, summary
 from roadgpt.cli.streams import apart, is_coloured
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Iterable
 
-    from roadgpt.run import Run
+    from roadgpt.run import Request, Run
 
 
 class Screen:
@@ -38,8 +38,8 @@ class Screen:
         verbose: bool = False,
     ) -> None:
         self.total, self.as_json, self.quiet, self.verbose = total, as_json, quiet, verbose
-        self.junit: Callable[[Sequence[Row]], object] | None = None
-        """Writes the rows as a JUnit file; None: none is written."""
+        self.junit: tuple[Path, Request] | None = None
+        """The JUnit file to write, and the request of the roads; None: none is written."""
         self.rows: list[Row] = []
         if quiet:
             logging.getLogger("roadgpt").setLevel(logging.ERROR)
@@ -83,7 +83,9 @@ class Screen:
         elif not self.quiet:
             count = len(self.rows)
             done = f"{count:>{len(str(self.total))}}/{self.total}" if self.total else f"{count:>4}"
-            _show(f"{done}  {_coloured(row)}")
+            line, head = row.to_line(), len(row.told)
+            told = click.style(line[:head], fg=colour_of(row.outcome), bold=True)
+            _show(f"{done}  {told}{line[head:]}")
         self._tell(len(self.rows), rate=f"{self._rate():.1f} roads/s")
 
     def runs(self, runs: "Iterable[Run]", folder: Path) -> None:
@@ -102,7 +104,9 @@ class Screen:
     def close(self) -> None:
         """Prints the table of outcomes, and writes the JUnit file if one was requested."""
         if self.junit is not None:
-            self.junit(self.rows)
+            from roadgpt.cli.junit import write_rows
+
+            write_rows(*self.junit, self.rows)
         if self.quiet or self.as_json or not self.rows:
             return
         _show("")
@@ -126,9 +130,3 @@ def _show(line: str, on_stderr: bool = False) -> None:
     """Prints a line, in colour only on a terminal; click.echo would write into the progress bar."""
     stream = sys.stderr if on_stderr else sys.stdout
     print(line if stream.isatty() and is_coloured() else click.unstyle(line), file=stream, flush=True)
-
-
-def _coloured(row: Row) -> str:
-    line = row.to_line()
-    head = len(row.told)
-    return click.style(line[:head], fg=row.colour, bold=True) + line[head:]

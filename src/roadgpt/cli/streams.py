@@ -4,7 +4,7 @@ import io
 import os
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import redirect_stdout
+from contextlib import contextmanager, redirect_stdout
 from typing import TypeVar
 
 import click
@@ -79,6 +79,16 @@ def drop_output() -> None:
 def warn(sentence: object) -> None:
     """Prints a sentence on standard error, preceded by the name of the program."""
     click.echo(f"roadgpt: {sentence}", err=True)
+
+
+@contextmanager
+def resumable(advice: str) -> Iterator[None]:
+    """Context manager: after Ctrl-C, prints what is kept and how to continue (``advice``)."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        warn(f"stopped; {advice}")
+        raise
 
 
 def is_coloured() -> bool:

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from roadgpt.campaign.csv_tables import RESULTS
 from roadgpt.campaign.folder_record import is_store, open_record
-from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.selection import Choice, Selection, selection_of
 from roadgpt.campaign.status import status_of
-from roadgpt.campaign.table import RESULTS
 from roadgpt.chat import Spent
 from roadgpt.cli.campaigns import as_line, cell_lines, faults_of, outcomes_line, told
 from roadgpt.cli.repeat_commands import replay_lines
@@ -21,7 +21,6 @@ from roadgpt.cli.roads import NamedRoad, roads_named
 from roadgpt.errors import UsageError
 from roadgpt.run.folder import read_run, run_folder
 from roadgpt.run.model import Run
-from roadgpt.verdict import Verdict
 from roadgpt.verdict.severity import percent
 
 MOST_TESTS = 40  # of a cell, one by one
@@ -29,11 +28,8 @@ MOST_TESTS = 40  # of a cell, one by one
 
 def show(path: Path | str, choice: Choice | None = None) -> str:
     """Returns the summary of a Run with the commands that repeat it, or an overview of the tests in a folder,
-    a campaign or a cell.
-
-    Args:
-        path: A run, its ``test.NNNN.json``, a folder of runs, a campaign, a cell or a test.
-        choice: Which roads of a folder to show; a single road is summarised, several are listed.
+    a campaign or a cell. Of the roads that were chosen in a folder, a single one is summarised, several are
+    listed.
 
     Raises:
         UsageError: No run, folder, campaign, cell or test has that name.
@@ -146,10 +142,12 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
             f"up to {fastest:.0f} km/h"
         )
     if run.verdict is not None:
+        verdict, limits = run.verdict, run.world.limits
+        beyond = "an unknown distance" if verdict.beyond is None else f"{verdict.beyond:.2f} m"
         yield (
-            f"  verdict   {_outside_line(run.verdict)}, tolerance {percent(run.world.limits.oob_tolerance)}"
-            f"{', lane departures count' * run.world.limits.lane_departure}, "
-            f"margin {metres(run.verdict.margin)}"
+            f"  verdict   at most {percent(verdict.max_oob)} of the car outside its lane, {beyond} "
+            f"beyond the marking, tolerance {percent(limits.oob_tolerance)}"
+            f"{', lane departures count' * limits.lane_departure}, margin {metres(verdict.margin)}"
         )
     yield from _asked_lines(run)
     yield f"  seed      {run.seed}" + (f" (road {run.index} of seed {run.request.seed})" if run.words else "")
@@ -158,11 +156,6 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
         yield f"  took      {run.seconds.design * 1000:.1f} ms to design, {run.seconds.drive:.2f} s to drive"
     for number, line in enumerate(again):
         yield f"  {'again' if number == 0 else 'or':<8}  {line}"
-
-
-def _outside_line(verdict: Verdict) -> str:
-    beyond = "an unknown distance" if verdict.beyond is None else f"{verdict.beyond:.2f} m"
-    return f"at most {percent(verdict.max_oob)} of the car outside its lane, {beyond} beyond the marking"
 
 
 def _asked_lines(run: Run) -> Iterator[str]:

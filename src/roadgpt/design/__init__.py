@@ -20,12 +20,10 @@ geometry         the kind of geometry that its designs require, such as "spline"
 """
 
 from collections.abc import Sequence
-from functools import cache
 from typing import TYPE_CHECKING, Protocol, cast
 
-from roadgpt import plugins
 from roadgpt.brief.model import Brief
-from roadgpt.chat import ChatSettings, instantiate, settings_for
+from roadgpt.chat import ChatSettings, plugin_of
 from roadgpt.design.unbuilt import check_built
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, World
@@ -43,14 +41,7 @@ class Designer(Protocol):
         """Returns a Design that meets every requirement of the Brief and is valid on this map.
 
         If the Brief asks for a map of roads, the result is a MapDesign; if it asks for another network
-        (``is_of_network``), the result is a NetworkDesign.
-
-        Args:
-            brief: the requirements for the road.
-            world: size of the map, and limits that the rules check, such as the steepest grade.
-            notes: sentences that say which rules the previous draft violated.
-            earlier: designs of the campaign so far; the new one should differ from them.
-            seed: seed of the random number generator.
+        (``is_of_network``), the result is a NetworkDesign. The arguments are those of the function ``draft``.
 
         Raises:
             DesignError: this designer found no such Design, or cannot make networks.
@@ -130,13 +121,7 @@ def designer_of(name: str, chat: ChatSettings | None = None) -> Designer:
     Raises:
         PartError: there is no designer of that name.
     """
-    return _made(name, settings_for(plugins.find("designers", name), chat))
-
-
-@cache
-def _made(name: str, chat: ChatSettings | None) -> Designer:
-    """Returns the designer of that name; it is created only once, as it caches shapes of earlier designs."""
-    return cast(Designer, instantiate(plugins.find("designers", name), chat))
+    return cast(Designer, plugin_of("designers", name, chat))  # made once: it caches shapes of designs
 
 
 __all__ = ["Designer", "check_designer", "designer_of", "draft", "draft_road"]

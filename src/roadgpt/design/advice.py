@@ -9,9 +9,8 @@ from functools import lru_cache
 from math import ceil, floor, inf, log10
 
 from roadgpt.brief import NoRoomError
-from roadgpt.brief.map_fit import LARGEST_MAP, ROUND_MAP
-from roadgpt.brief.minimum_length import least_length
-from roadgpt.brief.model import Amount, Brief, Clause
+from roadgpt.brief.map_fit import LARGEST_MAP, ROUND_MAP, least_length
+from roadgpt.brief.model import Amount, Brief
 from roadgpt.brief.outline import Outline
 from roadgpt.brief.words import ROAD
 from roadgpt.check.rules.too_abrupt import MOST
@@ -40,13 +39,8 @@ def advice(
 ) -> str:
     """Returns one sentence that says which requirement could not be met, and what to do.
 
-    Args:
-        brief: the requirements for the road.
-        outline: the same requirements as ranges.
-        world: the World, for the size of its map.
-        failed: the reasons why drafts failed, with the number of times that each occurred.
-        boxes: side in metres of the smallest square around each draft that was too large for the map.
-        fits: function that tests whether roads can be drafted for another Brief, or on another map.
+    ``failed`` counts the reasons why drafts failed. ``boxes`` are the sides in metres of the smallest squares
+    around the drafts that were too large for the map.
     """
     reason = main_reason(failed)
     wishes = _wishes_of(outline)
@@ -66,11 +60,8 @@ def advice(
 
 
 def too_fast(world: World, slower: float | None) -> str:
-    """Returns the message that crests and dips would be too abrupt for the speed limit.
-
-    Args:
-        world: the World, for its speed limit.
-        slower: a speed limit in km/h at which the road is possible; None if none is known.
+    """Returns the message that crests and dips would be too abrupt for the speed limit. ``slower`` is a limit
+    in km/h at which the road is possible; None if none is known.
     """
     limit = f"a speed limit of {3.6 * world.limits.speed_limit:.3g} km/h"
     less = f"use --speed-limit {slower:g}" if slower else "use a lower --speed-limit"
@@ -109,12 +100,8 @@ def _wishes_of(outline: Outline) -> str:
 def roomier(world: World, boxes: Sequence[float]) -> float:
     """Returns the side in metres of a map that may be large enough.
 
-    This map is at least 1.2 times as wide as the present one. At least a quarter of the drafts in ``boxes``,
-    which were too large for the present map, would fit on it.
-
-    Args:
-        world: the World, for the size of the present map and the width of roads.
-        boxes: side in metres of the smallest square around each draft that was too large; may be empty.
+    This map is at least 1.2 times as wide as the present one. At least a quarter of the drafts with these
+    ``boxes``, which were too large for the present map, would fit on it.
     """
     needed = sorted(boxes)[len(boxes) // 4] + world.section.road_width if boxes else 0.0
     return max(needed, 1.2 * world.site.map_size)
@@ -217,13 +204,13 @@ def _scaled(brief: Brief, share: float) -> Brief:
     """Returns the Brief with a shorter road, or with shorter straights if the road's length is open."""
     if brief.length:
         return brief.model_copy(update={"length": _times(brief.length, share)})
-    return brief.model_copy(update={"clauses": tuple(_shorter(clause, share) for clause in brief.clauses)})
-
-
-def _shorter(clause: Clause, share: float) -> Clause:
-    if clause.kind != "straight" or clause.length is None:
-        return clause
-    return clause.model_copy(update={"length": _times(clause.length, share)})
+    clauses = tuple(
+        clause.model_copy(update={"length": _times(clause.length, share)})
+        if clause.kind == "straight" and clause.length is not None
+        else clause
+        for clause in brief.clauses
+    )
+    return brief.model_copy(update={"clauses": clauses})
 
 
 def _times(amount: Amount, share: float) -> Amount:

@@ -28,6 +28,14 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 Way = Annotated[Literal["left", "right", "straight"], BeforeValidator(_plain_direction)]
 
 
+def with_list(data: Any, name: str, key: re.Pattern[str]) -> Any:
+    """Returns the fields of an answer, with a list ``name`` in place of numbered fields like ``key``."""
+    if not isinstance(data, dict) or name in data:
+        return data
+    numbered = sorted((int(match[1]), field) for field in data if (match := key.fullmatch(str(field))))
+    return {**data, name: [data[field] for _, field in numbered]} if numbered else data
+
+
 class AnswerSegment(BaseModel):
     """One segment of a language model's answer."""
 
@@ -59,10 +67,7 @@ class AnswerRoad(AnswerStart):
     @classmethod
     def _from_numbered_fields(cls, data: Any) -> Any:
         """Converts RoadGPT's numbered fields road_segment1, road_segment2, ... to the list ``segments``."""
-        if not isinstance(data, dict) or "segments" in data:
-            return data
-        numbered = [(int(match[1]), key) for key in data if (match := KEY.fullmatch(str(key)))]
-        return {**data, "segments": [data[key] for _, key in sorted(numbered)]} if numbered else data
+        return with_list(data, "segments", KEY)
 
 
 class AnswerStep(AnswerSegment):
@@ -75,10 +80,6 @@ class AnswerStep(AnswerSegment):
 
 def design_of(start: AnswerStart, segments: Sequence[AnswerSegment]) -> tuple[Design, tuple[str, ...]]:
     """Returns the Design of an answer, and one sentence for each correction that was made to it.
-
-    Args:
-        start: the start of the road.
-        segments: the segments of the road in driving order.
 
     Raises:
         UsageError: the answer is not a design; the message can be shown to the model.
@@ -102,14 +103,3 @@ def in_file_format(start: AnswerStart, segments: Sequence[AnswerSegment]) -> dic
         for number, segment in enumerate(segments, 1)
     }
     return {"starting_point": point, "theta": start.theta % 360, **numbered}
-
-
-__all__ = [
-    "AnswerRoad",
-    "AnswerSegment",
-    "AnswerStart",
-    "AnswerStep",
-    "Number",
-    "design_of",
-    "in_file_format",
-]

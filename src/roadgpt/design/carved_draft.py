@@ -13,8 +13,7 @@ from math import pi
 
 import numpy as np
 
-from roadgpt.brief.junctions import MapJunctionKind
-from roadgpt.brief.map_clause import JunctionCount, MapClause
+from roadgpt.brief.junctions import JunctionCount, MapClause, MapJunctionKind
 from roadgpt.design.grid_draft import (
     CONTACT,
     MOVED,
@@ -53,13 +52,7 @@ def draft_carved(
 ) -> MapDraft | None:
     """Returns the draft of a map for which ``can_be_carved`` is true; None if none was found.
 
-    Args:
-        asked: the kinds of junctions, how many of each, the distance between them, and the number of dead
-            ends.
-        room: the side in metres of the square into which the map should fit.
-        least_radius: the smallest radius in metres of a bend.
-        rng: random number generator.
-        haste: from 0 to 1; the larger it is, the smaller the map.
+    The other arguments are those of ``draft_grid``.
     """
     kinds = [each for each in asked.junctions for _ in range(drawn_count(each.count, rng))]
     ends = int(asked.dead_ends.lo or 0) if asked.dead_ends else 0

@@ -17,11 +17,13 @@ from roadgpt.brief.words import LEAST_STRAIGHT
 from roadgpt.design.draw import (
     LEAD,
     SEPARATE,
+    DraftTask,
     drawn_straight,
     drawn_turns,
     free_straight,
     inside,
     narrowed_turns,
+    with_one_at_bound,
 )
 from roadgpt.design.sequence import TurnSequence, is_hairpin
 from roadgpt.design.windows import Windows
@@ -38,9 +40,7 @@ DIRECT = 0.35  # probability that turns to opposite sides follow each other almo
 HARDLY = 7.0  # m
 CHANGE = 24.0  # m of straight for the change from one required grade to another
 LONGEST_CHANGE = 100.0  # m; more would not fit on the map
-STEP_ASIDE = (
-    14.0  # m with the grade of a turn before a required straight, so that no grade changes in the turn
-)
+STEP_ASIDE = 14.0  # m with the grade of a turn before a required straight, as none changes in the turn
 OPEN = Range(LEAST_STRAIGHT, inf)  # m, of a required straight without a required length
 ALONE = (60.0, 240.0)  # m, of a road without turns and without a required length
 HILL = 42.0  # m of one climb or fall of a hilly road
@@ -53,53 +53,38 @@ ROUNDING = 0.1  # m by which a straight from corner to corner is shorter than th
 FEWEST_METRES = 1.0  # m, of a straight that is shortened so that the whole length is right
 
 
-def composed(
-    order: TurnSequence,
-    outline: Outline,
-    windows: Windows,
-    world: World,
-    rng: np.random.Generator,
-    haste: float,
-) -> list[Element] | None:
-    """Returns the elements of a draft in driving order; None if they cannot have the required length.
-
-    Args:
-        order: the turns, each to the left or right, and the required straights between them.
-        outline: the requirements for the road.
-        windows: the grades that the requirements allow.
-        world: size of the map, and limits that the rules check, such as the steepest grade.
-        rng: random number generator.
-        haste: from 0 to 1; the larger it is, the smaller the lengths, angles and radii.
-    """
-    narrowed = narrowed_turns(order.turns, outline, windows, world, haste)
-    turns: list[Element | None] = list(drawn_turns(narrowed, outline, world, rng, haste))
+def composed(order: TurnSequence, task: DraftTask) -> list[Element] | None:
+    """Returns the elements of a draft in driving order; None if they cannot have the required length."""
+    outline = task.outline
+    narrowed = narrowed_turns(order.turns, task)
+    if order.turns:
+        narrowed = with_one_at_bound(narrowed, order.turns, task)
+    turns: list[Element | None] = list(drawn_turns(narrowed, task))
     elements: list[Element] = []
     between = [is_hairpin(a) and is_hairpin(b) for a, b in pairwise(order.turns)]
     legs = [False, *between, False][: len(order.gaps)]
     for before, gap, after, leg in zip([None, *turns], order.gaps, [*turns, None], legs, strict=True):
-        if leg and not gap and haste < CRAMPED:
-            elements.append(Element(free_straight(rng, haste, LEG, LEG_MEAN)))
+        if leg and not gap and task.haste < CRAMPED:
+            elements.append(Element(free_straight(LEG, LEG_MEAN, task)))
         else:
-            elements += gap_between(before, gap, after, outline, windows, rng, haste)
+            elements += gap_between(before, gap, after, task)
         if after:
             elements.append(after)
     if outline.hills:
-        elements = _with_hills(elements, outline.hills, rng)
-    length = asked_length(outline, windows)
-    whole = _with_length(elements, length, rng, haste) if length else elements
-    return _from_corner_to_corner(whole, world) if whole and outline.turns.hi == 0 else whole
+        elements = _with_hills(elements, outline.hills, task.rng)
+    length = _asked_length(outline, task.windows)
+    whole = _with_length(elements, length, task) if length else elements
+    return _from_corner_to_corner(whole, task.world) if whole and outline.turns.hi == 0 else whole
 
 
 def _from_corner_to_corner(elements: list[Element], world: World) -> list[Element]:
     """Returns the straights of a road without turns, shortened if they do not fit on the map's diagonal."""
     longest = longest_straight(world.site.map_size, world.section.road_width) - ROUNDING
     keep = longest / sum(element.length for element in elements)
-    return (
-        [element._replace(straight=keep * element.length) for element in elements] if keep < 1 else elements
-    )
+    return [element._replace(straight=min(keep, 1.0) * element.length) for element in elements]
 
 
-def asked_length(outline: Outline, windows: Windows) -> Range | None:
+def _asked_length(outline: Outline, windows: Windows) -> Range | None:
     """Returns the range of lengths in metres that the road may have; None if any length will do.
 
     If a climb but no length is required, the range begins at the length that the climb needs at a moderate
@@ -114,34 +99,22 @@ def asked_length(outline: Outline, windows: Windows) -> Range | None:
 
 
 def gap_between(
-    before: Element | None,
-    wishes: Sequence[Feature],
-    after: Element | None,
-    outline: Outline,
-    windows: Windows,
-    rng: np.random.Generator,
-    haste: float,
+    before: Element | None, wishes: Sequence[Feature], after: Element | None, task: DraftTask
 ) -> list[Element]:
     """Returns the straights between two turns, or between a turn and an end of the road.
 
-    Args:
-        before: the turn before; None at the start.
-        wishes: the straights that are required here, in order.
-        after: the turn after; None at the end.
-        outline: the requirements for the road.
-        windows: the grades that the requirements allow.
-        rng: random number generator.
-        haste: from 0 to 1; the larger it is, the shorter the straights.
+    ``before`` is None at the start, and ``after`` at the end; ``wishes`` are required here, in order.
     """
+    outline, windows, rng = task.outline, task.windows, task.rng
     if wishes:
         few = outline.turns.hi <= 1 and len(wishes) == 1
-        return _asked_gap(before, wishes, after, windows, rng, haste, LONELY_MEAN if few else JOIN_MEAN)
+        return _asked_gap(before, wishes, after, LONELY_MEAN if few else JOIN_MEAN, task)
     if not before and not after:
-        length = ALONE[0] + rng.random() * (ALONE[1] - ALONE[0]) * (1 - 0.6 * haste)
+        length = ALONE[0] + rng.random() * (ALONE[1] - ALONE[0]) * (1 - 0.6 * task.haste)
         return [Element(length, required_grade=windows.base)]
     if not before or not after:
         mean = LONELY_MEAN if outline.turns.hi == 1 else LEAD_MEAN
-        return [Element(free_straight(rng, haste, LEAD, mean) + _approach(outline, after, rng))]
+        return [Element(free_straight(LEAD, mean, task) + _approach(after, task))]
     changes = windows.part(before.required_grade, after.required_grade)
     least = CHANGE if changes else 0.0
     if before.turn * after.turn > 0:
@@ -149,28 +122,24 @@ def gap_between(
     elif not changes and rng.random() < DIRECT:
         length = HARDLY * rng.random()
         return [Element(length)] if length > FEWEST_METRES else []
-    return [
-        Element(
-            free_straight(rng, haste, max(least, FEWEST_METRES), JOIN_MEAN) + _approach(outline, after, rng)
-        )
-    ]
+    length = free_straight(max(least, FEWEST_METRES), JOIN_MEAN, task)
+    return [Element(length + _approach(after, task))]
 
 
-def _approach(outline: Outline, after: Element | None, rng: np.random.Generator) -> float:
-    return APPROACH * (0.4 + rng.random()) if outline.hard and after else 0.0
+def _approach(after: Element | None, task: DraftTask) -> float:
+    return APPROACH * (0.4 + task.rng.random()) if task.outline.hard and after else 0.0
 
 
 def _asked_gap(
     before: Element | None,
     wishes: Sequence[Feature],
     after: Element | None,
-    windows: Windows,
-    rng: np.random.Generator,
-    haste: float,
     mean: float,
+    task: DraftTask,
 ) -> list[Element]:
     """Returns the required straights. A grade that must change at a turn changes a little away from it."""
     out: list[Element] = []
+    windows = task.windows
     grades = windows.row(wishes)
     if before and windows.part(before.required_grade, grades[0]):
         out.append(Element(STEP_ASIDE, required_grade=before.required_grade))
@@ -180,13 +149,11 @@ def _asked_gap(
             neighbours.append(before.required_grade)
         if number == len(wishes) - 1 and after:
             neighbours.append(after.required_grade)
-        changes = [
-            _change(grade, other, windows, haste) for other in neighbours if windows.part(grade, other)
-        ]
+        changes = [_change(grade, other, task) for other in neighbours if windows.part(grade, other)]
         least = max(LEAD, sum(changes) + 8.0 if changes else 0.0, _room_of_climb(wish))
-        if number and windows.alike(grades[number - 1], grade):
+        if number and not windows.part(grades[number - 1], grade):
             out.append(_ledge(grades[number - 1], grade, windows))
-        length = drawn_straight(wish, rng, haste, least, mean)
+        length = drawn_straight(wish, least, mean, task)
         if wish.length and wish.length.number is not None:
             # the straight alone is then a little short, and with what looks straight a little long
             beside = (before if number == 0 else None, after if number == len(wishes) - 1 else None)
@@ -218,13 +185,13 @@ def _ledge(before: Range | None, after: Range | None, windows: Windows) -> Eleme
     return Element(length, required_length=Range(length, length), required_grade=grade)
 
 
-def _change(grade: Range | None, other: Range | None, windows: Windows, haste: float) -> float:
+def _change(grade: Range | None, other: Range | None, task: DraftTask) -> float:
     """Returns the length in metres of straight to reserve for a change of grade at its end.
 
-    With ``haste`` 0, a comfortable parabola between the two grades has room, unless it needs more than 100 m.
+    Without haste, a comfortable parabola between the two grades has room, unless it needs more than 100 m.
     """
-    comfortable = windows.comfort * windows.between(grade, other) / 100
-    return max(CHANGE * (1 - 0.3 * haste), min(comfortable, LONGEST_CHANGE) * (1 - haste))
+    comfortable = task.windows.comfort * task.windows.between(grade, other) / 100
+    return max(CHANGE * (1 - 0.3 * task.haste), min(comfortable, LONGEST_CHANGE) * (1 - task.haste))
 
 
 def _with_hills(elements: list[Element], hills: Range, rng: np.random.Generator) -> list[Element]:
@@ -239,14 +206,12 @@ def _with_hills(elements: list[Element], hills: Range, rng: np.random.Generator)
     return out
 
 
-def _with_length(
-    elements: list[Element], asked: Range, rng: np.random.Generator, haste: float
-) -> list[Element] | None:
+def _with_length(elements: list[Element], asked: Range, task: DraftTask) -> list[Element] | None:
     """Returns the elements with free straights changed so that the road has the required length.
 
     Returns None if they cannot be shortened enough.
     """
-    now = sum(element.length for element in elements)
+    rng, now = task.rng, sum(element.length for element in elements)
     core = asked.around(NEAR_NUMBER)
     if core.lo + 1 < now < core.hi - 1:
         return elements
@@ -261,7 +226,7 @@ def _with_length(
         shares = rng.dirichlet(np.ones(len(free)))
         lengths = [elements[i].length + missing * share for i, share in zip(free, shares, strict=True)]
     else:
-        least = [_least(elements, i, LEAD if haste < 0.5 else SHORT_LEAD) for i in free]
+        least = [_least(elements, i, LEAD if task.haste < 0.5 else SHORT_LEAD) for i in free]
         slack = sum(elements[i].length - floor for i, floor in zip(free, least, strict=True))
         if slack < -missing:
             return elements if now < asked.hi - 1 else None

@@ -12,10 +12,10 @@ from pydantic import BaseModel
 
 from roadgpt.brief.model import Brief
 from roadgpt.chat import Chat, ChatSettings, Message, ReplyError, UnparsableError
+from roadgpt.chat.model import Repair
 from roadgpt.design.answer import AnswerRoad, AnswerStart, AnswerStep, design_of
-from roadgpt.design.asking import USUAL_HEIGHT, drawn_start
-from roadgpt.design.objections import objections
-from roadgpt.design.repair import How, repair
+from roadgpt.design.asking import USUAL_HEIGHT, drawn_start, listed, objections
+from roadgpt.design.repair import repair
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.network import NetworkDesign
 from roadgpt.road import Design, World, build
@@ -68,12 +68,6 @@ requests so far, and the name of the model; it raises UsageError if the answer i
 def whole(chat: Chat, task: DesignTask, form: type[Answer], judge: Judge[Answer]) -> Outcome:
     """Asks for whole roads until one is free of errors or all rounds are used up; returns the best one.
 
-    Args:
-        chat: the language model.
-        task: the road to design.
-        form: the form of an answer.
-        judge: makes and checks the design of an answer, such as ``judged_road``.
-
     Raises:
         DesignError: no answer was a road.
         ReplyError: no answer could be read.
@@ -101,7 +95,14 @@ def whole(chat: Chat, task: DesignTask, form: type[Answer], judge: Judge[Answer]
             if not wrong:
                 break
             said = _compact(reply.data)
-        messages = [*opening, Message(role="assistant", text=said or "(nothing)"), _objecting(wrong)]
+        messages = [
+            *opening,
+            Message(role="assistant", text=said or "(nothing)"),
+            Message(
+                role="user",
+                text=f"This road will not do:\n{listed(wrong)}\nGive the whole road again, mended.",
+            ),
+        ]
     if best:
         return best[0]._replace(questions=number)
     if isinstance(problem, ReplyError):
@@ -124,11 +125,6 @@ def judged_road(answer: AnswerRoad, task: DesignTask, number: int, model: str) -
     return Outcome(design, proposed, number, wrong, remarks, model)
 
 
-def _objecting(wrong: Sequence[str]) -> Message:
-    lines = "\n".join(f"- {sentence}" for sentence in wrong)
-    return Message(role="user", text=f"This road will not do:\n{lines}\nGive the whole road again, mended.")
-
-
 def _compact(answer: BaseModel) -> str:
     return json.dumps(answer.model_dump(exclude_none=True), separators=(",", ":"))[:MOST_SHOWN]
 
@@ -138,10 +134,6 @@ def stepwise(chat: Chat, task: DesignTask) -> Outcome:
 
     The model may try each segment as often as the setting ``rounds`` allows. If the last try is rejected as
     well, the segment is omitted, so the dialogue always ends.
-
-    Args:
-        chat: the language model.
-        task: the road to design.
 
     Raises:
         DesignError: no answer was a segment that can be placed.
@@ -160,7 +152,7 @@ class _Steps:
         self.model = ""
         self.remarks: list[str] = []
         self.steps: list[AnswerStep] = []
-        self.how: How = "none" if task.settings.repair == "none" else "place"
+        self.how: Repair = "none" if task.settings.repair == "none" else "place"
         self.mended = 0
         self.road: Design | None = None
         """The steps so far, repaired."""
@@ -176,24 +168,25 @@ class _Steps:
         tries, left_out, endings = 0, 0, 0
         wrong: tuple[str, ...] = ()
         while len(self.steps) < MOST_SEGMENTS and left_out < MOST_LEFT_OUT:
-            step = self._asked(wrong)
-            if isinstance(step, AnswerStep):
+            try:
+                step = self._asked(wrong)
+            except UnparsableError as error:
+                self.problem, wrong = error, (f"it could not be read: {error}",)
+            except ReplyError as error:  # the model declines: the road ends here
+                self.problem = error
+                break
+            else:
                 wrong = self._added(step, self.how)
                 if wrong and tries + 1 == self.task.settings.rounds:  # rather than leave the segment out
                     wrong = self._added(step, self.task.settings.repair)
                 if not wrong:
                     tries = left_out = 0
-                    if not step.last:
-                        continue
-                    endings += 1
-                    wrong = self._ended()
-                    if not wrong or endings == self.task.settings.rounds:
-                        break
+                    if step.last:
+                        endings += 1
+                        wrong = self._ended()
+                        if not wrong or endings == self.task.settings.rounds:
+                            break
                     continue
-            elif step is None:  # the model declines: the road ends here
-                break
-            else:
-                wrong = (step,)
             tries += 1
             if tries == self.task.settings.rounds:
                 self.remarks.append(f"segment {len(self.steps) + 1} was left out: {wrong[0]}")
@@ -219,25 +212,16 @@ class _Steps:
         task = f"{self.task.question}\n\n{question}"
         return [Message(role="system", text=self.task.rules), Message(role="user", text=task)]
 
-    def _asked(self, wrong: Sequence[str]) -> AnswerStep | str | None:
-        """Returns the next segment; a sentence if the answer contains none; None if the model declines."""
+    def _asked(self, wrong: Sequence[str]) -> AnswerStep:
+        """Returns the next segment; ``wrong`` says why the last answer was not accepted."""
         asked = [self._state(), "Give the next segment."]
         if wrong:
-            asked.insert(
-                1, "Your last answer will not do:\n" + "\n".join(f"- {sentence}" for sentence in wrong)
-            )
+            asked.insert(1, f"Your last answer will not do:\n{listed(wrong)}")
         self.questions += 1
-        try:
-            reply = self.chat.ask(self._messages("\n".join(asked)), AnswerStep)
-        except UnparsableError as error:
-            self.problem = error
-            return f"it could not be read: {error}"
-        except ReplyError as error:
-            self.problem = error
-            return None
+        reply = self.chat.ask(self._messages("\n".join(asked)), AnswerStep)
         self.model = reply.model
-        step = reply.data
-        return step if isinstance(step, AnswerStep) else "it is no segment"
+        step: AnswerStep = reply.data
+        return step
 
     def _state(self) -> str:
         """Returns a text that lists the segments so far, and says where the road ends."""
@@ -257,12 +241,13 @@ class _Steps:
         end = f"It has come to ({x:.0f}, {y:.0f}, {z:.0f}) and heads {heading:.0f} degrees."
         return "The road so far:\n" + "\n".join(lines) + f"\n{end}"
 
-    def _design(self, steps: Sequence[AnswerStep], brief: Brief | None = None) -> tuple[Design, Design]:
-        """Returns the design that the steps form as proposed, and after its repair."""
-        proposed, _ = design_of(self.start, list(steps))
-        return proposed, repair(proposed, brief, self.task.world, self.task.settings.repair).design
+    def _finished(self, steps: Sequence[AnswerStep]) -> tuple[Design, tuple[str, ...]]:
+        """Returns the repaired road of these steps, and what is still wrong with it."""
+        proposed, _ = design_of(self.start, steps)
+        design = repair(proposed, self.task.brief, self.task.world, self.task.settings.repair).design
+        return design, objections(design, self.task.brief, self.task.world)
 
-    def _added(self, step: AnswerStep, how: How) -> tuple[str, ...]:
+    def _added(self, step: AnswerStep, how: Repair) -> tuple[str, ...]:
         """Adds a segment to the road and returns (), or returns sentences that say why it was not added."""
         self.mended += how == "full"
         if self.mended > MOST_MENDED:
@@ -282,15 +267,13 @@ class _Steps:
 
     def _ended(self) -> tuple[str, ...]:
         """Returns what is wrong with the finished road; removes the last segment if less is then wrong."""
-        _, design = self._design(self.steps, self.task.brief)
-        wrong = objections(design, self.task.brief, self.task.world)
+        _, wrong = self._finished(self.steps)
         if wrong and len(self.steps) > 1:
-            shorter = self._design(self.steps[:-1], self.task.brief)[1]
-            if len(objections(shorter, self.task.brief, self.task.world)) < len(wrong):
+            shorter, fewer = self._finished(self.steps[:-1])
+            if len(fewer) < len(wrong):
                 self.remarks.append(f"segment {len(self.steps)} was taken back: {wrong[0]}")
                 self.steps.pop()
-                self.road = shorter
-                wrong = objections(shorter, self.task.brief, self.task.world)
+                self.road, wrong = shorter, fewer
         return wrong
 
     def _outcome(self) -> Outcome:
@@ -300,10 +283,6 @@ class _Steps:
             raise DesignError(
                 f"the model gave no segment that can be placed: {self.problem}; use another model"
             )
-        proposed, design = self._design(self.steps, self.task.brief)
-        _, remarks = design_of(self.start, list(self.steps))
-        wrong = objections(design, self.task.brief, self.task.world)
+        proposed, remarks = design_of(self.start, self.steps)
+        design, wrong = self._finished(self.steps)
         return Outcome(design, proposed, self.questions, wrong, (*remarks, *self.remarks), self.model)
-
-
-__all__ = ["DesignTask", "Outcome", "judged_road", "stepwise", "whole"]

@@ -24,13 +24,9 @@ def sentences(
 ) -> tuple[str, ...]:
     """Returns a sentence for each turn and straight that has changed, and for the road as a whole.
 
-    Args:
-        before: The road before the edit.
-        elements: The elements of that road.
-        found: The measurements of that road.
-        after: The road after the edit. Its elements have the same names as before the edit; if it has no
-            elements, only the measured turns are compared.
-        draft: The edited design before further segments were changed to keep the road valid.
+    ``elements`` and ``found`` are those of the road before the edit. If the Look at the road after the edit
+    has no elements of the same names, only the measured turns are compared. ``draft`` is the edited design
+    before further segments were changed to keep the road valid.
     """
     new = after.found
     things = _things(elements, after.elements, new) if after.elements else _counted(found, new)
@@ -44,13 +40,8 @@ def sentences(
 def grades_changed(
     before: Design, after: Design, stretches: Sequence[tuple[float, float]], geometry: Geometry
 ) -> Iterator[str]:
-    """Yields a sentence on the mean grade of each stretch of a road before and after an edit.
-
-    Args:
-        before: the road before the edit.
-        after: the road after the edit; the stretches must have the same stations on both.
-        stretches: the stations in metres at which each stretch starts and ends; one named twice counts once.
-        geometry: the kind of geometry that the roads are built with.
+    """Yields a sentence on the mean grade of each stretch of a road before and after an edit; the stretches
+    must have the same stations in metres on both roads, and one named twice counts once.
     """
     for start, end in dict.fromkeys(stretches):
         grades = []
@@ -73,7 +64,7 @@ def _things(before: RoadElements, new: RoadElements, found: Measures) -> Iterato
     names = _names(before)
     for element in before:
         now = after.get(element.name)
-        if now is None or (now.kind != element.kind):
+        if now is None or now.is_turn != element.is_turn:
             yield _gone(element, names[element.name], now)
         elif now.segments != element.segments:
             yield from _other(element, now, names[element.name], seen_as[now.name])
@@ -82,9 +73,9 @@ def _things(before: RoadElements, new: RoadElements, found: Measures) -> Iterato
         if element.name in names or element.name.endswith(" rest"):
             continue
         seen = seen_as[element.name]
-        if element.kind == "turn" and seen:
+        if element.is_turn and seen:
             yield f"{numbers[element.name]} is new: {_turn(seen)}"
-        elif element.kind == "gap":
+        elif not element.is_turn:
             is_alone = seen is not None and abs(seen.length - element.length) < FADING
             length = seen.length if seen and is_alone else element.length
             yield f"a straight of {length:.0f} m is new, {element.incline:+.1f} %"
@@ -94,7 +85,7 @@ def _names(elements: Sequence[RoadElement]) -> dict[str, str]:
     """Returns what a person would call each element, by the name of the element."""
     out, turns, straights = dict[str, str](), 0, 0
     for element in elements:
-        if element.kind == "turn":
+        if element.is_turn:
             turns += 1
             out[element.name] = f"turn {turns}"
         else:
@@ -110,7 +101,7 @@ def _turn(seen: MeasuredFeature) -> str:
 
 def _gone(element: RoadElement, name: str, now: RoadElement | None) -> str:
     seen = element.seen
-    if element.kind == "turn" and seen:
+    if element.is_turn and seen:
         instead = f", in its place {now.length:g} m straight" if now and now.segments else ""
         return f"{name} is gone ({seen.degrees:.0f} degrees to the {seen.side}){instead}"
     return f"{name} is gone"
@@ -119,22 +110,21 @@ def _gone(element: RoadElement, name: str, now: RoadElement | None) -> str:
 def _other(element: RoadElement, now: RoadElement, name: str, seen: MeasuredFeature | None) -> Iterator[str]:
     """Yields a sentence about the changes to an element that is on both roads; none if it is unchanged."""
     was = element.seen
-    if not now.segments or (was is not None and seen is None and now.length < was.length):
-        short = f"{name}: {now.length:g} m as written, too short to be seen"
-        yield short if now.segments else f"{name} is gone"
+    if not now.segments:
+        yield f"{name} is gone"
+        return
+    if was is not None and seen is None and now.length < was.length:
+        yield f"{name}: {now.length:g} m as written, too short to be seen"
         return
     said = []
     if was and seen:
         if was.side != seen.side:
             said.append(f"to the {seen.side} and not to the {was.side}")
-        if was.kind == "turn" and abs(was.degrees - seen.degrees) >= 0.5:
-            said.append(f"{was.degrees:.0f} -> {seen.degrees:.0f} degrees")
-        if (
-            was.kind == "turn"
-            and abs(was.radius / seen.radius - 1) >= 0.02
-            and abs(was.radius - seen.radius) >= 1
-        ):
-            said.append(f"radius {was.radius:.0f} -> {seen.radius:.0f} m")
+        if was.kind == "turn":
+            if abs(was.degrees - seen.degrees) >= 0.5:
+                said.append(f"{was.degrees:.0f} -> {seen.degrees:.0f} degrees")
+            if abs(was.radius / seen.radius - 1) >= 0.02 and abs(was.radius - seen.radius) >= 1:
+                said.append(f"radius {was.radius:.0f} -> {seen.radius:.0f} m")
         if abs(was.length - seen.length) >= 1 and (was.kind == "straight" or not said):
             said.append(f"length {was.length:.0f} -> {seen.length:.0f} m")
     if abs(element.incline - now.incline) >= 0.05:
@@ -184,9 +174,6 @@ def _segment(number: int, before: Segment, after: Segment) -> str:
     for name in ("radius", "transition", "vertical_radius"):
         one, other = getattr(before, name), getattr(after, name)
         if one != other:
-            said.append(f"{name.replace('_', ' ')} {_metres(one)} -> {_metres(other)}")
+            values = ("open" if value is None else f"{value:g} m" for value in (one, other))
+            said.append(f"{name.replace('_', ' ')} {' -> '.join(values)}")
     return f"segment {number}: {', '.join(said)}" if said else ""
-
-
-def _metres(value: float | None) -> str:
-    return "open" if value is None else f"{value:g} m"

@@ -5,6 +5,7 @@ straights.
 from collections.abc import Sequence
 from dataclasses import replace
 from math import degrees, exp, inf, log, radians
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,10 @@ from roadgpt.road import World
 ANY_TURN = Range(25, 120)  # degrees, where nothing is said: the table in brief.words
 AIMS = {meaning.names[0]: meaning.aim for meaning in KINDS.values() if meaning.aim}
 SHARPNESS_AIMS = {meaning.degrees: meaning.aim for meaning in SHARPNESS.values() if meaning.aim}
+WORD_RADII = frozenset(meaning.radius for meaning in (*KINDS.values(), *SHARPNESS.values()))
+"""The radii of words such as "gentle", whose turns use the whole range."""
+FEWEST_TO_BOUND = 3  # turns of which one is as tight as a bound allows
+NEAR_BOUND = 1.06  # greatest ratio of its radius to the bound
 WIDEST = 115.0  # m, of a radius that nobody asked for
 LONGEST_TURN = 170.0  # m along the curve
 SEEN_ARC = 6.5  # m: a shorter arc is not measured with its own radius, which is averaged over some 9 m
@@ -39,22 +44,50 @@ OFF_TOP, UP_TO = 0.6, 0.97  # share of its range to which a straight may grow: w
 TIGHTER = 1.35  # ratio of the widest radius of a hard road to its least
 
 
-def narrowed_turns(
-    turns: Sequence[Feature], outline: Outline, windows: Windows, world: World, haste: float
-) -> list[Feature]:
+class DraftTask(NamedTuple):
+    """What the parts of a draft are drawn for."""
+
+    outline: Outline
+    windows: Windows
+    world: World
+    rng: np.random.Generator
+    haste: float
+    """From 0 to 1; the larger it is, the smaller the lengths, angles and radii."""
+
+
+def narrowed_turns(turns: Sequence[Feature], task: DraftTask) -> list[Feature]:
     """Returns the turns with the ranges from which their angle, radius, length and grade are chosen.
 
     The ranges lie a little inside the required ones. Where a number is required, they lie close around it,
-    less close as ``haste`` grows from 0 to 1.
+    less close in haste.
 
     Raises:
         DesignError: a range is empty, for example because the rules forbid a radius as too tight.
     """
-    narrowed = [_narrowed(turn, outline, world, haste) for turn in turns]
-    return [replace(turn, grade=windows.of(turn)) for turn in narrowed]
+    narrowed = [_narrowed(turn, task) for turn in turns]
+    return [replace(turn, grade=task.windows.of(turn)) for turn in narrowed]
 
 
-def _narrowed(turn: Feature, outline: Outline, world: World, haste: float) -> Feature:
+def with_one_at_bound(
+    narrowed: Sequence[Feature], turns: Sequence[Feature], task: DraftTask
+) -> list[Feature]:
+    """Returns narrowed turns, one of them about as tight as the others must at least be wide, if a number was
+    given for that: "no radius below 25 m" is then true of roads, and "25 m at the tightest" as well.
+
+    ``turns`` are the same turns with the required ranges. Of two turns or fewer none is changed.
+    """
+    out, bounds = [*narrowed], {overlap(turn.radius, task.outline.each_turn.radius) for turn in turns}
+    bound = bounds.pop()
+    if bounds or len(turns) < FEWEST_TO_BOUND or bound is None or bound.hi < inf or bound in WORD_RADII:
+        return out
+    at = int(task.rng.integers(len(out)))
+    low = (out[at].radius or bound).lo
+    out[at] = replace(out[at], radius=Range(low, NEAR_BOUND * low))
+    return out
+
+
+def _narrowed(turn: Feature, task: DraftTask) -> Feature:
+    outline, world, haste = task.outline, task.world, task.haste
     least = max(world.limits.design_radius, 0.8 * world.section.road_width)
     promised = overlap(turn.radius, outline.each_turn.radius)
     own = _inside(promised, 0.04).around(_loosened(NEAR_RADIUS, haste)) if promised else Range()
@@ -108,45 +141,36 @@ def hand_of(turn: Feature) -> int:
     return -1 if turn.side == "right" else 1
 
 
-def drawn_turns(
-    turns: Sequence[Feature], outline: Outline, world: World, rng: np.random.Generator, haste: float
-) -> list[Element]:
-    """Chooses the angle, radius and transitions of each turn at random.
-
-    Args:
-        turns: the turns with the ranges to choose from, as ``narrowed_turns`` returns them.
-        outline: the requirements for the road.
-        world: the World; the size of its map limits the length of a turn.
-        rng: random number generator.
-        haste: from 0 to 1; the larger it is, the smaller the angles and radii.
+def drawn_turns(turns: Sequence[Feature], task: DraftTask) -> list[Element]:
+    """Chooses the angle, radius and transitions of each turn at random, from the ranges that
+    ``narrowed_turns`` returned.
     """
+    rng, turning = task.rng, task.outline.turning
     ranges = [turn.degrees or ANY_TURN for turn in turns]
     hands = [hand_of(turn) for turn in turns]
-    angles = [degrees.lo + _share(rng, haste) * (degrees.hi - degrees.lo) for degrees in ranges]
+    angles = [degrees.lo + _share(task) * (degrees.hi - degrees.lo) for degrees in ranges]
     angles = _uncoiled(angles, ranges, hands, 215 + 115 * rng.random())
-    if outline.turning:
-        angles = _summed(angles, ranges, drawn_target(outline.turning, rng))
+    if turning:
+        angles = _summed(angles, ranges, drawn_target(turning, rng))
         turns = [replace(t, degrees=Range(a - KEPT, a + KEPT)) for t, a in zip(turns, angles, strict=True)]
-    longest = longest_turn(len(turns), outline, world) * (1 - 0.6 * haste)
-    return [
-        drawn_turn(turn, angle, longest, outline.hard, rng, haste)
-        for turn, angle in zip(turns, angles, strict=True)
-    ]
+    longest = longest_turn(len(turns), task) * (1 - 0.6 * task.haste)
+    return [drawn_turn(turn, angle, longest, task) for turn, angle in zip(turns, angles, strict=True)]
 
 
-def longest_turn(turns: int, outline: Outline, world: World) -> float:
+def longest_turn(turns: int, task: DraftTask) -> float:
     """Returns the greatest length of a turn in metres, for a road with ``turns`` turns."""
+    outline = task.outline
     wide = outline.each_turn.radius
     longest = max(LONGEST_TURN, wide.lo * radians(WIDE_ANGLE)) if wide and wide.lo > WIDEST else LONGEST_TURN
-    by_map = min(2.2 * world.site.map_size / (turns + 1.2), longest)
+    by_map = min(2.2 * task.world.site.map_size / (turns + 1.2), longest)
     if outline.length is None or outline.length.hi == inf:
         return by_map
     straights = 2 * LEAD + 0.4 * SEPARATE * (turns - 1)
     return min(by_map, max(1.2 * (0.95 * outline.length.hi - straights) / max(turns, 1), 10.0))
 
 
-def _share(rng: np.random.Generator, haste: float) -> float:
-    return float(rng.random() * (1 - 0.9 * haste))
+def _share(task: DraftTask) -> float:
+    return float(task.rng.random() * (1 - 0.9 * task.haste))
 
 
 def _uncoiled(angles: list[float], ranges: Sequence[Range], hands: Sequence[int], most: float) -> list[float]:
@@ -184,19 +208,14 @@ def _swing(signed: Sequence[float]) -> float:
     return high - low
 
 
-def drawn_turn(
-    turn: Feature, angle: float, longest: float, hard: bool, rng: np.random.Generator, haste: float
-) -> Element:
-    """Chooses the radius and the transitions of one turn at random.
+def drawn_turn(turn: Feature, angle: float, longest: float, task: DraftTask) -> Element:
+    """Chooses the radius and the transitions of one turn at random, within the ranges that
+    ``narrowed_turns`` returned. On a hard road, the radius is near the smallest one allowed.
 
-    Args:
-        turn: the turn with the ranges to choose from, as ``narrowed_turns`` returns it.
-        angle: change of heading in degrees; it may be changed within its range so that the turn fits.
-        longest: greatest length of the turn in metres.
-        hard: True if a hard road was requested; the radius is then near the smallest one allowed.
-        rng: random number generator.
-        haste: from 0 to 1; the larger it is, the smaller the radius.
+    ``angle``, the change of heading in degrees, may be changed within its range so that the turn is no longer
+    than ``longest`` metres.
     """
+    rng, hard = task.rng, task.outline.hard
     asked, radii = turn.degrees or ANY_TURN, turn.radius or Range(0)
     least, most, is_tight = radii.lo, radii.hi, radii.hi < inf
     if hard:
@@ -210,11 +229,11 @@ def drawn_turn(
         angle = min(max(degrees((length - transition) / radius), asked.lo), asked.hi)
         return turn_element(angle, hand_of(turn), radius, transition, turn.grade, turn.climb)
     if not is_tight and not hard:
-        least = max(least, SHORTEST_TURN * (1 - haste) / radians(angle))
+        least = max(least, SHORTEST_TURN * (1 - task.haste) / radians(angle))
     wide = max(min(most, WIDEST if most == inf else most), min(least * 1.4, most))
     if is_tight:  # short turns are measured wider than they are
         wide = least + 0.85 * (wide - least)
-    radius = exp(log(least) + _share(rng, haste) * (log(wide) - log(least)))
+    radius = exp(log(least) + _share(task) * (log(wide) - log(least)))
     if radius * radians(angle) > longest:
         if rng.random() < 0.7:
             angle = max(asked.lo, min(angle, degrees(longest / radius)))
@@ -235,24 +254,20 @@ def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Gene
     return min(transition, MOST_TRANSITION * arc / segments_of_turn(angle))
 
 
-def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
+def drawn_straight(wish: Feature, least: float, mean: float, task: DraftTask) -> float:
     """Chooses the length of a required straight at random, in metres.
 
-    Args:
-        wish: the required straight.
-        rng: random number generator.
-        haste: from 0 to 1; the larger it is, the shorter a straight without an upper limit.
-        least: least length in metres; reduced if the required range does not allow it.
-        mean: average number of metres by which a straight without an upper limit exceeds its least length.
+    It is at least ``least`` metres if the required range allows that. Without an upper limit, it is
+    ``mean`` metres longer on average.
     """
     span = wish.length or Range(10, inf)
     low, high = span.lo, span.hi
     if high == inf:
         low = max(inside(low), 22.0, least)
-        return free_straight(rng, haste, low, mean)
+        return free_straight(low, mean, task)
     low = max(low, 0.0)
-    share = 0.5 + (0.4 if span.number is None else NEAR_LENGTH) * (rng.random() - 0.5)
-    most = low + min(OFF_TOP + 3 * haste, UP_TO) * (high - low)
+    share = 0.5 + (0.4 if span.number is None else NEAR_LENGTH) * (task.rng.random() - 0.5)
+    most = low + min(OFF_TOP + 3 * task.haste, UP_TO) * (high - low)
     return max(low + share * (high - low), min(least, most))
 
 
@@ -261,10 +276,9 @@ def inside(least: float) -> float:
     return 1.05 * least + 3.0
 
 
-def free_straight(rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
+def free_straight(least: float, mean: float, task: DraftTask) -> float:
     """Returns a random length, in metres, of a straight without requirements.
 
-    The length is ``least`` plus a random part. This part is about ``mean`` metres on average if ``haste`` is
-    0, and becomes shorter as ``haste`` grows towards 1.
+    The length is ``least`` plus a random part, which is about ``mean`` metres on average without haste.
     """
-    return least + min(float(rng.exponential(mean)), 3 * mean) * (1 - 0.95 * haste)
+    return least + min(float(task.rng.exponential(mean)), 3 * mean) * (1 - 0.95 * task.haste)

@@ -33,16 +33,8 @@ def turn_element(
 ) -> Element:
     """Returns a turn with numbers rounded to the precision of design files.
 
-    Its transitions are short enough to fit its arc.
-
-    Args:
-        angle: change of heading in degrees, positive.
-        hand: 1 for a left turn, -1 for a right turn.
-        radius: radius of the arc in metres.
-        transition: length in metres of the clothoid at each end; it is shortened to at most 0.55 of the arc
-            length of one segment.
-        required_grade: range that the mean grade must lie in, in percent; None if no grade is required.
-        required_climb: range of the height of the end above the start in metres; None if none is required.
+    The angle is in degrees and positive; ``hand`` is 1 for a left turn, -1 for a right turn. The transition
+    at each end is shortened to at most 0.55 of the arc length of one segment, so that it fits.
     """
     parts = segments_of_turn(angle)
     share = round(angle / parts * TENTH) / TENTH

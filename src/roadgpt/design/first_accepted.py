@@ -3,6 +3,7 @@
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable
+from itertools import islice
 from typing import TypeVar
 
 from roadgpt import check
@@ -35,18 +36,13 @@ def first_accepted(
     Args:
         drafts: the drafts; None stands for a draft that did not fit on the map, and is skipped.
         build: builds the route of a draft.
-        brief: the requirements.
-        world: limits that the rules check.
+        brief, world: the requirements, and the World with the limits that the rules check.
         failed: number of drafts that failed for each reason; this function adds to it. Reasons that differ
             only in places and sizes, or are findings of one rule, count as the first of them.
         most: greatest number of drafts that are built.
     """
-    built = 0
     reasons: dict[str, str] = {}
-    for draft in drafts:
-        if draft is None:
-            continue
-        built += 1
+    for draft in islice((draft for draft in drafts if draft is not None), most):
         try:
             findings = check.inspect(build(draft, world), brief, world)
         except UsageError as error:
@@ -58,6 +54,4 @@ def first_accepted(
             first = findings[0]
             why = LANES_DIFFER if first.rule == "unreachable" else PLACE.sub("", first.sentence)
             failed[reasons.setdefault(first.rule, why)] += 1
-        if built == most:
-            break
     return None

@@ -49,16 +49,9 @@ def corrected_draft(
     """Returns the segments of a draft, corrected in up to eight rounds, and a Complaint for each requirement
     that they still violate.
 
-    Args:
-        elements: the elements of the draft, with inclines.
-        line: their centre line.
-        outline: the requirements for the road.
-        limit: range of inclines that are allowed, in percent.
-        pace: the vertical radii that the expected speeds require.
-        ease: share (0 to 1) of the comfortable vertical radii to aim for between consecutive straights, if
-            at least one has a fixed length. If the rule requires a larger radius, that one is used.
-        share: the share to aim for everywhere else.
-        bumps: True allows vertical accelerations of up to 1 g, as for a requested crest or dip.
+    ``limit`` is the range of inclines that are allowed, in percent. Between consecutive straights of which at
+    least one has a fixed length, parabolas have the share ``ease`` of comfort, and ``share`` elsewhere; for
+    these and ``bumps``, see ``Pace.eased``.
     """
     ends = np.cumsum([element.length for element in elements])
     for n in range(CORRECTIONS):

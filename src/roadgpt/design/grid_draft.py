@@ -11,9 +11,10 @@ from math import inf, pi
 import numpy as np
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.map_clause import JunctionCount, MapClause
+from roadgpt.brief.junctions import JunctionCount, MapClause
 from roadgpt.brief.ranges import Range, overlap
-from roadgpt.design.map_draft import DraftNode, MapDraft, Rng, drawn_bend, drawn_kerb, drawn_stub, kind_of
+from roadgpt.design.map_draft import DraftNode, MapDraft, Rng, drawn_bend, drawn_kerb, drawn_stub
+from roadgpt.network.map_design import NodeKind
 from roadgpt.network.turning import tangent_length
 
 LEAST_BLOCK = 48.0  # m, least side of a block if no length is required; a smaller one has no room for bends
@@ -26,6 +27,8 @@ ENTRANCES = (2, 4)  # number of roads that lead out of a grid, if none is requir
 CONTACT = 13.0  # m, approximate distance from a node to the start of its roads
 ALIKE = 2  # how far a count may exceed its lower limit if it has no upper limit
 SIDES: tuple[tuple[int, int], ...] = ((-1, 0), (1, 0), (0, -1), (0, 1))
+KINDS: tuple[NodeKind, ...] = ("end", "bend", "t_junction", "crossroads", "star")
+"""The kinds of nodes of a grid at which 1 to 5 roads meet."""
 
 Cell = tuple[int, int]
 """The column and the row of a node, from 0."""
@@ -34,12 +37,8 @@ Cell = tuple[int, int]
 def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, haste: float) -> MapDraft | None:
     """Returns a random draft of a grid; None if the draft leaves too little room for its bends.
 
-    Args:
-        asked: the number of columns and rows of blocks, their side, and the number of dead ends.
-        room: the side in metres of the square into which the grid should fit.
-        least_radius: the smallest radius in metres of a bend.
-        rng: random number generator.
-        haste: from 0 to 1; the larger it is, the smaller the grid.
+    ``room`` is the side in metres of the square into which the grid should fit, and ``least_radius`` the
+    smallest radius in metres of a bend. The larger ``haste``, from 0 to 1, the smaller the grid.
     """
     size = drawn_count(asked.columns, rng), drawn_count(asked.rows, rng)
     entrances = _entrances(size, asked.dead_ends, rng, haste)
@@ -153,7 +152,7 @@ def with_kinds_and_bends(draft: MapDraft, least_radius: float, rng: Rng) -> bool
     """Gives each node its kind, and each bend its radius; returns whether all bends have room."""
     ends = draft.neighbours()
     for number, node in enumerate(draft.nodes):
-        node.kind = kind_of(len(ends[number]))
+        node.kind = KINDS[len(ends[number]) - 1]
     for number, node in enumerate(draft.nodes):
         if node.kind != "bend":
             continue

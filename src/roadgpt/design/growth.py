@@ -17,14 +17,12 @@ from roadgpt.brief.element import Element, Elements
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.ranges import Range
-from roadgpt.design.compose import NEAR_NUMBER, asked_length, gap_between
-from roadgpt.design.draw import ANY_TURN, drawn_turn, hand_of, longest_turn, narrowed_turns
+from roadgpt.design.compose import NEAR_NUMBER, gap_between
+from roadgpt.design.draw import ANY_TURN, DraftTask, drawn_turn, hand_of, longest_turn, narrowed_turns
 from roadgpt.design.layout import COARSENESS, NEIGHBOURS, SPARE, MapPose, PlacedPlan, PlanLine, walk
 from roadgpt.design.sequence import TurnSequence, may_repeat_last_turn
-from roadgpt.design.windows import Windows
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.nearness import Complex, meeting
-from roadgpt.road import World
 from roadgpt.road.road import CONTROL_SPACING, MOST_CONTROL_POINTS
 
 TRIED = 14  # candidates for each turn
@@ -65,53 +63,34 @@ class _Way(NamedTuple):
         )
 
 
-def grown(
-    order: TurnSequence, outline: Outline, windows: Windows, world: World, rng: np.random.Generator
-) -> PlacedPlan | None:
+def grown(order: TurnSequence, task: DraftTask) -> PlacedPlan | None:
     """Returns a road of the required length, drafted turn by turn; None if it found no room on the map.
 
     Also returns None if no length is required, if there are no turns, or if a sum of all turning angles is
     required.
-
-    Args:
-        order: the turns, each to the left or right, and the required straights between them.
-        outline: the requirements for the road.
-        windows: the grades that the requirements allow.
-        world: size of the map, and limits that the rules check, such as the steepest grade.
-        rng: random number generator.
     """
-    asked = asked_length(outline, windows)
-    if asked is None or asked.lo <= 0 or not order.turns or outline.turning:
+    asked = task.outline.length
+    if asked is None or asked.lo <= 0 or not order.turns or task.outline.turning:
         return None
     near = asked.around(NEAR_NUMBER)
     low, high = near.lo + 1, min(near.hi - 1, 1.3 * near.lo)
-    target = low + (high - low) * (0.3 + 0.4 * rng.random())
-    return _Growth(order, outline, windows, world, rng, target, asked).run()
+    target = low + (high - low) * (0.3 + 0.4 * task.rng.random())
+    return _Growth(order, task, target, asked).run()
 
 
 class _Growth:
     """One attempt to draft a long road."""
 
-    def __init__(
-        self,
-        order: TurnSequence,
-        outline: Outline,
-        windows: Windows,
-        world: World,
-        rng: np.random.Generator,
-        target: float,
-        asked: Range,
-    ) -> None:
-        self.order, self.outline, self.windows, self.world, self.rng = order, outline, windows, world, rng
-        self.target, self.asked = target, asked
-        self.more = may_repeat_last_turn(outline)
-        self.has_open_sides = _has_open_sides(outline)
-        turns = narrowed_turns(order.turns, outline, windows, world, haste=0.5)
-        self.turns = [_roomy(turn, target) for turn in turns]
-        self.longest = longest_turn(len(turns), outline, world)
+    def __init__(self, order: TurnSequence, task: DraftTask, target: float, asked: Range) -> None:
+        self.order, self.task, self.target, self.asked = order, task, target, asked
+        self.outline, self.world, self.rng = task.outline, task.world, task.rng
+        self.more = may_repeat_last_turn(self.outline)
+        self.has_open_sides = _has_open_sides(self.outline)
+        self.turns = [_roomy(turn, target) for turn in narrowed_turns(order.turns, task)]
+        self.longest = longest_turn(len(order.turns), task)
         low, high = EXTRA.get(order.turns[-1].name, EXTRA_OF_OTHERS)
-        self.extra = low + (high - low) * rng.random()
-        self.apart = world.section.road_width + SPARE + COARSENESS + BULGE
+        self.extra = low + (high - low) * self.rng.random()
+        self.apart = self.world.section.road_width + SPARE + COARSENESS + BULGE
 
     def run(self) -> PlacedPlan | None:
         start, heading = self._start()
@@ -159,26 +138,16 @@ class _Growth:
         return self.turns[-1], ()
 
     def _step(
-        self,
-        way: _Way,
-        before: Element | None,
-        asked: Feature,
-        wishes: Sequence[Feature],
-        at: int,
+        self, way: _Way, before: Element | None, asked: Feature, wishes: Sequence[Feature], at: int
     ) -> tuple[_Way, Element] | None:
         """Returns the road with one more turn, and that turn; None if no candidate has room.
 
-        Args:
-            way: the road so far.
-            before: the last turn of the road so far; None if there is none.
-            asked: the ranges of the next turn.
-            wishes: the straights that are required before the next turn.
-            at: the number of the next turn, from 0.
+        ``before`` is the last turn so far. The next one, number ``at`` from 0, has the ranges ``asked``, and
+        the straights ``wishes`` before it.
         """
         hand, degrees = hand_of(asked), asked.degrees or ANY_TURN
         if at >= len(self.order.turns) and before:
-            switches = self.has_open_sides is False
-            hand = -1 if (before.turn > 0) == switches else 1
+            hand = -1 if (before.turn > 0) != self.has_open_sides else 1
         extra = self._extra(way.length, at)
         for number in range(TRIED):
             if self.has_open_sides and number % 2 == 0:
@@ -188,8 +157,8 @@ class _Growth:
             haste = number / TRIED
             angle = degrees.lo + self.rng.random() * (degrees.hi - degrees.lo)
             sided = replace(asked, side="left" if hand > 0 else "right")
-            turn = drawn_turn(sided, angle, self.longest, self.outline.hard, self.rng, haste)
-            gap = gap_between(before, wishes, turn, self.outline, self.windows, self.rng, 0.5 + haste / 2)
+            turn = drawn_turn(sided, angle, self.longest, self.task._replace(haste=haste))
+            gap = gap_between(before, wishes, turn, self.task._replace(haste=0.5 + haste / 2))
             elements = _stretched(gap, extra * (1 - haste) * self.rng.uniform(*UNEVEN))
             line = walk([*elements, turn])
             if self._is_free(way, line, AHEAD):
@@ -206,7 +175,7 @@ class _Growth:
     def _out(self, way: _Way, before: Element | None) -> _Way | None:
         """Returns the road with its last straight; None if there is no room for it."""
         wishes = self.order.gaps[-1]
-        elements = gap_between(before, wishes, None, self.outline, self.windows, self.rng, 1.0)
+        elements = gap_between(before, wishes, None, self.task._replace(haste=1.0))
         missing = self.target - way.length - sum(element.length for element in elements)
         for share in (1.0, 0.7, 0.4, 0.0):
             longer = _stretched(elements, share * missing) if missing > 0 else elements

@@ -44,16 +44,12 @@ ROUNDS = 200  # draws of the arms of one junction
 
 
 def drawn_junction(
-    asked: JunctionClause, after: int, rng: Rng, haste: float, others: Collection[JunctionKind] = ()
+    asked: JunctionClause, rng: Rng, haste: float, others: Collection[JunctionKind] = ()
 ) -> JunctionDesign | None:
     """Returns a random junction that meets its requirements; None if 200 draws found none.
 
-    Args:
-        asked: the requirements.
-        after: number of segments of the route after which the junction follows.
-        rng: random number generator.
-        haste: from 0 to 1; the larger it is, the smaller the junction.
-        others: kinds that a junction of any kind does not get, if it can be a T-junction or crossroads then.
+    The larger ``haste``, from 0 to 1, the smaller the junction. A junction of any kind gets none of the kinds
+    ``others``, if it can be a T-junction or crossroads then.
     """
     for _ in range(ROUNDS):
         kind = _kind(asked, rng, others)
@@ -83,7 +79,7 @@ def drawn_junction(
             continue
         kerb = float(rng.uniform(*KERBS))
         drawn = JunctionDesign(
-            after=after,
+            after=1,
             kind=kind,
             take=taken + 1,
             control=clause.control or "none",
@@ -203,7 +199,8 @@ def _around(clause: JunctionClause, rng: Rng) -> list[float]:
 
 def _has_ways(clause: JunctionClause, angles: Sequence[float]) -> bool:
     """Returns whether no arm is too near to another, and all arms lead where they are required."""
-    apart = all(b - a >= ASTERN + 1 for a, b in pairwise([-180.0, *angles, 180.0]))
+    least = min(b - a for a, b in pairwise([-180.0, *angles, 180.0]))
+    has_angle = clause.angle is None or is_about(least, clause.angle)
     unclear = [angle for angle in angles if STRAIGHT < abs(angle) < _clear(clause)]
     is_clear = clause.kind in ("roundabout", "star", "y_junction") or not unclear
     sides, asked = [side_of(angle) for angle in angles], (*clause.only_in, *clause.only_out)
@@ -211,18 +208,12 @@ def _has_ways(clause: JunctionClause, angles: Sequence[float]) -> bool:
         has_ways = sorted([*clause.ways, *clause.only_in]) == sorted(sides)
     else:
         has_ways = {*clause.ways, *asked} <= {*sides}
-    return apart and is_clear and has_ways and _has_angle(clause, angles)
+    return least >= ASTERN + 1 and is_clear and has_ways and has_angle
 
 
 def _clear(clause: JunctionClause) -> float:
     """Returns the least turn in degrees of an arm that leads to the left or right."""
     return CLEAR if clause.degrees is None and clause.angle is None else SLIGHTEST
-
-
-def _has_angle(clause: JunctionClause, angles: Sequence[float]) -> bool:
-    """Returns whether the two least distant arms are as far apart as required."""
-    least = min(b - a for a, b in pairwise([-180.0, *angles, 180.0]))
-    return clause.angle is None or is_about(least, clause.angle)
 
 
 def _one_way(clause: JunctionClause, angles: Sequence[float]) -> list[Literal["in", "out"] | None]:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from math import inf
 
 from roadgpt.brief.amount import Amount, at_least, between, span
+from roadgpt.brief.junction_check import LEAST_BESIDE_RAMP, LEAST_LANE, WIDE_IN_TAPER
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
-from roadgpt.brief.lane_sequence import LEAST_BESIDE_RAMP, LEAST_LANE, WIDE_IN_TAPER
 from roadgpt.brief.model import Brief
 from roadgpt.brief.ranges import Range, nearest
 from roadgpt.brief.words import MOST_LANES, ROAD
@@ -29,10 +29,6 @@ MOST_IN_TAPER = 0.6  # greatest share of the required length of a road that a ta
 LEAST_BESIDE = 20.0  # m, least length of an acceleration or deceleration lane, if none is required
 SHORT_ROAD = 30.0  # m, least length of a road before or behind a ramp
 SHORTEST_PART = 12.0  # m, least length of a road before or behind a place where lanes change
-USUAL_ROAD = 90.0  # m, of a road whose length is not said
-DIAGONAL = 1.25  # times the side of the map, that a straight route can be long
-EDGES = 40.0  # m, kept free at the edges of the map
-STEP = 50.0  # m, to which the side of the map is rounded up
 SLACK = 1.0  # m by which a length exceeds the least one that is required
 CHANGE = (40.0, 80.0)  # m, length of a road in whose middle the car changes lanes, if none is required
 WITHIN = 0.97  # share of the greatest length allowed that is taken if no least length is required
@@ -42,11 +38,9 @@ CLOSE = 0.5  # share of the tolerance of a required length that drafts may use
 def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
     """Returns a merge or an exit that meets its requirements, with traffic on the right.
 
-    Args:
-        asked: the requirements.
-        room: length in metres that is available for the acceleration or deceleration lane with its taper. If
-            no length is required, the lane is made to fit, but is at least 20 m long without its taper. If no
-            taper is required, it is shorter than usual where the lane would else not fit.
+    ``room`` is the length in metres that is available for the acceleration or deceleration lane with its
+    taper. If no length is required, the lane is made to fit, but is at least 20 m long without its taper. If
+    no taper is required, it is shorter than usual where the lane would else not fit.
     """
     assert asked.kind in RAMPS
     wide = LEAST_BESIDE_RAMP + SLACK if asked.length is None else _length(asked.length)
@@ -67,12 +61,8 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
 
 
 def with_side_of_change(places: Sequence[JunctionClause], number: int) -> JunctionClause:
-    """Returns what is required of a lane that begins or ends, with its side if a lane change beside it says
-    that: the car changes into the lane that begins, and has left the side on which a lane ends.
-
-    Args:
-        places: what the route passes.
-        number: which of these places is meant.
+    """Returns what is required of a place; a lane that begins or ends there gets its side if a lane change
+    beside it says that: the car changes into the lane that begins, and has left the side on which one ends.
     """
     place = places[number]
     before = places[number - 1] if number else None
@@ -89,10 +79,7 @@ def with_side_of_change(places: Sequence[JunctionClause], number: int) -> Juncti
 def drawn_change(asked: JunctionClause, around: Sequence[Brief]) -> LanesChangeDesign:
     """Returns a place where a lane ends, begins or is changed, which meets its requirements.
 
-    Args:
-        asked: the requirements.
-        around: the requirements for the roads before and behind the place. If a road has to be short, the
-            taper is shorter than usual.
+    If a road ``around`` it, before or behind the place, has to be short, the taper is shorter than usual.
     """
     side = asked.take or asked.side or "right"
     room = MOST_IN_TAPER * min(span(road.length).hi for road in around)
@@ -117,12 +104,7 @@ def counted_from_lanes(brief: Brief, places: Sequence[PlaceDesign], width: float
 
     A car changes lanes in the middle of the road behind the place of a ``lane_change``. If only the road
     before this place has a required length, the Brief measures it up to that middle, and the road behind gets
-    a length of 40 to 80 m.
-
-    Args:
-        brief: the requirements.
-        places: the junctions, ramps and lane changes that the route passes, in order.
-        width: width in metres of each lane.
+    a length of 40 to 80 m. ``width`` is that of each lane in metres.
     """
     roads = list(brief.roads)
     for n, place in enumerate(places):
@@ -162,11 +144,7 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
 
     If no lanes are required for a road behind a junction, it usually gets the lanes of the road before the
     junction if the route leads straight on. If the route turns, it gets these lanes only if the lanes of both
-    directions are required for the road before the junction.
-
-    Args:
-        brief: the requirements.
-        width: width in metres of each lane.
+    directions are required for the road before the junction. Each lane is ``width`` metres wide.
     """
     roads = _continued(brief)
     forward = _forward(roads, brief.junctions)

@@ -32,6 +32,7 @@ BEYOND = 1.05  # m by which SBFT's spline may run on behind either end
 CENTIMETRE, HUNDREDTH = 100.0, 100.0  # per metre, per degree: starts are rounded to these units
 TURNS = np.array(sorted(range(-4500, 4501), key=abs)) / HUNDREDTH  # degrees, the smallest first
 PORTIONS = 60  # parts into which these turns are divided, tried one after another
+STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of a draft
 
 
 class PlanLine(NamedTuple):
@@ -94,12 +95,8 @@ def _headings(s: Array, knots: Array, bends: Array) -> Array:
 
 
 def keeps_clear(line: PlanLine, world: World, with_shoulders: bool) -> bool:
-    """Returns whether no two parts of the road overlap.
-
-    Args:
-        line: the centre line.
-        world: width of the carriageway and of its shoulders.
-        with_shoulders: True if carriageways must also keep off each other's shoulders.
+    """Returns whether no two parts of the road overlap. If ``with_shoulders``, carriageways must also keep
+    off each other's shoulders.
     """
     apart = world.section.road_width + (world.section.shoulder if with_shoulders else SPARE) + COARSENESS
     s, z = line.s[::COARSE], line.z[::COARSE]
@@ -109,21 +106,17 @@ def keeps_clear(line: PlanLine, world: World, with_shoulders: bool) -> bool:
 def place(line: PlanLine, world: World, rng: np.random.Generator, reach: float = 0.0) -> MapPose | None:
     """Returns a random start and heading at which the road lies on the map; None if none was found.
 
-    Args:
-        line: the centre line of the road.
-        world: the map, and the width of its usual roads.
-        rng: random number generator.
-        reach: distance in metres from the line to the edge of the widest road, if wider than usual; else 0.
+    ``reach`` is the distance in metres from the line to the edge of the widest road, if wider than usual.
     """
     half = max(world.section.road_width / 2, reach)
     room = world.site.map_size - 2 * half - 2 * EDGE
     turns = rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
-    chosen = _first_that_fits(line.z, turns[:1], room)
+    chosen = first_that_fits(line.z, turns[:1], room)
     if chosen is None:
         rng.shuffle(turns)
-        chosen = _first_that_fits(line.z[::2], turns, room - 0.2)
+        chosen = first_that_fits(line.z[::2], turns, room - 0.2)
     if chosen is None and not line.z.imag.any():
-        chosen = _first_that_fits(line.z, rng.permutation(DIAGONALS), room)
+        chosen = first_that_fits(line.z, rng.permutation(DIAGONALS), room)
     if chosen is None:
         return None
     theta, left, low, width, height = chosen
@@ -133,23 +126,27 @@ def place(line: PlanLine, world: World, rng: np.random.Generator, reach: float =
     return MapPose(round(x, 2), round(y, 2), round(theta % 360, 1) % 360)
 
 
+def drawn_ground(world: World, rng: np.random.Generator) -> float:
+    """Returns a random height in metres for the lowest place of a draft."""
+    low, high = STARTS_AT
+    return max(low, world.site.z_floor + 1) + float(rng.random()) * (high - low)
+
+
 def boxes(z: Complex, thetas: Array) -> tuple[Array, Array, Array, Array]:
     """Returns the left edges, lower edges, widths and heights, ``(m,)`` each, of the bounding boxes of the
-    points after each rotation.
-
-    Args:
-        z: points as x + iy in metres.
-        thetas: angles in degrees by which the points are rotated about the origin, ``(m,)``.
+    points x + iy after each rotation about the origin, by ``thetas`` in degrees, ``(m,)``.
     """
     turned = np.exp(1j * np.radians(thetas))[:, None] * z
     left, low = turned.real.min(axis=1), turned.imag.min(axis=1)
     return left, low, turned.real.max(axis=1) - left, turned.imag.max(axis=1) - low
 
 
-def _first_that_fits(
+def first_that_fits(
     z: Complex, thetas: Array, room: float
 ) -> tuple[float, float, float, float, float] | None:
-    """Returns the first heading at which the box is no larger than ``room``, and that box."""
+    """Returns the first rotation in degrees at which the box of the points is no larger than ``room`` metres,
+    and the left edge, lower edge, width and height of that box; None if there is no such rotation.
+    """
     found = boxes(z, thetas)
     fits = np.flatnonzero(np.maximum(found[2], found[3]) <= room)
     if not fits.size:
@@ -212,7 +209,7 @@ def _least_turn(corners: Complex, turns: Array, room: float) -> float | None:
     if np.abs(corners[:, None] - corners).max() > np.sqrt(2) * room:
         return None
     for some in np.array_split(turns, PORTIONS):
-        found = _first_that_fits(corners, some, room)
+        found = first_that_fits(corners, some, room)
         if found:
             return found[0]
     return None

@@ -1,14 +1,13 @@
 """Defines the draft of a map of roads: nodes and roads in plan view, before they are placed."""
 
 import cmath
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.brief.junctions import Control, PlainKind
+from roadgpt.brief.junctions import Control
 from roadgpt.network.map_design import NodeKind
 from roadgpt.network.ring import ring_width
 
@@ -91,20 +90,10 @@ def drawn_stub(rng: Rng, haste: float) -> float:
 
 
 def drawn_bend(rng: Rng, least: float, room: float) -> float | None:
-    """Returns a random radius of a bend in metres; None if no radius is possible.
-
-    Args:
-        rng: random number generator.
-        least: the smallest radius allowed, in metres.
-        room: the largest radius that fits, in metres.
+    """Returns a random radius of a bend in metres; None if the largest that fits, ``room``, is smaller than
+    the smallest allowed, ``least``.
     """
     low, high = max(least, min(BENDS[0], room)), min(BENDS[1], room)
     if room < least:
         return None
     return float(np.floor(10 * rng.uniform(low, max(low, high))) / 10)
-
-
-def kind_of(arms: int) -> NodeKind:
-    """Returns the kind of a node of a grid at which ``arms`` roads meet, 1 to 5."""
-    kinds: Sequence[PlainKind] = ("t_junction", "crossroads", "star")
-    return "end" if arms == 1 else "bend" if arms == 2 else kinds[arms - 3]

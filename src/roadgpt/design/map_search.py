@@ -7,22 +7,20 @@ built from the draft.
 
 from collections import Counter
 from collections.abc import Sequence
-from functools import lru_cache
 from math import inf, sqrt
 
 import numpy as np
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.map_clause import MapClause
+from roadgpt.brief.junctions import MapClause
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.model import Brief
 from roadgpt.check.map_measures import measured_map
 from roadgpt.check.route_promises import length_range
-from roadgpt.design.advice import larger_map
 from roadgpt.design.carved_draft import can_be_carved, draft_carved
 from roadgpt.design.first_accepted import first_accepted
 from roadgpt.design.grid_draft import LEAST_BLOCK, draft_grid
-from roadgpt.design.layout import boxes
+from roadgpt.design.layout import drawn_ground, first_that_fits
 from roadgpt.design.map_draft import DraftNode, MapDraft
 from roadgpt.design.map_route import drawn_route, named_route
 from roadgpt.design.village_draft import draft_village
@@ -34,8 +32,6 @@ from roadgpt.road import World
 DRAFTS = 200  # for one map, at most
 BUILT = 30  # drafts that fit and break a rule, after which the search is given up
 PER_JUNCTION = 80.0  # m; n junctions fill a map whose side is this length times the square root of n
-TRIED = 24  # drafts in each search that tests whether a map is large enough
-TRIALS = (1, 2)  # seeds of these searches
 NO_HASTE = 8  # drafts without haste
 HURRIED = 0.12  # least haste for each junction beyond the first ``FEW``
 FEW = 2.0  # number of junctions that need no haste on the usual map
@@ -48,30 +44,22 @@ TIGHTEST = 1.05  # least radius of bends, as a multiple of the smallest radius a
 CARVED = 0.7  # share of drafts with few dead ends that are carved out of a grid
 LEVEL = 0.4  # share of maps that are level
 TILT = 0.02  # ratio, greatest slope of the plane in which the nodes of a map lie
-STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest node
 TOO_LARGE = "too large"
 
 
 class MapSearch:
     """The search for one map."""
 
-    def __init__(self, brief: Brief, world: World, rng: np.random.Generator) -> None:
-        """Prepares the search.
+    tried = 24
+    """Number of drafts in a search that tests whether the World's map is large enough."""
 
-        Args:
-            brief: the requirements, among them those for a map of roads.
-            world: size of the map, and limits that the rules check.
-            rng: random number generator.
-        """
+    def __init__(self, brief: Brief, world: World, rng: np.random.Generator) -> None:
         assert brief.map is not None
         self.brief, self.asked, self.world, self.rng = brief, brief.map, world, rng
         self.failed: Counter[str] = Counter()
 
     def run(self, drafts: int = DRAFTS) -> MapDesign:
-        """Returns the first draft that is accepted.
-
-        Args:
-            drafts: the greatest number of drafts that are tried.
+        """Returns the first of up to ``drafts`` drafts that is accepted.
 
         Raises:
             DesignError: no draft was accepted; the message says why most of them failed.
@@ -84,6 +72,11 @@ class MapSearch:
         if found is None:
             raise DesignError(self._advice())
         return found
+
+    @property
+    def lacks_room(self) -> bool:
+        """Whether drafts were too large for the map, so that a larger one may help."""
+        return self.failed[TOO_LARGE] > 0
 
     @property
     def _least_haste(self) -> float:
@@ -107,10 +100,8 @@ class MapSearch:
         else:
             draft = draft_grid(self.asked, room, radius, self.rng, haste)
             turns = self.rng.uniform(-LEANING, LEANING, TURNS) * np.linspace(1, 0, TURNS)
-        if draft is None:
-            self.failed["its roads would overlap or bend too much"] += 1
-            return None
-        if self.brief.length is not None and not self._stretch(draft, self.brief.length):
+        length = self.brief.length
+        if draft is None or (length is not None and not self._stretch(draft, length)):
             self.failed["its roads would overlap or bend too much"] += 1
             return None
         if not self._place(draft, turns, room):
@@ -150,21 +141,18 @@ class MapSearch:
     def _place(self, draft: MapDraft, turns: np.ndarray, room: float) -> bool:
         """Turns and moves a draft onto the map; returns whether it fits.
 
-        Args:
-            draft: the draft, whose nodes are moved.
-            turns: the angles in degrees that are tried, in this order.
-            room: the side in metres of the square into which it must fit.
+        The angles ``turns`` in degrees are tried in order; ``room`` is the side in metres of the square into
+        which the draft must fit.
         """
-        left, low, width, height = boxes(draft.corners(), turns)
-        fits = np.flatnonzero(np.maximum(width, height) <= room)
-        if not fits.size:
+        found = first_that_fits(draft.corners(), turns, room)
+        if found is None:
             return False
-        n = fits[0]
-        spin = np.exp(1j * np.radians(turns[n]))
+        turn, left, low, width, height = found
+        spin = np.exp(1j * np.radians(turn))
         border = (self.world.site.map_size - room) / 2
         x, y = (
             border - edge + float(self.rng.random()) * max(room - size, 0.0)
-            for edge, size in ((left[n], width[n]), (low[n], height[n]))
+            for edge, size in ((left, width), (low, height))
         )
         for node in draft.nodes:
             moved = node.z * spin + complex(x, y)
@@ -173,8 +161,7 @@ class MapSearch:
 
     def _heights(self, draft: MapDraft, haste: float) -> list[float]:
         """Returns the height of each node in metres; all nodes lie in one plane, nearly level."""
-        low, high = STARTS_AT
-        ground = max(low, self.world.site.z_floor + 1) + float(self.rng.random()) * (high - low)
+        ground = drawn_ground(self.world, self.rng)
         tilt = TILT * (1 - haste) * float(self.rng.random()) if self.rng.random() > LEVEL else 0.0
         way = np.exp(2j * np.pi * self.rng.random())
         along = np.array([(node.z * way).real for node in draft.nodes])
@@ -208,46 +195,17 @@ def _node(node: DraftNode, height: float) -> MapNode:
     return MapNode(at=at, kind=node.kind, radius=node.radius, control=node.control, kerb=node.kerb)
 
 
-def map_fits(brief: Brief, world: World) -> bool:
-    """Returns whether each of two short searches with different seeds finds a map of roads."""
-    return _failed(brief, world) is None
-
-
-def _failed(brief: Brief, world: World) -> MapSearch | None:
-    """Returns the first short search that finds no map; None if all find one."""
-    for seed in TRIALS:
-        search = MapSearch(brief, world, np.random.default_rng(seed))
-        try:
-            search.run(TRIED)
-        except DesignError:
-            return search
-    return None
-
-
-@lru_cache(maxsize=256)
-def room_for_map(brief: Brief, world: World) -> float | None:
-    """Returns the side in metres of a square map that is large enough for the required map of roads.
-
-    Returns None if the World's map is large enough, or if no larger map would help.
-    """
-    assert brief.map is not None
-    likely = max(_likely_room(brief.map), ACROSS * max(span(brief.length).lo, 0.0))
-    try:
-        failed = _failed(brief, world) if likely <= world.site.map_size else None
-        if likely <= world.site.map_size and (failed is None or not failed.failed[TOO_LARGE]):
-            return None
-        return larger_map(brief, world, map_fits, likely)
-    except UsageError:
-        return None
-
-
-def _likely_room(asked: MapClause) -> float:
+def likely_room_of_map(brief: Brief) -> float:
     """Returns the side in metres of a square that a map of roads may just fit into."""
+    assert brief.map is not None
+    asked = brief.map
     if asked.junctions:
-        return PER_JUNCTION * sqrt(_least_count(asked))
-    blocks = max(span(asked.columns).lo, span(asked.rows).lo, 1.0)
-    length = span(asked.length).lo
-    return blocks * (length if 0 < length < inf else LEAST_BLOCK)
+        usual = PER_JUNCTION * sqrt(_least_count(asked))
+    else:
+        length = span(asked.length).lo
+        blocks = max(span(asked.columns).lo, span(asked.rows).lo, 1.0)
+        usual = blocks * (length if 0 < length < inf else LEAST_BLOCK)
+    return max(usual, ACROSS * max(span(brief.length).lo, 0.0))
 
 
 def _least_count(asked: MapClause) -> float:

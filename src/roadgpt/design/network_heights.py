@@ -20,10 +20,8 @@ def climbing(
     Up to four rounds of steepening bring the mean grade close to its original value. A road whose mean grade
     is below 1 % is returned unchanged. Vertical radii that no longer fit are reduced.
 
-    Args:
-        segments: the segments of a road.
-        is_level: whether the road is level at its start, and at its end.
-        steepest: the steepest grade allowed, in percent; steepening stops before a grade exceeds it.
+    ``is_level`` says whether the road is level at its start, and at its end. Steepening stops before a grade
+    exceeds ``steepest`` percent.
     """
     length = sum(segment.distance for segment in segments)
     wanted = sum(segment.distance * segment.incline for segment in segments) / length

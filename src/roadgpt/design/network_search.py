@@ -18,6 +18,7 @@ from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.map_fit import LARGEST_MAP
 from roadgpt.brief.model import Brief
 from roadgpt.check.route_promises import length_range
+from roadgpt.design.advice import main_reason
 from roadgpt.design.continuing import with_roads_continued
 from roadgpt.design.first_accepted import LANES_DIFFER, first_accepted
 from roadgpt.design.junction_draft import drawn_junction
@@ -30,7 +31,7 @@ from roadgpt.design.lane_draft import (
     main_roads,
     with_side_of_change,
 )
-from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, place
+from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, drawn_ground, place
 from roadgpt.design.network_heights import climbing
 from roadgpt.design.network_sketch import is_clear, sketched
 from roadgpt.design.road_search import DraftSearch
@@ -67,7 +68,6 @@ MOST = 130.0  # m, greatest length of one such road
 TURNING = 45.0  # m more for such a road with a turn
 PARTS = 250.0  # m, side of the usual map
 ROOM_TO_TURN = 20.0  # m of a road of required length that must remain beyond the lane of a ramp
-STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of the first road
 TOO_LARGE, OVERLAPS, UNDRAFTED = "too large", "its roads would overlap", "one of its roads cannot be drafted"
 NO_LENGTH = "the length that was asked for leaves too little for the roads between the junctions"
 FOR_ROOM = (TOO_LARGE, OVERLAPS, UNDRAFTED)
@@ -80,13 +80,11 @@ Draft = tuple[DraftSearch, PlacedPlan]
 class NetworkSearch:
     """The search for one route."""
 
+    tried = 40
+    """Number of drafts in a search that tests whether the World's map is large enough."""
+
     def __init__(self, brief: Brief, world: World, rng: np.random.Generator) -> None:
         """Prepares the search.
-
-        Args:
-            brief: the requirements, with junctions.
-            world: size of the map, and limits that the rules check.
-            rng: random number generator.
 
         Raises:
             BriefError: a junction cannot meet its requirements.
@@ -103,10 +101,7 @@ class NetworkSearch:
         self.failed: Counter[str] = Counter()
 
     def run(self, drafts: int | None = None) -> NetworkDesign:
-        """Returns the first draft that is accepted.
-
-        Args:
-            drafts: the greatest number of drafts that are tried; None for the usual one.
+        """Returns the first of up to ``drafts`` drafts that is accepted; None stands for the usual number.
 
         Raises:
             DesignError: no draft was accepted, or no road can have the lanes that are required. The message
@@ -137,10 +132,8 @@ class NetworkSearch:
         after = accumulate(map(len, segments))
         driven = segments[:-1] if any(map(ends_route, junctions)) else segments
         every = tuple(segment for part in driven for segment in part)
-        low, high = STARTS_AT
-        ground = max(low, self.world.site.z_floor + 1) + self.rng.random() * (high - low)
         return NetworkDesign(
-            starting_point=(pose.x, pose.y, start_height(every, ground)),
+            starting_point=(pose.x, pose.y, start_height(every, drawn_ground(self.world, self.rng))),
             theta=pose.theta,
             segments=every,
             junctions=tuple(
@@ -149,6 +142,11 @@ class NetworkSearch:
             ),
             lanes=None if self._has_usual_lanes else self.lanes[0],
         )
+
+    @property
+    def lacks_room(self) -> bool:
+        """Whether most drafts failed for a reason that may disappear on a larger map."""
+        return main_reason(self.failed) in FOR_ROOM
 
     @property
     def _has_usual_lanes(self) -> bool:
@@ -160,24 +158,22 @@ class NetworkSearch:
         # "five junctions, two of them forks" has no third fork
         named = {clause.kind for clause in self.brief.junctions}
         for number, clause in enumerate(self.brief.junctions):
-            lanes = None if self._has_usual_lanes else self.lanes[number + 1]
+            place: PlaceDesign | None
             if clause.kind in LANE_KINDS:
                 around = self.brief.roads[number : number + 2]
-                clause = with_side_of_change(self.brief.junctions, number)
-                found.append(drawn_change(clause, around).model_copy(update={"lanes": lanes}))
-                continue
-            if clause.kind in RAMPS:
-                room = self._room_beside(number)
-                found.append(drawn_ramp(clause, room).model_copy(update={"lanes": lanes}))
-                continue
-            clause = self._at_end_of_ramp(number) or self._with_ring_lanes(number)
-            junction = drawn_junction(clause, 1, self.rng, haste, named)
-            if junction is None:
+                place = drawn_change(with_side_of_change(self.brief.junctions, number), around)
+            elif clause.kind in RAMPS:
+                place = drawn_ramp(clause, self._room_beside(number))
+            else:
+                asked = self._at_end_of_ramp(number) or self._with_ring_lanes(number)
+                place = drawn_junction(asked, self.rng, haste, named)
+            if place is None:
                 is_small = clause.kind == "roundabout" and not (clause.take and clause.exit)
                 why = "such an island is too small for so many arms" if is_small else "it has no such ways on"
                 self.failed[f"{why} at a {clause.name}"] += 1
                 return None
-            found.append(junction if lanes is None else junction.model_copy(update={"lanes": lanes}))
+            lanes = None if self._has_usual_lanes else self.lanes[number + 1]
+            found.append(place.model_copy(update={"lanes": lanes}))
         return found
 
     def _with_ring_lanes(self, number: int) -> JunctionClause:
@@ -274,13 +270,10 @@ class NetworkSearch:
         return float(self.rng.uniform(0.7 * low + 0.3 * high, 0.3 * low + 0.7 * high)) - inside
 
     def _stretch(self, brief: Brief, n: int, haste: float, length: float | None) -> Draft | None:
-        """Returns a draft of a road between junctions; None if no draft was accepted.
+        """Returns a draft of road number ``n`` between junctions; None if no draft was accepted.
 
-        Args:
-            brief: the requirements for the road.
-            n: the number of the road. If a ramp joins or leaves it, turns that are not required are sweeping.
-            haste: from 0 to 1; the larger it is, the shorter the road.
-            length: the length in metres that the road should have; None if it is open.
+        If a ramp joins or leaves the road, turns that are not required are sweeping. ``length`` is what the
+        road should have in metres; None if it is open.
         """
         wanted, shortest = brief, self._shortest(n, haste)
         if length is not None:

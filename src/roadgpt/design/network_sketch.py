@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.design.layout import PlanLine
+from roadgpt.geometry.nearness import Complex
 from roadgpt.network import JunctionDesign
 from roadgpt.network.arm_design import STUB
 from roadgpt.network.design import PlaceDesign
@@ -22,7 +23,6 @@ from roadgpt.network.ramps import lines_at_ramp
 from roadgpt.network.ring import ring_width
 from roadgpt.road import Profile
 
-Complex = NDArray[np.complex128]
 STEP = 2.0  # m between points
 MARGIN = 1.5  # m between the shoulders of roads that do not meet
 POINTS = 24  # number of points around a roundabout
@@ -52,12 +52,8 @@ class NetworkSketch(NamedTuple):
 def sketched(
     lines: Sequence[PlanLine], places: Sequence[PlaceDesign], profiles: Sequence[Profile]
 ) -> NetworkSketch:
-    """Returns the sketch of a route.
-
-    Args:
-        lines: the roads before, between and after ``places``.
-        places: the junctions, ramps and lane changes that the route passes; one fewer than the roads.
-        profiles: the cross-section of each road.
+    """Returns the sketch of a route; its roads, of which ``profiles`` are the cross-sections, lie before,
+    between and after ``places``.
     """
     pen = _Pen(lines[0], profiles[0].reach)
     for number, (place, line) in enumerate(zip(places, lines[1:], strict=True)):

@@ -19,7 +19,7 @@ import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Feature, Group, Outline, both, outline
-from roadgpt.brief.ranges import Range
+from roadgpt.chat.model import Repair
 from roadgpt.check.matching import Match, best_match, fits, sides_of
 from roadgpt.check.measures import MeasuredFeature
 from roadgpt.design.differences import changes_between
@@ -28,7 +28,6 @@ from roadgpt.design.road_elements import RoadElements, elements_as_proposed
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, World
 
-How = Literal["none", "place", "full"]
 MOST_WAYS = 2000  # of assigning straights to requirements; further ways are not compared
 
 
@@ -39,15 +38,8 @@ class Repaired(NamedTuple):
     changes: tuple[str, ...]
 
 
-def repair(design: Design, brief: Brief | None, world: World, how: How = "none") -> Repaired:
-    """Returns the proposed design, made valid as far as ``how`` allows.
-
-    Args:
-        design: The design as proposed.
-        brief: The requirements; None if there are none.
-        world: Size of the map, and limits that the rules check, such as the steepest grade.
-        how: "none", "place" or "full", as described at the top of this module.
-    """
+def repair(design: Design, brief: Brief | None, world: World, how: Repair = "none") -> Repaired:
+    """Returns the proposed design, made valid as far as ``how`` allows (see the top of this module)."""
     if how == "none":
         return Repaired(design, ())
     elements = elements_as_proposed(design.segments)
@@ -130,14 +122,11 @@ def _answering(elements: RoadElements, straights: Sequence[int], wanted: Sequenc
     ways = combinations(straights, len(wanted))
 
     def away(way: Sequence[int]) -> tuple[float, int]:
-        slopes = [_beyond(elements[i].incline, feature.grade) for i, feature in zip(way, wanted, strict=True)]
-        return sum(slopes), -sum(len(elements[i].segments) for i in way)
+        pairs = [(elements[i].incline, feature.grade) for i, feature in zip(way, wanted, strict=True)]
+        beyond = (max(grade.lo - incline, incline - grade.hi, 0.0) for incline, grade in pairs if grade)
+        return sum(beyond), -sum(len(elements[i].segments) for i in way)
 
     return min(islice(ways, MOST_WAYS), key=away)
-
-
-def _beyond(incline: float, asked: Range | None) -> float:
-    return max(asked.lo - incline, incline - asked.hi, 0.0) if asked else 0.0
 
 
 def _ends(elements: RoadElements, turns: Sequence[int], required: Outline) -> list[Item] | None:

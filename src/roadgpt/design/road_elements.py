@@ -10,23 +10,29 @@ than 70 degrees to be split, and successive straight segments form one element i
 or all are level.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
-from typing import Literal
+from math import ceil, floor, radians
 
 import numpy as np
 
-from roadgpt.brief.model import Side
+from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
 from roadgpt.check.measures import LEAST_TURN, MeasuredFeature, Measures, measure, way
-from roadgpt.design.elements import straight
+from roadgpt.design.elements import straight, turn_segments
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Geometry, Segment, build
 
-TENTH = 10.0  # per percent: inclines are written to the tenth
+MILLIMETRE, CENTIMETRE, TENTH = (
+    1000.0,
+    100.0,
+    10.0,
+)  # how distances, radii, and angles and inclines are written
 FREE_STRAIGHT = Feature("straight", "straight")
 LEAST_SHARED = 1.5  # m of a segment within a turn, at least, for it to be a part of the turn
+LEAST = 1.0  # m that a straight segment keeps
+TRANSITION_SHARE = 0.3  # of the arc, of a turn that is written anew without a transition of its own
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +41,6 @@ class RoadElement:
 
     name: str
     """The name of the element; it stays the same when other elements are added or removed."""
-    kind: Literal["turn", "gap"]
     segments: tuple[Segment, ...]
     side: Side | None = None
     """The side to which a turn goes; None for a gap."""
@@ -71,7 +76,7 @@ class RoadElement:
     @property
     def is_turn(self) -> bool:
         """Whether the element is a turn."""
-        return self.kind == "turn"
+        return self.side is not None
 
     @property
     def may_bend(self) -> bool:
@@ -83,22 +88,72 @@ class RoadElement:
         """Returns a copy of the element that has these segments."""
         return replace(self, segments=tuple(segments))
 
+    def mirrored(self) -> "RoadElement":
+        """Returns the mirror image of the element."""
+        own = (
+            segment.model_copy(
+                update={"direction": OTHER_SIDE[segment.direction], "turn_degrees": -segment.turn_degrees}
+            )
+            if segment.turn_degrees and segment.direction != "straight"
+            else segment
+            for segment in self.segments
+        )
+        return replace(self, side=self.side and OTHER_SIDE[self.side], segments=tuple(own))
+
+    def with_grade(self, grade: float, limit: float) -> "RoadElement":
+        """Returns the element with another mean grade; no incline exceeds ``limit``, both in percent.
+
+        Its inclines are scaled if all of them already climb or fall as the new grade does; otherwise they
+        become equal.
+        """
+        aim, mean = float(np.clip(grade, -limit, limit)), self.incline
+        inclines = np.array([segment.incline for segment in self.segments])
+        if abs(mean) >= 1 and (inclines * np.sign(mean) > 0.5).all() and aim * mean > 0:
+            inclines = np.clip(inclines * aim / mean, -limit, limit)
+        else:
+            inclines = np.full(len(inclines), aim)
+        return self.with_segments(with_inclines(self.segments, inclines))
+
+    def lengthened(self, metres: float) -> "RoadElement":
+        """Returns a gap whose straight segments are longer by so many metres in total."""
+        straights = [i for i, segment in enumerate(self.segments) if not segment.turn_degrees]
+        if not straights:
+            distance = max(round(metres * TENTH) / TENTH, LEAST)
+            return self.with_segments((*self.segments, Segment(distance=distance, direction="straight")))
+        before = [segment.distance for segment in self.segments]
+        longest = max(straights, key=lambda i: before[i])
+        after = {longest: before[longest] + metres}
+        if after[longest] < max(0.5 * before[longest], LEAST):
+            whole = sum(before[i] for i in straights)
+            share = max((whole + metres) / whole, 0.02)
+            after = {i: before[i] * share for i in straights}
+        segments = list(self.segments)
+        for i, distance in after.items():
+            distance = max(round(distance * CENTIMETRE) / CENTIMETRE, min(LEAST, before[i]))
+            segments[i] = segments[i].model_copy(update={"distance": distance})
+        return self.with_segments(segments)
+
+    def scaled(self, more: float, wider: float) -> "RoadElement":
+        """Returns the element with its angles multiplied by ``more`` and its radii by ``wider``."""
+        return self.with_segments(_scaled(segment, more, wider) for segment in self.segments)
+
+    def rewritten(self, degrees: float, radius: float) -> "RoadElement":
+        """Returns a turn with a new angle and radius; its side and mean incline stay the same."""
+        transition = next((segment.transition for segment in self.segments if segment.transition), None)
+        transition = transition or TRANSITION_SHARE * radius * radians(degrees)
+        hand = 1 if self.side == "left" else -1
+        return self.with_segments(turn_segments(degrees, hand, radius, transition, self.incline))
+
 
 RoadElements = tuple[RoadElement, ...]
 
 
-def measured(design: Design, geometry: Geometry) -> Measures:
-    """Builds a design's road, and returns its measured turns, straights and grades."""
-    return measure(build(design, geometry).centreline())
-
-
 def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadElements, Measures]:
     """Measures the road of a design; returns its turns and the gaps between them, and the measurements."""
-    found = measured(design, geometry)
+    found = measure(build(design, geometry).centreline())
     joints = np.concatenate([[0.0], np.cumsum([s.distance for s in design.segments])])
-    scale = (
-        joints[-1] / found.length
-    )  # the measure's chords, and a spline's bends, are not as long as written
+    # the measure's chords, and a spline's bends, are not as long as written
+    scale = joints[-1] / found.length
     marks: list[tuple[int, int]] = []
     for turn in found.turns:
         first, end = _members(design.segments, joints, turn, scale)
@@ -111,9 +166,9 @@ def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadE
         own = design.segments[first:end]
         if number % 2:
             turn = found.turns[number // 2]
-            out.append(RoadElement(f"turn {number // 2 + 1}", "turn", own, turn.side, first, turn))
+            out.append(RoadElement(f"turn {number // 2 + 1}", own, turn.side, first, turn))
         else:
-            out.append(RoadElement(f"gap {number // 2}", "gap", own, None, first, straights[number // 2]))
+            out.append(RoadElement(f"gap {number // 2}", own, None, first, straights[number // 2]))
     return tuple(out), found
 
 
@@ -152,11 +207,8 @@ def elements_as_proposed(segments: Sequence[Segment]) -> RoadElements:
     for number, row in enumerate(rows):
         own = tuple(segments[i] for i in row)
         degrees = sum(segment.turn_degrees for segment in own)
-        side: Side = "left" if degrees > 0 else "right"
-        if is_turn(degrees):
-            out.append(RoadElement(f"part {number}", "turn", own, side, row[0]))
-        else:
-            out.append(RoadElement(f"part {number}", "gap", own, None, row[0]))
+        side: Side | None = ("left" if degrees > 0 else "right") if abs(degrees) >= LEAST_TURN else None
+        out.append(RoadElement(f"part {number}", own, side, row[0]))
     return tuple(out)
 
 
@@ -220,6 +272,34 @@ def with_inclines(segments: Sequence[Segment], grades: Array) -> tuple[Segment, 
     )
 
 
+def _scaled(segment: Segment, more: float, wider: float) -> Segment:
+    if not segment.turn_degrees:
+        return segment
+    degrees = round(segment.turn_degrees * more * TENTH) / TENTH
+    more = degrees / segment.turn_degrees
+    radius = segment.radius and ceil(segment.radius * wider * CENTIMETRE) / CENTIMETRE
+    if radius and segment.radius:
+        wider = radius / segment.radius
+    exact = segment.distance * more * wider * MILLIMETRE
+    transition = segment.transition
+    if transition:
+        transition = max(floor(transition * more * wider * TENTH), 1) / TENTH
+    return segment.model_copy(
+        update={
+            "distance": max((ceil(exact) if radius else floor(exact)) / MILLIMETRE, 0.001),
+            "turn_degrees": degrees,
+            "radius": radius,
+            "transition": transition,
+        }
+    )
+
+
+def with_stations(elements: RoadElements) -> Iterator[tuple[RoadElement, float]]:
+    """Returns the elements, each with the station in metres at which it begins."""
+    starts = accumulate((element.length for element in elements), initial=0.0)
+    return zip(elements, starts, strict=False)
+
+
 def joined(elements: Sequence[RoadElement]) -> tuple[Segment, ...]:
     """Returns the segments of all elements in driving order."""
     return tuple(segment for element in elements for segment in element.segments)
@@ -227,9 +307,4 @@ def joined(elements: Sequence[RoadElement]) -> tuple[Segment, ...]:
 
 def gap(name: str, length: float, incline: float) -> RoadElement:
     """Returns a new gap that consists of one straight, whose length may be changed."""
-    return RoadElement(name, "gap", (straight(length, incline),), asked=FREE_STRAIGHT)
-
-
-def is_turn(degrees: float) -> bool:
-    """Returns whether a change of heading by ``degrees`` is large enough to count as a turn."""
-    return abs(degrees) >= LEAST_TURN
+    return RoadElement(name, (straight(length, incline),), asked=FREE_STRAIGHT)

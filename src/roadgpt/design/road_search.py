@@ -20,9 +20,10 @@ from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.refusal import NoRoomError
 from roadgpt.check.bumps import asks_for_bumps
 from roadgpt.design.compose import composed
+from roadgpt.design.draw import DraftTask
 from roadgpt.design.grade_correction import corrected_draft
 from roadgpt.design.heights import drawn_heights
-from roadgpt.design.layout import MapPose, PlacedPlan, keeps_clear, place, smallest_box, walk
+from roadgpt.design.layout import MapPose, PlacedPlan, drawn_ground, keeps_clear, place, smallest_box, walk
 from roadgpt.design.sequence import TurnSequence, drawn_sequence, is_long
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
 from roadgpt.design.vertical import EASES, Pace
@@ -47,19 +48,26 @@ SHOULDERS = 0.6  # share of the drafts in which the road must also keep off its 
 FAILED_ON_HEIGHTS = 40  # drafts that failed on their slopes, after which lower speed limits are tried
 SLOWER = (50.0, 30.0)  # km/h, speed limits that may be advised
 EASES_OF_BUMPS = (0.12, 0.08, 0.0)  # shares of comfort that are also tried where a crest or a dip is required
-STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of a road
 
 
 @lru_cache(maxsize=64)  # the advice for a road that did not fit asks again
 def fits(brief: Brief, world: World) -> bool:
     """Returns whether each of four searches, with different seeds and up to 110 drafts each, finds a road."""
     try:
-        searches = [
-            DraftSearch(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS
-        ]
-        return all(search.found(TRIED) is not None for search in searches)
+        return _failed_trial(brief, world) is None
     except DesignError:
         return False
+
+
+def _failed_trial(brief: Brief, world: World) -> "DraftSearch | None":
+    """Returns the first of the searches of ``fits`` that finds no road; None if all find one.
+
+    Raises:
+        DesignError: the requirements contradict each other.
+    """
+    others = Shapes().of(())
+    searches = [DraftSearch(brief, world, others, np.random.default_rng(seed)) for seed in TRIALS]
+    return next((search for search in searches if search.found(TRIED) is None), None)
 
 
 @lru_cache(maxsize=256)
@@ -70,14 +78,11 @@ def sufficient_map(brief: Brief, world: World) -> float | None:
     """
     try:
         check_room(normal(brief), world.site.map_size, world.limits.min_radius, world.section.road_width)
-        searches = [
-            DraftSearch(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS
-        ]
+        failed = _failed_trial(brief, world)
     except NoRoomError:
         return _larger_map(brief, world)
     except RoadGPTError:
         return None
-    failed = next((search for search in searches if search.found(TRIED) is None), None)
     return None if failed is None else _larger_map(brief, world, failed)
 
 
@@ -100,13 +105,7 @@ class DraftSearch:
     """The search for one road."""
 
     def __init__(self, brief: Brief, world: World, others: PlanShape, rng: np.random.Generator) -> None:
-        """Prepares the search.
-
-        Args:
-            brief: the requirements for the road.
-            world: size of the map, and limits that the rules check.
-            others: the shapes of earlier roads, from which the road has to differ.
-            rng: random number generator.
+        """Prepares the search for a road that differs from ``others``, the shapes of earlier roads.
 
         Raises:
             DesignError: the requirements contradict each other.
@@ -133,25 +132,20 @@ class DraftSearch:
             DesignError: no draft was accepted.
         """
         found = self.found()
-        if found is None:
-            raise DesignError(self._advice())
-        return found
-
-    def _advice(self) -> str:
-        """Returns the message for a search that found no road."""
+        if found is not None:
+            return found
         from roadgpt.design.advice import advice, too_fast
 
         slower = self._speed_that_would_do()
         if slower:
-            return too_fast(self.world, slower)
-        return advice(self.brief, self.outline, self.world, self.failed, self.boxes, fits)
+            raise DesignError(too_fast(self.world, slower))
+        raise DesignError(advice(self.brief, self.outline, self.world, self.failed, self.boxes, fits))
 
     def found(self, drafts: int = DRAFTS) -> tuple[Design, Road] | None:
-        """Returns the first draft that is accepted, as in ``run``; None if no draft is accepted.
+        """Returns the first of ``drafts`` drafts that is accepted, as in ``run``; None if none is accepted.
 
-        Args:
-            drafts: number of random drafts. If the length of the road is required, additional drafts are
-                grown turn by turn; a long road (see ``is_long``) has only grown drafts.
+        If the length of the road is required, additional drafts are grown turn by turn; a long road (see
+        ``is_long``) has only grown drafts.
         """
         alike: list[tuple[float, int, PlacedPlan]] = []
         finished = 0
@@ -189,25 +183,20 @@ class DraftSearch:
                 return found
         return None
 
-    def _sequence(self, plain: bool, haste: float) -> TurnSequence:
+    def _sequence(self, plain: bool, haste: float) -> tuple[TurnSequence, DraftTask]:
         order = drawn_sequence(self.outline, self.rng, plain)
+        task = DraftTask(self.outline, self.windows, self.world, self.rng, haste)
         if not self.outline.alike:
-            return order
-        from roadgpt.design.like_parts import LikePartDraw, with_like_parts
+            return order, task
+        from roadgpt.design.like_parts import with_like_parts
 
-        return with_like_parts(order, LikePartDraw(self.outline, self.windows, self.world, self.rng, haste))
+        return with_like_parts(order, task), task
 
     def _growth(self) -> PlacedPlan | None:
-        """Returns a plan that was drafted turn by turn on the map.
-
-        Returns None if it ran out of room, or if no length is required.
-        """
-        if self.outline.length is None:
-            return None
+        """Returns a plan that was drafted turn by turn on the map; None if it ran out of room."""
         from roadgpt.design.growth import grown
 
-        order = self._sequence(plain=True, haste=0.5)
-        found = grown(order, self.outline, self.windows, self.world, self.rng)
+        found = grown(*self._sequence(plain=True, haste=0.5))
         if found is None:
             self.failed["too large"] += 1
         return found
@@ -224,8 +213,7 @@ class DraftSearch:
         return next((k for k, w in zip(limits, worlds, strict=True) if fits(self.brief, w)), None)
 
     def _plan(self, haste: float) -> PlacedPlan | None:
-        order = self._sequence(plain=haste > 0.5, haste=haste)
-        elements = composed(order, self.outline, self.windows, self.world, self.rng, haste)
+        elements = composed(*self._sequence(plain=haste > 0.5, haste=haste))
         if elements is None:
             self.failed["longer than was asked for"] += 1
             return None
@@ -242,9 +230,7 @@ class DraftSearch:
         segments = self.with_heights(drafted)
         if segments is None:
             return None
-        low, high = STARTS_AT
-        ground = max(low, self.world.site.z_floor + 1) + self.rng.random() * (high - low)
-        design = design_at(drafted.place, segments, ground)
+        design = design_at(drafted.place, segments, drawn_ground(self.world, self.rng))
         road = build(design)
         objections = check.inspect(road, self.brief, self.world)
         if objections:
@@ -252,17 +238,13 @@ class DraftSearch:
             return None
         return design, road
 
-    def stretch(self, haste: float, plain: bool = True) -> PlacedPlan | None:
+    def stretch(self, haste: float, plain: bool) -> PlacedPlan | None:
         """Returns one draft of a road between junctions, without heights, and with its start at the origin.
 
-        Returns None if the draft cannot have the required length, or overlaps itself.
-
-        Args:
-            haste: from 0 to 1; the larger it is, the shorter the road.
-            plain: whether the road has as few turns as the requirements allow.
+        Returns None if the draft cannot have the required length, or overlaps itself. The larger ``haste``,
+        from 0 to 1, the shorter the road; if ``plain``, it has as few turns as the requirements allow.
         """
-        order = self._sequence(plain, haste)
-        elements = composed(order, self.outline, self.windows, self.world, self.rng, haste)
+        elements = composed(*self._sequence(plain, haste))
         if elements is None:
             return None
         line = walk(elements)

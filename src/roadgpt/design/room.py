@@ -35,10 +35,7 @@ def world_for(brief: Brief | None, world: World) -> World:
 def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
     """Returns sentences that say how a Brief affects a World: its friction, its lanes and its map.
 
-    Args:
-        brief: the requirements.
-        usual: the World that was given.
-        found: the World for the roads, as ``world_for`` returns it.
+    ``usual`` is the World that was given, and ``found`` the one that ``world_for`` returned.
     """
     surface = surface_remark(brief.beside, found.site.friction)
     said = (surface, *lane_remarks(brief, found), map_remark(brief, usual, found))
@@ -48,10 +45,6 @@ def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
 def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
     """Yields a sentence if the description asks for lanes, and another if it asks for a centre line that the
     road does not get. For networks, yields nothing.
-
-    Args:
-        brief: the requirements.
-        found: the World for the roads.
     """
     if brief.is_of_network:
         return
@@ -67,13 +60,7 @@ def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
 
 
 def map_remark(brief: Brief, usual: World, found: World) -> str:
-    """Returns a sentence on the size of the map, if the words ask for one or the usual map is too small.
-
-    Args:
-        brief: the requirements.
-        usual: the World that was given.
-        found: the World for the roads, as ``world_for`` returns it.
-    """
+    """Returns a sentence on the size of the map, if the words ask for one or the usual map is too small."""
     before, now, asked = usual.site.map_size, found.site.map_size, brief.map_size
     if asked is not None:
         other = f"but one of {now:g} m is set and used" if now != asked else "--map-size gives another"

@@ -56,12 +56,7 @@ def may_repeat_last_turn(outline: Outline) -> bool:
 
 def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> TurnSequence:
     """Chooses at random what the Outline leaves open: the number of turns, the side of each, and
-    where straights are.
-
-    Args:
-        outline: the requirements for the road.
-        rng: random number generator.
-        plain: True to take as few turns as the requirements allow.
+    where straights are. If ``plain``, it has as few turns as the requirements allow.
 
     Raises:
         DesignError: the required numbers of left, right and all turns contradict each other.
@@ -95,12 +90,10 @@ def _listed(
 def _group_counts(outline: Outline, rng: np.random.Generator, plain: bool) -> list[int]:
     """Chooses the number of features per group at random; the turns add up to a required number."""
     groups = outline.groups
-    counts = [group.lo for group in groups]
-    if not plain:
-        counts = [
-            SEVERAL if group.lo == 2 and group.hi is None and is_hairpin(group.feature) else group.lo
-            for group in groups
-        ]
+    counts = [
+        SEVERAL if not plain and (group.lo, group.hi) == (2, None) and is_hairpin(group.feature) else group.lo
+        for group in groups
+    ]
     open_ = [i for i, g in enumerate(groups) if g.feature.kind == "turn" and g.hi != g.lo]
     total = sum(count for count, g in zip(counts, groups, strict=True) if g.feature.kind == "turn")
     missing = int(max(outline.turns.lo - total, _turned(outline).lo - total, 0))

@@ -1,7 +1,7 @@
 """Names features that a Brief can ask for but no designer can build yet."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING
 
 from roadgpt.brief.amount import span
@@ -29,7 +29,8 @@ def check_built(brief: Brief) -> None:
             f"a ramp on the {side} would cross the oncoming lanes of its road, and bridges cannot be built "
             "yet; ask for a one-way road or for a ramp on the other side"
         )
-    found = list(dict.fromkeys(_unbuilt(brief)))
+    every = (_unbuilt(place, *brief.stretches[n : n + 2]) for n, place in enumerate(brief.junctions))
+    found = list(dict.fromkeys(chain.from_iterable(every)))
     if found:
         *others, last = found
         named = f"{', '.join(others)} and {last}" if others else last
@@ -40,11 +41,7 @@ def check_lanes_across(places: Sequence[JunctionClause], lanes: "Sequence[LanesD
     """Checks that no lane of a road leads nowhere at a junction where a route goes straight on.
 
     Lanes that do not continue there turn off, or come from the side: one to the left and one to the right at
-    most.
-
-    Args:
-        places: the junctions, ramps and lane changes that the route passes, in order.
-        lanes: the lanes of each road before, between and behind them.
+    most. ``lanes`` are those of each road before, between and behind the ``places``.
 
     Raises:
         DesignError: The roads before and behind a junction differ by more lanes than can turn there.
@@ -62,11 +59,6 @@ def check_lanes_across(places: Sequence[JunctionClause], lanes: "Sequence[LanesD
             )
 
 
-def _unbuilt(brief: Brief) -> Iterator[str]:
-    for n, junction in enumerate(brief.junctions):
-        yield from _of_junction(junction, *brief.stretches[n : n + 2])
-
-
 def _crosses_oncoming(brief: Brief, number: int) -> bool:
     """Returns whether a junction is a ramp on the side of the oncoming lanes of its road."""
     ramp, roads = brief.junctions[number], brief.stretches[number : number + 2]
@@ -76,7 +68,7 @@ def _crosses_oncoming(brief: Brief, number: int) -> bool:
     return any(span(road.against).lo > 0 or road.divided for road in main)
 
 
-def _of_junction(junction: JunctionClause, before: Brief, after: Brief) -> Iterator[str]:
+def _unbuilt(junction: JunctionClause, before: Brief, after: Brief) -> Iterator[str]:
     """Yields the features of a junction, and of the roads before and behind it, that cannot be built."""
     if junction.kind in RAMPS and junction.take != "main":
         ramp = before if junction.kind == "merge" else after

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.nearness import Complex
 from roadgpt.road import Design, Road, build
 
 POINTS = 80  # at equal shares of the length
@@ -23,8 +24,6 @@ MOST = 60  # points at equal distances: 360 m
 ENOUGH = 5.5  # m RMS: two roads with a smaller distance are alike
 REMEMBERED = 1000  # designs whose shape is kept besides those asked for: 18 kB each
 FIRST_ROOM = 64  # designs for which memory is reserved at first
-
-Complex = NDArray[np.complex128]
 
 
 class PlanShape(NamedTuple):
@@ -47,12 +46,7 @@ class PlanShape(NamedTuple):
 
 
 def shape_of(s: Array, line: Complex) -> PlanShape:
-    """Returns the shape of a plan.
-
-    Args:
-        s: stations in metres, from 0, ``(n,)``.
-        line: the points at these stations as x + iy in metres, ``(n,)``.
-    """
+    """Returns the shape of a plan from its points ``line``, x + iy at stations ``s`` in metres, ``(n,)``."""
     shares = _at(s, line, np.linspace(0.0, float(s[-1]), POINTS))
     shares -= shares.mean()
     reach = min(MOST, int(s[-1] / STEP) + 1)
@@ -74,11 +68,8 @@ def _at(s: Array, line: Complex, stations: Array) -> Complex:
 def nearest(shape: PlanShape, others: PlanShape, by_metres: bool) -> float:
     """Returns the distance in metres to the nearest of other shapes; infinite if it is 5.5 m or more.
 
-    Args:
-        shape: the shape of one road.
-        others: the stacked shapes of other roads.
-        by_metres: True to compare also at equal distances from the start, as far as the shorter road goes,
-            if no shape is nearer than 5.5 m at equal fractions of the length.
+    If no shape is nearer than that at equal fractions of the length and ``by_metres`` is True, roads are also
+    compared at equal distances from the start, as far as the shorter road goes.
     """
     least = float(apart(shape, others).min(initial=inf))
     if by_metres and least >= ENOUGH:

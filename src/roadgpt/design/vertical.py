@@ -43,13 +43,8 @@ class Pace:
     """The vertical radii that the expected speeds along a plan require."""
 
     def __init__(self, knots: Array, bends: Array, length: float, world: World) -> None:
-        """Stores a plan.
-
-        Args:
-            knots: stations in metres, ``(n,)``.
-            bends: curvatures at these stations in 1/m, linear in between and 0 after the last, ``(n,)``.
-            length: length of the plan in metres.
-            world: the speed limit, and the lanes and superelevation of roads.
+        """Stores a plan: its length in metres, and the curvatures ``bends`` in 1/m at the stations ``knots``
+        in metres, ``(n,)``, which are linear in between and 0 after the last.
         """
         self._plan = knots, bends, length
         self._world = world
@@ -79,10 +74,6 @@ class Pace:
         first, last = int(max(s - NEAR, 0.0) / step), int((s + NEAR) / step) + 1
         return float(squares[min(first, len(squares) - 1) : last + 1].max())
 
-    def comfort(self, s: float) -> float:
-        """Returns the comfortable vertical radius in metres at station ``s`` in metres."""
-        return self._square(s) / COMFORT
-
     def least(self, s: float, is_bump: bool = False) -> float:
         """Returns the least vertical radius in metres that the rule allows at station ``s`` in metres.
 
@@ -93,10 +84,11 @@ class Pace:
     def eased(self, s: float, ease: float, is_bump: bool = False) -> float:
         """Returns the vertical radius to design at station ``s``, in metres.
 
-        It is ``ease`` times the comfortable radius, and never less than the rule allows.
+        It is ``ease`` (0 to 1) times the comfortable radius, and never less than the rule allows. For
+        ``is_bump``, see ``least``.
         """
-        least = LEAST_SPARE * self.least(s, is_bump)
-        return max(ease * SPARE * self.comfort(s), least)
+        comfort = self._square(s) / COMFORT
+        return max(ease * SPARE * comfort, LEAST_SPARE * self.least(s, is_bump))
 
 
 def softened(
@@ -111,19 +103,15 @@ def softened(
     Slopes with too little room are corrected one after another by changing their grades and those of their
     neighbours. These are projections onto convex sets, which converge if a solution exists.
 
-    Args:
-        grades: grade of each slope in percent, ``(n,)``.
-        lengths: length of each slope in metres, ``(n,)``.
-        radii: vertical radius in metres at each joint of two slopes, ``(n - 1,)``.
-        lows: least grade of each slope in percent, ``(n,)``.
-        highs: greatest grade of each slope in percent, ``(n,)``.
+    Each slope has a grade and its bounds in percent and a length in metres, ``(n,)``; each joint of two
+    slopes has a vertical radius in metres, ``(n - 1,)``.
     """
     out = [min(max(g, lo), hi) for g, lo, hi in zip(grades, lows, highs, strict=True)]
     halves = [0.0, *(radius / 200 for radius in radii), 0.0]
     for _ in range(ROUNDS):
         fits = True
-        for i, length in enumerate(lengths):
-            fits = _made_room(out, i, length, halves, lengths, lows, highs) and fits
+        for i in range(len(out)):
+            fits = _made_room(out, i, halves, lengths, lows, highs) and fits
         if fits:
             break
     return out
@@ -144,14 +132,9 @@ def made_to_fit(
     Neighbours with the same incline form one slope. A segment that only joins others belongs to the slope of
     the neighbour with the nearer incline, because a short slope of its own would leave parabolas no room.
 
-    Args:
-        grades: grade of each segment in percent, ``(n,)``.
-        lengths: length of each segment in metres.
-        inclines: proposed incline of each segment in percent; neighbours with the same one form one slope.
-        joining: indices of segments that only join others.
-        bounds: range of the grade of each segment in percent.
-        pace: the vertical radii that the expected speeds require.
-        roomier: factor on the required radii, to leave more room than the rule requires.
+    Each segment has a grade, a proposed incline and bounds of the grade in percent, and a length in metres,
+    ``(n,)``. ``joining`` are the indices of segments that only join others. ``roomier`` is a factor on the
+    required radii, to leave more room than the rule requires.
     """
     runs = [*accumulate((a != b for a, b in pairwise(inclines)), initial=0)]
     for i in sorted(joining):
@@ -175,7 +158,6 @@ def made_to_fit(
 def _made_room(
     grades: list[float],
     i: int,
-    length: float,
     halves: Sequence[float],
     lengths: Sequence[float],
     lows: Sequence[float],
@@ -184,7 +166,7 @@ def _made_room(
     """Returns whether a slope has room for its parabolas; if not, changes the slope and its neighbours."""
     before = grades[i] - grades[i - 1] if i else 0.0
     after = grades[i + 1] - grades[i] if i + 1 < len(grades) else 0.0
-    over = halves[i] * abs(before) + halves[i + 1] * abs(after) - MOST_OF_SLOPE * length
+    over = halves[i] * abs(before) + halves[i + 1] * abs(after) - MOST_OF_SLOPE * lengths[i]
     if over <= 1e-6:
         return True
     first, last = np.sign(before) * halves[i], np.sign(after) * halves[i + 1]
@@ -206,15 +188,8 @@ def joined(
 ) -> tuple[Segment, ...]:
     """Returns the segments with a vertical radius wherever the grade changes.
 
-    Each chosen radius is the one that ``ease`` gives, or smaller if there is not enough room.
-
-    Args:
-        segments: the segments of a design, in driving order.
-        pace: the vertical radii that the expected speeds require.
-        ease: share (0 to 1) of the comfortable radius to aim for; if the rule requires a larger radius, that
-            one is used.
-        opened: indices of the segments whose radius is chosen anew; None to choose a radius for every segment
-            without one.
+    Each chosen radius is the one that ``Pace.eased`` gives for ``ease``, or smaller if there is not enough
+    room. A radius is chosen for the segments with the indices ``opened``; None: for all without one.
     """
     out, at, own = [], 0.0, set[int]()
     for i, segment in enumerate(segments):
@@ -243,14 +218,8 @@ def with_new_parabolas(
 ) -> tuple[Segment, ...]:
     """Returns segments with new parabolas wherever two grades meet that did not meet before a change.
 
-    Args:
-        segments: the segments after the change.
-        before: the segments of the road before the change.
-        pace: the vertical radii that the expected speeds require.
-        ease: share (0 to 1) of the comfortable radius to aim for; if the rule requires a larger radius, that
-            one is used.
-        is_widened: True to add parabolas to unchanged segments, too, and to increase all radii that are
-            smaller than the rule allows.
+    ``before`` are the segments before the change. If ``is_widened``, unchanged segments get parabolas as
+    well, and all radii that are smaller than the rule allows are increased.
     """
     known = {(a.incline, b.incline, b.vertical_radius) for a, b in pairwise(before)}
     opened = frozenset(

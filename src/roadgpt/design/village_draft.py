@@ -9,13 +9,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations, pairwise
 from math import pi, radians
+from typing import NamedTuple
+
+import numpy as np
+import shapely
 
 from roadgpt.brief.amount import exactly, span
 from roadgpt.brief.junction_check import MOST_OF_KIND
-from roadgpt.brief.junctions import JunctionClause
-from roadgpt.brief.map_clause import JunctionCount, MapClause
+from roadgpt.brief.junctions import JunctionClause, JunctionCount, MapClause
 from roadgpt.brief.ranges import Range
-from roadgpt.design.clearance import Disc, Line, is_clear
 from roadgpt.design.grid_draft import drawn_count
 from roadgpt.design.junction_draft import drawn_junction
 from roadgpt.design.map_draft import STRAIGHT, DraftNode, MapDraft, Rng, drawn_bend, drawn_kerb, drawn_stub
@@ -53,15 +55,8 @@ def draft_village(
     """Returns the draft of a map of roads with junctions.
 
     Returns None if there was no room for a junction, or if the number of dead ends or of blocks is not the
-    required one.
-
-    Args:
-        asked: the kinds of junctions, how many of each, the distance between them, and the numbers of blocks
-            and dead ends.
-        world: the width of lanes and shoulders.
-        least_radius: the smallest radius in metres of a bend.
-        rng: random number generator.
-        haste: from 0 to 1; the larger it is, the smaller the map.
+    required one. ``least_radius`` is the smallest radius in metres of a bend. The larger ``haste``, from 0 to
+    1, the smaller the map.
     """
     counts = [each for each in asked.junctions for _ in range(drawn_count(each.count, rng, MOST_OF_KIND))]
     sets = (_junctions(counts, asked, rng, haste, n >= DRAWN // 2) for n in range(DRAWN))
@@ -93,7 +88,7 @@ def _junctions(
     for n in rng.permutation(len(kinds)):
         arms = exactly(3) if has_few_arms and kinds[n].kind == "roundabout" else None
         arms = asked.dead_ends if len(kinds) == 1 else arms
-        junction = drawn_junction(JunctionClause(kind=kinds[n].kind, arms=arms), 1, rng, haste)
+        junction = drawn_junction(JunctionClause(kind=kinds[n].kind, arms=arms), rng, haste)
         if junction is None:
             return None
         control = asked.control_of(kinds[n]) or "none"
@@ -101,6 +96,26 @@ def _junctions(
     free = sum(len(each.all_arms) + 1 for each in found) - 2 * (len(found) - 1)
     wanted = asked.ends_of_tree(free)
     return found if any(number in wanted for number in range(free, -1, -2)) else None
+
+
+class _Line(NamedTuple):
+    """A straight of a draft, from one point x + iy in metres to another."""
+
+    start: complex
+    end: complex
+    nodes: frozenset[int]
+    """The numbers of the nodes at its ends; lines that share a node may be near each other."""
+
+
+class _Disc(NamedTuple):
+    """The circular area of a junction; only roads that lead to the junction may enter it."""
+
+    z: complex
+    """Its centre as x + iy in metres."""
+    radius: float
+    """Its radius in metres."""
+    node: int
+    """The number of the junction's node; lines that lead to this node may enter the area."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,9 +131,9 @@ class _FreeArm:
     """Distance in metres from the node to the place where the arm meets the junction."""
 
     @property
-    def line(self) -> Line:
+    def line(self) -> _Line:
         """The straight that is kept free for the arm."""
-        return Line(self.z, self.z + self.way * (self.reach + STUB), frozenset({self.node}))
+        return _Line(self.z, self.z + self.way * (self.reach + STUB), frozenset({self.node}))
 
 
 @dataclass
@@ -132,7 +147,7 @@ class _Village:
     haste: float
     draft: MapDraft = field(default_factory=MapDraft)
     free: list[_FreeArm] = field(default_factory=list)
-    discs: list[Disc] = field(default_factory=list)
+    discs: list[_Disc] = field(default_factory=list)
     ends: Range = field(default_factory=Range)
     """The allowed numbers of dead ends, once all junctions are joined."""
 
@@ -178,21 +193,16 @@ class _Village:
     def put(
         self, junction: JunctionDesign, z: complex, turn: float, back: int | None = None, *joined_to: int
     ) -> None:
-        """Adds a junction and its arms.
+        """Adds a junction at ``z``, turned by an angle in radians, and its arms.
 
-        Args:
-            junction: the junction.
-            z: the place of the junction as x + iy in metres.
-            turn: the angle in radians by which the junction is turned.
-            back: index of the arm to which a road leads from an earlier node; None for the first junction,
-                to which no road leads yet.
-            joined_to: the number of this earlier node; left out for the first junction.
+        ``back`` is the index of the arm to which a road leads from an earlier node, and ``joined_to`` the
+        number of this node; both are left out for the first junction, to which no road leads yet.
         """
         radius = junction.radius if junction.kind == "roundabout" else None
         node = DraftNode(z, junction.kind, junction.kerb, radius, junction.control)
         number = self.draft.add(node, *joined_to)
         reaches = self._reaches(junction)
-        self.discs.append(Disc(z, max(reaches), number))
+        self.discs.append(_Disc(z, max(reaches), number))
         for n, way in enumerate(_ways(junction, turn)):
             if n != back:
                 self.free.append(_FreeArm(number, z, way, reaches[n]))
@@ -234,7 +244,7 @@ class _Village:
         first = len(self.draft.nodes)
         numbers = [arm.node, *range(first, first + len(points))]
         lines = [
-            Line(a, b, frozenset(nodes))
+            _Line(a, b, frozenset(nodes))
             for (a, b), nodes in zip(pairwise([arm.z, *points]), pairwise(numbers), strict=True)
         ]
         reaches, here = self._reaches(junction), points[-1]
@@ -242,8 +252,8 @@ class _Village:
             if n != back:
                 lines.append(_FreeArm(numbers[-1], here, way, reaches[n]).line)
         there = self._lines(arm)
-        disc = Disc(here, max(reaches), numbers[-1])
-        return is_clear(lines, there, self.discs, self.apart) and is_clear(there, [], [disc], self.apart)
+        disc = _Disc(here, max(reaches), numbers[-1])
+        return _is_clear(lines, there, self.discs, self.apart) and _is_clear(there, [], [disc], self.apart)
 
     @property
     def apart(self) -> float:
@@ -251,10 +261,10 @@ class _Village:
         section = self.world.section
         return float(2 * section.lane_width + 2 * section.shoulder + MARGIN)
 
-    def _lines(self, *without: _FreeArm) -> list[Line]:
+    def _lines(self, *without: _FreeArm) -> list[_Line]:
         """Returns the straights between nodes, and those kept free for arms, but for some of these."""
         nodes = self.draft.nodes
-        roads = [Line(nodes[a].z, nodes[b].z, frozenset((a, b))) for a, b in self.draft.roads]
+        roads = [_Line(nodes[a].z, nodes[b].z, frozenset((a, b))) for a, b in self.draft.roads]
         return roads + [arm.line for arm in self.free if arm not in without]
 
     def join_arms(self) -> bool:
@@ -304,8 +314,8 @@ class _Village:
             return []
         radius = drawn_bend(self.rng, self.least_radius, room / tangent_length(turn))
         z, number = one.z + one.way * first, len(self.draft.nodes)
-        lines = [Line(arm.z, z, frozenset((arm.node, number))) for arm in (one, other)]
-        if radius is None or not is_clear(lines, self._lines(one, other), self.discs, self.apart):
+        lines = [_Line(arm.z, z, frozenset((arm.node, number))) for arm in (one, other)]
+        if radius is None or not _is_clear(lines, self._lines(one, other), self.discs, self.apart):
             return []
         return [DraftNode(z, "bend", radius=radius)]
 
@@ -327,8 +337,8 @@ class _Village:
             ]
             first = len(self.draft.nodes)
             points, nodes = [one.z, *places, other.z], [one.node, first, first + 1, other.node]
-            lines = [Line(points[n], points[n + 1], frozenset(nodes[n : n + 2])) for n in range(3)]
-            if None not in radii and is_clear(lines, self._lines(one, other), self.discs, self.apart):
+            lines = [_Line(points[n], points[n + 1], frozenset(nodes[n : n + 2])) for n in range(3)]
+            if None not in radii and _is_clear(lines, self._lines(one, other), self.discs, self.apart):
                 return [DraftNode(z, "bend", radius=radius) for z, radius in zip(places, radii, strict=True)]
         return []
 
@@ -345,3 +355,24 @@ def _ways(junction: JunctionDesign, turn: float) -> list[complex]:
     """Returns the directions out of a junction that is turned by an angle in radians."""
     angles = [pi, *(radians(arm.angle) for arm in junction.all_arms)]
     return [cmath.rect(1.0, angle + turn) for angle in angles]
+
+
+def _is_clear(new: Sequence[_Line], lines: Sequence[_Line], discs: Sequence[_Disc], apart: float) -> bool:
+    """Returns whether new lines keep clear of all lines and discs with which they share no node.
+
+    Distances between the new lines are not checked. Two lines must be ``apart`` metres apart, and a line and
+    a disc half as far.
+    """
+    centres = [_Line(each.z, each.z, frozenset({each.node})) for each in discs]
+    least = np.array([apart] * len(lines) + [each.radius + apart / 2 for each in discs])
+    others = [*lines, *centres]
+    if not new or not others:
+        return True
+    away = shapely.distance(_shapes(new)[:, None], _shapes(others)[None, :])
+    meet = np.array([[bool(a.nodes & b.nodes) for b in others] for a in new])
+    return not (~meet & (away < least)).any()
+
+
+def _shapes(lines: Sequence[_Line]) -> np.ndarray:
+    z = np.array([(line.start, line.end) for line in lines])
+    return np.asarray(shapely.linestrings(np.stack((z.real, z.imag), axis=-1)))

@@ -1,12 +1,14 @@
 """Defines Windows: the grades that the requirements allow a road and each of its features."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from math import inf
 
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import STEEPEST
-from roadgpt.check.measures import LEVEL
+from roadgpt.check.matching import change_of_grade
+from roadgpt.check.measures import GradeChange
 from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.vertical import COMFORT
 from roadgpt.errors import DesignError
@@ -14,6 +16,7 @@ from roadgpt.road import World
 
 UNDER_LIMIT = 0.4  # percentage points kept off the steepest grade allowed
 MARGIN = 0.5  # percentage points kept off the ends of a required range of grades
+CLEARLY = 0.6  # percentage points between two straights of different grades that go the same way
 MARGIN_SHARE = 0.2  # of the width of the range: no more is kept off
 
 
@@ -82,6 +85,8 @@ class Windows:
             known = out[i - 1] if i else (out[i + 1] if i + 1 < len(out) else None)
             if straight.grade is None and self.base is None and known:
                 out[i] = self.other(known)
+        for i, (one, other) in enumerate(pairwise(straights)):
+            out[i : i + 2] = _divided(out[i : i + 2], change_of_grade(one.grade, other.grade))
         return out
 
     def other(self, grade: Range | None) -> Range:
@@ -99,8 +104,15 @@ class Windows:
         """Returns whether the grade must change between two features with these ranges of grade."""
         return self.between(one, other) > 0
 
-    def alike(self, one: Range | None, other: Range | None) -> bool:
-        """Returns whether two consecutive straights with these ranges of grade are measured as one."""
-        if not one or not other or not self.part(one, other):
-            return True
-        return min(one.lo, other.lo) >= LEVEL or max(one.hi, other.hi) <= -LEVEL
+
+def _divided(pair: list[Range | None], change: GradeChange | None) -> list[Range | None]:
+    """Returns the ranges of grade of two straights, clearly apart from the grade between them; unchanged if
+    there is no change, or if one of them would become empty.
+    """
+    one, other = pair
+    if change is None or one is None or other is None:
+        return pair
+    low, high = Range(hi=change.grade - CLEARLY / 2), Range(lo=change.grade + CLEARLY / 2)
+    first, second = (low, high) if change.rises else (high, low)
+    found = [overlap(one, first) or one, overlap(other, second) or other]
+    return [*found] if all(each.lo <= each.hi for each in found) else pair

@@ -19,10 +19,9 @@ from roadgpt import plugins
 from roadgpt.drive.continuity import check_motion
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended
 from roadgpt.drive.isolation import driver_of
-from roadgpt.drive.outlook import route_of
 from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, View
 from roadgpt.errors import UsageError
-from roadgpt.network import refuse_without_route
+from roadgpt.network import is_route, refuse_without_route
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -150,7 +149,7 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -
     """
     from roadgpt.road import World
 
-    if road is not None and route_of(road) is not None and getattr(simulator, "single_roads_only", False):
+    if road is not None and is_route(road) and getattr(simulator, "single_roads_only", False):
         raise UsageError("this simulator cannot build junctions yet; drive in the simulator mujoco")
     values, usual = world.values(), World().values()
     ignored = getattr(simulator, "ignores", ())

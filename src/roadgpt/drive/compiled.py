@@ -5,6 +5,8 @@ MuJoCo's functions cannot be called by their addresses, everything runs as plain
 ``ROADGPT_NO_NUMBA=1`` forces plain Python. ``roadgpt doctor`` shows which of the two is used.
 """
 
+import ctypes
+import functools
 import logging
 import os
 import warnings
@@ -13,9 +15,58 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from roadgpt.drive.native import addresses, intrinsic_call
+FUNCTIONS = ("mj_step1", "mj_step2", "mj_kinematics")
+LIBRARIES = ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll")  # by system; names contain the version
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+@functools.cache
+def addresses() -> tuple[int, ...]:
+    """Returns the memory addresses of the functions listed in FUNCTIONS, in the library that MuJoCo's
+    bindings use.
+
+    Raises:
+        OSError: the library is missing or does not load.
+        AttributeError: the library lacks one of the functions, or the bindings do not expose the address of a
+            model.
+    """
+    import mujoco
+
+    folder = Path(mujoco.__file__).parent
+    found = [path for name in LIBRARIES for path in sorted(folder.glob(name))]
+    if not found:
+        raise FileNotFoundError(f"MuJoCo's library is not in {folder}")
+    library = ctypes.CDLL(str(found[0]))
+    made = tuple(ctypes.cast(getattr(library, name), ctypes.c_void_p).value or 0 for name in FUNCTIONS)
+    if not all(hasattr(kind, "_address") for kind in (mujoco.MjModel, mujoco.MjData)):
+        raise AttributeError("MuJoCo's bindings do not expose the address of a model")
+    return made
+
+
+def _intrinsic_call() -> Any:
+    """Returns a function with which compiled code calls a C function ``void function(model, data)``. The
+    returned function takes the addresses of the C function, of the model and of the data.
+
+    Raises:
+        ImportError: numba or llvmlite is missing.
+    """
+    from llvmlite import ir
+    from numba import types
+    from numba.extending import intrinsic
+
+    def by_address(_typing: Any, _function: Any, _model: Any, _data: Any) -> Any:
+        def build(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+            address = ir.IntType(8).as_pointer()
+            kind = ir.FunctionType(ir.VoidType(), [address, address])
+            target, *pointers = arguments
+            pointers = [builder.inttoptr(p, address) for p in pointers]
+            builder.call(builder.inttoptr(target, kind.as_pointer()), pointers)
+            return context.get_dummy_value()
+
+        return types.void(types.intp, types.intp, types.intp), build
+
+    return intrinsic(by_address)
 
 
 def _numba() -> tuple[Any, Any, str]:
@@ -28,7 +79,7 @@ def _numba() -> tuple[Any, Any, str]:
             warnings.simplefilter("ignore")
             import numba
 
-            call = intrinsic_call()
+            call = _intrinsic_call()
             addresses()
     except Exception as error:  # a broken installation may raise anything
         return None, None, f"{type(error).__name__}: {error}"

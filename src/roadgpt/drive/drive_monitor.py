@@ -30,14 +30,8 @@ class DriveMonitor:
     """Watches one drive along a road, from its first step to its end."""
 
     def __init__(self, road: "Road", world: "World", box: Box, keep_driving: bool = False) -> None:
-        """Prepares the checks.
-
-        Args:
-            road: the road.
-            world: the World with its tolerances; if it sets ``lane_departure``, the front tyres are checked,
-                too.
-            box: outline of the car.
-            keep_driving: whether the car may leave its lane.
+        """Prepares the checks, by the tolerances of the world; if it sets ``lane_departure``, the front tyres
+        are checked, too. With ``keep_driving``, the car may leave its lane.
         """
         self.start = min(START, road.length / 2)
         """Station in metres where the car is placed."""
@@ -56,12 +50,8 @@ class DriveMonitor:
     def ended(self, row: FloatArray, time: float, has_fallen: bool) -> Ended | None:
         """Returns how the drive ended at this step, or None if the drive continues.
 
-        Call this method exactly once for every control step, from the first on.
-
-        Args:
-            row: the state of the car, in the order of COLUMNS; the column ``time`` is not used.
-            time: seconds since the start.
-            has_fallen: whether the car has fallen off the road.
+        Call this method exactly once for every control step, from the first on. ``row`` is the state of the
+        car in the order of COLUMNS; its column ``time`` is not used. ``time`` is in seconds since the start.
 
         Raises:
             SimulationError: the physics became unstable.
@@ -104,13 +94,10 @@ class DriveMonitor:
         return time - self._since >= STUCK_TIME - ROUNDING
 
     def is_out(self, outside: float, pose: ArrayLike | None) -> bool:
-        """Returns whether the car is out of its lane.
+        """Returns whether the car is out of its lane, with the share ``outside`` (0 to 1) of its box.
 
-        If lane departures count, a car with a front tyre beyond a marking is out of its lane, too.
-
-        Args:
-            outside: share of the car's box outside the lane, 0 to 1.
-            pose: the values of the columns POSE, shape (6,); None if lane departures do not count.
+        If lane departures count, a car with a front tyre beyond a marking is out of its lane, too. ``pose``
+        has the values of the columns POSE, shape (6,); it may be None if lane departures do not count.
         """
         if outside > self._tolerance:
             return True

@@ -87,10 +87,7 @@ def stations(road: "Road") -> FloatArray:
 def smoothed(values: FloatArray, step: float, half_width: float) -> FloatArray:
     """Returns values, shape ``(n,)``, smoothed with a Hann window; beyond each end the end value is repeated.
 
-    Args:
-        values: one value per station.
-        step: distance between stations in metres.
-        half_width: half of the width of the window in metres.
+    The values are ``step`` metres apart, and the window reaches ``half_width`` metres to both sides.
     """
     half = max(1, round(half_width / step))
     window = np.hanning(2 * half + 1 + 2)[1:-1]
@@ -179,12 +176,8 @@ def pedals(line: DrivingLine, speed: list[float], s: float, v: float) -> tuple[f
 
 
 def pedals_for(acceleration: float, grade: float, v: float) -> tuple[float, float]:
-    """Returns throttle and brake, 0..1 each, for an acceleration in m/s^2.
-
-    Args:
-        acceleration: acceleration along the road in m/s^2; negative to slow down.
-        grade: grade of the road as a ratio.
-        v: speed of the car, m/s.
+    """Returns throttle and brake, 0..1 each, for an acceleration along the road in m/s^2 (negative to slow
+    down), on a grade (a ratio) and at the speed ``v`` in m/s.
     """
     wanted = acceleration + GRAVITY * grade + DRAG * v * v + ROLLING
     if wanted > 0.0:

@@ -41,9 +41,7 @@ def load_driver(spec: str) -> Any:
 def absolute_spec(spec: str, folder: Path) -> str:
     """Makes the path in a driver's specification absolute, so that the driver is found from any folder.
 
-    Args:
-        spec: as for ``load_driver``; the name of a plug-in is returned unchanged.
-        folder: the folder that a relative path starts from.
+    A relative path starts from ``folder``. The name of a plug-in is returned unchanged.
     """
     path, wanted = split_spec(spec)
     if not path:

@@ -8,19 +8,13 @@ from roadgpt.geometry import wrap_angle
 from roadgpt.network import is_route
 
 if TYPE_CHECKING:
-    from roadgpt.network import Leg, Passage, Route
+    from roadgpt.network import Passage, Route
     from roadgpt.road import Profile, Road, World
-
-
-def route_of(road: "Road") -> "Route | None":
-    """Returns the road if it is a route through a network, otherwise None."""
-    return road if is_route(road) else None
 
 
 def passages(road: "Road") -> "tuple[Passage, ...]":
     """Returns the passages of a route through its junctions in driving order; empty for a single road."""
-    route = route_of(road)
-    return () if route is None else route.passages
+    return road.passages if is_route(road) else ()
 
 
 class Outlook:
@@ -28,13 +22,17 @@ class Outlook:
 
     def __init__(self, road: "Road", world: "World") -> None:
         """Prepares the junctions and the lanes of a road or a route."""
-        self._route = route_of(road)
+        self._route = road if is_route(road) else None
         self._junctions = [_junction(road, each) for each in passages(road)]
         self._ends = [end for _, end, _ in self._junctions]
-        self._starts, self._beside = [0.0], [_beside_on_road(road, world)]
-        if self._route is not None:
+        if self._route is None:
+            profile = world.profile_of(road)
+            self._starts, self._beside = [0.0], [_beside(profile, profile.along_ids[profile.driven])]
+        else:
+            profiles = [self._route.network.road(leg.road).profile for leg in self._route.legs]
+            legs = zip(profiles, self._route.legs, strict=True)
             self._starts = list(self._route.starts[:-1])
-            self._beside = [_beside_on_leg(self._route, leg) for leg in self._route.legs]
+            self._beside = [_beside(profile, leg.lane) for profile, leg in legs]
         self._plain = (self._route, (), *self._beside[0])
 
     def at(self, s: float) -> "tuple[Route | None, tuple[JunctionAhead, ...], int, int]":
@@ -57,25 +55,13 @@ def _junction(road: "Road", passage: "Passage") -> tuple[float, float, tuple[str
     return passage.start, passage.end, (passage.entered.kind, turn, passage.exit, passage.control)
 
 
-def _beside_on_road(road: "Road", world: "World") -> tuple[int, int]:
-    """Returns the number of driving lanes to the left and to the right of the driven lane."""
-    profile = world.profile_of(road)
-    forward, backward = profile.count
-    return _left_and_right(profile, profile.driven + backward, forward - 1 - profile.driven)
-
-
-def _beside_on_leg(route: "Route", leg: "Leg") -> tuple[int, int]:
-    profile = route.network.road(leg.road).profile
-    forward, backward = profile.count
-    if profile.leads_along(leg.lane):
-        index = profile.along_ids.index(leg.lane)
-        return _left_and_right(profile, index + backward, forward - 1 - index)
-    index = profile.against_ids.index(leg.lane)
-    return _left_and_right(profile, index + forward, backward - 1 - index)
-
-
-def _left_and_right(profile: "Profile", inside: int, outside: int) -> tuple[int, int]:
-    """Returns the numbers of lanes to the left and to the right, from those on the side of oncoming traffic
-    and those on the other side.
+def _beside(profile: "Profile", lane: int) -> tuple[int, int]:
+    """Returns the numbers of driving lanes to the left and to the right of a lane, for those who drive on
+    it.
     """
+    own, oncoming = profile.along_ids, profile.against_ids
+    if not profile.leads_along(lane):
+        own, oncoming = oncoming, own
+    inside = own.index(lane) + len(oncoming)
+    outside = len(own) - 1 - own.index(lane)
     return (outside, inside) if profile.left_hand else (inside, outside)

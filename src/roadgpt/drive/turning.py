@@ -43,10 +43,8 @@ def turning_speed(curvature: float) -> float:
     """Returns the speed in m/s at which people drive through a bend of a junction or roundabout.
 
     On a radius of 10 m the speed is 20 km/h (lateral acceleration 3.1 m/s^2), on 15 m 23 km/h (2.8 m/s^2), on
-    30 m 30 km/h (2.3 m/s^2). Above a radius of 200 m it is infinite.
-
-    Args:
-        curvature: Curvature of the driven line in 1/m.
+    30 m 30 km/h (2.3 m/s^2). Above a radius of 200 m it is infinite. ``curvature`` is that of the driven
+    line, in 1/m.
     """
     if abs(curvature) * GENTLE < 1:
         return math.inf
@@ -57,12 +55,8 @@ def highest_speeds(road: "Road", line: DrivingLine, braking: float = math.inf) -
     """Returns the speed in m/s that stop signs and the bends of junctions allow, at each station of a line.
 
     Where nothing limits the speed, it is infinite. The result is None on a road without junctions.
-
-    Args:
-        road: The road or route.
-        line: The driven line.
-        braking: Largest deceleration in m/s^2 before and inside junctions; by default that of the driver's
-            own plan.
+    ``braking`` is the largest deceleration in m/s^2 before and inside junctions; by default, it is that of
+    the driver's own plan.
     """
     ways = passages(road)
     if not ways:

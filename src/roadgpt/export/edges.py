@@ -1,9 +1,8 @@
 """Converts lines parallel to the centre line to polylines with few points and a bounded chord error."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.ndimage import maximum_filter1d
 
 from roadgpt.export.finite import finite
 from roadgpt.geometry import CubicProfile
@@ -35,7 +34,8 @@ def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
     s = np.linspace(0.0, road.length, max(3, int(np.ceil(road.length / STEP)) + 1))
     finite(road.at(s))
     plan, upright = np.abs(finite(road.curvature(s))), np.abs(finite(road.vertical_curvature(s)))
-    bend = _widened(np.maximum(plan * (1 + plan * reach), upright))
+    # each value is widened to its neighbours, because the curvature may jump between two stations
+    bend = maximum_filter1d(np.maximum(plan * (1 + plan * reach), upright), 3)
     if road.profile is not None:
         bend = np.maximum(bend, _sway(road.profile, s))
     spacing = np.clip(np.sqrt(8 * chord / np.maximum(bend, 1e-12)), SHORTEST, LONGEST)
@@ -91,17 +91,3 @@ def line(road: Road, s: Array, t: ArrayLike) -> Array:
     inside = k * np.asarray(t) > PINCH
     offsets = np.where(inside, PINCH / np.where(inside, k, 1.0), t)
     return road.at(s, offsets)
-
-
-def lines(road: Road, s: Array, offsets: Sequence[ArrayLike]) -> list[Array]:
-    """Returns one array of points ``(n, 3)`` for each offset from the centre line, as computed by
-    ``line``.
-    """
-    return [line(road, s, t) for t in offsets]
-
-
-def _widened(bend: Array) -> Array:
-    """Returns, for each value, the greatest of it and its two neighbours, because the curvature may jump
-    between two stations."""
-    padded = np.r_[bend[0], bend, bend[-1]]
-    return np.asarray(np.maximum(np.maximum(padded[:-2], padded[2:]), bend))

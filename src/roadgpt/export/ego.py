@@ -58,8 +58,6 @@ def goal_of(road: Road) -> float:
 class SpeedProfile(NamedTuple):
     """The speeds of a calm driver from a standing start, as arrays of equal length."""
 
-    s: Array
-    """Stations along the road in metres."""
     speed: Array
     """Speeds in m/s."""
     time: Array
@@ -80,14 +78,9 @@ def calm_speed(road: Road, world: World) -> float:
     return float(calm_speeds(road, world, road.sample().s).min())
 
 
-def calm_profile(road: Road, world: World, start: float) -> SpeedProfile:
-    """Returns the speeds of a calm driver who starts from rest and drives in the middle of the right lane.
-
-    Args:
-        road: The road.
-        world: The World, which defines the speed limit, the friction and the lane width.
-        start: Station in metres where the drive begins.
-    """
+def calm_profile(road: Road, world: World) -> SpeedProfile:
+    """Returns the speeds of a calm driver who starts from rest and drives in the middle of the right lane."""
+    start = start_of(road)
     count = max(2, int(np.ceil((road.length - start) / STEP)) + 1)
     s = np.linspace(start, road.length, count)
     step, bend = float(s[1] - s[0]), road.curvature(s)
@@ -100,7 +93,7 @@ def calm_profile(road: Road, world: World, start: float) -> SpeedProfile:
     along = step * (stretch[1:] + stretch[:-1]) / 2
     # the first station of the plan is one step after rest
     speed = np.minimum(speed, np.sqrt(2 * pull * GRAVITY * np.r_[0.0, np.cumsum(along)]))
-    return SpeedProfile(s, speed, np.r_[0.0, np.cumsum(2 * along / (speed[1:] + speed[:-1]))])
+    return SpeedProfile(speed, np.r_[0.0, np.cumsum(2 * along / (speed[1:] + speed[:-1]))])
 
 
 def on_the_ground(poses: Poses, ahead: float) -> Array:

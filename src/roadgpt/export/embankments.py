@@ -28,18 +28,15 @@ class Embankment(NamedTuple):
 def embankments(road: Road, profile: Profile, s: Array, land: Land) -> Iterator[Embankment]:
     """Yields the slopes along both edges of a road and across both of its ends.
 
-    Args:
-        road: The road.
-        profile: The cross-section of the road; the slopes begin at the outer edges of the shoulders.
-        s: Stations ``(n,)`` in metres of the points along both edges.
-        land: The surrounding land; each slope ends just below its surface.
+    The slopes begin at the outer edges of the shoulders, with points at the stations ``s``, and end just
+    below the surface of the surrounding land.
     """
     heading, (left, right) = road.heading(s), profile.rims(s)
     for side, rim in ((-1.0, right), (1.0, left)):
         edge = line(road, s, rim)
         near = line(road, s, rim + side * OUTSIDE)
         outward = side * np.stack([-np.sin(heading), np.cos(heading)], axis=-1)
-        yield _bank(edge, near, outward, land, is_left=side > 0)
+        yield bank_from(edge, near, outward, land, is_left=side > 0)
     for end, sign in ((0.0, -1.0), (road.length, 1.0)):
         rims = profile.rims(end)
         across = np.linspace(*(rims if sign > 0 else rims[::-1]), ACROSS)
@@ -47,10 +44,13 @@ def embankments(road: Road, profile: Profile, s: Array, land: Land) -> Iterator[
         to = float(road.heading(end))
         way = sign * np.array([np.cos(to), np.sin(to)])
         near = edge[:, :2] + OUTSIDE * way
-        yield _bank(edge, near, np.repeat(way[None], len(edge), axis=0), land, is_left=True)
+        yield bank_from(edge, near, np.repeat(way[None], len(edge), axis=0), land, is_left=True)
 
 
-def _bank(edge: Array, near: Array, outward: Array, land: Land, is_left: bool) -> Embankment:
+def bank_from(edge: Array, near: Array, outward: Array, land: Land, is_left: bool) -> Embankment:
+    """Returns the slope from an edge ``(n, 3)`` in the directions ``outward`` ``(n, 2)``, down to just below
+    the land at the points ``near`` ``(n, 2)``.
+    """
     drop = edge[:, 2] - np.minimum(land.height(near[:, 0], near[:, 1]), edge[:, 2]) + FOOT
     foot = np.column_stack([edge[:, :2] + RUN * drop[:, None] * outward, edge[:, 2] - drop])
     return Embankment(edge, foot, is_left)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from roadgpt.export.edges import lines, stations
+from roadgpt.export.edges import line, stations
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Network, RoadEnd, Route
@@ -32,25 +32,11 @@ class LaneletBound:
     marking: Marking
 
 
-@dataclass(frozen=True, eq=False)
-class LaneletSection:
-    """The driving lanes between the stations ``start`` and ``end`` in metres, from right to left. The ids of
-    lanes are those of OpenDRIVE."""
-
-    start: float
-    end: float
-    lanes: tuple[int, ...]
-    bounds: tuple[LaneletBound, ...]
-    """The bounds of the lanes from right to left: one more than there are lanes, or two more if there is a
-    median.
-    """
-    places: tuple[int, ...]
-    """For each lane, the index of its right bound. The left bound has the next index."""
-
-    def bounds_of(self, lane: int) -> tuple[LaneletBound, LaneletBound]:
-        """Returns the bounds of a lane on the right and on the left, as seen along the road."""
-        place = self.places[self.lanes.index(lane)]
-        return self.bounds[place], self.bounds[place + 1]
+LaneletSection = dict[int, tuple[LaneletBound, LaneletBound]]
+"""The driving lanes of one section of a road, from right to left: the bounds of each lane on the right and on
+the left, as seen along the road, by the id of the lane in OpenDRIVE. Neighbours share the bound between them,
+unless there is a median.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +98,7 @@ class _NumberedLanelets:
             for road, sections in self.sections.items()
             for lane in self._lanes(road)
             for n, each in enumerate(sections)
-            if lane in each.lanes
+            if lane in each
         ]
         self.ids = {place: number for number, place in enumerate(places, 1)}
 
@@ -144,7 +130,7 @@ class _NumberedLanelets:
                     if number is None:
                         continue
                     own = [self.ids.get((road, n + way, lane)) for way in (-step, step)]
-                    right, left = sections[n].bounds_of(lane)
+                    right, left = sections[n][lane]
                     yield Lanelet(
                         number,
                         road,
@@ -166,12 +152,13 @@ class _NumberedLanelets:
         is returned if no lanelet shares the bound on this side.
         """
         section, profile = self.sections[road][n], self.profiles[road]
-        at = section.lanes.index(lane)
-        if not 0 <= at + step < len(section.lanes):
+        lanes = list(section)
+        at = lanes.index(lane) + step
+        if not 0 <= at < len(lanes):
             return None
-        if section.places[at + step] != section.places[at] + step:  # behind a median
+        other, (right, left) = lanes[at], section[lane]
+        if (left if step > 0 else right) not in section[other]:  # behind a median
             return None
-        other = section.lanes[at + step]
         return self.ids[road, n, other], profile.leads_along(other) == profile.leads_along(lane)
 
 
@@ -201,8 +188,7 @@ def lanelet_sections(road: Road, world: World) -> list[LaneletSection]:
     profile = world.profile_of(road)
     fine = stations(road, profile.paved_reach)
     count = max(1, round(road.length / LENGTH))
-    cuts = np.linspace(0.0, road.length, count + 1)
-    cuts = _with_ends_of_lanes(cuts, profile)
+    cuts = _with_ends_of_lanes(np.linspace(0.0, road.length, count + 1), profile)
     out = []
     for start, end in zip(cuts.tolist(), cuts[1:].tolist(), strict=False):
         s = np.r_[start, fine[(fine > start + 1e-3) & (fine < end - 1e-3)], end]
@@ -226,21 +212,21 @@ def _section(road: Road, profile: Profile, s: Array) -> LaneletSection:
     left_ids, right_ids = profile.along_ids, profile.against_ids
     if not profile.left_hand:
         left_ids, right_ids = right_ids, left_ids
-    left = _wide(left_ids, profile.left, edges[0], begin.left)
-    right = _wide(right_ids, profile.right, edges[1], begin.right)
-    centre = [(profile.centre_marking, begin.right)]
-    if profile.median:
-        centre.append((profile.centre_marking, begin.left))
-    rows = [*(row[1:] for row in right[::-1]), *centre, *(row[1:] for row in left)]
-    made = lines(road, s, [offsets for _, offsets in rows])
-    bounds = [
-        LaneletBound(np.round(points, DECIMALS) + 0.0, marking)
-        for points, (marking, _) in zip(made, rows, strict=True)
-    ]
-    lanes = [row[0] for row in (*right[::-1], *left)]
-    first_left = len(right) + len(centre) - 1
-    places = [*range(len(right)), *range(first_left, first_left + len(left))]
-    return LaneletSection(float(s[0]), float(s[-1]), tuple(lanes), tuple(bounds), tuple(places))
+
+    def bound(marking: Marking, t: Array) -> LaneletBound:
+        return LaneletBound(np.round(line(road, s, t), DECIMALS) + 0.0, marking)
+
+    first = bound(profile.centre_marking, begin.right)
+    inner, lanes = first, LaneletSection()
+    for lane, marking, t in _wide(right_ids, profile.right, edges[1], begin.right):
+        outer = bound(marking, t)
+        lanes[lane], inner = (outer, inner), outer
+    lanes = dict(reversed(lanes.items()))
+    inner = bound(profile.centre_marking, begin.left) if profile.median else first
+    for lane, marking, t in _wide(left_ids, profile.left, edges[0], begin.left):
+        outer = bound(marking, t)
+        lanes[lane], inner = (inner, outer), outer
+    return lanes
 
 
 def _wide(

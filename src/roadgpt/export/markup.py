@@ -16,8 +16,6 @@ _ESCAPES = str.maketrans(
 
 _UNUSUAL = re.compile(r'[^ -~]|[&<>"]').search  # finds characters that may need an escape
 
-MOST_TEXTS = 4096  # texts of attributes that are kept while a document is written
-
 Value = str | float | int
 
 
@@ -35,7 +33,6 @@ def number(value: float) -> str:
     return text[:-2] if text[-2:] == ".0" and abs(value) < 1e15 else text
 
 
-@lru_cache(maxsize=4096)
 def escaped(text: str) -> str:
     """Returns text with special characters escaped, for use between tags or in an attribute.
 
@@ -85,45 +82,41 @@ class XmlElement:
             ExportError: A number in the attributes is not finite.
         """
         lines = [DECLARATION]
-        _write(self, "", lines, _Texts(), {})
+        _write(self, "", lines, {})
         return "\n".join(lines) + "\n"
 
 
-class _Texts(dict[Value, str]):
-    """The texts of attributes by their values; most values occur many times in a document."""
-
-    def __missing__(self, value: Value) -> str:
-        if len(self) >= MOST_TEXTS:
-            self.clear()
-        text = self[value] = escaped(value) if isinstance(value, str) else number(value)
-        return text
+@lru_cache(maxsize=4096)
+def _value(value: Value) -> str:
+    """Returns the text of an attribute; most values occur many times in a document."""
+    return escaped(value) if isinstance(value, str) else number(value)
 
 
 _Written = dict[tuple[int, str], str]
 """The text of shared elements, by the id of the Python object and the indent."""
 
 
-def _write(element: XmlElement, indent: str, lines: list[str], texts: _Texts, written: _Written) -> None:
+def _write(element: XmlElement, indent: str, lines: list[str], written: _Written) -> None:
     name = element.name
-    said = "".join([f' {key}="{texts[value]}"' for key, value in element.attributes.items()])
+    said = "".join([f' {key}="{_value(value)}"' for key, value in element.attributes.items()])
     if element.children:
         lines.append(f"{indent}<{name}{said}>")
         deeper = indent + "  "
         for child in element.children:
             if child.is_shared:
-                lines.append(_shared(child, deeper, texts, written))
+                lines.append(_shared(child, deeper, written))
             else:
-                _write(child, deeper, lines, texts, written)
+                _write(child, deeper, lines, written)
         lines.append(f"{indent}</{name}>")
     else:
         lines.append(f"{indent}<{name}{said}" + (f">{element.raw}</{name}>" if element.raw else "/>"))
 
 
-def _shared(element: XmlElement, indent: str, texts: _Texts, written: _Written) -> str:
+def _shared(element: XmlElement, indent: str, written: _Written) -> str:
     """Returns the text of a shared element."""
     key = (id(element), indent)
     if (text := written.get(key)) is None:
         own: list[str] = []
-        _write(element, indent, own, texts, written)
+        _write(element, indent, own, written)
         text = written[key] = "\n".join(own)
     return text

@@ -30,12 +30,8 @@ class NamedLine(NamedTuple):
 
 
 def named_lines(profile: Profile, s: Array) -> list[NamedLine]:
-    """Returns the painted lines of a road: first the edge lines, then the centre line, then lines between
-    lanes.
-
-    Args:
-        profile: The cross-section of the road.
-        s: Stations in metres along the whole road.
+    """Returns the painted lines of a road at stations ``s`` along the whole road: first the edge lines, then
+    the centre line, then lines between lanes.
     """
     carriageway = profile.edges(s)
     found = []

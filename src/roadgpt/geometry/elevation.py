@@ -43,6 +43,21 @@ class GradeProfile:
         if any(map(ge, self.stations, self.stations[1:])):
             raise ValueError("the stations of a profile must increase")
 
+    @classmethod
+    def of(cls, z0: float, knots: Sequence[tuple[float, float]]) -> "GradeProfile":
+        """Returns the profile that starts at height ``z0`` and has these knots (station, grade)."""
+        return cls(z0, tuple(s for s, _ in knots), tuple(grade for _, grade in knots))
+
+    @classmethod
+    def level(cls, length: float, z0: float = 0.0) -> "GradeProfile":
+        """Returns the profile of a level road of this length, both in metres."""
+        return cls(z0, (0.0, length), (0.0, 0.0))
+
+    @property
+    def knots(self) -> list[tuple[float, float]]:
+        """Each station, with the grade there."""
+        return [*zip(self.stations, self.grades, strict=True)]
+
     @cached_property
     def _table(self) -> tuple[Array, Array, Array, Array]:
         """Returns station, height, grade and change of grade per metre at the start of each interval."""
@@ -50,17 +65,6 @@ class GradeProfile:
         steps = s[1:] - s[:-1]
         z = self.z0 + before(steps * (g[1:] + g[:-1]) / 2)
         return s[:-1], z, g[:-1], (g[1:] - g[:-1]) / steps
-
-    def at(self, s: float) -> tuple[float, float]:
-        """Returns the height in metres and the grade as a ratio at one station, without the overhead of
-        arrays.
-        """
-        last = max(bisect_right(self.stations[:-1], s) - 1, 0)
-        knots = [*zip(self.stations, self.grades, strict=True)][: last + 2]
-        rises = [(s1 - s0) * (g1 + g0) / 2 for (s0, g0), (s1, g1) in pairwise(knots[:-1])]
-        (start, grade), (end, after) = knots[-2:]
-        u, change = s - start, (after - grade) / (end - start)
-        return self.z0 + sum(rises) + u * (grade + u * change / 2), grade + u * change
 
     def height(self, s: ArrayLike) -> Array:
         """Returns heights in metres."""
@@ -109,6 +113,21 @@ class CubicProfile:
             raise ValueError("a cubic has four coefficients")
 
     @classmethod
+    def of_rows(cls, rows: Sequence[tuple[float, Cubic]]) -> "CubicProfile":
+        """Returns the profile with these stations, each with the cubic that begins there."""
+        return cls(tuple(s for s, _ in rows), tuple(cubic for _, cubic in rows))
+
+    @classmethod
+    def of_table(cls, stations: Sequence[float], table: Array) -> "CubicProfile":
+        """Returns the profile with a cubic at each station; ``table`` has their coefficients, ``(n, 4)``."""
+        return cls(tuple(stations), tuple((a, b, c, d) for a, b, c, d in table.tolist()))
+
+    @classmethod
+    def constant(cls, height: float) -> "CubicProfile":
+        """Returns the profile with this height in metres everywhere."""
+        return cls((0.0,), ((height, 0.0, 0.0, 0.0),))
+
+    @classmethod
     def smooth(cls, knots: Sequence[tuple[float, float]]) -> "CubicProfile":
         """Returns a profile that passes through knots (station, height) and has a grade of 0 at each knot.
 
@@ -128,6 +147,11 @@ class CubicProfile:
             rows.append((start, 0.0, 3 * change / n**2 + 0.0, -2 * change / n**3 + 0.0))
         rows.append((knots[-1][1], 0.0, 0.0, 0.0))
         return cls(tuple(s for s, _ in knots), tuple(rows))
+
+    @property
+    def rows(self) -> list[tuple[float, Cubic]]:
+        """Each station, with the cubic that begins there."""
+        return [*zip(self.stations, self.coefficients, strict=True)]
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:

@@ -13,19 +13,12 @@ BLOCK = 128  # points that are compared at once
 def meeting(
     z: Complex, s: Array, earlier: Complex, earlier_s: Array, apart: float, neighbours: float
 ) -> tuple[Indices, Indices]:
-    """Returns the pairs of points, one on a line and one on its earlier part, that are closer than ``apart``.
+    """Returns the index pairs of points, one on a line and one on its earlier part, that are closer than
+    ``apart``.
 
-    Args:
-        z: points as x + iy in metres, ``(n,)``.
-        s: stations of these points in metres, ``(n,)``.
-        earlier: points of the earlier part, ``(m,)``; ``z`` again to compare a line with itself.
-        earlier_s: stations of the earlier points in metres, ``(m,)``.
-        apart: distance in metres.
-        neighbours: only pairs count in which the point of ``z`` is farther along the line by more than this,
-            in metres.
-
-    Returns:
-        Indices of the points of ``z`` and of the points of ``earlier``, both of shape ``(number of pairs,)``.
+    Points are x + iy in metres, ``(n,)`` and ``(m,)``, each with its station in metres; ``earlier`` may be
+    ``z``, to compare a line with itself. Only pairs count in which the point of ``z`` is more than
+    ``neighbours`` metres farther along the line. Both arrays returned have the shape ``(number of pairs,)``.
     """
     blocks = [
         _near_block(z[first : first + BLOCK], s[first : first + BLOCK], earlier, earlier_s, apart, neighbours)

@@ -1,6 +1,3 @@
-"""A curriculum of descriptions: it advances to the next description when the agent reaches the goal often
-enough."""
-
 from collections import deque
 from collections.abc import Sequence
 from typing import Any
@@ -48,12 +45,10 @@ class Curriculum(gymnasium.Wrapper[Any, Any, Any, Any]):
         goal, and advances to the next description if the agent did so in enough of the last episodes."""
         seen, reward, terminated, truncated, info = self.env.step(action)
         if terminated or truncated:
-            self._count(info.get("ended") == "goal")
+            self._last.append(info.get("ended") == "goal")
+            is_full = len(self._last) == self._last.maxlen
+            has_next = self.level + 1 < len(self.prompts)
+            if is_full and has_next and sum(self._last) >= self.share * len(self._last):
+                self.level += 1
+                self._last.clear()
         return seen, reward, terminated, truncated, {**info, "level": self.level}
-
-    def _count(self, arrived: bool) -> None:
-        self._last.append(arrived)
-        is_full = len(self._last) == self._last.maxlen
-        if is_full and sum(self._last) >= self.share * len(self._last) and self.level + 1 < len(self.prompts):
-            self.level += 1
-            self._last.clear()

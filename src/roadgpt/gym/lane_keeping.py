@@ -1,5 +1,3 @@
-"""The environment ``roadgpt/LaneKeeping-v0``: drive a road that meets a description, and stay in the lane."""
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -15,8 +15,9 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.check.describing import describe
 from roadgpt.design import draft_road
 from roadgpt.errors import BriefError, DesignError
-from roadgpt.learn.generator import Pair, pairs
-from roadgpt.learn.standard import standard
+from roadgpt.learn.generator import pairs
+from roadgpt.learn.pair import Pair, standard
+from roadgpt.learn.phrasebook import one_of
 from roadgpt.road import World, build
 
 FAMILY = "measured-en"
@@ -69,18 +70,16 @@ STYLES = (
 )  # fmt: skip
 
 
-def measured_pairs(seed: int, world: World | None = None) -> Iterator[Pair]:
+def measured_pairs(seed: int) -> Iterator[Pair]:
     """Yields an endless series of descriptions of measured roads with their plans; the same seed gives the
     same pairs.
     """
     rng = np.random.default_rng([seed, 11])
-    asked, place = pairs(seed, {"en": 1.0}), world or World()
-    while True:
-        wanted = next(asked)
-        if wanted.plan.startswith("!"):
+    for wanted in pairs(seed, {"en": 1.0}):
+        if wanted.is_refusal:
             continue
         try:
-            design = draft_road(read_plan(wanted.plan), place, seed=int(rng.integers(2**31)))
+            design = draft_road(read_plan(wanted.plan), World(), seed=int(rng.integers(2**31)))
             pair = described(describe(build(design)), rng)
         except (DesignError, BriefError):
             continue
@@ -89,13 +88,11 @@ def measured_pairs(seed: int, world: World | None = None) -> Iterator[Pair]:
 
 
 def described(brief: Brief, rng: np.random.Generator) -> Pair | None:
-    """Describes a measured road by facts chosen at random from its Brief, and returns the description and its
-    plan.
-
-    Returns None if the Brief has no clauses or too many.
+    """Describes a measured road by facts chosen at random from its Brief; None if the Brief has no clauses or
+    too many.
     """
     kept = {fact for fact, share in FACTS.items() if rng.random() < share}
-    style = STYLES[int(rng.integers(len(STYLES)))]
+    style = one_of(STYLES, rng)
     clauses = tuple(_less(clause, kept) for clause in brief.clauses)
     if not 1 <= len(clauses) <= MOST_CLAUSES:
         return None
@@ -122,7 +119,7 @@ def _head(brief: Brief, whole: set[str], style: Style) -> str:
 
 def _thing(clause: Clause, style: Style, rng: np.random.Generator) -> str:
     ways = style.turn if clause.kind == "turn" else style.straight
-    text = ways[int(rng.integers(len(ways)))].format(side=clause.side)
+    text = one_of(ways, rng).format(side=clause.side)
     for amount, form in (
         (clause.degrees, style.degrees), (clause.radius, style.radius), (clause.length, style.metres),
     ):  # fmt: skip

@@ -5,12 +5,10 @@ often than its plan is the labelled one, because most texts can be labelled in s
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import NEVER, ModelReader, UncalibratedReading
@@ -19,10 +17,10 @@ from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.test_time_augmentation import refusal
 from roadgpt.errors import BriefError
 from roadgpt.learn.data import NETWORK
-from roadgpt.learn.generator import Pair
+from roadgpt.learn.pair import Pair, normal_change
 from roadgpt.learn.told_prompts import ToldPrompt, is_right
 
-Floats = npt.NDArray[np.float64]
+Settings = dict[str, Any]
 MOST_WRONGLY = 0.012  # share of valid held-back descriptions that may be refused; higher for new descriptions
 STEPS = 30
 CAUTION = 2.0
@@ -34,32 +32,14 @@ CAUTION_OF_ROADS = 3.3
 PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
 
 
-@dataclass(frozen=True, slots=True)
-class EnsembleCalibration:
-    """Values fitted to the readings of an ensemble: the lowest probability at which a refusal is accepted,
-    and the weights of the confidence model.
-    """
-
-    refuse_from: float
-    confidence: dict[str, float]
-
-
-@dataclass(frozen=True, slots=True)
-class Calibration(EnsembleCalibration):
-    """The content of ``settings.json``: the calibration for descriptions of roads, the weights of the
-    confidence model for change requests, and the calibration for descriptions of routes.
-    """
-
-    changes: dict[str, float]
-    routes: EnsembleCalibration | None = None
-
-
-def calibrated(reader: ModelReader, pairs: Sequence[Pair], prompts: Sequence[ToldPrompt] = ()) -> Calibration:
-    """Returns settings fitted to ``pairs`` and ``prompts``, on which the networks must not have been trained.
+def calibrated(reader: ModelReader, pairs: Sequence[Pair], prompts: Sequence[ToldPrompt] = ()) -> Settings:
+    """Returns the content of ``settings.json``, fitted to ``pairs`` and ``prompts``, on which the networks
+    must not have been trained: the calibration for descriptions of roads, the weights of the confidence model
+    for "changes", and the calibration for descriptions of "routes".
 
     Without prompts, the confidence for single roads is fitted to the pairs.
     """
-    honest = [pair for pair in pairs if not pair.plan.startswith("!")]
+    honest = [pair for pair in pairs if not pair.is_refusal]
     words = [pair for pair in honest if not pair.is_change]
     roads = calibrated_ensemble(reader, reader.roads, [pair for pair in words if not _is_route(pair)])
     asked = [
@@ -67,31 +47,34 @@ def calibrated(reader: ModelReader, pairs: Sequence[Pair], prompts: Sequence[Tol
         for pair in honest
         if pair.is_change
     ]
-    return Calibration(
-        roads.refuse_from,
-        confidence_by_roads(reader, prompts) if prompts else roads.confidence,
-        _weights([(looks, looks.plan == right) for looks, right in asked if looks]),
-        None if reader.routes is None else calibrated_routes(reader, reader.routes, honest),
-    )
+    return {
+        "refuse_from": roads["refuse_from"],
+        "confidence": confidence_by_roads(reader, prompts) if prompts else roads["confidence"],
+        "changes": _weights([(looks, looks.plan == right) for looks, right in asked if looks]),
+        "routes": None if reader.routes is None else calibrated_routes(reader, reader.routes, honest),
+    }
 
 
-def calibrated_routes(reader: ModelReader, routes: Ensemble, pairs: Sequence[Pair]) -> EnsembleCalibration:
+def calibrated_routes(reader: ModelReader, routes: Ensemble, pairs: Sequence[Pair]) -> Settings:
     """Returns the calibration of the ensemble for routes, fitted to the valid pairs that describe routes."""
-    of_routes = [pair for pair in pairs if _is_route(pair) and not pair.plan.startswith("!")]
+    of_routes = [pair for pair in pairs if _is_route(pair) and not pair.is_refusal]
     return calibrated_ensemble(reader, routes, of_routes, CAUTION)
 
 
 def calibrated_ensemble(
     reader: ModelReader, ensemble: Ensemble, pairs: Sequence[Pair], caution: float = 1.0
-) -> EnsembleCalibration:
+) -> Settings:
     """Returns the calibration of an ensemble, fitted to valid descriptions of the kind that this ensemble
-    reads. In the fit of the confidence model, a wrong reading counts ``caution`` times, a right one once.
+    reads: the lowest probability at which a refusal is accepted, and the weights of the confidence model, in
+    whose fit a wrong reading counts ``caution`` times and a right one once.
     """
     read = [(reader.uncalibrated(pair.text, NEVER), _bare(pair.plan)) for pair in pairs]
-    return EnsembleCalibration(
-        _threshold(ensemble, pairs),
-        _weights([(looks, _bare(looks.plan) == right) for looks, right in read if looks], caution),
-    )
+    return {
+        "refuse_from": _threshold(ensemble, pairs),
+        "confidence": _weights(
+            [(looks, _bare(looks.plan) == right) for looks, right in read if looks], caution
+        ),
+    }
 
 
 def confidence_by_roads(reader: ModelReader, prompts: Sequence[ToldPrompt]) -> dict[str, float]:
@@ -112,11 +95,6 @@ def _is_route(pair: Pair) -> bool:
     return pair.family.startswith(NETWORK)
 
 
-def normal_change(line: str) -> str:
-    """Returns a plan of changes as ``change_plan`` writes it, so that two plans can be compared as text."""
-    return change_plan(read_change_plan(line))
-
-
 def _threshold(ensemble: Ensemble, honest: Sequence[Pair]) -> float:
     """Returns the lowest probability at which a refusal is accepted; few valid descriptions reach it."""
     chances = [refusal(ensemble.networks, pair.text) for pair in honest]
@@ -130,17 +108,14 @@ def _bare(line: str) -> str:
 
 
 def _weights(found: Sequence[tuple[UncalibratedReading, bool]], caution: float = 1.0) -> dict[str, float]:
-    """Returns the weights of a confidence model by the names of its inputs."""
-    names = ("bias", *(found[0][0].features if found else ()))
+    """Returns the weights of a confidence model by the names of its inputs: of a logistic regression, fitted
+    by Newton's method, in which a wrong reading counts as ``caution`` right ones.
+    """
     if not found:
         return {"bias": 0.0}
+    names = ("bias", *found[0][0].features)
     rows = np.array([(1.0, *looks.features.values()) for looks, _ in found])
-    fitted = _fitted(rows, np.array([is_right for _, is_right in found], dtype=float), caution)
-    return {name: round(float(value), 4) for name, value in zip(names, fitted, strict=True)}
-
-
-def _fitted(rows: Floats, rights: Floats, caution: float) -> Floats:
-    """Fits a logistic regression by Newton's method; a wrong row counts as ``caution`` right ones."""
+    rights = np.array([is_right for _, is_right in found], dtype=float)
     counted = np.where(rights > 0, 1.0, caution)
     weights = np.zeros(rows.shape[1])
     pull = PULL * np.eye(rows.shape[1])
@@ -148,4 +123,4 @@ def _fitted(rows: Floats, rights: Floats, caution: float) -> Floats:
         chances = 1 / (1 + np.exp(-rows @ weights))
         curvature = rows.T @ (rows * (counted * chances * (1 - chances))[:, None]) + pull
         weights += np.linalg.solve(curvature, rows.T @ (counted * (rights - chances)) - pull @ weights)
-    return weights
+    return {name: round(float(value), 4) for name, value in zip(names, weights, strict=True)}

@@ -3,6 +3,8 @@
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import accumulate
 
 import numpy as np
 import numpy.typing as npt
@@ -18,10 +20,11 @@ from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, OF_ROADS, SLOT_TOK
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.brief.sentence import sentence
 from roadgpt.learn.augmentation import augmented
-from roadgpt.learn.generator import Pair, changed, contrasted, pairs, specified
-from roadgpt.learn.held_out import is_held_out
+from roadgpt.learn.generator import draw, draw_change, draw_specified, pairs, series
 from roadgpt.learn.mentions import names_in, with_mention, with_talk
-from roadgpt.learn.routes import generated_routes, routes
+from roadgpt.learn.pair import Pair, grouped, is_held_out
+from roadgpt.learn.phrasebook import one_of, weighted
+from roadgpt.learn.routes import draw_route, routes
 
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
@@ -84,8 +87,8 @@ class Example:
 
 
 def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = None) -> Example | None:
-    """Returns a pair as numbers; None if its plan is too long, has a number that is not in the text, or has
-    a token that is not in the vocabulary.
+    """Returns a pair as numbers; None if its plan is too long, has a number that is not in the text, or has a
+    token that is not in the vocabulary.
 
     A slot token stands for a number in the text. With ``rng``, the slot tokens are chosen at random, so that
     the network learns all of them equally well. A refusal whose cause is not labelled gets no end token, so
@@ -125,26 +128,19 @@ def _reslotted(
 def examples(
     seed: int, hand: Sequence[Pair], pieces: WordPieces, of_series: Mapping[str, float] = SHARES
 ) -> Iterator[Example]:
-    """Yields an endless series of examples: a fixed mixture of generated pairs and of variations of the
-    hand-written pairs. Held-out texts and pairs that ``example`` rejects are left out.
-
-    Args:
-        seed: seed of the series.
-        hand: the hand-written pairs.
-        pieces: the vocabulary of word pieces.
-        of_series: the share of each series of pairs, by the name of the series.
+    """Yields an endless series of examples: a mixture of generated pairs and of variations of the
+    hand-written pairs, in the shares ``of_series``. Held-out texts and pairs that ``example`` rejects are
+    left out.
     """
     streams = _streams(seed, hand)
     names = [name for name in of_series if name in streams]
     rng = np.random.default_rng([seed, 7])
-    shares = np.cumsum([of_series[name] for name in names])
+    shares = tuple(accumulate(of_series[name] for name in names))
     is_of_routes = "networks" in of_series
     while True:
-        at = int(np.searchsorted(shares, rng.random() * shares[-1], side="right"))
-        pair = next(streams[names[at]])
+        pair = next(streams[names[weighted(shares, rng)]])
         if not pair.is_change and rng.random() < MENTIONS:
-            more = with_mention(pair.text, pair.plan, pair.lang, rng)
-            pair = replace(pair, text=more[0], plan=more[1]) if more else pair
+            pair = with_mention(pair, rng) or pair
         if rng.random() < TALK:
             pair = replace(pair, text=with_talk(pair.text, pair.lang, rng))
         is_left_out = is_held_out(pair.text) or (is_of_routes and is_for_roads_only(pair))
@@ -154,15 +150,14 @@ def examples(
 
 
 def is_for_roads_only(pair: Pair) -> bool:
-    """Returns whether a pair is suitable only for the networks that read single roads.
-
-    In such a pair, the plan of a single road names a part of routes, such as a junction, in ``beside(...)``
-    or in a refusal. If a network for single roads writes such a name, the description is passed on to the
-    network for routes, which must therefore not learn these names.
+    """Returns whether a pair is suitable only for the networks that read single roads: its plan of a single
+    road names a part of routes, such as a junction, in ``beside(...)`` or in a refusal. If a network for
+    single roads writes such a name, the description is passed on to the network for routes, which must
+    therefore not learn these names.
     """
     if pair.is_change or pair.family.startswith(NETWORK):
         return False
-    named = pair.plan.split() if pair.plan.startswith("!") else names_in(pair.plan)
+    named = pair.plan.split() if pair.is_refusal else names_in(pair.plan)
     return not TOLD_ON_ROUTES.isdisjoint(named)
 
 
@@ -170,20 +165,19 @@ def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
     """Returns the series of pairs by name; kinds of which there are no hand-written pairs have no series."""
     found = {
         "generated": pairs(seed),
-        "generated contrasts": contrasted(seed),
-        "generated changes": changed(seed),
-        "generated specs": specified(seed),
-        "generated routes": generated_routes(seed),
+        "generated contrasts": series(seed, 1, partial(draw, symbol="contrast", phrases="contrasts")),
+        "generated changes": series(seed, 2, draw_change),
+        "generated specs": series(seed, 3, draw_specified),
+        "generated routes": series(seed, 6, draw_route),
     }
-    kinds: dict[str, list[Pair]] = {}
-    for pair in hand:
-        kind = _kind(pair)
-        kinds.setdefault(kind, []).append(pair)
+    kinds = grouped(hand, _kind)
     for kind, its in kinds.items():
         found[kind] = _varied(its, np.random.default_rng([seed, len(kind)]))
     if "networks" in kinds:
         roads = [pair for kind in ("hand", "free") for pair in kinds.get(kind, ())]
-        found["routes"] = _typed(routes(roads, kinds["networks"], np.random.default_rng([seed, 4])), seed)
+        joined = routes(roads, kinds["networks"], np.random.default_rng([seed, 4]))
+        rng = np.random.default_rng([seed, 5])
+        found["routes"] = (augmented(pair, {}, rng) for pair in joined)
     return found
 
 
@@ -193,42 +187,34 @@ def _kind(pair: Pair) -> str:
     return "changes" if pair.is_change else KINDS_OF_FAMILIES.get(pair.family[:2], "hand")
 
 
-def _typed(stream: Iterator[Pair], seed: int) -> Iterator[Pair]:
-    """Yields the pairs of a series, some of them in a mirror and with typing errors."""
-    rng = np.random.default_rng([seed, 5])
-    for pair in stream:
-        yield augmented(pair, {}, rng)
-
-
 def _varied(hand: Sequence[Pair], rng: np.random.Generator) -> Iterator[Pair]:
     """Yields variations of random pairs."""
-    by_language: dict[str, list[Pair]] = {}
-    for pair in hand:
-        by_language.setdefault(pair.lang, []).append(pair)
+    by_language = grouped(hand, lambda pair: pair.lang)
     while True:
-        pair = hand[int(rng.integers(len(hand)))]
+        pair = one_of(hand, rng)
         yield _said_back(pair) if rng.random() < SAID_BACK else augmented(pair, by_language, rng)
 
 
 def _said_back(pair: Pair) -> Pair:
     """Replaces the text by RoadGPT's own sentence for the plan."""
-    if pair.plan.startswith("!") or pair.is_change or "beside(" in pair.plan:
+    if pair.is_refusal or pair.is_change or "beside(" in pair.plan:
         return pair
-    return Pair(sentence(read_plan(pair.plan)), pair.plan, pair.family, "en")
+    return replace(pair, text=sentence(read_plan(pair.plan)), lang="en")
+
+
+def training_batches(
+    seed: int, hand: Sequence[Pair], pieces: Sequence[str], shares: Mapping[str, float], size: int, pool: int
+) -> Iterator[tuple[Numbers, Numbers]]:
+    """Yields ``batches`` of ``examples`` without end; ``pieces`` is the vocabulary of word pieces."""
+    return batches(examples(seed, hand, WordPieces(pieces), shares), size, pool, seed)
 
 
 def batches(stream: Iterator[Example], size: int, pool: int, seed: int) -> Iterator[tuple[Numbers, Numbers]]:
-    """Yields batches of examples of similar length, padded with zeros.
+    """Yields batches of ``size`` examples of similar length, padded with zeros.
 
-    Args:
-        stream: the examples.
-        size: number of examples in a batch.
-        pool: number of batches cut from one group of examples, which is first sorted by length.
-        seed: seed of the random order of the batches.
-
-    Yields:
-        The word pieces, of shape (size, length of the longest text), and the tokens, of shape (size, length
-        of the longest plan), both lengths rounded up to a multiple of ``STRIDE``.
+    Each ``pool`` batches are cut from one group of examples, which is first sorted by length. A batch is the
+    word pieces, of shape (size, length of the longest text), and the tokens, of shape (size, length of the
+    longest plan); both lengths are rounded up to a multiple of ``STRIDE``.
     """
     rng = np.random.default_rng([seed, 8])
     while True:
@@ -252,17 +238,11 @@ def padded(rows: Sequence[Sequence[int]]) -> Numbers:
 
 
 def with_shared_values(line: str, slots: Sequence[NumberSlot]) -> str:
-    """Moves degrees and radii that all turns share to the part of a plan that holds for the whole road.
+    """Moves degrees and radii that all turns share to the part of a plan that holds for the whole road; the
+    normal form stays the same, and a refusal stays as it is.
 
-    A value is moved only if each of its numbers occurs exactly once in the description, two or more turns
-    share it, and the plan has no such value for the whole road yet.
-
-    Args:
-        line: a plan, or a refusal.
-        slots: the numbers in the description.
-
-    Returns:
-        A plan with the same normal form.
+    A value is moved only if each of its numbers occurs exactly once in the description, whose numbers are
+    ``slots``, two or more turns share it, and the plan has no such value for the whole road yet.
     """
     if line.startswith("!"):
         return line

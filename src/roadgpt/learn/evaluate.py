@@ -3,13 +3,14 @@
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import BUMPS, normal
 from roadgpt.brief.outline import outline
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.errors import BriefError
-from roadgpt.learn.generator import Pair
+from roadgpt.learn.pair import Pair, grouped
 
 Read = Callable[[str], Brief]
 PARTS = ("turns", "slope", "order and side")
@@ -32,7 +33,7 @@ class Reading:
     @property
     def is_honest(self) -> bool:
         """True if the label says that the description asks for a road that can be built."""
-        return not self.pair.plan.startswith("!")
+        return not self.pair.is_refusal
 
     @property
     def was_refused(self) -> bool:
@@ -40,12 +41,11 @@ class Reading:
         return self.got.startswith("!")
 
 
-@dataclass(frozen=True, slots=True)
-class Score:
-    """The number of readings, the number of descriptions that should be refused, and shares from 0 to 1.
+class Score(NamedTuple):
+    """The number of readings, and shares from 0 to 1.
 
     ``exact`` is the share of all readings that are right. ``refused_rightly`` is the share of refused ones
-    among the ``refusals`` descriptions that should be refused. The other shares refer to valid descriptions:
+    among the descriptions that should be refused. The other shares refer to valid descriptions:
     those for which one aspect was read correctly, and those that were refused (``refused_wrongly``).
     """
 
@@ -55,20 +55,11 @@ class Score:
     slope: float
     order_and_side: float
     refused_rightly: float
-    refusals: int
     refused_wrongly: float
 
     def row(self, name: str) -> str:
         """Returns the scores as one row of a Markdown table; the first cell of the row is ``name``."""
-        shares = (
-            self.exact,
-            self.turns,
-            self.slope,
-            self.order_and_side,
-            self.refused_rightly,
-            self.refused_wrongly,
-        )
-        return f"| {name} | {self.number} | " + " | ".join(f"{100 * share:.1f}" for share in shares) + " |"
+        return f"| {name} | {self.number} | " + " | ".join(f"{100 * share:.1f}" for share in self[1:]) + " |"
 
 
 HEAD = (
@@ -84,7 +75,7 @@ def readings(pairs: Iterable[Pair], read: Read) -> list[Reading]:
 
 
 def _reading(pair: Pair, read: Read) -> Reading:
-    wanted = None if pair.plan.startswith("!") else normal(read_plan(pair.plan))
+    wanted = None if pair.is_refusal else normal(read_plan(pair.plan))
     try:
         brief = read(pair.text)
     except BriefError as error:
@@ -128,7 +119,6 @@ def score(found: Sequence[Reading]) -> Score:
         slope=_share("slope" in reading.parts for reading in honest),
         order_and_side=_share("order and side" in reading.parts for reading in honest),
         refused_rightly=_share(reading.was_refused for reading in others),
-        refusals=len(others),
         refused_wrongly=_share(reading.was_refused for reading in honest),
     )
 
@@ -140,16 +130,13 @@ def _share(rights: Iterable[bool]) -> float:
 
 def by(found: Sequence[Reading], key: Callable[[Pair], str]) -> dict[str, Score]:
     """Returns the scores of groups of readings, such as languages; ``key`` maps a pair to its group."""
-    groups: dict[str, list[Reading]] = {}
-    for reading in found:
-        groups.setdefault(key(reading.pair), []).append(reading)
+    groups = grouped(found, lambda reading: key(reading.pair))
     return {name: score(groups[name]) for name in sorted(groups)}
 
 
 def confusion(found: Sequence[Reading]) -> Counter[tuple[str, str]]:
-    """Counts, over all wrong readings, which words of the right plan were read as which other words.
-
-    The words of a plan are compared without regard to their order, and those that differ are paired
+    """Counts, over all wrong readings, which words of the right plan were read as which other words. The
+    words of a plan are compared without regard to their order, and those that differ are paired
     alphabetically; '-' stands for no word. A wrong refusal counts as the pair ('a road', 'refused').
     """
     table: Counter[tuple[str, str]] = Counter()

@@ -4,7 +4,6 @@ import json
 import shutil
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -16,9 +15,8 @@ from roadgpt.brief.readers.model import MEANINGS, ROUTES, SECOND, ModelReader
 from roadgpt.brief.readers.model.vocabulary import OF_ROADS
 from roadgpt.errors import LearnError
 from roadgpt.learn.calibrate import calibrated, calibrated_routes
-from roadgpt.learn.generator import Pair
-from roadgpt.learn.growing import decoder_layers, encoder_layers
-from roadgpt.learn.network import NetworkSizes, ReaderNetwork
+from roadgpt.learn.network import ReaderNetwork, network_of
+from roadgpt.learn.pair import Pair
 from roadgpt.learn.pretrained import NOTICE, read_vocabulary
 from roadgpt.learn.told_prompts import ToldPrompt
 
@@ -72,14 +70,8 @@ class DecoderGraph(nn.Module):
 
 
 def export(reader: ReaderNetwork, folder: Path, ending: str = "") -> None:
-    """Writes the network to ``encoder.onnx`` and ``decoder.onnx``, with weights in int8.
-
-    The weights use 7 of the 8 bits, so that the files are an eighth smaller when compressed.
-
-    Args:
-        reader: the network.
-        folder: where the files are written.
-        ending: what follows "encoder" and "decoder" in the names of the files.
+    """Writes the network to ``encoder.onnx`` and ``decoder.onnx``, or with ``ending`` before ".onnx", with
+    weights in int8. The weights use 7 of the 8 bits, so that the files are an eighth smaller when compressed.
     """
     from onnxruntime.quantization import QuantType, quantize_dynamic
     from onnxruntime.quantization.shape_inference import quant_pre_process
@@ -103,7 +95,8 @@ def export(reader: ReaderNetwork, folder: Path, ending: str = "") -> None:
 def _graphs(
     reader: ReaderNetwork,
 ) -> Sequence[tuple[str, nn.Module, tuple[Tensor, ...], list[str], list[str], dict[str, dict[int, str]]]]:
-    shape: NetworkSizes = reader.shape
+    """Returns for each graph: name, module, inputs, their names, names of the outputs, and axes that vary."""
+    shape = reader.shape
     size = shape.width // shape.decoder_heads
     pieces = torch.ones((2, 9), dtype=torch.long)
     own = torch.zeros((shape.decoder_layers, 2, 2, shape.decoder_heads, 4, size))
@@ -135,14 +128,13 @@ def export_checkpoints(
     Args:
         checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``. The key of each folder ("", ``SECOND``
             or ``ROUTES``) is what follows "encoder" and "decoder" in the names of the network's files.
-        folder: where the graphs, the pieces, the filler words, the meanings and the settings are written.
-        held_back: pairs that the networks were not trained on, for the calibration of the confidence.
-        fillers: words that mean nothing in a plan; see ``word_meanings.filler_words``.
-        meanings: for each word, the plan tokens for which it stands; see ``word_meanings.word_meanings``.
+        folder: where the files are written.
+        held_back: pairs that the networks were not trained on, for the calibration.
+        fillers: see ``word_meanings.filler_words``.
+        meanings: see ``word_meanings.word_meanings``.
         kept: the folder of an exported reader, whose networks and calibration stay where no checkpoint
             replaces them; None: all networks are in ``checkpoints``.
-        prompts: prompts with truths, to which the confidence for single roads is fitted; without any, it is
-            fitted to ``held_back``.
+        prompts: see ``calibrated``.
 
     Raises:
         LearnError: there is no checkpoint, one is of the other kind of network, or the embeddings of the
@@ -167,9 +159,7 @@ def export_checkpoints(
 
 
 def _trained(checkpoint: Path, name: str) -> ReaderNetwork:
-    """Returns the network that a training run saved; ``name`` tells which one it is to be, as in
-    ``export_checkpoints``.
-    """
+    """Returns the network that a training run saved; ``name`` says which one it must be."""
     if not (checkpoint / "checkpoint.pt").exists():
         raise LearnError(f"there is no checkpoint.pt in {checkpoint}; train first")
     pieces = read_vocabulary(checkpoint / "pieces.txt")
@@ -183,15 +173,7 @@ def _trained(checkpoint: Path, name: str) -> ReaderNetwork:
             else ("single roads", "one for routes is trained with: roadgpt learn train --routes")
         )
         raise LearnError(f"the network in {checkpoint} reads {what}; {todo}")
-    sizes = NetworkSizes(
-        pieces=len(pieces),
-        tokens=tokens,
-        layers=encoder_layers(weights),
-        decoder_layers=decoder_layers(weights),
-    )
-    reader = ReaderNetwork(sizes)
-    reader.load_state_dict(weights)
-    return reader
+    return network_of(weights, len(pieces), tokens)
 
 
 def _settings(
@@ -204,18 +186,18 @@ def _settings(
     """Returns the calibration of the reader in ``folder``; what was not trained keeps its calibration."""
     reader = ModelReader(folder)
     if kept is None:
-        return asdict(calibrated(reader, held_back, prompts))
+        return calibrated(reader, held_back, prompts)
     before: dict[str, Any] = json.loads((kept / "settings.json").read_text(encoding="utf-8"))
     if ROUTES in trained and reader.routes is not None:
-        before["routes"] = asdict(calibrated_routes(reader, reader.routes, held_back))
+        before["routes"] = calibrated_routes(reader, reader.routes, held_back)
     if set(trained) - {ROUTES}:
-        before |= {**asdict(calibrated(reader, held_back, prompts)), "routes": before["routes"]}
+        before |= {**calibrated(reader, held_back, prompts), "routes": before["routes"]}
     return before
 
 
 def share_embedding(encoders: Sequence[Path]) -> None:
-    """Moves the embedding of the word pieces out of several encoders into one file, ``EMBEDDING``, that all
-    encoders read. The embedding is not trained, so it is the same in all encoders.
+    """Moves the embedding of the word pieces out of the encoders into ``EMBEDDING``, which all of them read.
+    The embedding is not trained, so it is the same in all encoders.
 
     Raises:
         LearnError: the embeddings differ.

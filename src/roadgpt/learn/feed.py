@@ -1,40 +1,28 @@
 """Makes training batches in several processes, because a GPU trains faster than one core makes pairs."""
 
 import multiprocessing
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from itertools import cycle
 from multiprocessing.queues import Queue
 from queue import Empty
 from typing import Any
 
-from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.errors import LearnError
-from roadgpt.learn.data import Numbers, batches, examples
-from roadgpt.learn.generator import Pair
+from roadgpt.learn.data import Numbers
 
+Make = Callable[[int], Iterator[tuple[Numbers, Numbers]]]
+"""A function that can be sent to another process, and yields the batches of a seed without end."""
 WAITING = 6  # batches of each process that wait to be used
 LONGEST = 300.0  # seconds until a process that sends nothing is taken for ended
 
 
-def fed_batches(
-    feeders: int,
-    seed: int,
-    hand: Sequence[Pair],
-    pieces: Sequence[str],
-    shares: Mapping[str, float],
-    size: int,
-    pool: int,
-) -> Iterator[tuple[Numbers, Numbers]]:
+def fed_batches(feeders: int, seed: int, make: Make) -> Iterator[tuple[Numbers, Numbers]]:
     """Yields batches that several processes make, from each in turn; the same seed gives the same batches.
 
     Args:
         feeders: number of processes.
         seed: seed of the series; every process has a series of its own.
-        hand: the hand-written pairs.
-        pieces: the vocabulary of word pieces.
-        shares: the share of each series of pairs, by the name of the series.
-        size: number of examples in a batch.
-        pool: number of batches cut from one group of examples.
+        make: makes the batches of one process.
 
     Raises:
         LearnError: a process has ended.
@@ -42,9 +30,7 @@ def fed_batches(
     spawn = multiprocessing.get_context("spawn")
     queues = [spawn.Queue(WAITING) for _ in range(feeders)]
     workers = [
-        spawn.Process(
-            target=_feed, args=(queue, seed * feeders + n, hand, pieces, shares, size, pool), daemon=True
-        )
+        spawn.Process(target=_feed, args=(queue, seed * feeders + n, make), daemon=True)
         for n, queue in enumerate(queues)
     ]
     for worker in workers:
@@ -59,15 +45,6 @@ def fed_batches(
             worker.kill()
 
 
-def _feed(
-    queue: "Queue[Any]",
-    seed: int,
-    hand: Sequence[Pair],
-    pieces: Sequence[str],
-    shares: Mapping[str, float],
-    size: int,
-    pool: int,
-) -> None:
-    """Runs one process: puts batches into the queue without end."""
-    for batch in batches(examples(seed, hand, WordPieces(pieces), shares), size, pool, seed):
+def _feed(queue: "Queue[Any]", seed: int, make: Make) -> None:
+    for batch in make(seed):
         queue.put(batch)

@@ -6,11 +6,10 @@ import json
 from collections.abc import Iterable, Iterator
 
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model.vocabulary import REFUSALS
-from roadgpt.brief.refusal import ADVICE
+from roadgpt.brief.refusal import refused
 from roadgpt.design import draft
 from roadgpt.errors import DesignError
-from roadgpt.learn.generator import Pair
+from roadgpt.learn.pair import Pair
 from roadgpt.road import World
 
 TO_BRIEF = (
@@ -23,7 +22,10 @@ def brief_chats(pairs: Iterable[Pair]) -> Iterator[str]:
     """Yields one line of JSON for each pair: a chat in which a description is answered with its Brief. If the
     plan is a refusal, the answer is a sentence of advice."""
     for pair in pairs:
-        answer = ADVICE.get(pair.plan) or read_plan(pair.plan).model_dump_json(exclude_defaults=True)
+        if pair.is_refusal:
+            answer = str(refused(pair.plan))
+        else:
+            answer = read_plan(pair.plan).model_dump_json(exclude_defaults=True)
         yield _chat(TO_BRIEF, pair.text, answer)
 
 
@@ -33,7 +35,7 @@ def design_chats(pairs: Iterable[Pair], world: World, seed: int) -> Iterator[str
     Refusals, and descriptions for which no road can be designed, are skipped.
     """
     for number, pair in enumerate(pairs):
-        if pair.plan in REFUSALS:
+        if pair.is_refusal:
             continue
         try:
             design = draft(read_plan(pair.plan), world, seed=seed + number)

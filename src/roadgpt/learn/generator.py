@@ -3,21 +3,22 @@ errors.
 """
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from itertools import accumulate
 
 import numpy as np
 
-from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.plan import read_plan
 from roadgpt.errors import BriefError, EditError
 from roadgpt.learn.compositions import composed
 from roadgpt.learn.grammar import Discarded, Speaker, grammar_of
-from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.negative_examples import contradicted, overdone
 from roadgpt.learn.noise import noisy, tidy
-from roadgpt.learn.standard import makes_sense, standard
+from roadgpt.learn.pair import Pair, is_held_out, makes_sense, normal_change, standard
+from roadgpt.learn.phrasebook import weighted
 
+LONGEST = 500  # letters of a text
 SPOILED = 0.045
 """Share of valid descriptions that are made contradictory or impossible on purpose."""
 COMPOSED = {"en": 0.6, "de": 0.15, "fr": 0.15, "es": 0.15, "it": 0.15}
@@ -35,64 +36,33 @@ KIND = re.compile(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Pair:
-    """A description, or a change request, and its plan."""
-
-    text: str
-    plan: str
-    family: str
-    """Name of the source of the pair, such as "generated-en"."""
-    lang: str
-    """Code of the language, such as "en"."""
-    is_change: bool = False
-    """True for a change request."""
-
-
-def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair]:
+def pairs(seed: int, languages: Mapping[str, float] = SHARES) -> Iterator[Pair]:
     """Yields an endless series of pairs; the same seed gives the same pairs. ``languages`` gives the share of
-    each language by its code; the default is ``SHARES``.
+    each language by its code.
     """
     rng = np.random.default_rng(seed)
     while True:
-        code = drawn_language(languages or SHARES, rng)
-        pair = _composed(code, rng) if rng.random() < COMPOSED[code] else draw(code, rng)
+        code = drawn_language(languages, rng)
+        pair = composed(rng, code) if rng.random() < COMPOSED[code] else draw(code, rng)
         if pair:
             yield sometimes_spoiled(pair, rng)
 
 
-def contrasted(seed: int) -> Iterator[Pair]:
-    """Yields an endless series of descriptions that deny, exchange, limit or compare something."""
-    rng = np.random.default_rng([seed, 1])
+def series(
+    seed: int, number: int, drawn: Callable[[str, np.random.Generator], Pair | None]
+) -> Iterator[Pair]:
+    """Yields what ``drawn`` makes of random languages, without end; ``number`` tells apart the series of one
+    seed.
+    """
+    rng = np.random.default_rng([seed, number])
     while True:
-        pair = draw(drawn_language(EVEN, rng), rng, "contrast", "contrasts")
-        if pair:
+        if pair := drawn(drawn_language(EVEN, rng), rng):
             yield pair
 
 
-def specified(seed: int) -> Iterator[Pair]:
-    """Yields an endless series of detailed descriptions: several numbers per turn, straights between turns,
-    values that all turns share, and heights."""
-    rng = np.random.default_rng([seed, 3])
-    while True:
-        pair = draw(drawn_language(EVEN, rng), rng, "specs", "specs")
-        if pair:
-            yield sometimes_spoiled(pair, rng)
-
-
-def changed(seed: int) -> Iterator[Pair]:
-    """Yields an endless series of change requests."""
-    rng = np.random.default_rng([seed, 2])
-    while True:
-        pair = draw_change(drawn_language(EVEN, rng), rng)
-        if pair:
-            yield pair
-
-
-def drawn_language(shares: dict[str, float], rng: np.random.Generator) -> str:
+def drawn_language(shares: Mapping[str, float], rng: np.random.Generator) -> str:
     """Returns the code of a random language; ``shares`` gives the share of each language by its code."""
-    codes, weights = list(shares), np.cumsum(list(shares.values()))
-    return codes[int(np.searchsorted(weights, rng.random() * weights[-1], side="right"))]
+    return list(shares)[weighted(tuple(accumulate(shares.values())), rng)]
 
 
 def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
@@ -101,66 +71,18 @@ def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
     """
     way = rng.random()
     spoil = contradicted if way < SPOILED / 2 else overdone if way < SPOILED else None
-    found = spoil(pair.text, pair.plan, pair.lang, rng) if spoil else None
-    return Pair(*found, pair.family, pair.lang) if found else pair
-
-
-def draw(language: str, rng: np.random.Generator, symbol: str = "top", phrases: str = "") -> Pair | None:
-    """Returns a random description and its plan, made with a grammar; None if they make no sense, or if the
-    description is held out or has more than 500 characters.
-
-    Args:
-        language: code of the language, such as "en".
-        rng: source of randomness.
-        symbol: the symbol of the grammar to begin with.
-        phrases: name of further phrases for the grammar, such as "contrasts".
-    """
-    try:
-        text, raw = Speaker(grammar_of(language, phrases), rng).say(symbol)
-        plan = assembled(raw)
-    except (Discarded, BriefError):
-        return None
-    if plan is None or not 1 <= len(text) <= 500:
-        return None
-    text = tidy(text, language)
-    typed = noisy(text, language, rng)
-    if is_held_out(text) or is_held_out(typed):
-        return None
-    return Pair(typed, plan, f"generated-{language}", language)
-
-
-def draw_change(language: str, rng: np.random.Generator) -> Pair | None:
-    """Returns a random change request and its plan; None if they do not fit together, or if the request has
-    more than 500 characters."""
-    try:
-        text, raw = Speaker(grammar_of(language, "changes"), rng).say("top")
-        plan = " ".join(raw.split())
-        if not plan.startswith("!"):
-            plan = change_plan(read_change_plan(plan))
-    except (Discarded, EditError):
-        return None
-    text = noisy(tidy(text, language), language, rng)
-    return Pair(text, plan, f"changes-{language}", language, True) if 1 <= len(text) <= 500 else None
-
-
-def _composed(language: str, rng: np.random.Generator) -> Pair | None:
-    said = composed(rng, language)
-    if said is None or is_held_out(said.text):
-        return None
-    return Pair(said.text, said.plan, f"composed-{language}", language)
+    return (spoil(pair, rng) if spoil else None) or pair
 
 
 def assembled(raw: str) -> str | None:
-    """Returns the standard form of the plan that the grammar rules wrote; None if the plan makes no sense.
-
-    If the plan contains a refusal, only the refusal is returned.
+    """Returns the standard form of the plan that the grammar rules wrote, or only the refusal if it has one;
+    None if the plan makes no sense.
 
     Raises:
-        Discarded: a clause of the plan names no kind of element, such as "turn" or "straight", or several.
+        Discarded: as ``road_of`` does.
         BriefError: the plan cannot be read.
     """
-    refusal = REFUSAL.search(raw)
-    if refusal:
+    if refusal := REFUSAL.search(raw):
         return refusal[0]
     brief = read_plan(road_of(raw))
     return standard(brief) if makes_sense(brief) else None
@@ -195,3 +117,47 @@ def _kind_first(clause: str) -> str:
     if len(kinds) != 1:
         raise Discarded
     return " ".join([kinds[0], *(word for word in dict.fromkeys(words) if word != kinds[0])])
+
+
+def draw(
+    language: str,
+    rng: np.random.Generator,
+    symbol: str = "top",
+    phrases: str = "",
+    plan_of: Callable[[str], str | None] = assembled,
+    family: str = "generated",
+) -> Pair | None:
+    """Returns a random text for a symbol of a grammar with further ``phrases`` (see ``grammar_of``), and the
+    plan that ``plan_of`` makes of what its rules wrote. Returns None if they make no sense, or if the text is
+    held out or has more than 500 characters.
+    """
+    speaker = Speaker(grammar_of(language, phrases), rng)
+    try:
+        said, raw = speaker.say(symbol)
+        plan = plan_of(raw)
+    except (Discarded, BriefError, EditError):
+        return None
+    if plan is None:
+        return None
+    text = tidy(said, language)
+    typed = noisy(text, language, rng)
+    if not 1 <= len(text) <= LONGEST or is_held_out(text) or is_held_out(typed):
+        return None
+    return Pair(typed, plan, f"{family}-{language}", language, family == "changes")
+
+
+def draw_specified(language: str, rng: np.random.Generator) -> Pair | None:
+    """Draws a detailed description: several numbers per turn, straights between turns, values that all turns
+    share, and heights.
+    """
+    pair = draw(language, rng, "specs", "specs")
+    return sometimes_spoiled(pair, rng) if pair else None
+
+
+def _changes_of(raw: str) -> str:
+    plan = " ".join(raw.split())
+    return plan if plan.startswith("!") else normal_change(plan)
+
+
+draw_change = partial(draw, phrases="changes", plan_of=_changes_of, family="changes")
+"""Draws a change request."""

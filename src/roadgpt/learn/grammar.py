@@ -23,7 +23,7 @@ that begin with ``--`` are comments.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -33,7 +33,9 @@ import numpy as np
 
 from roadgpt.brief.readers.model.numerals import spell
 from roadgpt.errors import LearnError
+from roadgpt.learn.phrasebook import one_of, weighted
 
+WEIGHT = re.compile(r"(\d+)\*\s*")
 CHOICE = re.compile(r"\{([^{}]*)\}")
 OPTION = re.compile(r"\[(?:(\d+):)?([^\[\]]*)\]")
 PART = re.compile(r"<([^<>]+)>")
@@ -78,8 +80,7 @@ def read_grammar(text: str, language: str) -> Grammar:
     rules: dict[str, list[Production]] = {}
     weights: dict[str, list[float]] = {}
     symbol = ""
-    for line in text.splitlines():
-        line = line.strip()
+    for line in map(str.strip, text.splitlines()):
         if not line or line.startswith("--"):
             continue
         if line.startswith("= "):
@@ -87,14 +88,11 @@ def read_grammar(text: str, language: str) -> Grammar:
             rules.setdefault(symbol, [])
             weights.setdefault(symbol, [])
             continue
-        weighted = re.match(r"(\d+)\*\s*(.*)", line)
-        body = weighted[2] if weighted else line
-        said, arrow, plan = body.partition("=>")
-        said = JOINT.sub(r" <\1> ", said)
-        rules[symbol].append(
-            Production(said.strip() if said.strip() != "-" else "", plan.strip() if arrow else None)
-        )
-        weights[symbol].append(float(weighted[1]) if weighted else 1.0)
+        weight = WEIGHT.match(line)
+        said, arrow, plan = line[weight.end() if weight else 0 :].partition("=>")
+        said = JOINT.sub(r" <\1> ", said).strip()
+        rules[symbol].append(Production("" if said == "-" else said, plan.strip() if arrow else None))
+        weights[symbol].append(float(weight[1]) if weight else 1.0)
     for name, its in rules.items():
         for rule in its:
             for part in PART.findall(rule.text):
@@ -135,9 +133,7 @@ class Speaker:
         """
         if depth > DEEPEST:
             raise Discarded
-        weights = self.grammar.weights[symbol]
-        at = int(np.searchsorted(weights, self.rng.random() * weights[-1], side="right"))
-        rule = self.grammar.rules[symbol][at]
+        rule = self.grammar.rules[symbol][weighted(self.grammar.weights[symbol], self.rng)]
         text = self._chosen(rule.text)
         plans: dict[str, str] = {}
         in_order: list[str] = []
@@ -161,16 +157,12 @@ class Speaker:
         return "".join(out), PART.sub(lambda match: _filled(match[1], plans), rule.plan)
 
     def _chosen(self, text: str) -> str:
-        while "{" in text or "[" in text:
+        before = ""
+        while text != before:
             before = text
             text = OPTION.sub(lambda m: m[2] if self.rng.random() * 100 < float(m[1] or 50) else "", text)
-            text = CHOICE.sub(lambda m: self._one(m[1].split("|")), text)
-            if text == before:
-                break
+            text = CHOICE.sub(lambda m: one_of(m[1].split("|"), self.rng), text)
         return text
-
-    def _one(self, ways: Sequence[str]) -> str:
-        return ways[int(self.rng.integers(len(ways)))]
 
     def _number(self, name: str, is_glued: bool) -> tuple[str, str]:
         match = NUMBER.fullmatch(name)
@@ -209,24 +201,16 @@ def _filled(part: str, plans: Mapping[str, str]) -> str:
 def grammar_of(language: str, phrases: str = "") -> Grammar:
     """Returns RoadGPT's grammar of a language: en, de, fr, es or it.
 
-    Args:
-        language: code of the language.
-        phrases: "" for the grammar of descriptions; "contrasts", "specs" or "networks" to add further symbols
-            to it; "changes" for the grammar of change requests.
+    ``phrases`` is "" for the grammar of descriptions; "contrasts", "specs" or "networks" to add further
+    symbols to it; "changes" for the grammar of change requests.
 
     Raises:
         LearnError: there are no phrases in this language.
     """
     folder = files("roadgpt.learn") / "phrases"
-    own = (
-        []
-        if phrases == "changes"
-        else [path.name for path in folder.iterdir() if path.name.startswith(language)]
-    )
-    further = [
-        path.name for path in folder.iterdir() if phrases and path.name.startswith(f"{phrases}_{language}")
-    ]
-    names = sorted(own) + sorted(further)
+    begin = [*([] if phrases == "changes" else [language]), *([f"{phrases}_{language}"] if phrases else [])]
+    every = sorted(path.name for path in folder.iterdir())
+    names = [name for each in begin for name in every if name.startswith(each)]
     if not names:
         raise LearnError(f"there are no phrases in the language '{language}'; there are: de, en, es, fr, it")
     return read_grammar("\n".join((folder / name).read_text(encoding="utf-8") for name in names), language)

@@ -1,33 +1,22 @@
-"""Reads, checks and splits hand-written pairs; pairs of one family (similar wording) go to the same split."""
+"""Reads and checks hand-written pairs."""
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
-import numpy as np
-
-from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.vocabulary import REFUSALS
 from roadgpt.brief.refusal import refused
 from roadgpt.errors import LearnError, RoadGPTError
-from roadgpt.learn.generator import Pair
-from roadgpt.learn.held_out import is_held_out
-from roadgpt.learn.standard import standard
+from roadgpt.learn.pair import Pair, is_held_out, normal_change, standard
 from roadgpt.reading import read_text
 
 LONGEST = 2000  # letters
-SPLITS = ("train", "validation", "test")
 
 
 def read_pairs(paths: Iterable[Path], is_change: bool = False) -> tuple[list[Pair], list[str]]:
-    """Returns all usable pairs of JSON-lines files, and one sentence for each line that is not usable.
-
-    A line is not usable if ``read_pair`` rejects it, or if its text is held out or repeats an earlier one.
-
-    Args:
-        paths: the files.
-        is_change: whether the texts are change requests instead of descriptions.
+    """Returns all usable pairs of JSON-lines files, of changes or of descriptions, and one sentence for each
+    line that is not usable: ``read_pair`` rejects it, or its text is held out or repeats an earlier one.
     """
     good: list[Pair] = []
     problems: list[str] = []
@@ -84,31 +73,7 @@ def _standard(written: str, is_change: bool) -> str:
             raise LearnError(f"'{written[:40]}' is no refusal of the language of plans")
         return written
     if is_change:
-        return change_plan(read_change_plan(written))
+        return normal_change(written)
     brief = read_plan(written)
     plan(brief)
     return standard(brief)
-
-
-def split(
-    pairs: Sequence[Pair], test: int = 500, validation: float = 0.12, seed: int = 3
-) -> dict[str, list[Pair]]:
-    """Splits pairs into test, validation and training sets; all pairs of a family go to the same set.
-
-    Args:
-        pairs: the hand-written pairs.
-        test: the minimum number of pairs in the test set.
-        validation: the minimum share of all pairs that go to the validation set, from 0 to 1.
-        seed: seed of the order in which families are assigned.
-    """
-    families: dict[str, list[Pair]] = {}
-    for pair in pairs:
-        families.setdefault(pair.family, []).append(pair)
-    names = sorted(families)
-    np.random.default_rng(seed).shuffle(names)
-    out: dict[str, list[Pair]] = {name: [] for name in SPLITS}
-    wanted = {"test": test, "validation": int(validation * len(pairs))}
-    for name in names:
-        side = next((s for s in ("test", "validation") if len(out[s]) < wanted[s]), "train")
-        out[side] += families[name]
-    return out

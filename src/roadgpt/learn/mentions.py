@@ -2,10 +2,9 @@
 things ("no traffic"), and small talk. Denials and small talk do not change the plan.
 """
 
-import json
 import re
 from collections.abc import Mapping, Sequence
-from importlib.resources import files
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,9 +13,11 @@ from roadgpt.brief.plan import plan as plan_of
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES
 from roadgpt.learn.noise import tidy
+from roadgpt.learn.pair import Pair
+from roadgpt.learn.phrasebook import one_of, phrases_of
 
 Phrases = Mapping[str, Mapping[str, Mapping[str, Sequence[str]]]]
-WORDS = json.loads((files("roadgpt.learn") / "words" / "beside.json").read_text(encoding="utf-8"))
+WORDS = phrases_of("beside")
 SAID: Phrases = WORDS["said"]
 """Phrases that can stand "before" or "after" a description, by language and then by the names that plans list
 for them."""
@@ -26,9 +27,7 @@ DENIED_ON_ROUTES: Phrases = {
     for language, its in DENIED.items()
 }
 """The phrases of ``DENIED`` that do not deny what a route consists of."""
-TALK: Mapping[str, Mapping[str, Sequence[str]]] = json.loads(
-    (files("roadgpt.learn") / "words" / "talk.json").read_text(encoding="utf-8")
-)
+TALK: Mapping[str, Mapping[str, Sequence[str]]] = phrases_of("talk")
 """Greetings, reasons and the like that can stand "before" or "after" a text, by language."""
 NAMED = re.compile(r" ?beside\(([^()]*)\)")
 MOST_NAMES = 4
@@ -37,29 +36,28 @@ NUMBERS = {"lanes": (2, 6), "lane_width": (2, 5), "speed": (20, 120)}
 """The range of the number in a phrase for each of these names; for all other names it is 2 to 9."""
 
 
-def with_mention(text: str, plan: str, language: str, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the text and plan with a mention ("in the rain") or a denial ("no traffic") added.
-
-    Returns None if the plan is a refusal, already lists what would be mentioned or denied, or would list too
-    many names, or if there are no phrases in the language.
+def with_mention(pair: Pair, rng: np.random.Generator) -> Pair | None:
+    """Returns the pair with a mention ("in the rain") or a denial ("no traffic") added; None if the plan is a
+    refusal, already lists what would be mentioned or denied, or would list too many names, or if there are no
+    phrases in the language.
     """
     is_said = rng.random() < 0.7
-    denied = DENIED_ON_ROUTES if is_of_junctions(plan) else DENIED
-    table = (SAID if is_said else denied).get(language)
-    if plan.startswith("!") or not table:
+    denied = DENIED_ON_ROUTES if is_of_junctions(pair.plan) else DENIED
+    table = (SAID if is_said else denied).get(pair.lang)
+    if pair.is_refusal or not table:
         return None
-    names = list(table)[int(rng.integers(len(table)))]
-    there = names_in(plan)
+    names = one_of(list(table), rng)
+    there = names_in(pair.plan)
     new = [name.strip() for name in names.split(",")]
     if {*there} & {*new} or len(there) + len(new) > MOST_NAMES:
         return None
     is_before = rng.random() < BEFORE and bool(table[names]["before"])
-    ways = table[names]["before" if is_before else "after"]
-    phrase = _numbered(ways[int(rng.integers(len(ways)))], new[0], rng)
-    told = _before(phrase, text, language) if is_before else _after(text, phrase, language, rng)
+    phrase = _numbered(one_of(table[names]["before" if is_before else "after"], rng), new[0], rng)
+    text = _before(phrase, pair.text, pair.lang) if is_before else _after(pair, phrase, rng)
     if not is_said:
-        return told, plan
-    return told, with_names(plan, [*new, *there] if is_before else [*there, *new])
+        return replace(pair, text=text)
+    plan = with_names(pair.plan, [*new, *there] if is_before else [*there, *new])
+    return replace(pair, text=text, plan=plan)
 
 
 def with_talk(text: str, language: str, rng: np.random.Generator) -> str:
@@ -67,11 +65,9 @@ def with_talk(text: str, language: str, rng: np.random.Generator) -> str:
     told = TALK.get(language, TALK["en"])
     way = rng.random()
     if way < 2 / 3:
-        before = told["before"][int(rng.integers(len(told["before"])))]
-        text = _before(before, text, language)
+        text = _before(one_of(told["before"], rng), text, language)
     if way > 1 / 3:
-        after = told["after"][int(rng.integers(len(told["after"])))]
-        text = f"{text if text[-1:] in '.!?' else f'{text}.'} {after}"
+        text = f"{text if text[-1:] in '.!?' else f'{text}.'} {one_of(told['after'], rng)}"
     return text
 
 
@@ -83,9 +79,8 @@ def names_in(plan: str) -> list[str]:
 
 
 def with_names(plan: str, names: Sequence[str]) -> str:
-    """Returns the plan with these names in ``beside(...)``, which replace the names that were there.
-
-    On a single road, "alike" becomes the flag of that name.
+    """Returns the plan with these names in ``beside(...)`` instead of those that were there; on a single
+    road, "alike" becomes the flag of that name.
     """
     bare = re.sub(rf" ?\b{ALIKE}\b", "", NAMED.sub("", plan)).rstrip(" |")
     whole = "||" if is_of_junctions(plan) else "|"
@@ -105,9 +100,9 @@ def _before(phrase: str, text: str, language: str) -> str:
     return tidy(f"{phrase} {text if is_open else text[:1].upper() + text[1:]}", language)
 
 
-def _after(text: str, phrase: str, language: str, rng: np.random.Generator) -> str:
-    is_sentence = phrase[:1].isupper() and phrase.endswith(".")
-    if is_sentence:
-        return tidy(f"{text.rstrip(' .')}. {phrase}", language)
-    stop = "." if text.endswith(".") else ""
-    return tidy(f"{text.rstrip(' .')}{', ' if rng.random() < 0.5 else ' '}{phrase}", language) + stop
+def _after(pair: Pair, phrase: str, rng: np.random.Generator) -> str:
+    body = pair.text.rstrip(" .")
+    if phrase[:1].isupper() and phrase.endswith("."):
+        return tidy(f"{body}. {phrase}", pair.lang)
+    stop = "." if pair.text.endswith(".") else ""
+    return tidy(f"{body}{', ' if rng.random() < 0.5 else ' '}{phrase}", pair.lang) + stop

@@ -18,18 +18,16 @@ def card(
     shown: Sequence[Reading],
     training: str,
 ) -> str:
-    """Returns the model card of a reader as Markdown.
-
-    The card quotes no description from the test split, because people who write training pairs may read it.
+    """Returns the model card of a reader as Markdown; ``training`` is its paragraph on the training.
 
     Args:
         weights: folder of the exported model.
         data: number of pairs in each split of the data, by name of the split.
         found: the model's readings of the test split.
         others: readings of the same split by other readers, by name of the reader.
-        shown: the model's readings of the validation split; the card shows confusions and mistakes from
-            these.
-        training: one paragraph on the training.
+        shown: the model's readings of the validation split, of which confusions and mistakes are shown:
+            people who write training pairs may read the card, so it quotes no description from the test
+            split.
     """
     return "\n".join(
         [

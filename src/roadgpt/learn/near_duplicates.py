@@ -4,22 +4,18 @@ Numbers and words of the same kind (such as left and right, or turn and bend) ar
 fill the same template with different words are found too.
 """
 
-import json
 import re
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 
-from roadgpt.brief.readers.model.number_words import numbers_in_words
-from roadgpt.brief.readers.model.numerals import plain
+from roadgpt.brief.readers.model.numerals import numbers_in_words, plain
+from roadgpt.learn.phrasebook import phrases_of
 
 GRAM = 5
 MOST_SHARED = 0.6
-MASKS: dict[str, str] = json.loads(
-    (files("roadgpt.learn") / "words" / "masks.json").read_text(encoding="utf-8")
-)
+MASKS: dict[str, str] = phrases_of("masks")
 """Maps each mask to the words that are replaced by the mask."""
 MASK_OF = {word: mask for mask, its in MASKS.items() for word in its.split()}
 
@@ -54,16 +50,12 @@ def grams(text: str) -> Counter[tuple[str, ...]]:
     return Counter(said[at : at + size] for at in range(max(1, len(said) - size + 1)))
 
 
-def near_duplicates(texts: Sequence[str], most: float = MOST_SHARED) -> list[NearDuplicate]:
-    """Returns all pairs of texts that have too many 5-grams in common, worst first.
+def near_duplicates(texts: Sequence[str]) -> list[NearDuplicate]:
+    """Returns all pairs of texts of which more than 60 % of the shorter one's 5-grams are in
+    both, worst first.
 
     A pair is skipped if both texts have fewer than five words, or if one has masked words only, such as "two
     left bends", since there are few ways to write such texts.
-
-    Args:
-        texts: the texts to compare.
-        most: the largest fraction (0 to 1) of the shorter text's 5-grams that may also occur in the other
-            text.
     """
     counted = [grams(text) for text in texts]
     places: dict[tuple[str, ...], list[int]] = defaultdict(list)
@@ -77,7 +69,7 @@ def near_duplicates(texts: Sequence[str], most: float = MOST_SHARED) -> list[Nea
             places[gram].append(index)
         for (other, _), number in shared.items():
             share = number / min(own.total(), counted[other].total())
-            if share > most and not _are_bare(own, counted[other]):
+            if share > MOST_SHARED and not _are_bare(own, counted[other]):
                 found.append(NearDuplicate(share, other, index))
     return sorted(found, key=lambda pair: (-pair.shared, pair.first, pair.second))
 

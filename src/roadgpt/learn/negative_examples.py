@@ -1,76 +1,70 @@
 """Makes descriptions impossible by adding a requirement that contradicts them or cannot be met."""
 
-import json
 import re
-from importlib.resources import files
+from dataclasses import replace
 
 import numpy as np
 
 from roadgpt.brief.readers.model.numerals import spell
 from roadgpt.learn.noise import tidy
+from roadgpt.learn.pair import Pair
+from roadgpt.learn.phrasebook import one_of, phrases_of
 
 TURNING = re.compile(
     r"\b(?:turn|hairpin|switchback|u_turn|s_bend|chicane|slalom|serpentine|zigzag|winding)\b"
 )
-WORDS = json.loads((files("roadgpt.learn") / "words" / "spoilers.json").read_text(encoding="utf-8"))
+WORDS = phrases_of("spoilers")
 CONFLICTS: dict[str, dict[str, list[str]]] = WORDS["conflicts"]
 """Maps a requirement of a plan to texts, by language, that contradict this requirement."""
 BEYOND: dict[str, list[str]] = WORDS["beyond"]
 """Texts, by language, with requirements that no road can meet."""
-
-
+OF_RADIUS = re.compile("[rR]adius|rayon|radio|raggio")
 CAUSES = {"turning": "turns", "many": "turns", "straight": "turns", "left": "sides", "right": "sides"}
 """The cause of a contradiction, by the requirement that is contradicted; for all others it is the slope."""
 BEYOND_BY = {
-    "{grade}": "grade", "{far}": "length", "{near}": "radius", "{much}": "turns", "vertical": "grade",
-    "loop": "loop", "circle": "degrees",
+    "within {near}": "length", "{near}": "radius", "{far}": "length", "{grade}": "grade", "vertical": "grade",
+    "{much}": "turns", "loop": "loop", "circle": "degrees",
 }  # fmt: skip
-"""The cause of an impossible requirement, by a part of its text."""
+"""The cause of an impossible requirement, by the first of these parts that its text has."""
 
 
-def contradicted(text: str, plan: str, language: str, rng: np.random.Generator) -> tuple[str, str] | None:
+def contradicted(pair: Pair, rng: np.random.Generator) -> Pair | None:
     """Returns the description with a contradicting requirement added, and the refusal that a reader should
     give as its answer; None if no suitable wording is available.
     """
-    kinds = [kind for kind in _holds(plan) if language in CONFLICTS[kind]]
+    kinds = [kind for kind in _holds(pair.plan) if pair.lang in CONFLICTS[kind]]
     if not kinds:
         return None
-    kind = kinds[int(rng.integers(len(kinds)))]
-    ways = CONFLICTS[kind][language]
-    return _with(
-        text, ways[int(rng.integers(len(ways)))], language, rng
-    ), f"!contradiction {CAUSES.get(kind, 'slope')}"
+    kind = one_of(kinds, rng)
+    text = _with(pair, one_of(CONFLICTS[kind][pair.lang], rng), rng)
+    return replace(pair, text=text, plan=f"!contradiction {CAUSES.get(kind, 'slope')}")
 
 
-def overdone(text: str, plan: str, language: str, rng: np.random.Generator) -> tuple[str, str] | None:
+def overdone(pair: Pair, rng: np.random.Generator) -> Pair | None:
     """Returns the description with an impossible requirement added, and the refusal that a reader should
     give as its answer; None if no suitable wording is available.
     """
-    if language not in BEYOND or plan.startswith("!"):
+    if pair.lang not in BEYOND or pair.is_refusal:
         return None
-    ways = BEYOND[language]
     numbers = {
         "grade": int(rng.integers(18, 96)), "far": int(rng.integers(3, 60)),
         "near": int(rng.integers(2, 9)), "much": int(rng.integers(20, 99)),
     }  # fmt: skip
-    said = {name: spell(n, language) if rng.random() < 0.3 else str(n) for name, n in numbers.items()}
-    way = ways[int(rng.integers(len(ways)))]
-    if (
-        "radius" in way or "Radius" in way or "rayon" in way or "radio" in way or "raggio" in way
-    ) and not TURNING.search(plan):
+    said = {name: spell(n, pair.lang) if rng.random() < 0.3 else str(n) for name, n in numbers.items()}
+    way = one_of(BEYOND[pair.lang], rng)
+    if OF_RADIUS.search(way) and not TURNING.search(pair.plan):
         return None
     cause = next(cause for part, cause in BEYOND_BY.items() if part in way)
-    if "within {near}" in way:
-        cause = "length"
-    return _with(text, way.format(**said), language, rng), f"!impossible {cause}"
+    text = _with(pair, way.format(**said), rng)
+    return replace(pair, text=text, plan=f"!impossible {cause}")
 
 
-def _with(text: str, wish: str, language: str, rng: np.random.Generator) -> str:
-    body = text.rstrip(" .!?")
+def _with(pair: Pair, wish: str, rng: np.random.Generator) -> str:
+    body = pair.text.rstrip(" .!?")
     if rng.random() < 0.15:
         wish = re.sub(r"^(?:and|but|yet|aber|und|mais|et|pero|y|ma|e) ", "", wish)
-        return tidy(f"{wish[:1].upper()}{wish[1:]}: {body}", language)
-    return tidy(f"{body}{', ' if rng.random() < 0.7 else ' '}{wish}", language)
+        return tidy(f"{wish[:1].upper()}{wish[1:]}: {body}", pair.lang)
+    return tidy(f"{body}{', ' if rng.random() < 0.7 else ' '}{wish}", pair.lang)
 
 
 def _holds(plan: str) -> list[str]:

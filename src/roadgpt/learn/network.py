@@ -13,6 +13,9 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
+ENCODER, DECODER = "layers.", "decoder."
+"""How the names of the weights of a layer begin, before the number of the layer."""
+
 
 @dataclass(frozen=True, slots=True)
 class NetworkSizes:
@@ -46,14 +49,14 @@ class Attention(nn.Module):
         """Reshapes (batch, length, width) to (batch, heads, length, head size)."""
         return x.view(x.shape[0], x.shape[1], self.heads, self.size).transpose(1, 2)
 
-    def forward(self, x: Tensor, key: Tensor, value: Tensor, mask: Tensor | None) -> Tensor:
-        """Returns the attended values, shape (batch, queries, width).
+    def keys(self, x: Tensor) -> tuple[Tensor, Tensor]:
+        """Returns keys and values of x (batch, length, width), each (batch, heads, length, head size)."""
+        return self.split(self.key(x)), self.split(self.value(x))
 
-        Args:
-            x: input from which the queries are computed, (batch, queries, width).
-            key: keys, already split into heads, (batch, heads, length, head size).
-            value: values, already split into heads, (batch, heads, length, head size).
-            mask: added to the attention scores; None masks nothing.
+    def forward(self, x: Tensor, key: Tensor, value: Tensor, mask: Tensor | None) -> Tensor:
+        """Returns the attended values, (batch, queries, width), for queries computed from x (batch, queries,
+        width). Keys and values are split into heads, (batch, heads, length, head size); ``mask`` is added to
+        the attention scores.
         """
         query = self.split(self.query(x))
         scores = query @ key.transpose(2, 3) / math.sqrt(self.size)
@@ -78,9 +81,7 @@ class EncoderLayer(nn.Module):
 
     def forward(self, x: Tensor, mask: Tensor) -> Tensor:
         """Applies the layer to x (batch, length, width); ``mask`` is added to the attention scores."""
-        attention = self.attention
-        key, value = attention.split(attention.key(x)), attention.split(attention.value(x))
-        x = self.norm(x + self.dropout(attention(x, key, value, mask)))
+        x = self.norm(x + self.dropout(self.attention(x, *self.attention.keys(x), mask)))
         out: Tensor = self.last_norm(x + self.dropout(self.narrow(functional.gelu(self.wide(x)))))
         return out
 
@@ -107,14 +108,10 @@ class DecoderLayer(nn.Module):
         mask: Tensor | None,
         seen: Tensor,
     ) -> Tensor:
-        """Applies the layer to x (batch, tokens, width).
+        """Applies the layer to embedded tokens x (batch, tokens, width).
 
-        Args:
-            x: the embedded tokens.
-            own: keys and values of the plan so far, each (batch, heads, tokens so far, head size).
-            across: keys and values of the description, each (batch, heads, pieces, head size).
-            mask: added to the attention scores of the plan so far.
-            seen: added to the attention scores of the description.
+        ``own`` and ``across`` are keys and values of the plan so far and of the description, each (batch,
+        heads, length, head size); ``mask`` and ``seen`` are added to the attention scores of the two.
         """
         x = x + self.dropout(self.own(self.norms[0](x), *own, mask))
         x = x + self.dropout(self.across(self.norms[1](x), *across, seen))
@@ -123,12 +120,7 @@ class DecoderLayer(nn.Module):
 
     def own_keys(self, x: Tensor) -> tuple[Tensor, Tensor]:
         """Returns keys and values of new tokens, each (batch, heads, tokens, head size)."""
-        y = self.norms[0](x)
-        return self.own.split(self.own.key(y)), self.own.split(self.own.value(y))
-
-    def across_keys(self, memory: Tensor) -> tuple[Tensor, Tensor]:
-        """Returns keys and values of the description, each (batch, heads, pieces, head size)."""
-        return self.across.split(self.across.key(memory)), self.across.split(self.across.value(memory))
+        return self.own.keys(self.norms[0](x))
 
 
 class ReaderNetwork(nn.Module):
@@ -164,22 +156,15 @@ class ReaderNetwork(nn.Module):
         return x
 
     def start(self, memory: Tensor) -> list[tuple[Tensor, Tensor]]:
-        """Returns, for every decoder layer, the keys and values of the description.
-
-        Each has the shape (batch, heads, pieces, head size).
+        """Returns the keys and values of the description, (batch, heads, pieces, head size), for every
+        decoder layer.
         """
-        return [layer.across_keys(memory) for layer in self.decoder]
+        return [layer.across.keys(memory) for layer in self.decoder]
 
     def write(self, tokens: Tensor, memory: Tensor, seen: Tensor) -> Tensor:
-        """Returns, for each token of complete plans, the scores of the token that follows; used in training.
-
-        Args:
-            tokens: the plans, (batch, length).
-            memory: the encoded descriptions, (batch, pieces, width).
-            seen: mask of the descriptions, added to the attention scores.
-
-        Returns:
-            The scores, (batch, length, tokens).
+        """Returns, for each token of complete plans (batch, length), the scores of the token that follows,
+        (batch, length, tokens). ``memory`` is the encoded descriptions, (batch, pieces, width), and ``seen``
+        their mask, which is added to the attention scores.
         """
         length = tokens.shape[1]
         x = self.dropout(self.tokens(tokens) + self.plan_places.weight[:length])
@@ -195,43 +180,45 @@ class ReaderNetwork(nn.Module):
         return functional.linear(self.final(x), self.tokens.weight) * self.shape.width**-0.5 * 8 + self.bias
 
     def forward(self, pieces: Tensor, tokens: Tensor) -> Tensor:
-        """Returns the scores of the next token at every position of the plans, (batch, length, tokens).
-
-        Args:
-            pieces: the descriptions, (batch, pieces); piece 0 is padding.
-            tokens: the plans, (batch, length).
+        """Returns the scores of the next token at every position of the plans, (batch, length, tokens), for
+        descriptions (batch, pieces), in which piece 0 is padding, and plans (batch, length).
         """
         seen = (pieces == 0)[:, None, None, :] * -1e4
         return self.write(tokens, self.encode(pieces, seen), seen)
 
 
-def load_minilm(reader: ReaderNetwork, path: Path, pieces: Sequence[str]) -> None:
-    """Loads the pretrained weights of all-MiniLM-L6-v2 (safetensors) into the encoder.
+def layers_of(weights: Mapping[str, Tensor], part: str) -> int:
+    """Returns the number of layers that the weights have in a part, ``ENCODER`` or ``DECODER``."""
+    return 1 + max(int(name.split(".")[1]) for name in weights if name.startswith(part))
 
-    Args:
-        reader: the network into which the weights are copied.
-        path: the file of the weights; ``vocab.txt`` must be in the same folder.
-        pieces: the word pieces of the network, a selection of BERT's vocabulary in any order.
+
+def network_of(weights: Mapping[str, Tensor], pieces: int, tokens: int) -> ReaderNetwork:
+    """Returns the network with these weights, for so many word pieces and tokens."""
+    encoder, decoder = (layers_of(weights, part) for part in (ENCODER, DECODER))
+    reader = ReaderNetwork(NetworkSizes(pieces, tokens, layers=encoder, decoder_layers=decoder))
+    reader.load_state_dict(weights)
+    return reader
+
+
+def load_minilm(reader: ReaderNetwork, path: Path, pieces: Sequence[str]) -> None:
+    """Copies the pretrained weights of all-MiniLM-L6-v2 (safetensors) into the encoder. ``vocab.txt`` must be
+    in the folder of the weights; ``pieces`` is a selection of this vocabulary in any order.
     """
     from safetensors.torch import load_file
 
     whole = (path.parent / "vocab.txt").read_text(encoding="utf-8").splitlines()
     place = {piece: index for index, piece in enumerate(whole)}
     rows = torch.tensor([place[piece] for piece in pieces])
-
-    weights = load_file(str(path))
-    prefix = "bert." if "bert.embeddings.word_embeddings.weight" in weights else ""
+    weights = {name.removeprefix("bert."): tensor for name, tensor in load_file(str(path)).items()}
     with torch.no_grad():
-        reader.pieces.weight.copy_(weights[f"{prefix}embeddings.word_embeddings.weight"][rows])
-        _copy(weights, prefix, reader)
+        reader.pieces.weight.copy_(weights["embeddings.word_embeddings.weight"][rows])
+        reader.places.weight.copy_(weights["embeddings.position_embeddings.weight"][: reader.shape.places])
+        reader.kind.copy_(weights["embeddings.token_type_embeddings.weight"][0])
+        _copy(weights, reader)
 
 
-def _copy(weights: Mapping[str, Tensor], prefix: str, reader: ReaderNetwork) -> None:
-    def get(name: str) -> Tensor:
-        return weights[f"{prefix}{name}"]
-
-    reader.places.weight.copy_(get("embeddings.position_embeddings.weight")[: reader.shape.places])
-    reader.kind.copy_(get("embeddings.token_type_embeddings.weight")[0])
+def _copy(weights: Mapping[str, Tensor], reader: ReaderNetwork) -> None:
+    """Copies the layers and norms of BERT's encoder."""
     own = dict(reader.named_parameters())
     names = {"norm": "embeddings.LayerNorm"}
     for index in range(reader.shape.layers):
@@ -248,4 +235,4 @@ def _copy(weights: Mapping[str, Tensor], prefix: str, reader: ReaderNetwork) -> 
         }
     for ours, theirs in names.items():
         for part in ("weight", "bias"):
-            own[f"{ours}.{part}"].copy_(get(f"{theirs}.{part}"))
+            own[f"{ours}.{part}"].copy_(weights[f"{theirs}.{part}"])

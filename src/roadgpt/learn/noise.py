@@ -1,10 +1,10 @@
 """Makes generated texts look typed by people: typing errors, capitals, missing full stops, polite phrases."""
 
-import json
 import re
-from importlib.resources import files
 
 import numpy as np
+
+from roadgpt.learn.phrasebook import one_of, phrases_of
 
 NEIGHBOURS = {
     "a": "sqz", "b": "vn", "c": "xv", "d": "sf", "e": "wr", "f": "dg", "g": "fh", "h": "gj", "i": "uo",
@@ -12,7 +12,7 @@ NEIGHBOURS = {
     "k": "jl", "l": "k", "m": "n", "n": "bm", "o": "ip", "p": "o", "q": "wa", "r": "et", "s": "ad", "t": "ry",
     "u": "yi", "v": "cb", "w": "qe", "x": "zc", "y": "tu", "z": "x",
 }  # fmt: skip
-WORDS = json.loads((files("roadgpt.learn") / "words" / "typing.json").read_text(encoding="utf-8"))
+WORDS = phrases_of("typing")
 SLIPS: dict[str, list[tuple[str, str]]] = WORDS["slips"]
 """Pairs of a word and a common misspelling or abbreviation of it, by language."""
 BEFORE: dict[str, list[str]] = WORDS["before"]
@@ -34,14 +34,12 @@ def tidy(text: str, language: str = "en") -> str:
 def noisy(text: str, language: str, rng: np.random.Generator) -> str:
     """Returns the text with random typing errors or polite phrases, as if typed by a person."""
     if rng.random() < 0.12:
-        ways = BEFORE[language]
-        text = ways[int(rng.integers(len(ways)))] + text
+        text = one_of(BEFORE[language], rng) + text
     if rng.random() < 0.15:
-        ways = AFTER[language]
-        text = text.rstrip(".") + ways[int(rng.integers(len(ways)))]
+        text = text.rstrip(".") + one_of(AFTER[language], rng)
     if rng.random() < 0.12:
         for _ in range(int(rng.integers(1, 5))):
-            word, short = SLIPS[language][int(rng.integers(len(SLIPS[language])))]
+            word, short = one_of(SLIPS[language], rng)
             text = re.sub(rf"\b{word}\b", short, text, count=1)
     if rng.random() < 0.16:
         for _ in range(int(rng.integers(1, 1 + max(2, len(text) // 25)))):
@@ -56,7 +54,7 @@ def _slip(text: str, rng: np.random.Generator) -> str:
     places = [m.start() for m in re.finditer(r"(?<=[a-zà-ÿ])[a-zà-ÿ]", text)]
     if not places:
         return text
-    at = places[int(rng.integers(len(places)))]
+    at = one_of(places, rng)
     kind = rng.random()
     if kind < 0.35:
         return text[: at - 1] + text[at] + text[at - 1] + text[at + 1 :]
@@ -65,8 +63,7 @@ def _slip(text: str, rng: np.random.Generator) -> str:
     if kind < 0.8:
         return text[:at] + text[at] + text[at:]
     if kind < 0.95:
-        near = NEIGHBOURS.get(text[at], text[at])
-        return text[:at] + near[int(rng.integers(len(near)))] + text[at + 1 :]
+        return text[:at] + one_of(NEIGHBOURS.get(text[at], text[at]), rng) + text[at + 1 :]
     space = text.find(" ", at)
     return text if space < 0 else text[:space] + text[space + 1 :]
 

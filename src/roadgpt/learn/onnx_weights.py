@@ -14,13 +14,8 @@ OURS = "reader."
 
 
 def exported_weights(folder: Path, ending: str = "") -> dict[str, Floats]:
-    """Returns the weights by their parameter names in ``roadgpt.learn.network.ReaderNetwork``.
-
-    Weights that were exported in int8 keep the rounding of int8.
-
-    Args:
-        folder: the folder of an exported reader.
-        ending: the text between "encoder" or "decoder" and ".onnx" in the names of the network's files.
+    """Returns the weights by their parameter names in ``roadgpt.learn.network.ReaderNetwork``; weights that
+    were exported in int8 keep its rounding. ``ending`` is what precedes ".onnx" in the names of the files.
 
     Raises:
         LearnError: the folder has no exported reader.

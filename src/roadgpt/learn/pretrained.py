@@ -53,10 +53,8 @@ of BERT (Google, Apache-2.0).
 def begin(out: Path, weights: Path | None, exported: Path | None = None) -> Sequence[str]:
     """Returns the word pieces used by a training run, and prepares the folder of the run if the run is new.
 
-    Args:
-        out: folder of the training run.
-        weights: folder with ``model.safetensors`` and ``vocab.txt``; not needed to resume a training.
-        exported: folder of an exported reader from which a new training may start instead.
+    A new run starts from ``weights``, the folder with ``model.safetensors`` and ``vocab.txt``, or from
+    ``exported``, the folder of an exported reader.
 
     Raises:
         LearnError: a new training has no weights, files are missing, or the weights are not the public ones.

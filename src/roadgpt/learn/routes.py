@@ -1,7 +1,8 @@
 """Makes routes from hand-written pairs: joins descriptions of roads and of junctions into one description."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -9,11 +10,10 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.errors import RoadGPTError
-from roadgpt.learn.generator import EVEN, REFUSAL, Pair, drawn_language, road_of
-from roadgpt.learn.grammar import Discarded, Speaker, grammar_of
-from roadgpt.learn.held_out import is_held_out
-from roadgpt.learn.noise import noisy, tidy
-from roadgpt.learn.standard import standard
+from roadgpt.learn.generator import REFUSAL, draw, road_of
+from roadgpt.learn.grammar import Discarded
+from roadgpt.learn.pair import Pair, grouped, standard
+from roadgpt.learn.phrasebook import one_of
 
 JOINTS: Mapping[str, Sequence[str]] = {
     "en": (
@@ -64,24 +64,20 @@ OWN_LENGTH = re.compile(
 )
 OF_ALL = re.compile(r"\|\|\s*(beside\([^()]*\)|[^\s;|]+)")
 OF_EVERY_ROAD = re.compile(r"@([^\s;|@]+)")
-LONGEST_DRAWN = 500  # letters of a description from a grammar
 
 
 def routes(roads: Sequence[Pair], junctions: Sequence[Pair], rng: np.random.Generator) -> Iterator[Pair]:
-    """Yields an endless series of routes of two or three parts, each described by a hand-written text. Yields
-    nothing if no language has suitable pairs of both kinds.
-
-    Args:
-        roads: pairs whose descriptions are of roads without junctions.
-        junctions: pairs whose descriptions are of routes with junctions.
-        rng: source of randomness.
+    """Yields an endless series of routes of two or three parts, each described by a hand-written text: of a
+    road without junctions, or of a route with junctions. Yields nothing if no language has suitable pairs of
+    both kinds.
     """
-    of_roads, of_junctions = _by_language(roads, _is_road), _by_language(junctions, _is_open)
+    of_roads = grouped(filter(_is_road, roads), lambda pair: pair.lang)
+    of_junctions = grouped(filter(_is_open, junctions), lambda pair: pair.lang)
     languages = [code for code in JOINTS if of_roads.get(code) and of_junctions.get(code)]
     while languages:
-        code = languages[int(rng.integers(len(languages)))] if rng.random() < 0.7 else languages[0]
-        shape = ("RJ", "JR", "JJ", "RJR", "RJJ", "JRJ")[int(rng.integers(6))]
-        parts = [_one_of((of_roads if kind == "R" else of_junctions)[code], rng) for kind in shape]
+        code = one_of(languages, rng) if rng.random() < 0.7 else languages[0]
+        shape = one_of(("RJ", "JR", "JJ", "RJR", "RJJ", "JRJ"), rng)
+        parts = [one_of((of_roads if kind == "R" else of_junctions)[code], rng) for kind in shape]
         if pair := route_of(parts, code, rng):
             yield pair
 
@@ -92,25 +88,25 @@ def route_of(parts: Sequence[Pair], language: str, rng: np.random.Generator) -> 
     """
     text = parts[0].text.strip()
     for part in parts[1:]:
-        ways = JOINTS[language]
-        joint = ways[int(rng.integers(len(ways)))]
+        joint, said = one_of(JOINTS[language], rng), part.text.strip()
         is_new = joint.endswith((". ", "\n", ": "))
-        text = (
-            text.rstrip(" .!")
-            + joint
-            + (part.text.strip() if is_new else _lowered(part.text.strip(), language))
-        )
-    asked = " // ".join(part.plan for part in parts)
+        text = text.rstrip(" .!") + joint + (said if is_new else _lowered(said, language))
     if len(text) > LONGEST:
         return None
     try:
-        brief = read_plan(asked)
-        check(brief, map_size=None)
-    except RoadGPTError:
+        plan = _checked(" // ".join(part.plan for part in parts))
+    except (Discarded, RoadGPTError):
         return None
+    return Pair(text, plan, "networks/routes", language)
+
+
+def _checked(line: str) -> str:
+    """Returns a plan in standard form; raises as ``assembled_route`` does."""
+    brief = read_plan(line)
+    check(brief, map_size=None)
     if len(brief.junctions) > MOST_JUNCTIONS:
-        return None
-    return Pair(text, standard(brief), "networks/routes", language)
+        raise Discarded
+    return standard(brief)
 
 
 def _lowered(text: str, language: str) -> str:
@@ -135,7 +131,7 @@ def _is_road(pair: Pair) -> bool:
 
 def _is_open(pair: Pair) -> bool:
     """Returns whether a pair describes a route that begins and ends with a junction and can go on."""
-    if pair.plan.startswith("!") or "||" in pair.plan or pair.plan.startswith("map"):
+    if pair.plan.startswith(("!", "map")) or "||" in pair.plan:
         return False
     parts = [part.strip() for part in pair.plan.split("//")]
     return (
@@ -148,51 +144,8 @@ def _is_open(pair: Pair) -> bool:
     )
 
 
-def _by_language(pairs: Sequence[Pair], fits: Callable[[Pair], bool]) -> dict[str, list[Pair]]:
-    out: dict[str, list[Pair]] = {}
-    for pair in pairs:
-        if fits(pair):
-            out.setdefault(pair.lang, []).append(pair)
-    return out
-
-
-def _one_of(pairs: Sequence[Pair], rng: np.random.Generator) -> Pair:
-    return pairs[int(rng.integers(len(pairs)))]
-
-
-def generated_routes(seed: int) -> Iterator[Pair]:
-    """Yields an endless series of routes and maps; the same seed gives the same pairs."""
-    rng = np.random.default_rng([seed, 6])
-    while True:
-        if pair := draw_route(drawn_language(EVEN, rng), rng):
-            yield pair
-
-
-def draw_route(language: str, rng: np.random.Generator, symbol: str = "networks") -> Pair | None:
-    """Returns a random description of a route or map and its plan; None if they make no sense, or if the
-    description is too long or held out.
-
-    Args:
-        language: code of the language, such as "en".
-        rng: source of randomness.
-        symbol: the symbol of the grammar to begin with.
-    """
-    try:
-        said, raw = Speaker(grammar_of(language, "networks"), rng).say(symbol)
-        plan = assembled_route(raw)
-    except (Discarded, RoadGPTError):
-        return None
-    text = tidy(said, language)
-    typed = noisy(text, language, rng)
-    if not 1 <= len(text) <= LONGEST_DRAWN or is_held_out(text) or is_held_out(typed):
-        return None
-    return Pair(typed, plan, f"networks/generated-{language}", language)
-
-
 def assembled_route(raw: str) -> str:
-    """Returns the standard form of the plan that the grammar rules wrote.
-
-    If the plan contains a refusal, only the refusal is returned.
+    """Returns the standard form of the plan that the grammar rules wrote, or only the refusal if it has one.
 
     Raises:
         Discarded: the plan has more than six junctions, a part between two ``//`` names several kinds of
@@ -207,11 +160,7 @@ def assembled_route(raw: str) -> str:
     if everywhere:
         parts = _on_every_road(parts, everywhere)
     line = " // ".join(parts)
-    brief = read_plan(f"{line} || {' '.join(dict.fromkeys(of_all))}" if of_all else line)
-    check(brief, map_size=None)
-    if len(brief.junctions) > MOST_JUNCTIONS:
-        raise Discarded
-    return standard(brief)
+    return _checked(f"{line} || {' '.join(dict.fromkeys(of_all))}" if of_all else line)
 
 
 def _part(raw: str) -> str:
@@ -239,3 +188,9 @@ def _on_every_road(parts: list[str], wishes: list[str]) -> list[str]:
             out.append(f"{part} {added}" if "|" in part else f"{part} | {added}")
         is_road = not is_of_junctions(part)
     return out if is_road else [*out, f"| {added}"]
+
+
+draw_route = partial(
+    draw, symbol="networks", phrases="networks", plan_of=assembled_route, family="networks/generated"
+)
+"""Draws a description of a route or map."""

@@ -1,7 +1,6 @@
 """Prompts with truths: a reading of such a prompt is right if the roads made of it meet the truth."""
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,9 +26,8 @@ class ToldPrompt:
 
 
 def told_prompts(path: Path) -> list[ToldPrompt]:
-    """Returns the prompts of a file of JSON lines such as ``{"id", "prompt", "truth"}``.
-
-    Lines of prompts that must be refused, which have no truth, are left out.
+    """Returns the prompts of a file of JSON lines such as ``{"id", "prompt", "truth"}``; prompts that must be
+    refused, which have no truth, are left out.
 
     Raises:
         LearnError: a line is not such a prompt.
@@ -46,13 +44,11 @@ def told_prompts(path: Path) -> list[ToldPrompt]:
     return out
 
 
-def is_right(brief: Brief, truth: Truth, seeds: Sequence[int] = range(ROADS)) -> bool:
-    """Returns whether roads made of a Brief, one for each seed, all meet a truth; False if one cannot be
-    made.
-    """
+def is_right(brief: Brief, truth: Truth) -> bool:
+    """Returns whether roads made of a Brief all meet a truth; False if one cannot be made."""
     try:
         world = world_for(brief, World())
-        designs = [draft(brief, world, seed=seed) for seed in seeds]
+        designs = [draft(brief, world, seed=seed) for seed in range(ROADS)]
     except RoadGPTError:
         return False
     roads = [measure(build(each).centreline()) for each in designs if isinstance(each, Design)]

@@ -7,6 +7,7 @@ import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
@@ -16,22 +17,31 @@ from torch import nn
 from torch.nn import functional
 
 from roadgpt.brief.readers.model.vocabulary import OF_ROADS, TOKENS
-from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.errors import LearnError
-from roadgpt.learn.data import SHARES, SHARES_OF_ROUTES, Numbers, batches, examples
+from roadgpt.learn.data import SHARES, SHARES_OF_ROUTES, Numbers, training_batches
 from roadgpt.learn.feed import fed_batches
-from roadgpt.learn.generator import Pair
-from roadgpt.learn.growing import decoder_layers, deepened, encoder_layers, grown
-from roadgpt.learn.network import NetworkSizes, ReaderNetwork, load_minilm
+from roadgpt.learn.growing import deepened, grown
+from roadgpt.learn.network import (
+    DECODER,
+    ENCODER,
+    NetworkSizes,
+    ReaderNetwork,
+    layers_of,
+    load_minilm,
+    network_of,
+)
 from roadgpt.learn.onnx_weights import exported_weights
+from roadgpt.learn.pair import Pair
 
 POOL = 24  # number of batches whose examples are sorted by length together
 SMOOTHING = 0.03
+WARM_UP = 150  # steps at the start, in which the learning rate rises linearly
+SAVE_EVERY = 100  # steps from one checkpoint to the next
 SLOW_IN_BFLOAT16 = ("DEFAULT", "NO AVX", "AVX2")
 """Kinds of processors that multiply numbers of 16 bits some 70 times as slowly as numbers of 32 bits."""
 FROZEN = ("pieces", "places", "kind", "norm")
-"""Names of the encoder's embeddings, which are not trained if the encoder is pretrained, so that words that
-occur in no pair keep their meaning."""
+"""Names of the encoder's embeddings, which are not trained, so that words that occur in no pair keep their
+meaning."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +56,6 @@ class TrainingSettings:
     """Highest learning rate of the encoder."""
     decoder_rate: float = 7e-4
     """Highest learning rate of the decoder."""
-    warm_up: int = 150
-    """Number of steps, at the start of training, during which the learning rate rises linearly."""
     cool_down: float = 0.3
     """Fraction of all steps (0 to 1), at the end of training, during which the learning rate falls to
     zero.
@@ -65,16 +73,12 @@ class TrainingSettings:
     ending: str = ""
     """What follows 'encoder' and 'decoder' in the file names of the network that training starts from."""
     seed: int = 1
-    save_every: int = 100
-    """Number of steps from one checkpoint to the next."""
     workers: int = 1
     """Number of processes that train in parallel and average their weights at each checkpoint (local SGD)."""
     rank: int = 0
     """Number of this process, from 0; the process 0 writes the checkpoints."""
     is_of_routes: bool = False
     """True for the network that reads routes and maps, which learns from other pairs."""
-    is_pretrained: bool = True
-    """True if the encoder starts from MiniLM; its embeddings are then not trained."""
 
 
 def train(
@@ -83,17 +87,17 @@ def train(
     weights: Path | None,
     hand: Sequence[Pair],
     plan: TrainingSettings,
-    report: Callable[[str], None] = print,
-    check: Callable[[], None] = lambda: None,
-) -> ReaderNetwork:
-    """Trains a network and returns it. The training begins with the checkpoint in the folder, or with
-    ``weights`` if there is no checkpoint, and writes checkpoints into the folder.
+    report: Callable[[str], None],
+    check: Callable[[], None],
+) -> None:
+    """Trains a network, and writes ``checkpoint.pt`` and ``losses.jsonl`` into the folder. The training
+    begins with the checkpoint in the folder, or with ``weights`` if there is none.
 
     Args:
-        folder: where ``checkpoint.pt`` and ``losses.jsonl`` are written.
+        folder: the folder of the training.
         pieces: the vocabulary of word pieces.
-        weights: ``model.safetensors`` of all-MiniLM-L6-v2, or the folder of an exported reader; None
-            starts from random weights.
+        weights: ``model.safetensors`` of all-MiniLM-L6-v2, or the folder of an exported reader; None starts
+            from random weights.
         hand: hand-written pairs for training.
         plan: settings of the training.
         report: called with a progress line from time to time.
@@ -107,8 +111,7 @@ def train(
     state: dict[str, Any] = {}
     if checkpoint.exists():
         state = torch.load(checkpoint, map_location="cpu", weights_only=True)
-    reader = _started(state.get("reader"), weights, pieces, plan)
-    reader.to(device)
+    reader = _started(state.get("reader"), weights, pieces, plan).to(device)
     optimiser = _optimiser(reader, plan)
     if state:
         optimiser.load_state_dict(state["optimiser"])
@@ -116,10 +119,8 @@ def train(
     # each start has its own stream, so that a resumed training does not see the same pairs again
     seed = (plan.seed * 1_000_003 + first) * 16 + plan.rank
     shares = SHARES_OF_ROUTES if plan.is_of_routes else SHARES
-    if plan.feeders:
-        stream = fed_batches(plan.feeders, seed, hand, pieces, shares, plan.size, POOL)
-    else:
-        stream = batches(examples(seed, hand, WordPieces(pieces), shares), plan.size, POOL, seed)
+    make = partial(training_batches, hand=hand, pieces=pieces, shares=shares, size=plan.size, pool=POOL)
+    stream = fed_batches(plan.feeders, seed, make) if plan.feeders else make(seed)
     began, losses = time.monotonic(), []
     reader.train()
     for step in range(first, plan.steps):
@@ -128,12 +129,12 @@ def train(
         if (step + 1) % 50 == 0 and plan.rank == 0:
             _note(folder, step + 1, plan, losses, (step + 1 - first) / (time.monotonic() - began), report)
             losses.clear()
-        if (step + 1) % plan.save_every == 0 or step + 1 == plan.steps:
+        if (step + 1) % SAVE_EVERY == 0 or step + 1 == plan.steps:
             if plan.workers > 1:
                 average(folder, reader, plan, step + 1, check)
             if plan.rank == 0:
-                _save(checkpoint, reader, optimiser, step + 1)
-    return reader
+                networks = {"reader": reader.state_dict(), "optimiser": optimiser.state_dict()}
+                _save({**networks, "step": step + 1}, checkpoint)
 
 
 def _started(
@@ -144,15 +145,13 @@ def _started(
     if kept is None and weights and weights.is_dir():
         exported = exported_weights(weights, plan.ending)
         kept = {name: torch.from_numpy(array) for name, array in exported.items()}
-        kept = grown(kept, tokens, plan.decoder_layers or decoder_layers(kept), plan.seed)
-        kept = deepened(kept, plan.encoder_layers or encoder_layers(kept))
-    layers = decoder_layers(kept) if kept else plan.decoder_layers or NetworkSizes().decoder_layers
-    depth = encoder_layers(kept) if kept else NetworkSizes().layers
-    sizes = NetworkSizes(pieces=len(pieces), tokens=tokens, layers=depth, decoder_layers=layers)
-    reader = ReaderNetwork(sizes)
+        kept = grown(kept, tokens, plan.decoder_layers or layers_of(kept, DECODER), plan.seed)
+        kept = deepened(kept, plan.encoder_layers or layers_of(kept, ENCODER))
     if kept:
-        reader.load_state_dict(kept)
-    elif weights:
+        return network_of(kept, len(pieces), tokens)
+    layers = plan.decoder_layers or NetworkSizes().decoder_layers
+    reader = ReaderNetwork(NetworkSizes(len(pieces), tokens, decoder_layers=layers))
+    if weights:
         load_minilm(reader, weights, pieces)
     return reader
 
@@ -163,7 +162,7 @@ def _optimiser(reader: nn.Module, plan: TrainingSettings) -> torch.optim.Optimiz
     for name, parameter in reader.named_parameters():
         room = name.split(".")[0]
         is_frozen = name.startswith(tuple(f"layers.{index}." for index in range(plan.frozen_layers)))
-        parameter.requires_grad_(not (is_frozen or (plan.is_pretrained and room in FROZEN)))
+        parameter.requires_grad_(not (is_frozen or room in FROZEN))
         groups[room in own].append(parameter)
     return torch.optim.AdamW(
         [
@@ -178,8 +177,8 @@ def _optimiser(reader: nn.Module, plan: TrainingSettings) -> torch.optim.Optimiz
 
 def _rate(step: int, plan: TrainingSettings) -> float:
     """Returns the share of the full learning rate: a linear rise, a constant part, a cosine fall."""
-    if step < plan.warm_up:
-        return (step + 1) / plan.warm_up
+    if step < WARM_UP:
+        return (step + 1) / WARM_UP
     left = (plan.steps - step) / max(1.0, plan.cool_down * plan.steps)
     return 1.0 if left >= 1 else 0.5 - 0.5 * math.cos(math.pi * left)
 
@@ -232,32 +231,26 @@ def _note(
 
 
 def average(
-    folder: Path,
-    reader: nn.Module,
-    plan: TrainingSettings,
-    step: int,
-    check: Callable[[], None] = lambda: None,
+    folder: Path, reader: nn.Module, plan: TrainingSettings, step: int, check: Callable[[], None]
 ) -> None:
     """Saves the weights of ``reader``, waits until all workers have saved theirs at this step, and loads the
     mean of all weights into ``reader``.
     """
-    own = folder / f"weights-{step}-{plan.rank}.pt"
-    torch.save(reader.state_dict(), own.with_suffix(".new"))
-    own.with_suffix(".new").replace(own)
+    _save(reader.state_dict(), folder / f"weights-{step}-{plan.rank}.pt")
     paths = [folder / f"weights-{step}-{rank}.pt" for rank in range(plan.workers)]
     while not all(path.exists() for path in paths):
         check()
         time.sleep(0.2)
     states = [torch.load(path, map_location="cpu", weights_only=True) for path in paths]
     reader.load_state_dict({name: sum(state[name] for state in states) / len(states) for name in states[0]})
-    older = folder / f"weights-{step - plan.save_every}-{plan.rank}.pt"
+    older = folder / f"weights-{step - SAVE_EVERY}-{plan.rank}.pt"
     older.unlink(missing_ok=True)  # by now every worker has read it
 
 
-def _save(path: Path, reader: nn.Module, optimiser: torch.optim.Optimizer, step: int) -> None:
-    """Writes a checkpoint completely or not at all, by way of a temporary file."""
+def _save(state: dict[str, Any], path: Path) -> None:
+    """Writes a file completely or not at all, by way of a temporary file."""
     beside = path.with_suffix(".new")
-    torch.save({"reader": reader.state_dict(), "optimiser": optimiser.state_dict(), "step": step}, beside)
+    torch.save(state, beside)
     beside.replace(path)
 
 
@@ -280,12 +273,9 @@ def train_together(
     if torch.cuda.is_available():
         plan = replace(plan, workers=1)
     spawn = multiprocessing.get_context("spawn")
+    task = partial(train, folder, pieces, weights, hand)
     others: list[BaseProcess] = [
-        spawn.Process(
-            target=_work,
-            args=(folder, pieces, weights, hand, replace(plan, rank=rank), os.getpid()),
-            daemon=True,
-        )
+        spawn.Process(target=_work, args=(task, replace(plan, rank=rank), os.getpid()), daemon=True)
         for rank in range(1, plan.workers)
     ]
     for worker in others:
@@ -293,7 +283,7 @@ def train_together(
     threads = torch.get_num_threads()
     torch.set_num_threads(1 if others else threads)
     try:
-        train(folder, pieces, weights, hand, plan, report, lambda: _all_there(others))
+        task(plan, report, lambda: _all_there(others))
     finally:
         torch.set_num_threads(threads)
         for worker in others:
@@ -301,17 +291,10 @@ def train_together(
             worker.kill()
 
 
-def _work(
-    folder: Path,
-    pieces: Sequence[str],
-    weights: Path | None,
-    hand: Sequence[Pair],
-    plan: TrainingSettings,
-    parent: int,
-) -> None:
-    """Runs one worker."""
+def _work(task: Callable[..., None], plan: TrainingSettings, parent: int) -> None:
+    """Runs ``train`` in one worker."""
     torch.set_num_threads(1)
-    train(folder, pieces, weights, hand, plan, lambda line: None, lambda: _not_alone(parent))
+    task(plan, lambda line: None, lambda: _not_alone(parent))
 
 
 def _not_alone(parent: int) -> None:

@@ -12,10 +12,9 @@ from importlib.resources import files
 
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.slots import slotted
-from roadgpt.brief.readers.model.used_words import NEGATORS
+from roadgpt.brief.readers.model.used_words import GROUPS, NEGATORS, with_groups
 from roadgpt.brief.readers.model.vocabulary import tokens_of
-from roadgpt.brief.readers.model.word_meanings import GROUPS, with_groups
-from roadgpt.learn.generator import Pair
+from roadgpt.learn.pair import Pair
 
 OFTEN = 10  # a word that occurs in at least this many pairs may be a filler
 LEAST = 4  # a word and a token are unrelated if fewer pairs than this have both
@@ -73,30 +72,25 @@ def _counted(pairs: Iterable[Pair], has_groups: bool) -> _Counts:
 
 
 def filler_words(pairs: Iterable[Pair]) -> list[str]:
-    """Returns the filler words in alphabetical order: all function words, and words in at least 10 pairs that
-    ask for no token; words of negation are left out.
-
-    Args:
-        pairs: hand-written pairs, in which words are counted.
+    """Returns the filler words in alphabetical order: all function words, such as "and", and words in at
+    least 10 pairs that ask for no token; words of negation are left out.
     """
     counts = _counted(pairs, has_groups=False)
     meaning = {word for word, token in counts.both if counts.is_asked(word, token)}
     frequent = {word for word, times in counts.of_word.items() if times >= OFTEN} - meaning
-    return sorted((frequent | function_words()) - NEGATORS)
+    joints = (files("roadgpt.learn") / "words" / "joints.txt").read_text(encoding="utf-8")
+    return sorted((frequent | {*plain(joints).split()}) - NEGATORS)
 
 
 def word_meanings(pairs: Iterable[Pair]) -> dict[str, list[str]]:
-    """Returns for each word the tokens that it usually asks for, the token with the largest lift first.
+    """Returns for each word the tokens that it usually asks for, the token with the largest lift first;
+    change requests and refusals are not counted.
 
-    The lift is how many times more often than by chance the word and the token occur together; see
-    ``RELATED``. Tokens with less than half of the word's largest lift are left out: "priority" often occurs
-    with crossroads, but does not ask for crossroads. A group of tokens is returned only for a word that asks
-    for no single token. Words of negation have no entry.
-
-    Args:
-        pairs: hand-written pairs, in which words are counted; change requests and refusals are not counted.
+    Tokens with less than half of the word's largest lift are left out: "priority" often occurs with
+    crossroads, but does not ask for crossroads. A group of tokens is returned only for a word that asks for
+    no single token. Words of negation have no entry.
     """
-    counts = _counted((p for p in pairs if not p.is_change and not p.plan.startswith("!")), has_groups=True)
+    counts = _counted((p for p in pairs if not p.is_change and not p.is_refusal), has_groups=True)
     lifts: dict[str, dict[str, float]] = {}
     for word, token in counts.both:
         if counts.is_asked(word, token) and token not in STRUCTURE and word not in NEGATORS:
@@ -109,9 +103,3 @@ def _own(lifts: Mapping[str, float]) -> list[str]:
     own = {token: lift for token, lift in lifts.items() if token not in GROUPS} or lifts
     least = OF_MOST * max(own.values())
     return sorted((token for token in own if own[token] >= least), key=lambda token: (-own[token], token))
-
-
-def function_words() -> frozenset[str]:
-    """Returns function words, such as "and" or "the", in five languages."""
-    text = (files("roadgpt.learn") / "words" / "joints.txt").read_text(encoding="utf-8")
-    return frozenset(plain(text).split())

@@ -21,11 +21,10 @@ from roadgpt.network.road_or_route import (
 )
 
 if TYPE_CHECKING:
-    from roadgpt.network.blueprint import AnyDesign, Blueprint, network_made_from
     from roadgpt.network.design import JunctionDesign, NetworkDesign, is_network_design, read_network_design
     from roadgpt.network.growing import build_route, passing_length
-    from roadgpt.network.map_design import MapDesign, MapNode, read_map_design
-    from roadgpt.network.map_growing import build_map
+    from roadgpt.network.map_design import AnyDesign, Blueprint, MapDesign, MapNode, read_map_design
+    from roadgpt.network.map_growing import build_map, network_made_from
     from roadgpt.network.network import (
         Arm,
         Connection,
@@ -79,11 +78,10 @@ __all__ = [
 ]
 
 _LATER = {
-    "blueprint": ("AnyDesign", "Blueprint", "network_made_from"),
     "design": ("JunctionDesign", "NetworkDesign", "is_network_design", "read_network_design"),
     "growing": ("build_route", "passing_length"),
-    "map_design": ("MapDesign", "MapNode", "read_map_design"),
-    "map_growing": ("build_map",),
+    "map_design": ("AnyDesign", "Blueprint", "MapDesign", "MapNode", "read_map_design"),
+    "map_growing": ("build_map", "network_made_from"),
     "network": (
         "Arm",
         "Connection",

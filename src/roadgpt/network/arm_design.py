@@ -53,16 +53,9 @@ class ArmDesign(FrozenFields):
 
 
 def read_segments(what: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """Reads the segments of an arm as those of a road; returns the fields of an ArmDesign, and remarks.
-
-    The other fields are returned as they are. Each remark is a sentence that begins with ``what``.
-
-    Args:
-        what: The name of the arm, such as "arm 1 of junction 2".
-        raw: The arm from parsed JSON.
-
-    Raises:
-        UsageError: A segment cannot be read, or the arm has ``segments``, which no file has.
+    """Reads the segments of an arm as those of a road; returns the fields of an ArmDesign, the others as they
+    are, and remarks. ``what`` names the arm in remarks and errors. Raises UsageError if a segment cannot be
+    read, or the arm has ``segments``, which no file has.
     """
     own = {key: each for key, each in raw.items() if KEY.fullmatch(str(key))}
     fields = {key: each for key, each in raw.items() if key not in own}

@@ -102,9 +102,8 @@ def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedA
 
 
 def _way(junction: Junction, arm: Arm, connection: Connection) -> Way:
-    """Returns the side to which a connection leads from an arm.
-
-    At a merge or exit, a turn of more than 1 degree counts as left or right.
+    """Returns the side to which a connection leads from an arm; at ramps, a turn of 1 degree is one to a
+    side.
     """
     out = next(each for each in junction.arms if each.end == connection.outgoing)
     turn = float(np.degrees(wrap_angle(out.direction - arm.direction - np.pi)))
@@ -116,14 +115,8 @@ def _way(junction: Junction, arm: Arm, connection: Connection) -> Way:
 def _placed(
     member: NetworkRoad, end: RoadEnd, index: int, ways: tuple[Way, ...], tip: float
 ) -> PaintedArrow | None:
-    """Returns an arrow on a lane; None if the lane is too narrow for it.
-
-    Args:
-        member: The road.
-        end: The end towards which the lane leads.
-        index: The number of the lane, counted from 0 at mid-road.
-        ways: What the arrow shows.
-        tip: The distance in metres from the tip of the arrow to the end of the road.
+    """Returns an arrow on the lane with this index, counted from 0 at mid-road; None if the lane is too
+    narrow. ``tip`` is the distance in metres from the tip of the arrow to the end of the road.
     """
     outline, corners = _shape(ways)
     at_end = end.contact == "end"

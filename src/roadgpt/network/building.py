@@ -27,16 +27,17 @@ class Builder:
         return self._last
 
     def add(self, road: Road, junction: int | None = None, number: int | None = None) -> int:
-        """Adds a road and returns its id.
-
-        Args:
-            road: The road, with a profile.
-            junction: The id of the junction, if this is a connecting road.
-            number: The id that the road gets; None for the next free one.
+        """Adds a road, which has a profile; returns its id: ``number``, or the next free one. ``junction`` is
+        the id of the junction of a connecting road.
         """
         number = self.number() if number is None else number
         self.roads[number] = NetworkRoad(number, road, junction)
         return number
+
+    def stub(self, end: RoadEnd, direction: float) -> "Stub":
+        """Returns the end of a road that leads out of a junction in a direction, given in radians."""
+        member = self.roads[end.road]
+        return Stub(end, direction, member.profile, member.road.length if end.contact == "end" else 0.0)
 
     def network(self) -> Network:
         """Returns the finished network, with the roads in the order of their ids."""
@@ -56,53 +57,43 @@ class Stub:
     """The station in metres of this end of the road."""
 
     @cached_property
-    def into(self) -> tuple[Lane, ...]:
-        """The driving lanes that lead into the junction, from the centre line outwards."""
-        return _driving(self.profile.right if self.end.contact == "end" else self.profile.left)
+    def into(self) -> "StubLanes":
+        """The driving lanes that lead into the junction."""
+        return self._lanes(self.end.contact == "end")
 
     @cached_property
-    def out_of(self) -> tuple[Lane, ...]:
-        """The driving lanes that lead out of the junction, from the centre line outwards."""
-        return _driving(self.profile.left if self.end.contact == "end" else self.profile.right)
+    def out_of(self) -> "StubLanes":
+        """The driving lanes that lead out of the junction."""
+        return self._lanes(self.end.contact == "start")
 
-    def id_into(self, index: int) -> int:
-        """Returns the id of a lane that leads into the junction; lanes count from 0 at the centre line."""
-        return -(index + 1) if self.end.contact == "end" else self.profile.against_ids[index]
-
-    def id_out_of(self, index: int) -> int:
-        """Returns the id of a lane that leads out of the junction; lanes count from 0 at the centre line."""
-        return self.profile.against_ids[index] if self.end.contact == "end" else -(index + 1)
-
-    def width_of(self, lane: Lane) -> float:
-        """Returns the width in metres of a lane at the junction."""
-        return width_at(lane.width, self.station)
-
-    def inside_into(self, index: int) -> float:
-        """Returns the distance in metres from the reference line to the left edge of a lane that leads into
-        the junction. Left and right are those of the driver; the distance is positive to the right.
-        """
-        edge = -self._offset if self.end.contact == "end" else self._offset + self.profile.median
-        return edge + sum(map(self.width_of, self.into[:index]))
-
-    def inside_out_of(self, index: int) -> float:
-        """Returns the distance in metres from the reference line to the left edge of a lane that leads out of
-        the junction. Left and right are those of the driver; the distance is positive to the right.
-        """
-        edge = -self._offset if self.end.contact == "start" else self._offset + self.profile.median
-        return edge + sum(map(self.width_of, self.out_of[:index]))
-
-    @property
-    def _offset(self) -> float:
-        return width_at(self.profile.offset, self.station)
-
-    @property
-    def mouth(self) -> tuple[float, float]:
-        """The total widths in metres, at the junction, of the lanes into it and of the lanes out of it."""
-        return sum(map(self.width_of, self.into)), sum(map(self.width_of, self.out_of))
+    def _lanes(self, is_along: bool) -> "StubLanes":
+        profile, offset = self.profile, width_at(self.profile.offset, self.station)
+        lanes = profile.right if is_along else profile.left
+        return StubLanes(
+            profile.along_ids if is_along else profile.against_ids,
+            tuple(width_at(lane.width, self.station) for lane in lanes if lane.kind == "driving"),
+            -offset if is_along else offset + profile.median,
+        )
 
 
-def _driving(lanes: Sequence[Lane]) -> tuple[Lane, ...]:
-    return tuple(lane for lane in lanes if lane.kind == "driving")
+@dataclass(frozen=True)
+class StubLanes:
+    """The driving lanes of a stub in one direction, from the centre line outwards."""
+
+    ids: range
+    widths: tuple[float, ...]
+    """The widths in metres at the junction."""
+    edge: float
+    """The distance in metres from the reference line to the left edge of the first lane. Left and right are
+    those of the driver; the distance is positive to the right.
+    """
+
+    def __len__(self) -> int:
+        return len(self.widths)
+
+    def inside(self, index: int) -> float:
+        """Returns the distance to the left edge of a lane, as ``edge`` is for the first one."""
+        return self.edge + sum(self.widths[:index])
 
 
 def width_at(width: Width, s: float) -> float:
@@ -111,10 +102,7 @@ def width_at(width: Width, s: float) -> float:
 
 
 def edges_at(profile: Profile, s: float) -> tuple[float, float]:
-    """Returns the offsets of the left and the right edge of the carriageway at station ``s``, in metres.
-
-    The result is that of ``Profile.edges``, without the overhead of arrays.
-    """
+    """Returns what ``Profile.edges`` does at one station, without the overhead of arrays."""
     centre, (left, right), count = width_at(profile.offset, s), profile.begins, profile.count
     if profile.left_hand:
         count = count[::-1]
@@ -124,11 +112,6 @@ def edges_at(profile: Profile, s: float) -> tuple[float, float]:
     )
 
 
-def level(length: float, z: float) -> GradeProfile:
-    """Returns the elevation profile of a level road, from its length and its height ``z`` in metres."""
-    return GradeProfile(z, (0.0, length), (0.0, 0.0))
-
-
 Change = tuple[float, float]
 """A width or an offset in metres at the start and at the end of a road."""
 
@@ -136,15 +119,9 @@ Change = tuple[float, float]
 def one_way(
     widths: Sequence[Change], length: float, offset: Change = (0.0, 0.0), between: Marking = "none"
 ) -> Profile:
-    """Returns the cross-section of a road with lanes on the right only.
-
-    Args:
-        widths: The width of each lane, from left to right, at the start and at the end of the road; between
-            them, the width changes smoothly.
-        length: Length of the road in metres.
-        offset: The offset of the left edge of the leftmost lane from the reference line, positive to the
-            left, at the start and at the end of the road.
-        between: The marking between two lanes. The outer edges have no marking.
+    """Returns the cross-section of a road with lanes on the right only; ``widths`` are those from left to
+    right. They and the ``offset`` of their left edge, positive to the left of the reference line, change
+    smoothly over ``length`` metres. ``between`` is the marking between lanes; the outer edges have none.
     """
     return _one_way(tuple(_changing(each, length) for each in widths), _changing(offset, length), between)
 
@@ -168,19 +145,14 @@ def connecting_road(
     heading: float,
     pieces: Sequence[Piece],
     widths: Sequence[Change],
-    offset: Change = (0.0, 0.0),
+    offset: Change,
     between: Marking = "none",
 ) -> Road:
-    """Returns a level connecting road.
-
-    Args:
-        start: The point in metres at which the reference line begins.
-        heading: The heading there in radians.
-        pieces: The lines, arcs and clothoids of the reference line.
-        widths: As for ``one_way``.
-        offset: As for ``one_way``.
-        between: As for ``one_way``.
+    """Returns a level connecting road that begins at a point in metres with a heading in radians; for
+    ``widths``, ``offset`` and ``between`` see ``one_way``.
     """
     x, y, z = start
     plan = PieceCurve(x, y, heading, tuple(pieces))
-    return Road(plan, level(plan.length, z), profile=one_way(widths, plan.length, offset, between))
+    return Road(
+        plan, GradeProfile.level(plan.length, z), profile=one_way(widths, plan.length, offset, between)
+    )

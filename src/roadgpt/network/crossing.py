@@ -35,11 +35,8 @@ class Mouth:
 
 
 def setbacks(mouths: Sequence[Mouth], kerb: float) -> list[float]:
-    """Returns the distance in metres from the node to the contact of each arm, at least ``NEAREST``.
-
-    Args:
-        mouths: The arms in counter-clockwise order.
-        kerb: The smallest radius in metres of a kerb between two neighbouring arms.
+    """Returns the distance in metres from the node to the contact of each arm, at least ``NEAREST``. The arms
+    are given counter-clockwise; ``kerb`` is the smallest radius in metres of a kerb between two of them.
     """
     found = [NEAREST] * len(mouths)
     for i, mouth in enumerate(mouths):
@@ -68,18 +65,13 @@ def build_crossing(
     kerb: float,
     crosswalk: bool = False,
 ) -> Junction:
-    """Adds a junction and its connecting roads to a network; returns the junction.
+    """Adds a junction and its connecting roads to a network that has the roads of all stubs; returns the
+    junction.
 
-    Args:
-        builder: The network; the roads of all stubs are in it.
-        kind: The kind of the junction.
-        node: The point in metres at which the reference lines of the arms would meet.
-        stubs: The arms in counter-clockwise order.
-        distances: The distance in metres from the node to the contact of each arm.
-        controls: The sign or light of each arm.
-        kerb: The requested radius in metres of the kerbs. It is only stored in the junction; ``distances``
-            decide how much room there is.
-        crosswalk: Whether each arm has a crosswalk.
+    ``node`` is the point in metres at which the reference lines would meet. The stubs are in
+    counter-clockwise order, and so are the distances in metres from the node to their contacts and their
+    signs or lights. ``kerb`` is the requested radius in metres, which is only stored: ``distances`` decide
+    how much room there is.
     """
     number = builder.number()
     connections = []
@@ -105,16 +97,10 @@ def connected(
     way: LaneWay,
     between: Marking = "none",
 ) -> Connection:
-    """Adds a connecting road between two arms whose reference lines meet at a node; returns the connection.
+    """Adds a connecting road from one arm to another; returns the connection.
 
-    Args:
-        builder: The network.
-        junction: The id of the junction.
-        node: The point in metres at which the two reference lines meet.
-        ends: The arm on which traffic arrives, and the arm on which it leaves.
-        distances: The distances in metres from the node to the contacts of these two arms.
-        way: At least one pair of lanes: a lane into the junction, and the lane out of it that continues it.
-        between: The marking between two lanes of the connecting road.
+    The reference lines of the two ``ends`` meet at ``node``, which lies ``distances`` metres from their
+    contacts. ``way`` has at least one pair of lanes, ``between`` is the marking between two lanes.
     """
     start, end = ends
     x, y, z = node
@@ -126,9 +112,9 @@ def connected(
         z,
     )
     pieces = curve_between(*distances, turn if abs(turn) >= STRAIGHT else 0.0)
-    widths = [(start.width_of(start.into[i]), end.width_of(end.out_of[j])) for i, j in way]
+    widths = [(start.into.widths[i], end.out_of.widths[j]) for i, j in way]
     first_in, first_out = way[0]
-    offset = (-start.inside_into(first_in), -end.inside_out_of(first_out))
+    offset = (-start.into.inside(first_in), -end.out_of.inside(first_out))
     road = builder.add(connecting_road(contact, heading, pieces, widths, offset, between), junction)
-    lanes = [LaneLink(start.id_into(i), -1 - n, end.id_out_of(j)) for n, (i, j) in enumerate(way)]
-    return Connection(road, start.end, end.end, tuple(lanes))
+    lanes = tuple(LaneLink(start.into.ids[i], -1 - n, end.out_of.ids[j]) for n, (i, j) in enumerate(way))
+    return Connection(road, start.end, end.end, lanes)

@@ -27,13 +27,8 @@ junction, the second that of the lane out of the junction; both count from 0 at 
 
 
 def lane_ways(stubs: Sequence[Stub], start: int) -> Iterator[tuple[int, LaneWay]]:
-    """Yields the index of each arm that traffic can reach from one arm, with the lanes that lead to it.
-
-    The arms are yielded counter-clockwise from the arm of arrival, that is from right to left.
-
-    Args:
-        stubs: The arms in counter-clockwise order.
-        start: Index of the arm on which traffic arrives.
+    """Yields the index of each arm that traffic can reach from the arm ``start``, with the lanes that lead to
+    it: from right to left, as the stubs are in counter-clockwise order.
     """
     count = len(stubs)
     others = [(start + n) % count for n in range(1, count)]
@@ -95,11 +90,9 @@ def _turning_lanes(stubs: Sequence[Stub], end: int) -> tuple[int, int]:
 def _usual_spans(into: int, room: Sequence[int], turns_right: int, turns_left: int) -> list[range]:
     """Returns the lanes that lead to each exit, where exits may share lanes.
 
-    Args:
-        into: The number of lanes that lead into the junction.
-        room: The number of lanes of each exit, from the right to the left.
-        turns_right: The number of lanes that lead to the first exit, if traffic turns right to it; or else 0.
-        turns_left: The number of lanes that lead to the last exit, if traffic turns left to it; or else 0.
+    ``into`` is the number of lanes into the junction, ``room`` those of each exit, from right to left.
+    ``turns_right`` and ``turns_left`` are the numbers of lanes that turn to the first and to the last exit; 0
+    if none does.
     """
     through = len(room) - bool(turns_right) - bool(turns_left)
     left, right = turns_left, turns_right

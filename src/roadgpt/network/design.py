@@ -37,6 +37,8 @@ from roadgpt.road.design import (
     first_error,
     misnumbered,
     no_truths,
+    written_fields,
+    written_segments,
 )
 from roadgpt.road.road import FARTHEST
 
@@ -214,32 +216,27 @@ class NetworkDesign(FrozenFields):
         if self.left_hand:
             out["left_hand"] = True
         if self.lanes is not None:
-            out["lanes"] = _plain_lanes(self.lanes)
-        out |= _plain_segments(self.segments)
+            out["lanes"] = _written_lanes(self.lanes)
+        out |= written_segments(self.segments)
         for number, junction in enumerate(self.junctions, 1):
-            row = _plain(junction, exclude={"arms", "lanes"})
+            row = written_fields(junction, exclude={"arms", "lanes"})
             for name, usual in (("ring_lanes", 1), ("crosswalk", False), ("taper", RAMP_TAPER)):
                 if row.get(name) == usual:
                     del row[name]
             if junction.lanes is not None:
-                row["lanes"] = _plain_lanes(junction.lanes)
+                row["lanes"] = _written_lanes(junction.lanes)
             given = junction.arms if isinstance(junction, JunctionDesign) else ()
-            arms = [_plain(arm, exclude={"segments"}) | _plain_segments(arm.segments) for arm in given]
+            arms = [
+                written_fields(arm, exclude={"segments"}) | written_segments(arm.segments) for arm in given
+            ]
             out[f"junction{number}"] = {**row, "arms": arms} if arms else row
         return out
 
 
-def _plain_segments(segments: Sequence[Segment]) -> dict[str, Any]:
-    return {f"road_segment{number}": _plain(segment) for number, segment in enumerate(segments, 1)}
-
-
-def _plain_lanes(lanes: LanesDesign) -> dict[str, Any]:
-    return _plain(lanes, exclude={name for name, usual in RARE.items() if getattr(lanes, name) == usual})
-
-
-def _plain(value: BaseModel, exclude: set[str] | None = None) -> dict[str, Any]:
-    data = value.model_dump(exclude_none=True, exclude=exclude)
-    return {key: as_written(each) for key, each in data.items()}
+def _written_lanes(lanes: LanesDesign) -> dict[str, Any]:
+    return written_fields(
+        lanes, exclude={name for name, usual in RARE.items() if getattr(lanes, name) == usual}
+    )
 
 
 def is_network_design(data: Any) -> bool:
@@ -277,21 +274,15 @@ def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[s
 
 
 def is_left_hand(data: Mapping[str, Any]) -> bool:
-    """Returns the field ``left_hand`` of a design: whether traffic drives on the left; False without it.
-
-    Raises:
-        UsageError: The field is neither true nor false.
-    """
+    """Returns whether traffic drives on the left. Raises UsageError unless the field is true or false."""
     if not isinstance(found := data.get("left_hand", False), bool):
         raise UsageError("left_hand cannot be read: give true for traffic on the left, or leave it out")
     return found
 
 
 def read_part(model: type[Part], what: str, raw: Any, fields: str) -> Part:
-    """Returns a part of a design, such as a junction, from parsed JSON.
-
-    Raises:
-        UsageError: The part cannot be read. The message names the part, ``what``, and its ``fields``.
+    """Returns a part of a design, such as a junction, from parsed JSON. Raises UsageError, which names the
+    part, ``what``, and its ``fields``, if it cannot be read.
     """
     _check_object(what, raw, fields)
     try:

@@ -11,9 +11,10 @@ import numpy as np
 
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.elevation import Cubic
 from roadgpt.network.network import Network
 from roadgpt.network.passages import Passage
-from roadgpt.network.polygon import Area
+from roadgpt.network.paved import Area
 from roadgpt.network.surface import ROUND
 from roadgpt.road import Edges, Road
 
@@ -49,11 +50,8 @@ def edges_of_ground(route: Road, ground: Area, s: Array) -> Edges:
 
 
 def windows(passages: Sequence[Passage], length: float) -> list[tuple[float, float]]:
-    """Returns the first and the last station in metres of each stretch of a route around its junctions,
-    which are given as passages; ``length`` is that of the route in metres.
-
-    A stretch begins ``AROUND`` metres before a junction and ends as far behind it, or where the route ends;
-    stretches that overlap are returned as one.
+    """Returns the first and last station in metres of each stretch of a route ``AROUND`` its junctions, which
+    are given as passages; stretches that overlap are one. ``length`` is that of the route in metres.
     """
     found: list[tuple[float, float]] = []
     for each in passages:
@@ -76,7 +74,7 @@ def shoulders_on_ground(
     """
     assert route.profile is not None
     ground, profile = ground_of(network), route.profile
-    rows: tuple[list[_Row], list[_Row]] = ([], [])
+    rows: tuple[list[tuple[float, Cubic]], list[tuple[float, Cubic]]] = ([], [])
     last = 0.0
     for low, high in windows(passages, route.length):
         s = np.linspace(low, high, max(2, round((high - low) / STEP) + 1))
@@ -89,34 +87,22 @@ def shoulders_on_ground(
         usuals = _usual(profile.rims(last), profile.edges(last))
         for side, begin, stop, usual in zip(rows, begins, stops, usuals, strict=True):
             if low > last:
-                side.append((last, usual, 0.0))
-            side += _linear(s, np.maximum(begin, 0.0), np.maximum(stop, 0.0))
+                side.append((last, (usual, 0.0, 0.0, 0.0)))
+            widths = np.maximum(begin, 0.0)
+            slopes = (np.maximum(stop, 0.0) - widths) / np.diff(s)
+            side += [
+                (at, (a, b, 0.0, 0.0)) for at, a, b in np.column_stack((s[:-1], widths, slopes)).tolist()
+            ]
         last = high
     for side, usual in zip(rows, _usual(profile.rims(last), profile.edges(last)), strict=True):
         end = min(last, route.length - 1e-6)
         while side and side[-1][0] >= end:
             side.pop()
-        side.append((end, usual, 0.0))
-    left, right = (_profile(side) for side in rows)
+        side.append((end, (usual, 0.0, 0.0, 0.0)))
+    left, right = map(CubicProfile.of_rows, rows)
     return left, right
-
-
-_Row = tuple[float, float, float]
-"""Station, width, and its change per metre."""
 
 
 def _usual(rims: Edges, edges: Edges) -> tuple[float, float]:
     """Returns the widths of the shoulders outside junctions."""
     return float(rims.left - edges.left), float(edges.right - rims.right)
-
-
-def _linear(s: Array, begins: Array, stops: Array) -> list[_Row]:
-    """Returns rows for widths that change from ``begins`` to ``stops`` between two stations each."""
-    slopes = (stops - begins) / np.diff(s)
-    return list(zip(s[:-1].tolist(), begins.tolist(), slopes.tolist(), strict=True))
-
-
-def _profile(rows: Sequence[_Row]) -> CubicProfile:
-    return CubicProfile(
-        tuple(s for s, _, _ in rows), tuple((width, slope, 0.0, 0.0) for _, width, slope in rows)
-    )

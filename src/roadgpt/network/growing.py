@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from roadgpt.brief.junction_ranges import side_of
 from roadgpt.brief.junctions import Control
 from roadgpt.errors import UsageError
-from roadgpt.geometry import GradeProfile, PieceCurve
 from roadgpt.geometry.curve import wrapped
 from roadgpt.network.arm_design import ArmDesign
 from roadgpt.network.building import Builder, Stub, edges_at
@@ -25,7 +24,7 @@ from roadgpt.network.stretch import road_of
 from roadgpt.network.stretch_profiles import stretch_profiles
 from roadgpt.network.turning import curve_between
 from roadgpt.road import Profile, World
-from roadgpt.road.reversal import reversed_road
+from roadgpt.road.moving import reversed_road
 from roadgpt.road.road import check_length
 
 FAR = 1e6  # m, a station behind all changes of a cross-section
@@ -79,9 +78,8 @@ class _RouteGrowth:
         self.passed.append(self._road(0, start, (False, bool(self.design.junctions))))
 
     def _road(self, number: int, start: NetworkPose, is_level: tuple[bool, bool]) -> int:
-        """Adds the road behind the place with this number (0: the first road); returns its id.
-
-        ``is_level`` is whether it is level at its start, and at its end.
+        """Adds the road behind the place with this number (0: the first road), level at its start and its end
+        or not; returns its id.
         """
         segments = self.design.stretches[number]
         check_length(sum(segment.distance for segment in segments))
@@ -90,10 +88,8 @@ class _RouteGrowth:
     def _end(self) -> NetworkPose:
         """Returns the pose at the end of the road on which the route has arrived."""
         arrival = self.builder.roads[self.passed[-1]].road
-        assert isinstance(arrival.plan, PieceCurve)
-        assert isinstance(arrival.elevation, GradeProfile)
-        x, y, heading = arrival.plan.end
-        return NetworkPose((x, y, arrival.elevation.at(arrival.length)[0]), heading)
+        x, y, z = arrival.at(arrival.length).tolist()
+        return NetworkPose((x, y, z), float(arrival.heading(arrival.length)))
 
     def pass_place(self, number: int, place: PlaceDesign) -> None:
         """Builds a place of the design, with its arms and the road on which the route goes on."""
@@ -128,15 +124,12 @@ class _RouteGrowth:
         profiles = [before, *profiles_of_arms(junction, before, self.profiles[number])]
         distances = contact_distances(junction, directions, profiles)
         node = end.ahead(distances[0]).point
-        arrival = self.passed[-1]
-        stubs = [
-            Stub(RoadEnd(arrival, "end"), directions[0], profiles[0], self.builder.roads[arrival].road.length)
-        ]
+        stubs = [self.builder.stub(RoadEnd(self.passed[-1], "end"), directions[0])]
         for n, (arm, direction) in enumerate(zip(arms, directions[1:], strict=True)):
             start = NetworkPose(node, direction).ahead(distances[n + 1])
             if n == taken:
                 road = self._road(number, start, (True, is_level))
-                stubs.append(Stub(RoadEnd(road, "start"), direction, profiles[n + 1], 0.0))
+                stubs.append(self.builder.stub(RoadEnd(road, "start"), direction))
             else:
                 stubs.append(self._arm(arm, start, profiles[n + 1]))
         # where no lane leads into the junction, nobody sees a sign
@@ -148,7 +141,7 @@ class _RouteGrowth:
         if junction.kind == "roundabout":
             size = junction.radius, stubs, controls, junction.kerb, junction.ring_lanes, junction.crosswalk
             ring = build_roundabout(self.builder, node, *size)
-            self.passed += roads_around(self.builder, ring, to)
+            self.passed += roads_around(self.builder, ring, 0, to)
         else:
             built = build_crossing(
                 self.builder,
@@ -160,7 +153,7 @@ class _RouteGrowth:
                 junction.kerb,
                 junction.crosswalk,
             )
-            self.passed.append(_way(built.connections, stubs[0].end, stubs[to].end))
+            self.passed.append(way_through(built.connections, stubs[0].end, stubs[to].end))
         self.passed.append(stubs[to].end.road)
 
     def _arm(self, arm: ArmDesign, contact: NetworkPose, profile: Profile) -> Stub:
@@ -170,10 +163,11 @@ class _RouteGrowth:
         """
         check_length(sum(segment.distance for segment in arm.stretch))
         road = road_of(arm.stretch, *contact, profile, (True, False))
-        if arm.one_way != "in":
-            return Stub(RoadEnd(self.builder.add(road), "start"), contact.heading, profile, 0.0)
-        road = reversed_road(road).with_profile(profile)
-        return Stub(RoadEnd(self.builder.add(road), "end"), contact.heading, profile, road.length)
+        if arm.one_way == "in":
+            end = RoadEnd(self.builder.add(reversed_road(road).with_profile(profile)), "end")
+        else:
+            end = RoadEnd(self.builder.add(road), "start")
+        return self.builder.stub(end, contact.heading)
 
 
 def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) -> list[Profile]:
@@ -229,9 +223,8 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
 
 
 def _continuing(junction: JunctionDesign) -> int | None:
-    """Returns the index of the arm opposite the arm that the route takes.
-
-    None at a roundabout, or if only the road of arrival or no road at all lies opposite.
+    """Returns the index of the arm opposite the arm that the route takes; None at a roundabout, or if only
+    the road of arrival or no road lies there.
     """
     taken = junction.taken
     if taken is None or junction.kind == "roundabout":
@@ -244,12 +237,8 @@ def _continuing(junction: JunctionDesign) -> int | None:
     return nearest if nearest is not None and others[nearest] < LEAST else None
 
 
-def _way(connections: Sequence[Connection], start: RoadEnd, end: RoadEnd) -> int:
-    """Returns the id of the connecting road from one road to another.
-
-    Raises:
-        UsageError: There is no such connecting road.
-    """
+def way_through(connections: Sequence[Connection], start: RoadEnd, end: RoadEnd) -> int:
+    """Returns the id of the connecting road from one road to another. Raises UsageError if there is none."""
     for each in connections:
         if (each.incoming, each.outgoing) == (start, end):
             return each.road
@@ -270,19 +259,18 @@ def contact_distances(
 ) -> list[float]:
     """Returns the distance in metres from the node of a junction to the contact of each arm.
 
-    Args:
-        junction: The junction.
-        directions: The headings of its arms out of the junction in radians, counter-clockwise, first that of
-            the road on which the route arrives.
-        profiles: The cross-section of each arm in the same order. The road of arrival and one-way roads into
-            the junction end here, so their last widths count; of all other roads, the first widths count.
-
-    Raises:
-        UsageError: The island of a roundabout is too small for its arms.
+    ``directions`` are the headings of its arms out of the junction in radians, counter-clockwise from the
+    road of arrival, ``profiles`` their cross-sections. The road of arrival and one-way roads into the
+    junction end here, so their last widths count; of all others, the first ones. Raises UsageError if the
+    island of a roundabout is too small for its arms.
     """
     if junction.kind != "roundabout":
         ends_here = {0, *(n for n, arm in enumerate(junction.all_arms, 1) if arm.one_way == "in")}
-        mouths = [mouth_of_arm(each, directions[n], n in ends_here) for n, each in enumerate(profiles)]
+        mouths = []
+        for n, (direction, profile) in enumerate(zip(directions, profiles, strict=True)):
+            left, right = edges_at(profile, FAR if n in ends_here else 0.0)
+            into, out = (-right, left) if n in ends_here else (left, -right)
+            mouths.append(Mouth(direction, into, out))
         return setbacks(mouths, junction.kerb)
     least = smallest_radius(directions)
     if junction.radius < least:
@@ -293,22 +281,9 @@ def contact_distances(
     return [contact_distance(junction.radius, junction.ring_lanes)] * len(directions)
 
 
-def mouth_of_arm(profile: Profile, direction: float, ends_here: bool) -> Mouth:
-    """Returns the direction and the widths of an arm, from which a junction is laid out.
-
-    Args:
-        profile: The cross-section of the arm.
-        direction: The heading in radians out of the junction.
-        ends_here: True if the end of the road lies at the junction, False if its start does.
-    """
-    left, right = edges_at(profile, FAR if ends_here else 0.0)
-    return Mouth(direction, -right, left) if ends_here else Mouth(direction, left, -right)
-
-
 def length_inside(place: PlaceDesign, before: Profile, after: Profile) -> float:
-    """Returns the length in metres of a route at a place, without the roads before and behind the place.
-
-    The length is 0 at a LanesChangeDesign. The arguments and errors are those of ``passing_length``.
+    """Returns the length in metres of a route at a place, without the roads before and behind it; 0 at a
+    LanesChangeDesign. The arguments and errors are those of ``passing_length``.
     """
     if isinstance(place, JunctionDesign):
         return passing_length(place, before, after)
@@ -340,23 +315,19 @@ def passing_length(junction: JunctionDesign, before: Profile, after: Profile) ->
     return sum(piece.length for piece in pieces)
 
 
-def roads_around(builder: Builder, ring: Roundabout, to: int) -> list[int]:
-    """Returns the ids of the roads from the first arm of a roundabout to the arm with index ``to``.
-
-    Connecting roads and pieces of the ring follow each other in driving order. If ``to`` is 0, they
-    lead all the way round and back to the first arm.
-
-    Raises:
-        UsageError: No lane leads into or out of one of these arms.
+def roads_around(builder: Builder, ring: Roundabout, start: int, to: int) -> list[int]:
+    """Returns the ids of the roads from the arm of a roundabout with index ``start`` to the arm with index
+    ``to``, in driving order; all the way round if both are the same arm. Raises UsageError if no lane leads
+    into or out of one of these arms.
     """
     mouths = {each.id: each for each in builder.junctions if each.id in ring.junctions}
-    count, last = len(ring.ring), (to - 1) % len(ring.ring)
-    entered = mouths[ring.junctions[0]]
-    passed = [_way(entered.connections, entered.arms[0].end, RoadEnd(ring.ring[0], "start"))]
-    for n in range(last + 1):
-        mouth = mouths[ring.junctions[(n + 1) % count]]
-        after = mouth.arms[0].end if n == last else RoadEnd(ring.ring[(n + 1) % count], "start")
-        passed += [ring.ring[n], _way(mouth.connections, RoadEnd(ring.ring[n], "end"), after)]
+    count, entered = len(ring.ring), mouths[ring.junctions[start]]
+    passed = [way_through(entered.connections, entered.arms[0].end, RoadEnd(ring.ring[start], "start"))]
+    for n in range(start, start + (to - start - 1) % count + 1):
+        road, following = ring.ring[n % count], (n + 1) % count
+        mouth = mouths[ring.junctions[following]]
+        after = mouth.arms[0].end if following == to else RoadEnd(ring.ring[following], "start")
+        passed += [road, way_through(mouth.connections, RoadEnd(road, "end"), after)]
     return passed
 
 
@@ -376,7 +347,8 @@ def controls_of(junction: JunctionDesign) -> tuple[Control, ...]:
     The ``control`` of an arm replaces the sign or light of this arm.
     """
     arms = junction.all_arms
-    opposite = _opposite(arms)
+    nearest = min(range(len(arms)), key=lambda n: abs(arms[n].angle))
+    opposite = nearest if abs(math.radians(arms[nearest].angle)) <= LEAST else None
     found: list[Control]
     if junction.control == "lights":
         found = ["lights"] * (len(arms) + 1)
@@ -392,9 +364,3 @@ def controls_of(junction: JunctionDesign) -> tuple[Control, ...]:
     else:
         found = ["none"] * (len(arms) + 1)
     return (found[0], *(arm.control or usual for arm, usual in zip(arms, found[1:], strict=True)))
-
-
-def _opposite(arms: Sequence[ArmDesign]) -> int | None:
-    """Returns the index of the arm that goes straight on, within ``LEAST``; None if there is none."""
-    nearest = min(range(len(arms)), key=lambda n: abs(arms[n].angle))
-    return nearest if abs(math.radians(arms[nearest].angle)) <= LEAST else None

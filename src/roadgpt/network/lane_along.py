@@ -47,12 +47,9 @@ Term = tuple[float, Width]
 
 
 def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
-    """Returns the lane that a route follows on a road.
-
-    Args:
-        road: The road in the direction of the route; traffic drives on the right.
-        lanes: The indices of the lanes that the route follows one after another, counted from 0 at the
-            centre line. Each index differs by 1 from the index before.
+    """Returns the lane that a route follows on a road, which leads in the direction of the route, with
+    traffic on the right. ``lanes`` are the indices of the lanes followed one after another, from 0 at the
+    centre line.
     """
     profile = road.profile
     assert profile is not None
@@ -83,11 +80,8 @@ def _shoulder(lanes: Sequence[Lane], length: float) -> Width:
 
 
 def change_windows(length: float, count: int) -> list[tuple[float, float]]:
-    """Returns the stations in metres at which each lane change on a road begins and ends.
-
-    Args:
-        length: The length of the road in metres.
-        count: The number of lane changes; each lies in the middle of one of as many equal parts of the road.
+    """Returns the stations in metres at which each lane change begins and ends: each in the middle of one of
+    ``count`` equal parts of a road that is ``length`` metres long.
     """
     part = length / count if count else 0.0
     half = min(LONGEST, SHARE * part) / 2
@@ -95,10 +89,7 @@ def change_windows(length: float, count: int) -> list[tuple[float, float]]:
 
 
 def added(terms: Sequence[Term], length: float) -> Width:
-    """Returns the weighted sum of widths along a road that is ``length`` metres long.
-
-    The sum is a number if all widths are numbers; otherwise it is a CubicProfile.
-    """
+    """Returns the weighted sum of widths along a road of ``length`` metres: a number if all of them are."""
     numbers = [factor * width for factor, width in terms if not isinstance(width, CubicProfile)]
     if len(numbers) == len(terms):
         return sum(numbers)
@@ -110,24 +101,15 @@ def added(terms: Sequence[Term], length: float) -> Width:
     total = np.zeros((len(stations), 4))
     for factor, width in terms:
         total += factor * np.array(cubics_at(width, stations))
-    return profile_of(stations, total)
+    return CubicProfile.of_table(stations, total)
 
 
 def cubics_at(width: Width, stations: Sequence[float]) -> list[Cubic]:
-    """Returns a width as one cubic for each station, a function of the distance from this station.
-
-    The stations are evaluated one by one, which is fast only if there are few.
-    """
+    """Returns a width as a cubic for each of a few stations, a function of the distance from this station."""
     if not isinstance(width, CubicProfile):
         return [(float(width), 0.0, 0.0, 0.0)] * len(stations)
     cubics = as_cubics(width)
     return [cubics.cubic(s) for s in stations]
-
-
-def profile_of(stations: Sequence[float], table: Array) -> CubicProfile:
-    """Returns a CubicProfile with a cubic at each station; ``table`` has their coefficients, ``(n, 4)``."""
-    rows = [(a, b, c, d) for a, b, c, d in table.tolist()]
-    return CubicProfile(tuple(stations), tuple(rows))
 
 
 def _through(values: Sequence[Width], length: float, stations: Iterable[float]) -> Width:
@@ -171,4 +153,4 @@ def _blended(one: Width, other: Width, knots: Array) -> Width:
     table = np.concatenate(
         (before.cubics(np.array(early)), np.stack(rows, axis=-1), after.cubics(np.array([at_end, *late])))
     )
-    return profile_of([*early, *knots.tolist(), *late], table)
+    return CubicProfile.of_table([*early, *knots.tolist(), *late], table)

@@ -11,21 +11,14 @@ Ways = dict[int, int]
 
 
 def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]) -> list[Leg]:
-    """Returns the legs of a route along ``roads``: on each road, one leg for each lane that the route uses.
+    """Returns the legs of a route along roads that follow each other, by their ids: one for each lane of a
+    road that the route uses.
 
     A route begins in the outermost lane from which it can go on (the rightmost one, with traffic on the
     right). It changes lanes only where its lane does not lead to the next road or would prevent a required
-    lane change, and as late as possible: on the last road before the other lane is needed.
-
-    Args:
-        network: The network.
-        roads: Ids of one or more roads in driving order, including connecting roads; each road is joined to
-            the next one.
-        shifts: The required lane changes, by the id of the road: the number of lanes to the left, negative to
-            the right.
-
-    Raises:
-        UsageError: Two roads are not joined, or a lane that the route needs cannot be reached.
+    lane change, and as late as possible: on the last road before the other lane is needed. ``shifts`` are the
+    required changes by road: the number of lanes to the left, negative to the right. Raises UsageError if two
+    roads are not joined, or a lane that the route needs cannot be reached.
     """
     ways = [_ways(network, one, two) for one, two in pairwise(roads)]
     fit = _fit(network, roads, ways, shifts)
@@ -90,10 +83,8 @@ def _beside(network: Network, road: int, lane: int, left: int) -> int:
 
 
 def _ways(network: Network, one: int, two: int) -> Ways:
-    """Returns which lanes of one road continue on the next one.
-
-    Raises:
-        UsageError: The roads are not joined.
+    """Returns which lanes of one road continue on the next one. Raises UsageError if the roads are not
+    joined.
     """
     if (found := network.connection_of.get(two)) is not None and found[1].incoming.road == one:
         return {way.incoming: way.own for way in found[1].lanes}

@@ -19,15 +19,17 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Annotated, Any, Literal
+from itertools import pairwise
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, StrictBool
 
 from roadgpt.brief.junctions import Control, PlainKind
 from roadgpt.errors import UsageError
-from roadgpt.network.design import KERB, is_left_hand, read_part
-from roadgpt.network.map_check import check_graph, check_route
+from roadgpt.network.design import ASTERN, COUNTS, KERB, NetworkDesign, is_left_hand, read_part
 from roadgpt.network.pose import mirrored_point
+from roadgpt.plural import plural
+from roadgpt.road import Design, Road
 from roadgpt.road.design import Finite, FrozenFields, as_written
 from roadgpt.road.road import FARTHEST
 
@@ -37,6 +39,15 @@ MOST_ROADS = 800
 MOST_PASSED = 1000
 """The largest number of nodes that a route may pass."""
 BEND = 20.0  # m, radius of a bend whose design gives none
+NEAREST = 1.0  # m, least distance between two nodes that a road joins
+STEEPEST_BEND = 150.0  # degrees, largest angle by which a road may turn at a bend
+
+ROADS: dict[str, tuple[int, int]] = {
+    "end": (1, 1),
+    "bend": (2, 2),
+    **{kind: (least + 1, most + 1) for kind, (least, most) in COUNTS.items()},
+}
+"""The smallest and the largest number of roads at a node of each kind."""
 
 NodeKind = Literal[PlainKind, "bend", "end"]
 
@@ -89,6 +100,13 @@ class MapDesign(FrozenFields):
         count = {kind: kinds.count(kind) for kind in dict.fromkeys(kinds)}
         said = ", ".join(f"{number} {kind}" for kind, number in count.items())
         return f"MapDesign({len(self.roads)} roads, junctions: {said or 'none'})"
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Returns a copy with some fields changed; what was computed from the fields is computed anew."""
+        fresh = super().model_copy(update=update, deep=deep)
+        for computed in vars(fresh).keys() - type(self).model_fields.keys():
+            del vars(fresh)[computed]
+        return fresh
 
     def mirrored(self, middle: float = 0.0) -> "MapDesign":
         """Returns the map with left and right exchanged, and traffic on the other side.
@@ -162,6 +180,12 @@ class MapDesign(FrozenFields):
         return out
 
 
+AnyDesign = Design | NetworkDesign | MapDesign
+"""A design of a road, of a route through junctions, or of a map with one route."""
+Blueprint = AnyDesign | Road
+"""Anything from which ``made_from`` makes a road."""
+
+
 def has_nodes(data: Any) -> bool:
     """Returns whether parsed JSON is a design of a map: whether it has a field such as ``node1``."""
     return isinstance(data, Mapping) and any(KEY.fullmatch(str(key)) for key in data)
@@ -172,7 +196,7 @@ def read_map_design(data: Mapping[str, Any]) -> tuple[MapDesign, tuple[str, ...]
 
     Raises:
         UsageError: A field is missing, misnamed, of the wrong type or out of range, or the roads or the route
-            do not fit the nodes; see ``map_check``.
+            do not fit the nodes.
     """
     numbered = {int(found[1]): raw for key, raw in data.items() if (found := KEY.fullmatch(str(key)))}
     for key in data:
@@ -193,9 +217,12 @@ def read_map_design(data: Mapping[str, Any]) -> tuple[MapDesign, tuple[str, ...]
         lanes=None if lanes is None else read_part(MapLanes, "the lanes of the map", lanes, "width"),
         left_hand=is_left_hand(data),
     )
-    check_graph([node.kind for node in nodes], [node.at for node in nodes], made.roads)
+    ends = _checked_ends(made)
+    for number, others in ends.items():
+        _check_node(made, number, others)
+    _check_connected(made, ends)
     if made.route:
-        check_route([node.kind for node in nodes], made.roads, made.route)
+        _check_route(made)
     return made, ()
 
 
@@ -216,13 +243,93 @@ def _pairs(raw: Any) -> list[Sequence[int]]:
 
 
 def _numbers(raw: Any, what: str, most: int) -> Sequence[int]:
-    """Returns the numbers of nodes in a list of two or more.
-
-    Raises:
-        UsageError: ``raw`` is not a list of 2 to ``most`` whole numbers.
-    """
+    """Returns a list of 2 to ``most`` numbers of nodes. Raises UsageError if ``raw`` is no such list."""
     is_list = isinstance(raw, (list, tuple)) and 2 <= len(raw) <= most
     if not is_list or any(isinstance(each, bool) or not isinstance(each, int) for each in raw):
         count = "two" if most == 2 else "two or more"
         raise UsageError(f"{what} is a list of {count} numbers of nodes, such as [1, 2]")
     return list(raw)
+
+
+def _checked_ends(design: MapDesign) -> dict[int, list[int]]:
+    """Returns for each node the nodes at the other ends of its roads. Raises UsageError unless every road
+    joins two existing nodes that are at least ``NEAREST`` metres apart, and no two roads join the same nodes.
+    """
+    ends: dict[int, list[int]] = {number: [] for number in range(1, len(design.nodes) + 1)}
+    for number, (one, other) in enumerate(design.roads, 1):
+        for each in (one, other):
+            if each not in ends:
+                raise UsageError(
+                    f"road {number} names node {each}, and there are nodes 1 to {len(design.nodes)}"
+                )
+        if one == other:
+            raise UsageError(f"road {number} joins node {one} to itself; give two different nodes")
+        if other in ends[one]:
+            raise UsageError(
+                f"two roads join nodes {one} and {other}; leave one out, or lead it over another node"
+            )
+        if math.dist(design.node(one).at[:2], design.node(other).at[:2]) < NEAREST:
+            raise UsageError(
+                f"nodes {one} and {other} are less than {NEAREST:g} m apart; move them apart or make them one"
+            )
+        ends[one].append(other)
+        ends[other].append(one)
+    return ends
+
+
+def _check_node(design: MapDesign, number: int, others: Sequence[int]) -> None:
+    """Raises UsageError unless a node has as many roads as its kind needs, with large enough angles between
+    them.
+    """
+    kind = design.node(number).kind
+    fewest, most = ROADS[kind]
+    if not fewest <= len(others) <= most:
+        wanted = plural(most, "road") if fewest == most else f"{fewest} to {most} roads"
+        here = plural(len(others), "road")
+        name = f"{'an' if kind == 'end' else 'a'} {kind}"
+        raise UsageError(
+            f"node {number} is {name}, which has {wanted}, and here it has {here}; change its kind or the "
+            "roads"
+        )
+    if len(others) < 2:
+        return
+    out = sorted((math.degrees(design.direction(number, n)), n) for n in others)
+    least = 180 - STEEPEST_BEND if kind == "bend" else ASTERN
+    for (a, one), (b, other) in pairwise([*out, (out[0][0] + 360, out[0][1])]):
+        if b - a < least - 1e-9:
+            raise UsageError(
+                f"the roads from node {number} to nodes {one} and {other} are {b - a:.0f} degrees apart, and "
+                f"{least:g} are needed; move one of these nodes"
+            )
+
+
+def _check_connected(design: MapDesign, ends: Mapping[int, Sequence[int]]) -> None:
+    """Raises UsageError unless the roads connect all nodes, and at least one node is not a bend."""
+    if all(node.kind == "bend" for node in design.nodes):
+        raise UsageError("all nodes are bends, so that no road begins or ends; add an end or a junction")
+    seen, waiting = {1}, [1]
+    while waiting:
+        new = [n for n in ends[waiting.pop()] if n not in seen]
+        seen.update(new)
+        waiting += new
+    lost = next((number for number in ends if number not in seen), None)
+    if lost is not None:
+        raise UsageError(f"no roads lead from node 1 to node {lost}; join them or leave node {lost} out")
+
+
+def _check_route(design: MapDesign) -> None:
+    """Raises UsageError unless the route follows roads, turns back at roundabouts only, and has no bend at
+    its ends.
+    """
+    route, joined = design.route, {frozenset(pair) for pair in design.roads}
+    for one, other in pairwise(route):
+        if frozenset((one, other)) not in joined:
+            raise UsageError(f"the route goes from node {one} to node {other}, and no road joins them")
+    for number in (route[0], route[-1]):
+        if design.node(number).kind == "bend":
+            raise UsageError(f"the route begins or ends at node {number}, a bend; take a junction or an end")
+    for before, here, after in zip(route, route[1:], route[2:], strict=False):
+        if before == after and design.node(here).kind != "roundabout":
+            raise UsageError(
+                f"the route turns back at node {here}, and one can only at a roundabout; leave out the rest"
+            )

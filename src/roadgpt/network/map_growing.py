@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import cast
 
@@ -11,10 +11,10 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.geometry.curve import wrapped
 from roadgpt.geometry.pieces import joined
-from roadgpt.network.building import Builder, Stub
+from roadgpt.network.building import Builder
 from roadgpt.network.crossing import build_crossing
-from roadgpt.network.design import ISLAND, JunctionDesign
-from roadgpt.network.growing import contact_distances, roads_around
+from roadgpt.network.design import ISLAND, JunctionDesign, NetworkDesign
+from roadgpt.network.growing import build_route, contact_distances, roads_around, way_through
 from roadgpt.network.lane_legs import legs_along
 from roadgpt.network.map_design import BEND, MapDesign, MapLanes, MapNode
 from roadgpt.network.network import Junction, Leg, Network, RoadEnd, Roundabout
@@ -28,6 +28,13 @@ from roadgpt.road.road import check_length
 
 SHORTEST = 0.1  # m, least length of a straight road between two junctions; the rules require more
 NO_TURN = 1e-6  # rad; a bend with a smaller turn has no curve
+
+
+def network_made_from(design: NetworkDesign | MapDesign, world: World) -> Route:
+    """Returns the route of a design with junctions or of a map, without ``Route.on_ground``; for errors see
+    ``build_route`` and ``build_map``.
+    """
+    return build_map(design, world) if isinstance(design, MapDesign) else build_route(design, world)
 
 
 def build_map(design: MapDesign, world: World) -> Route:
@@ -56,14 +63,8 @@ def build_map(design: MapDesign, world: World) -> Route:
 
 
 def profile_of_map(lanes: MapLanes | None, world: World) -> Profile:
-    """Returns the cross-section of the roads of a map: one lane in each direction, and shoulders.
-
-    Args:
-        lanes: The lanes of the map; None for the lane width of the World.
-        world: The World, which gives the width of the shoulders.
-
-    Raises:
-        UsageError: The World asks for lanes or banked bends that networks do not have.
+    """Returns the cross-section of the roads of a map: one lane in each direction, as wide as those of the
+    World if no lanes are given, and shoulders. Raises UsageError as ``refuse_other_lanes`` does.
     """
     refuse_other_lanes(world)
     width = world.section.lane_width if lanes is None else lanes.width
@@ -71,16 +72,13 @@ def profile_of_map(lanes: MapLanes | None, world: World) -> Profile:
 
 
 def signs_at(node: MapNode, directions: Sequence[float]) -> tuple[Control, ...]:
-    """Returns the sign or light of each arm of a junction.
+    """Returns the sign or light of each arm of a junction, from the headings of the arms out of it in
+    radians.
 
     The ``control`` of the node decides. With "lights", all arms have lights. Otherwise all arms of a
     roundabout have stop signs with "stop", and give way with any other value. At other junctions, no arm has
     a sign with "none". Otherwise the two arms that are most nearly opposite are the main road and have
     priority; the other arms have stop signs with "stop", and give way with "yield" or "priority".
-
-    Args:
-        node: The junction.
-        directions: The headings of its arms out of the junction in radians.
     """
     count = len(directions)
     if node.kind == "roundabout":
@@ -141,10 +139,8 @@ class _MapGrowth:
         self._ends[end, nodes[-2]] = RoadEnd(road, "end")
 
     def _pieces(self, nodes: Sequence[int], before: float, after: float) -> tuple[Piece, ...]:
-        """Returns the straights and curves of a road along nodes.
-
-        ``before`` is the distance in metres from the first node to the start of the road, ``after`` the
-        distance from the end of the road to the last node.
+        """Returns the straights and curves of a road along nodes. It starts ``before`` metres behind the
+        first node, and ends ``after`` metres before the last one.
         """
         pieces: list[Piece] = []
         taken, curve = before, tuple[Piece, ...]()
@@ -183,11 +179,10 @@ class _MapGrowth:
         """Builds the junction or roundabout at a node; all roads at the node must exist already."""
         others = self.design.neighbours[number]
         directions = [self.design.direction(number, other) for other in others]
-        stubs = []
-        for other, direction in zip(others, directions, strict=True):
-            end = self._ends[number, other]
-            station = 0.0 if end.contact == "start" else self.builder.roads[end.road].road.length
-            stubs.append(Stub(end, direction, self.profile, station))
+        stubs = [
+            self.builder.stub(self._ends[number, other], direction)
+            for other, direction in zip(others, directions, strict=True)
+        ]
         signs, distances = signs_at(node, directions), [self._contact(number, other) for other in others]
         if node.kind == "roundabout":
             self._built[number] = build_roundabout(
@@ -222,16 +217,9 @@ class _MapGrowth:
         built = self._built[number]
         incoming, outgoing = self._ends[number, before], self._ends[number, after]
         if isinstance(built, Junction):
-            ways = {(each.incoming, each.outgoing): each.road for each in built.connections}
-            return [ways[incoming, outgoing]]
+            return [way_through(built.connections, incoming, outgoing)]
         others = self.design.neighbours[number]
-        first = others.index(before)
-        turned = replace(
-            built,
-            junctions=(*built.junctions[first:], *built.junctions[:first]),
-            ring=(*built.ring[first:], *built.ring[:first]),
-        )
-        return roads_around(self.builder, turned, (others.index(after) - first) % len(others))
+        return roads_around(self.builder, built, others.index(before), others.index(after))
 
 
 def junction_of(node: MapNode) -> JunctionDesign:

@@ -16,8 +16,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.network.building import width_at
 from roadgpt.network.network import Arm, Contact, Junction, Network, NetworkRoad, RoadEnd, Roundabout
 from roadgpt.network.passages import CROSSED, CROSSWALK, STOP_LINE, line_before
-from roadgpt.network.paved import ribbons, stations_of
-from roadgpt.network.polygon import Area
+from roadgpt.network.paved import Area, ribbon, stations_of
 from roadgpt.road.profile import DASH, GAP, LINE
 
 BLOCK, BLOCK_GAP = 0.5, 0.25  # m, lengths of a block and of a gap in a give-way line (Germany, RMS-1)
@@ -105,9 +104,8 @@ def between_crosswalks(network: Network, member: NetworkRoad) -> tuple[float, fl
 
 
 def _kerb_lines(network: Network, inside: Area, height: float) -> Iterator[PaintedStroke]:
-    """Yields the edge lines along the kerbs and islands of a junction; the carriageway lies on their left.
-
-    ``inside`` is the paved area of the junction, and ``height`` its height in metres.
+    """Yields the edge lines along the kerbs and islands of a junction, from its paved area and its height in
+    metres; the carriageway lies on their left.
     """
     import shapely
 
@@ -184,10 +182,8 @@ def gives_way_to_ring(network: Network, junction: Junction, arm: Arm) -> bool:
 
 
 def road_of_line(network: Network, junction: Junction, arm: Arm) -> int:
-    """Returns the id of the road on which the line of ``line_to_stop_at`` lies.
-
-    Raises:
-        StopIteration: No road leads from the arm into the roundabout, so that there is no line.
+    """Returns the id of the road on which the line of ``line_to_stop_at`` lies. Raises StopIteration if there
+    is no line because no road leads from the arm into the roundabout.
     """
     if not gives_way_to_ring(network, junction, arm):
         return arm.end.road
@@ -238,7 +234,7 @@ def _around(network: Network, junction: Junction, arm: Arm, ring: Roundabout) ->
     x, y, z = ring.centre
     circle = shapely.Point(x, y).buffer(ring.radius + ring.width + STOP_LINE / 2, quad_segs=CIRCLE).exterior
     # traffic keeps to its side of the arm: only the part there is crossed by entering traffic
-    lane, *others = ribbons([network.road(each.road).road for each in (onto[0], *off)])
+    lane, *others = (ribbon(network.road(each.road).road) for each in (onto[0], *off))
     for other in others:
         lane = shapely.difference(lane, other)
     pieces = _pieces(shapely.intersection(circle, lane.buffer(-STOP_LINE / 2)))

@@ -19,18 +19,19 @@ from roadgpt.geometry.curve import Array
 from roadgpt.network.paved import (
     ISLAND,
     SLIVER,
+    Area,
     areas_of,
     covered_by,
     outline_of,
     paved_by,
     without_small_islands,
 )
-from roadgpt.network.polygon import Area
 from roadgpt.network.pose import Point, mirrored_point
 from roadgpt.road import Profile, Road
 from roadgpt.road.profile import Lane
 
 Contact = Literal["start", "end"]
+OTHER_CONTACT: dict[Contact, Contact] = {"start": "end", "end": "start"}
 Kind = Literal[PlainKind, "merge", "diverge"]
 
 
@@ -265,15 +266,20 @@ class Network:
         """
         return self.mirrored if self.left_hand else self
 
-    def leaves_by(self, leg: Leg) -> RoadEnd:
-        """Returns the end of a road at which traffic in the lane of ``leg``, part of a route, leaves it."""
-        is_along = self.road(leg.road).profile.leads_along(leg.lane)
-        return RoadEnd(leg.road, "end" if is_along else "start")
+    def lanes_into(self, end: RoadEnd) -> range:
+        """Returns the ids of the driving lanes that lead towards an end of a road, from mid-road outwards."""
+        return self.road(end.road).ids_towards(end.contact)
 
-    def enters_by(self, leg: Leg) -> RoadEnd:
-        """Returns the end of a road at which traffic in the lane of ``leg``, part of a route, enters it."""
-        is_along = self.road(leg.road).profile.leads_along(leg.lane)
-        return RoadEnd(leg.road, "start" if is_along else "end")
+    def lanes_out_of(self, end: RoadEnd) -> range:
+        """Returns the ids of the driving lanes that lead away from an end of a road."""
+        return self.road(end.road).ids_towards(OTHER_CONTACT[end.contact])
+
+    def ends_of(self, leg: Leg) -> tuple[RoadEnd, RoadEnd]:
+        """Returns the ends of a road at which traffic in the lane of ``leg``, part of a route, enters and
+        leaves it.
+        """
+        start, end = RoadEnd(leg.road, "start"), RoadEnd(leg.road, "end")
+        return (start, end) if self.road(leg.road).profile.leads_along(leg.lane) else (end, start)
 
     @cached_property
     def plain_roads(self) -> tuple[NetworkRoad, ...]:

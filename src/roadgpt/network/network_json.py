@@ -94,10 +94,8 @@ def _road(row: Mapping[str, Any]) -> NetworkRoad:
 
 
 def legs_from_json(data: Any) -> tuple[Leg, ...]:
-    """Restores the legs of a route from a list of [road, lane].
-
-    Raises:
-        UsageError: The data are not a list of pairs of whole numbers.
+    """Restores the legs of a route from a list of [road, lane]. Raises UsageError if the data are something
+    else.
     """
     try:
         return strictly(tuple[Leg, ...], data)

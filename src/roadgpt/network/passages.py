@@ -53,18 +53,12 @@ class Passage(NamedTuple):
 
 
 def line_before(arm: Arm) -> float:
-    """Returns the distance in metres between a junction and the stop line of an arm.
-
-    It is 0 for an arm without a crosswalk; otherwise the crosswalk lies in between.
-    """
+    """Returns the distance in metres from a junction to the stop line of an arm: 0 without a crosswalk."""
     return CROSSED if arm.crosswalk else 0.0
 
 
 def passages_of(network: Network, legs: Sequence[Leg], starts: Sequence[float]) -> tuple[Passage, ...]:
-    """Returns the passages of a route through its junctions and roundabouts, in driving order.
-
-    ``starts`` are the stations in metres of the start of each leg and, as the last one, of the route's end.
-    """
+    """Returns the passages of a route in driving order; ``starts`` are those of ``Route.starts``."""
     groups = groupby(range(len(legs)), key=lambda n: _place(network, legs[n]))
     return tuple(
         _passage(network, legs[own[0]], legs[own[-1]], starts[own[0]], starts[own[-1] + 1])

@@ -1,5 +1,3 @@
-"""Defines the NetworkPose: a point in a network and a heading."""
-
 import math
 from typing import NamedTuple
 

@@ -18,7 +18,7 @@ from roadgpt.network.building import Builder, Stub, width_at
 from roadgpt.network.crossing import connected
 from roadgpt.network.lane_along import added
 from roadgpt.network.lane_design import RampDesign
-from roadgpt.network.network import Arm, Connection, Continuation, Junction, RoadEnd
+from roadgpt.network.network import Arm, Connection, Contact, Continuation, Junction, RoadEnd
 from roadgpt.network.pose import NetworkPose
 from roadgpt.network.stretch import road_of
 from roadgpt.network.turning import curve_between
@@ -116,11 +116,8 @@ class RampBuilder:
         return self.end.ahead(length_beside(self.ramp) + CONTACT)
 
     def build(self, going_on: int) -> list[int]:
-        """Builds the merge or exit, and returns the ids of its roads on the route, in driving order.
-
-        Args:
-            going_on: The id of the road on which the route goes on. It begins at ``where_it_goes_on`` and is
-                in the network already.
+        """Builds the merge or exit; returns the ids of its roads on the route, in driving order. ``going_on``
+        is the id of the road on which the route goes on, which begins at ``where_it_goes_on``.
         """
         return self._merge(going_on) if self.ramp.kind == "merge" else self._exit(going_on)
 
@@ -132,13 +129,8 @@ class RampBuilder:
         lane = CubicProfile.smooth([(0.0, width), (full, width), (length, 0.0)])
         beside = self._straight(node.ahead(CONTACT), length, _with_lane(after, lane, self._is_left))
         self._continue(beside, going_on)
-        if by_ramp:
-            main = self._straight(node.ahead(-CONTACT - BESIDE), BESIDE, after)
-            ramp = self.arrival
-        else:
-            from_ramp = NetworkPose(node.point, node.heading + self._angle)
-            made = self._straight(from_ramp.ahead(-CONTACT - BESIDE), BESIDE, self._ramp_beside(after))
-            main, ramp = self.arrival, made
+        other = self._not_taken(after, -CONTACT - BESIDE)
+        main, ramp = (other, self.arrival) if by_ramp else (self.arrival, other)
         junction = self.builder.number()
         stubs = [self._stub(main, "end"), self._stub(ramp, "end"), self._stub(beside, "start")]
         own, lanes = self._lanes_beside(len(stubs[0].into))
@@ -151,17 +143,13 @@ class RampBuilder:
         return [ways[1 if by_ramp else 0].road, beside]
 
     def _exit(self, going_on: int) -> list[int]:
-        by_ramp, node = self.ramp.take == "ramp", self._node
+        by_ramp = self.ramp.take == "ramp"
         before, length = _constant(self.before, FAR), length_beside(self.ramp)
         lane = CubicProfile.smooth([(0.0, 0.0), (self.ramp.taper, _width(before))])
         beside = self._straight(self.end, length, _with_lane(before, lane, self._is_left))
         self._continue(self.arrival, beside)
-        if by_ramp:
-            main, ramp = self._straight(node.ahead(CONTACT), BESIDE, before), going_on
-        else:
-            onto_ramp = NetworkPose(node.point, node.heading - self._angle)
-            ramp = self._straight(onto_ramp.ahead(CONTACT), BESIDE, self._ramp_beside(before))
-            main = going_on
+        other = self._not_taken(before, CONTACT)
+        main, ramp = (other, going_on) if by_ramp else (going_on, other)
         junction = self.builder.number()
         stubs = [self._stub(beside, "end"), self._stub(ramp, "start"), self._stub(main, "start")]
         own, lanes = self._lanes_beside(len(stubs[2].out_of))
@@ -185,7 +173,7 @@ class RampBuilder:
 
     def _continue(self, before: int, after: int) -> None:
         """Lets the lanes that two roads have in common continue each other."""
-        profiles = [self._profile(each) for each in (before, after)]
+        profiles = [self.builder.roads[each].profile for each in (before, after)]
         forward = min(each.count[0] for each in profiles)
         left = zip(*(each.against_ids for each in profiles), strict=False)
         # an additional lane on the left is the first one
@@ -195,15 +183,11 @@ class RampBuilder:
             Continuation(RoadEnd(before, "end"), RoadEnd(after, "start"), lanes)
         )
 
-    def _profile(self, road: int) -> Profile:
-        return self.builder.roads[road].profile
-
-    def _stub(self, road: int, contact: str) -> Stub:
+    def _stub(self, road: int, contact: Contact) -> Stub:
         member = self.builder.roads[road].road
-        s = member.length if contact == "end" else 0.0
-        heading = float(member.heading(s)) + (math.pi if contact == "end" else 0.0)
-        end = RoadEnd(road, "end") if contact == "end" else RoadEnd(road, "start")
-        return Stub(end, heading, self._profile(road), s)
+        at_end = contact == "end"
+        heading = float(member.heading(member.length if at_end else 0.0)) + (math.pi if at_end else 0.0)
+        return self.builder.stub(RoadEnd(road, contact), heading)
 
     def _back(self, junction: int, start: Stub, end: Stub) -> list[Connection]:
         """Returns a list with the connection for oncoming traffic; the list is empty on a one-way road."""
@@ -218,11 +202,18 @@ class RampBuilder:
         far = (CONTACT, CONTACT)
         return connected(self.builder, junction, self._node.point, (start, end), far, tuple(lanes), "broken")
 
-    def _ramp_beside(self, main: Profile) -> Profile:
-        """Returns the cross-section of a ramp that the route does not take: one lane beside the main road."""
+    def _not_taken(self, main: Profile, ahead: float) -> int:
+        """Adds the main road or the ramp, whichever the route does not take; it begins ``ahead`` metres from
+        the node. Such a ramp has one lane beside the main road, whose cross-section is given.
+        """
+        node = self._node
+        if self.ramp.take == "ramp":
+            return self._straight(node.ahead(ahead), BESIDE, main)
         width = _width(main)
         offset = width_at(main.offset, 0.0) + width if self._is_left else float(main.edges(0.0).right)
-        return replace(Profile.of(1, 0, width, main.shoulder_width), offset=offset)
+        profile = replace(Profile.of(1, 0, width, main.shoulder_width), offset=offset)
+        turn = self._angle if self.ramp.kind == "merge" else -self._angle
+        return self._straight(NetworkPose(node.point, node.heading + turn).ahead(ahead), BESIDE, profile)
 
     def _close(self, number: int, *stubs: Stub, ways: Sequence[Connection]) -> None:
         """Adds the junction; ``stubs`` are its arms in counter-clockwise order."""

@@ -12,8 +12,8 @@ from itertools import pairwise
 
 from roadgpt.brief.junctions import Control
 from roadgpt.errors import UsageError
-from roadgpt.geometry import Piece, PieceCurve
-from roadgpt.network.building import Builder, Stub, connecting_road, level, one_way
+from roadgpt.geometry import GradeProfile, Piece, PieceCurve
+from roadgpt.network.building import Builder, Stub, connecting_road, one_way
 from roadgpt.network.network import Arm, Connection, Junction, LaneLink, RoadEnd, Roundabout
 from roadgpt.network.turning import curve_between
 from roadgpt.road import Road
@@ -37,28 +37,21 @@ def ring_width(radius: float, lanes: int = 1) -> float:
     return NARROW_WIDTH if radius <= MINI else WIDTH
 
 
-def contact_distance(radius: float, lanes: int = 1) -> float:
+def contact_distance(radius: float, lanes: int) -> float:
     """Returns the distance in metres from the centre of a roundabout to the contacts of its arms."""
     return radius + ring_width(radius, lanes) + APPROACH
 
 
 def mouth_of(radius: float, directions: Sequence[float]) -> float:
-    """Returns half the length in metres of every mouth, measured along the edge of the island.
-
-    The result is at most ``MOUTH``, and small enough to leave ``BETWEEN`` metres of ring between two mouths.
-
-    Args:
-        radius: The radius of the central island in metres.
-        directions: The directions of the arms from the centre in radians, counter-clockwise.
+    """Returns half the length in metres of every mouth along the edge of the island: at most ``MOUTH``, and
+    so short that ``BETWEEN`` metres of ring remain between two. ``directions`` as in ``smallest_radius``.
     """
     return min(MOUTH, (radius * _least_gap(directions) - BETWEEN) / 2)
 
 
 def smallest_radius(directions: Sequence[float]) -> float:
-    """Returns the smallest radius in metres of an island around which the mouths of all arms fit.
-
-    Args:
-        directions: The directions of the arms from the centre in radians, counter-clockwise.
+    """Returns the smallest radius in metres of an island around which the mouths of all arms fit, from their
+    directions out of the centre in radians, counter-clockwise.
     """
     return (2 * SMALLEST_MOUTH + BETWEEN) / _least_gap(directions)
 
@@ -68,15 +61,10 @@ def _least_gap(directions: Sequence[float]) -> float:
     return min((b - a) % (2 * math.pi) for a, b in pairwise([*directions, directions[0]]))
 
 
-def around_length(radius: float, directions: Sequence[float], angle: float, lanes: int = 1) -> float:
-    """Returns the length in metres of a way through a roundabout, from contact to contact.
-
-    Args:
-        radius: The radius of the central island in metres.
-        directions: The directions of the arms from the centre in radians, counter-clockwise.
-        angle: The angle in radians, counter-clockwise, from the arm of arrival to the arm that is taken;
-            2 pi for the way back onto the arm of arrival.
-        lanes: The number of lanes of the ring.
+def around_length(radius: float, directions: Sequence[float], angle: float, lanes: int) -> float:
+    """Returns the length in metres of a way through a roundabout, from contact to contact. ``directions`` as
+    in ``smallest_radius``; ``angle`` is that in radians, counter-clockwise, from the arm of arrival to the
+    arm that is taken: 2 pi for the way back.
     """
     half = mouth_of(radius, directions) / radius
     tangents = contact_distance(radius, lanes) - radius / math.cos(half), radius * math.tan(half)
@@ -94,20 +82,12 @@ def build_roundabout(
     lanes: int = 1,
     crosswalk: bool = False,
 ) -> Roundabout:
-    """Adds a roundabout to a network and returns it.
+    """Adds a roundabout to a network that has the roads of all stubs; returns the roundabout.
 
-    Args:
-        builder: The network; the roads of all stubs are in it.
-        centre: The centre in metres.
-        radius: The radius of the central island in metres; at least ``smallest_radius``.
-        stubs: The arms in counter-clockwise order; each ends ``contact_distance`` from the centre.
-        controls: The sign or light of each arm.
-        kerb: The requested radius in metres of the kerbs. It is only stored in the junctions.
-        lanes: The number of lanes of the ring.
-        crosswalk: Whether each arm has a crosswalk.
-
-    Raises:
-        UsageError: A road has more lanes in one direction than the ring has.
+    ``centre`` is given in metres, and so is the radius of the island, at least ``smallest_radius``. The stubs
+    are in counter-clockwise order, and so are their signs or lights; each ends ``contact_distance`` from the
+    centre. ``kerb`` is the requested radius in metres, which is only stored. Raises UsageError if a road has
+    more lanes in one direction than the ring.
     """
     if any(max(len(stub.into), len(stub.out_of)) > lanes for stub in stubs):
         said = "one lane" if lanes == 1 else f"{lanes} lanes"
@@ -156,8 +136,8 @@ def _arc(
         start + math.pi / 2,
         (Piece(angle * radius, 1 / radius, 1 / radius),),
     )
-    each = (width / lanes, width / lanes)
-    return Road(plan, level(plan.length, z), profile=one_way([each] * lanes, plan.length, between=between))
+    profile = one_way([(width / lanes, width / lanes)] * lanes, plan.length, between=between)
+    return Road(plan, GradeProfile.level(plan.length, z), profile=profile)
 
 
 def _mouth(
@@ -184,19 +164,19 @@ def _mouth(
         start = (x + ring.radius * math.cos(at - half), y + ring.radius * math.sin(at - half), z)
         pieces = curve_between(to_ring, to_arm, -turn)
         count = len(stub.out_of)
-        widths = [(each, stub.width_of(lane)) for lane in stub.out_of]
-        offset = (-(lanes - count) * each, -stub.inside_out_of(0))
+        widths = [(each, width) for width in stub.out_of.widths]
+        offset = (-(lanes - count) * each, -stub.out_of.edge)
         off = connecting_road(start, at - half + math.pi / 2, pieces, widths, offset)
-        links = tuple(LaneLink(n - lanes, -1 - k, stub.id_out_of(k)) for k, n in _outermost(count))
+        links = tuple(LaneLink(n - lanes, -1 - k, stub.out_of.ids[k]) for k, n in _outermost(count))
         made.append(Connection(builder.add(off, junction), before, stub.end, links))
     if stub.into:
         start = (x + far * math.cos(at), y + far * math.sin(at), z)
         pieces = curve_between(to_arm, to_ring, -turn)
         count = len(stub.into)
-        widths = [(stub.width_of(lane), each) for lane in stub.into]
-        offset = (-stub.inside_into(0), -(lanes - count) * each)
+        widths = [(width, each) for width in stub.into.widths]
+        offset = (-stub.into.edge, -(lanes - count) * each)
         onto = connecting_road(start, at + math.pi, pieces, widths, offset)
-        links = tuple(LaneLink(stub.id_into(k), -1 - k, n - lanes) for k, n in _outermost(count))
+        links = tuple(LaneLink(stub.into.ids[k], -1 - k, n - lanes) for k, n in _outermost(count))
         made.append(Connection(builder.add(onto, junction), stub.end, after, links))
     return tuple(made)
 

@@ -13,7 +13,7 @@ from roadgpt.road import Design, Geometry, Road, World, build
 if TYPE_CHECKING:
     from typing_extensions import TypeIs
 
-    from roadgpt.network.blueprint import Blueprint
+    from roadgpt.network.map_design import Blueprint
     from roadgpt.network.route import Route
 
 
@@ -52,7 +52,7 @@ def made_from(blueprint: "Blueprint", world: World, geometry: Geometry = "arcs")
         return world.lay(build(blueprint, geometry))
     if isinstance(blueprint, Road):
         return world.lay(blueprint)
-    from roadgpt.network.blueprint import network_made_from
+    from roadgpt.network.map_growing import network_made_from
 
     if geometry != "arcs":
         raise UsageError("a route with junctions is built from arcs; leave out --geometry spline")

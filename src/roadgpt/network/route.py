@@ -8,20 +8,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import accumulate, groupby, pairwise
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, Self
 
 from roadgpt.errors import UsageError
-from roadgpt.geometry import CubicProfile, Piece, PieceCurve
+from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.elevation import Cubic
 from roadgpt.network.ground import shoulders_on_ground
-from roadgpt.network.lane_along import added, change_windows, cubics_at, lane_along
+from roadgpt.network.lane_along import LaneAlong, added, change_windows, cubics_at, lane_along
 from roadgpt.network.network import Continuation, Leg, Network, NetworkRoad
 from roadgpt.network.network_json import network_to_json
 from roadgpt.network.passages import Passage, passages_of
-from roadgpt.network.stretch import joined_grades
+from roadgpt.network.stretch import joined_grades, joined_plans
 from roadgpt.road import Profile, Road
+from roadgpt.road.moving import reversed_cubics, reversed_road
 from roadgpt.road.profile import Lane, Marking, Width
-from roadgpt.road.reversal import reversed_cubics, reversed_road
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -55,22 +55,14 @@ class Route(Road):
             _check_joint(network, one, two)
         if network.left_hand:
             return cls.along(network.mirrored, _mirrored_legs(legs)).mirrored
-        followed = legs or (_first_leg(network),)
+        if not legs and not network.roads_outside:
+            raise UsageError("the network has no road outside junctions; make the road again")
+        followed = legs or (Leg(network.roads_outside[0].id, -1),)
         if any(network.road(followed[n].road).junction is not None for n in (0, -1)):
             raise UsageError("a route begins and ends on a road outside junctions")
-        parts = _parts(network, followed)
-        roads = [part.road for part in parts]
-        first = roads[0].plan
-        assert isinstance(first, PieceCurve)
-        pieces = tuple(p for road in roads for p in _pieces(road))
-        plan = PieceCurve(first.x, first.y, first.heading0, pieces)
-        return cls(
-            plan,
-            joined_grades(roads),
-            profile=_profile(parts),
-            network=network,
-            legs=legs,
-        )
+        roads, lanes = _parts(network, followed)
+        plan, heights = joined_plans(roads), joined_grades(roads)
+        return cls(plan, heights, profile=_profile(roads, lanes), network=network, legs=legs)
 
     def __repr__(self) -> str:
         if not self.legs:
@@ -140,17 +132,6 @@ class Route(Road):
         return {"route": [list(leg) for leg in self.legs]}
 
 
-def _first_leg(network: Network) -> Leg:
-    """Returns a leg along the first road outside junctions; traffic drives on the right.
-
-    Raises:
-        UsageError: There is no such road.
-    """
-    if not network.roads_outside:
-        raise UsageError("the network has no road outside junctions; make the road again")
-    return Leg(network.roads_outside[0].id, -1)
-
-
 def _mirrored_legs(legs: Sequence[Leg]) -> tuple[Leg, ...]:
     return tuple(Leg(leg.road, -leg.lane) for leg in legs)
 
@@ -174,7 +155,7 @@ def _check_joint(network: Network, one: Leg, two: Leg) -> None:
                 "to the next lane of the same direction"
             )
         return
-    left, entered = network.leaves_by(one), network.enters_by(two)
+    left, entered = network.ends_of(one)[1], network.ends_of(two)[0]
     if (continued := network.continued_at.get(left)) is not None:
         is_joined = _continues(continued, one, two)
     elif (found := network.connection_of.get(two.road)) is not None:
@@ -197,70 +178,45 @@ def _continues(found: Continuation, one: Leg, two: Leg) -> bool:
 
 def _directed(member: NetworkRoad, leg: Leg) -> Road:
     """Returns a road in the direction in which the route drives along it; traffic drives on the right."""
-    profile = member.profile
+    profile, length = member.profile, member.road.length
     if profile.leads_along(leg.lane):
         return member.road
-    turned = Profile(
-        tuple(_turned(lane, member.road.length) for lane in profile.right),
-        tuple(_turned(lane, member.road.length) for lane in profile.left),
-        profile.against_ids.index(leg.lane),
-        profile.centre_marking,
-        offset=_turned_offset(profile, member.road.length),
-        median=profile.median,
+
+    def turned(width: Width) -> Width:
+        return reversed_cubics(width, length) if isinstance(width, CubicProfile) else width
+
+    left, right = (
+        tuple(replace(lane, width=turned(lane.width)) for lane in side)
+        for side in (profile.right, profile.left)
     )
-    return reversed_road(member.road).with_profile(turned)
+    # the oncoming lanes become the lanes along the road, and the median moves to their left
+    offset = added([(-1, turned(profile.offset)), (-1, profile.median)], length)
+    driven = profile.against_ids.index(leg.lane)
+    own = Profile(left, right, driven, profile.centre_marking, offset=offset, median=profile.median)
+    return reversed_road(member.road).with_profile(own)
 
 
-def _turned(lane: Lane, length: float) -> Lane:
-    return replace(lane, width=_reversed(lane.width, length))
-
-
-def _turned_offset(profile: Profile, length: float) -> Width:
-    """Returns the offset of the line between the directions after the road is turned round: the oncoming
-    lanes become the lanes along the road, and the median moves to their left.
+def _parts(network: Network, legs: Sequence[Leg]) -> tuple[list[Road], list[LaneAlong]]:
+    """Returns the roads of a route in its direction, and the lane that the route follows on each; legs that
+    follow each other on one road are one part.
     """
-    return added([(-1, _reversed(profile.offset, length)), (-1, profile.median)], length)
-
-
-def _reversed(width: Width, length: float) -> Width:
-    return reversed_cubics(width, length) if isinstance(width, CubicProfile) else width
-
-
-def _pieces(road: Road) -> tuple[Piece, ...]:
-    assert isinstance(road.plan, PieceCurve)
-    return road.plan.pieces
-
-
-class _Part(NamedTuple):
-    """One road of a route, and the lanes that the route follows there."""
-
-    road: Road
-    """The road in the direction of the route."""
-    lanes: tuple[int, ...]
-    """Indices of lanes, counted from 0 at the centre line."""
-
-
-def _parts(network: Network, legs: Sequence[Leg]) -> list[_Part]:
-    """Returns the roads of a route; legs that follow each other on one road are one part."""
-    found = []
-    for _, group in groupby(legs, key=lambda leg: leg.road):
-        own = list(group)
-        profile = network.road(own[0].road).profile
+    roads, lanes = list[Road](), list[LaneAlong]()
+    for number, group in groupby(legs, key=lambda leg: leg.road):
+        own, member = list(group), network.road(number)
+        profile = member.profile
         ids = profile.along_ids if profile.leads_along(own[0].lane) else profile.against_ids
-        lanes = tuple(ids.index(leg.lane) for leg in own)
-        found.append(_Part(_directed(network.road(own[0].road), own[0]), lanes))
-    return found
+        roads.append(_directed(member, own[0]))
+        lanes.append(lane_along(roads[-1], [ids.index(leg.lane) for leg in own]))
+    return roads, lanes
 
 
-def _profile(parts: Sequence[_Part]) -> Profile:
+def _profile(roads: Sequence[Road], lanes: Sequence[LaneAlong]) -> Profile:
     """Returns the cross-section of a route: its own lane, one lane for all other lanes on each side, and the
     shoulders.
     """
-    roads = [part.road for part in parts]
     starts = [0.0, *accumulate(road.length for road in roads)]
-    rows = [lane_along(part.road, part.lanes) for part in parts]
     left_shoulder, left, offset, width, right, right_shoulder = (
-        _joined_widths(column, roads, starts) for column in zip(*rows, strict=True)
+        _joined_widths(column, roads, starts) for column in zip(*lanes, strict=True)
     )
     first = next(road.profile for road in roads if road.profile is not None)
     marking, edge = first.centre_marking, first.right[first.count[0] - 1].marking
@@ -279,11 +235,9 @@ def _joined_widths(widths: Sequence[Width], roads: Sequence[Road], starts: Seque
     """Returns the widths of roads that follow each other as one function of the station along all of them."""
     if all(width == widths[0] and not isinstance(width, CubicProfile) for width in widths):
         return widths[0]
-    stations: list[float] = []
-    rows: list[Cubic] = []
+    rows: list[tuple[float, Cubic]] = []
     for width, road, start in zip(widths, roads, starts, strict=False):
         own = width.stations if isinstance(width, CubicProfile) else ()
         inside = [0.0, *(s for s in own if 0 < s < road.length - 1e-9)]
-        stations += [start + s for s in inside]
-        rows += cubics_at(width, inside)
-    return CubicProfile(tuple(stations), tuple(rows))
+        rows += zip((start + s for s in inside), cubics_at(width, inside), strict=True)
+    return CubicProfile.of_rows(rows)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from roadgpt.geometry import GradeProfile, PieceCurve
@@ -23,16 +24,11 @@ def road_of(
     profile: Profile,
     is_level: tuple[bool, bool],
 ) -> Road:
-    """Returns the road that segments describe.
+    """Returns the road that segments describe, from a point in metres with a heading in radians.
 
-    Args:
-        segments: At least one segment.
-        start: The point in metres at which the road begins.
-        heading: The heading there in radians.
-        profile: The cross-section.
-        is_level: Whether the road is level at the start, and whether it is level at the end. A level end is a
-            few metres long; a vertical curve within the first or last segment joins it to the grade of this
-            segment. The radius is ``CREST_RADIUS``, or smaller where the segment is too short.
+    ``is_level`` says whether the road is level at its start and at its end. A level end is a few metres long;
+    a vertical curve within the first or last segment joins it to the grade of this segment. The radius is
+    ``CREST_RADIUS``, or smaller where the segment is too short.
     """
     x, y, z = start
     plan = PieceCurve(x, y, heading, joined(pieces_of(segments)))
@@ -41,8 +37,7 @@ def road_of(
 
 def level_ends(segments: Sequence[Segment], z: float, is_level: tuple[bool, bool]) -> GradeProfile:
     """Returns the heights along segments, from a height of ``z`` metres; for ``is_level`` see ``road_of``."""
-    found = elevation_of(segments, z)
-    knots = list(zip(found.stations, found.grades, strict=True))
+    knots = elevation_of(segments, z).knots
     share = 0.5 if all(is_level) and len(segments) == 1 else 1.0
     if is_level[0]:
         knots = _from_level(knots, share * segments[0].distance)
@@ -50,15 +45,12 @@ def level_ends(segments: Sequence[Segment], z: float, is_level: tuple[bool, bool
         end = knots[-1][0]
         knots = _from_level([(end - s, g) for s, g in reversed(knots)], share * segments[-1].distance)
         knots = [(end - s, g) for s, g in reversed(knots)]
-    return GradeProfile(z, tuple(s for s, _ in knots), tuple(g for _, g in knots))
+    return GradeProfile.of(z, knots)
 
 
 def _from_level(knots: list[tuple[float, float]], distance: float) -> list[tuple[float, float]]:
-    """Returns the knots (station, grade) with a level part at the start, and a vertical curve behind it.
-
-    Args:
-        knots: The knots; the first one is at station 0, and the grade is constant up to the second one.
-        distance: Length in metres of the first segment, or of the half of it that may be used.
+    """Returns the knots (station, grade) with a level part at the start and a vertical curve behind it, both
+    within ``distance`` metres. The first knot is at station 0, and the grade is constant up to the second.
     """
     (_, grade), *rest = knots
     if abs(grade) < LEVEL:
@@ -70,15 +62,12 @@ def _from_level(knots: list[tuple[float, float]], distance: float) -> list[tuple
 
 
 def without_level_ends(road: Road, is_level: tuple[bool, bool]) -> Road:
-    """Returns a road with the heights that it would have if ``road_of`` had not made its ends level.
-
-    Args:
-        road: The road; its heights are given by grades.
-        is_level: Whether ``road_of`` made its start level, and whether it made its end level.
+    """Returns a road, whose heights are given by grades, with the heights that it would have if ``road_of``
+    had not made the ends named by ``is_level`` level.
     """
     profile = road.elevation
     assert isinstance(profile, GradeProfile)
-    knots = list(zip(profile.stations, profile.grades, strict=True))
+    knots = profile.knots
     steep = [n for n, (_, grade) in enumerate(knots) if abs(grade) >= LEVEL]
     if not steep:
         return road
@@ -87,23 +76,21 @@ def without_level_ends(road: Road, is_level: tuple[bool, bool]) -> Road:
     if is_level[1]:
         last = steep[-1] - len(profile.grades)
         knots = [*knots[: len(knots) + last + 1], (profile.stations[-1], knots[last][1])]
-    kept = [knots[0], *(b for a, b in pairwise(knots) if b[0] > a[0])]
-    heights = GradeProfile(profile.z0, tuple(s for s, _ in kept), tuple(g for _, g in kept))
-    return Road(road.plan, heights, profile=road.profile)
+    return Road(road.plan, GradeProfile.of(profile.z0, _increasing(knots)), profile=road.profile)
+
+
+def _increasing(knots: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Returns the knots without those at the station of the knot before."""
+    return [knots[0], *(b for a, b in pairwise(knots) if b[0] > a[0])]
 
 
 def climb_between(z: float, end: float, length: float) -> GradeProfile:
-    """Returns heights that lead from one height to another: level at both ends, with one grade between the
-    two vertical curves.
-
-    Args:
-        z: The height in metres at the start.
-        end: The height in metres at the end.
-        length: The length of the road in metres.
+    """Returns the heights over ``length`` metres from height ``z`` to height ``end``: level at both ends,
+    with one grade between the two vertical curves.
     """
     climb = end - z
     if abs(climb) < LEVEL:
-        return GradeProfile(z, (0.0, length), (0.0, 0.0))
+        return GradeProfile.level(length, z)
     landing = min(LANDING, MOST_OF_LANDING * length)
     free = length - 2 * landing
     # two vertical curves of length R g at the grade g: climb = g (free - R g)
@@ -119,9 +106,7 @@ def climb_between(z: float, end: float, length: float) -> GradeProfile:
 
 def joined_grades(roads: Sequence[Road]) -> GradeProfile:
     """Returns the heights along one or more roads that follow each other, from the start of the first one.
-
-    Raises:
-        TypeError: The elevation of a road is not a GradeProfile.
+    Raises TypeError if the elevation of a road is not a GradeProfile.
     """
     knots: list[tuple[float, float]] = []
     start, height = 0.0, 0.0
@@ -130,27 +115,26 @@ def joined_grades(roads: Sequence[Road]) -> GradeProfile:
         if not isinstance(own, GradeProfile):
             raise TypeError("the heights of a network are given by grades")
         height = height if n else own.z0
-        here = [(start + s, g) for s, g in zip(own.stations, own.grades, strict=True)]
+        here = [(start + s, grade) for s, grade in own.knots]
         knots += here[1:] if knots else here
         start += road.length
         knots[-1] = (start, knots[-1][1])
-    kept = [knots[0], *(b for a, b in pairwise(knots) if b[0] > a[0])]
-    return GradeProfile(height, tuple(s for s, _ in kept), tuple(g for _, g in kept))
+    return GradeProfile.of(height, _increasing(knots))
+
+
+def joined_plans(roads: Sequence[Road]) -> PieceCurve:
+    """Returns the reference lines of roads, one after another, from the start of the first one."""
+    plans = [road.plan for road in roads if isinstance(road.plan, PieceCurve)]
+    pieces = tuple(piece for plan in plans for piece in plan.pieces)
+    return replace(plans[0], pieces=pieces)
 
 
 def joined_roads(roads: Sequence[Road]) -> Road:
-    """Returns one road made of roads that continue each other.
-
-    Its cross-section is that of the road with the fewest lanes in the direction of the roads.
-
-    Raises:
-        TypeError: The elevation of a road is not a GradeProfile.
+    """Returns one road made of roads that continue each other, with the cross-section of the road with the
+    fewest lanes in their direction; for errors see ``joined_grades``.
     """
     if len(roads) == 1:
         return roads[0]
-    first = roads[0].plan
-    pieces = tuple(piece for road in roads for piece in road.plan.pieces)  # type: ignore[attr-defined]
-    assert isinstance(first, PieceCurve)
     profiles = [road.profile for road in roads if road.profile is not None]
-    plan = PieceCurve(first.x, first.y, first.heading0, pieces)
-    return Road(plan, joined_grades(roads), profile=min(profiles, key=lambda profile: profile.count))
+    profile = min(profiles, key=lambda profile: profile.count)
+    return Road(joined_plans(roads), joined_grades(roads), profile=profile)

@@ -26,11 +26,8 @@ MOST_OF_ROAD = 0.8  # largest share of a road that the taper of a lane may take
 
 
 def stretch_profiles(design: NetworkDesign, world: World) -> list[Profile]:
-    """Returns the cross-section of each road of a design, with the tapers of lanes that end or begin.
-
-    Raises:
-        UsageError: The World asks for lanes or banked bends that networks do not have, or the lanes of the
-            design do not fit; see ``profiles_between``.
+    """Returns the cross-section of each road of a design, with the tapers of lanes that end or begin; for
+    errors see ``refuse_other_lanes`` and ``profiles_between``.
     """
     section = world.section
     refuse_other_lanes(world)
@@ -51,17 +48,12 @@ def profiles_between(
     first: LanesDesign, places: Sequence[PlaceDesign], lengths: Sequence[float], shoulder: float
 ) -> list[Profile]:
     """Returns the cross-sections of the roads before, between and behind the places that a route passes.
+    ``first`` are the lanes of the first road; the lengths of the roads and the width of the shoulders are in
+    metres.
 
-    Args:
-        first: The lanes of the first road.
-        places: The places in driving order.
-        lengths: The length of each road in metres.
-        shoulder: The width of every shoulder in metres.
-
-    Raises:
-        UsageError: A road would have no lane or too many; the lanes of a road contradict the lane drop, gain
-            or change before it; a ramp on the left would cross oncoming lanes; or the ramp that the route
-            takes has oncoming traffic or more than one lane.
+    Raises UsageError if a road would have no lane or too many; the lanes of a road contradict the lane drop,
+    gain or change before it; a ramp on the left would cross oncoming lanes; or the ramp that the route takes
+    has oncoming traffic or more than one lane.
     """
     lanes = [first]
     for number, place in enumerate(places, 1):

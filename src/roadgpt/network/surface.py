@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.geometry.curve import Array
 from roadgpt.network.network import Junction, Kind, Network, NetworkRoad, RoadEnd
-from roadgpt.network.paved import NEAR, paved_by
-from roadgpt.network.polygon import Area
+from roadgpt.network.paved import NEAR, Area, paved_by
 from roadgpt.road import Road
 
 if TYPE_CHECKING:
@@ -98,14 +97,8 @@ def _with_shoulders(member: NetworkRoad) -> Road:
 def _area_of(
     network: Network, node: tuple[Kind, tuple[Junction, ...]], paved: Area, width: float, beside: Area
 ) -> JunctionSurface:
-    """Returns the surface of one junction or roundabout.
-
-    Args:
-        network: The network.
-        node: The junction, as in ``Network.nodes``.
-        paved: The paved area of the junction.
-        width: The width in metres of the shoulder.
-        beside: The area of all roads outside junctions, with their shoulders.
+    """Returns the surface of one of ``Network.nodes``, from its paved area, the width in metres of the
+    shoulder, and ``beside``: the area of all roads outside junctions, with their shoulders.
     """
     import shapely
 
@@ -132,13 +125,8 @@ def _area_of(
 def _beside_medians(
     network: Network, paved: Area, wide: Area, holes: "Sequence[Polygon]"
 ) -> "Iterator[Polygon]":
-    """Yields what lies between the ways of a junction and the ends of medians.
-
-    Args:
-        network: The network.
-        paved: The paved area of the junction.
-        wide: The same with a shoulder around it.
-        holes: The holes in ``paved``, which are left out.
+    """Yields what lies between the ways of a junction and the ends of medians, apart from the ``holes`` in
+    the paved area of the junction; ``wide`` is this area with a shoulder around it.
     """
     import shapely
 
@@ -158,10 +146,8 @@ def polygons(shape: Any) -> Area:
 
 
 def triangulated(area: Area) -> tuple[Array, NDArray[np.int64]]:
-    """Returns the corners ``(n, 2)`` of an area in metres, and triangles that fill the area.
-
-    The triangles are indices ``(m, 3)`` into the corners, counter-clockwise. Both arrays have no rows for an
-    empty area.
+    """Returns the corners ``(n, 2)`` of an area in metres, and triangles that fill it: indices ``(m, 3)`` of
+    corners, counter-clockwise. An empty area has none.
     """
     import shapely
 

@@ -19,13 +19,11 @@ STRAIGHT = 1e-9  # rad; a way with a smaller turn is a straight line
 
 @lru_cache(maxsize=1024)
 def tangent_length(turn: float) -> float:
-    """Returns the distance from the start of a curve to the point where its tangents meet, in arc radii.
+    """Returns the distance from the start of a curve to the point where its tangents meet, in arc radii;
+    ``turn`` is more than 0 and less than pi radians.
 
     A clothoid of length L before an arc of radius 1 turns by L / 2 and moves the arc inwards by ``shift`` and
     forwards by ``ahead``.
-
-    Args:
-        turn: The angle of the curve in radians, more than 0 and less than pi.
     """
     ramp = SHARE * turn
     scale = math.sqrt(math.pi * ramp)
@@ -38,12 +36,9 @@ def tangent_length(turn: float) -> float:
 def curve_between(before: float, after: float, turn: float) -> tuple[Piece, ...]:
     """Returns pieces that lead from one line to another along a curve with the largest radius that fits.
 
-    The shorter of the two distances decides the radius; on the other line, a straight piece remains.
-
-    Args:
-        before: Distance in metres from the start to the point where the two lines meet, more than 0.
-        after: Distance in metres from this point to the end, more than 0.
-        turn: The change of heading in radians, positive to the left, between -pi and pi.
+    The lines meet ``before`` metres behind the start and ``after`` metres before the end, both more than 0.
+    The shorter one decides the radius; on the other line, a straight remains. ``turn`` is the change of
+    heading in radians, positive to the left, between -pi and pi.
     """
     if abs(turn) < STRAIGHT:
         return (Piece(before + after),)

@@ -12,16 +12,15 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Rectangle
-from matplotlib.ticker import MultipleLocator
 
 from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
 from roadgpt.network import has_no_route, is_route
 from roadgpt.plural import plural
-from roadgpt.report.canvas import HALO, INK, SEVERE, SOFT, Header, add_axes, in_our_style, new_figure, save
+from roadgpt.report.canvas import INK, SEVERE, SOFT, Header, add_axes, in_our_style, new_figure, note, save
 from roadgpt.report.labels import Labels
 from roadgpt.report.places import MarkedPlace, minor_places_of, places_of
-from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, is_far, plan_points
+from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, is_far, plan_points, show_from_above
 from roadgpt.report.text_width import inches
 from roadgpt.road import Road, World
 from roadgpt.run import Run
@@ -53,12 +52,9 @@ FAULT_LEAST = 45.0  # m across
 
 
 def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> Figure:
-    """Returns a picture of the road from above, with the driven path and the places of failures and findings.
-
-    Args:
-        run: a Run that has a road.
-        scale: "equal" for axes that fit the road; "thesis" for x and y from 0 to 220 m.
-        frame: the part of the map to show, in metres; None: the axes that ``scale`` gives.
+    """Returns a picture of the road of a Run from above, with the driven path and the places of failures and
+    findings. It shows ``frame``, or the axes of ``scale``: "equal" fits the road; "thesis" has x and y from 0
+    to 220 m.
     """
     road, world = run.road, run.world
     assert road is not None
@@ -77,28 +73,23 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     for number, row in enumerate(reversed(rows)):
         _draw_key(figure, FOOT + KEY * number, row)
     _ground(axes, frame, world.site.map_size)
-    draw_road(axes, road, world, frame.width / across)
+    draw_road(axes, road, world, per_inch)
     draw_ends(axes, road, world)
     if run.drive is not None:
         _path(figure, axes, run)
-    _mark_and_label(axes, run, frame, centre)
+    _mark_and_label(axes, run, frame, centre, per_inch)
     if not is_part and not all(frame.holds(x, y) for x, y in centre):
-        axes.text(
-            0.98, 0.98, "the road goes on beyond these axes", transform=axes.transAxes, ha="right", va="top",
-            size=9.5, color=SOFT, path_effects=HALO, zorder=12,
-        )  # fmt: skip
+        note(axes, (0.98, 0.98), "the road goes on beyond these axes", zorder=12)
     return figure
 
 
-def _mark_and_label(axes: Axes, run: Run, frame: Frame, centre: Array) -> None:
-    """Draws and labels the marked places of a Run, and labels the border of the map and the ends of the road.
-
-    The places of incidents that did not cause the failure are labelled last and in smaller letters.
+def _mark_and_label(axes: Axes, run: Run, frame: Frame, centre: Array, per_inch: float) -> None:
+    """Draws and labels the marked places of a Run, the border of the map and the ends of the road. The places
+    of incidents that did not cause the failure are labelled last and in smaller letters.
     """
     road, world = run.road, run.world
     assert road is not None
     minor, places = minor_places_of(run), places_of(run)
-    per_inch = frame.width / (SIDE * min(1.0, frame.width / frame.height))
     clear_of = np.concatenate([centre, [(each.x, each.y) for each in minor]]) if minor else centre
     labels = Labels(axes, frame, per_inch, clear_of, world.profile_of(road).paved_reach + 1.0)
     labels.name_border(world.site.map_size)
@@ -133,18 +124,11 @@ def _frame(run: Run, centre: Array) -> Frame:
 
 def _ground(axes: Axes, frame: Frame, size: float) -> None:
     """Draws ground, grid, the border of the map, and the area outside it."""
-    axes.set(xlim=(frame.x0, frame.x1), ylim=(frame.y0, frame.y1), aspect="equal")
-    axes.set_xlabel("x, metres east")
-    axes.set_ylabel("y, metres north")
+    show_from_above(axes, frame, (10, 20, 25, 50, 100, 200, 500, 1000, 1e6), 8)
     axes.set_facecolor("#d5d8dc")
     axes.add_patch(Rectangle((0, 0), size, size, fc=GROUND, ec="none", zorder=0))
     border = Rectangle((0, 0), size, size, fc="none", ec=SOFT, lw=1.4, ls=(0, (6, 3)), zorder=0.6)
     axes.add_patch(border)
-    step = next(step for step in (10, 20, 25, 50, 100, 200, 500, 1000, 1e6) if frame.width / step <= 8)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MultipleLocator(step))
-    axes.grid(color="white", lw=0.8, zorder=0.5)
-    axes.set_axisbelow(True)
 
 
 def _path(figure: Figure, axes: Axes, run: Run) -> None:
@@ -179,8 +163,9 @@ def driven_path(axes: Axes, drive: Drive) -> LineCollection:
 
 
 def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
-    """Draws a marker at a place, and the outline of the car if the place comes from a drive; the place of an
-    incident that did not cause the failure has a small marker only."""
+    """Draws a marker at a place, smaller for an incident that did not cause the failure, and the outline of
+    the car if the place comes from a drive.
+    """
     if place.is_minor:
         axes.plot(place.x, place.y, place.sign, ms=MINOR, mfc=place.colour, mec="white", mew=0.8, zorder=9.5)
         return
@@ -193,8 +178,9 @@ def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
 
 
 def severities(drive: Drive | None) -> list[Severity]:
-    """Returns "inside", "partly outside" or "mostly outside" for each step at which the verdict checks
-    whether the car is in its lane. The list is empty if there is no drive."""
+    """Returns how far outside its lane the car was, for each step that the verdict checks; empty without a
+    drive.
+    """
     return [] if drive is None else [severity(share) for share in drive["outside"][: drive.lane_steps]]
 
 
@@ -229,8 +215,8 @@ def _outside_key(drive: Drive | None) -> list[KeyEntry]:
 
 
 def _network_key(road: Road, world: World, frame: Frame, per_inch: float) -> list[KeyEntry]:
-    """Returns the key to the tint of the route's lane, and to the signs and lights that a frame shows; empty
-    for a road without junctions.
+    """Returns the key to the lane of the route and to the signs that a frame shows; empty for a road without
+    junctions.
     """
     if not is_route(road):
         return []
@@ -257,29 +243,16 @@ def _draw_key(figure: Figure, above: float, entries: list[KeyEntry]) -> None:
         left += width + 3 * GAP + inches(text, KEY_SIZE)
 
 
-def fault_picture(run: Run, reason: "FailureReason", more: str = "") -> Figure:
-    """Returns a bird's-eye view of the place of a failure, with the cause in its header.
-
-    Args:
-        run: a Run that failed.
-        reason: the reason for the failure.
-        more: text to add after the reason, such as "fails every time (5 of 5 disturbed drives)"; may be
-            empty.
+@in_our_style
+def draw_fault(run: Run, reason: "FailureReason", more: str, path: Path) -> Path:
+    """Writes a picture of the place where a Run failed, with the reason in its header, to ``path``, whose
+    suffix gives the format. ``more`` is added to the reason, such as "fails every time (5 of 5 disturbed
+    drives)".
     """
     assert run.road is not None
     s = run.road.sample(1.0)
     near = (s.s >= reason.station - BEFORE) & (s.s <= reason.station + AFTER)
-    frame = Frame.around(
-        s.points[near][:, :2],
-        FAULT_ROOM + run.world.profile_of(run.road).paved_reach,
-        FAULT_LEAST,
-        run.world.site.map_size,
-    )
+    margin = FAULT_ROOM + run.world.profile_of(run.road).paved_reach
+    frame = Frame.around(s.points[near][:, :2], margin, FAULT_LEAST, run.world.site.map_size)
     said = f"{reason.sentence}; {more}" if more else reason.sentence
-    return birds_eye(replace(run, description=said), frame=frame)
-
-
-@in_our_style
-def draw_fault(run: Run, reason: "FailureReason", more: str, path: Path) -> Path:
-    """Writes the picture of a failure to ``path``, whose suffix gives the format; see ``fault_picture``."""
-    return save(fault_picture(run, reason, more), path)
+    return save(birds_eye(replace(run, description=said), frame=frame), path)

@@ -77,12 +77,7 @@ def new_figure(width: float, height: float) -> Figure:
 def add_axes(figure: Figure, left: float, bottom: float, right: float, top: float) -> Axes:
     """Adds axes to a figure; the arguments are the distances in inches from the borders of the figure."""
     wide, high = figure.get_size_inches()
-    box = (
-        left / wide,
-        bottom / high,
-        (wide - left - right) / wide,
-        (high - bottom - top) / high,
-    )
+    box = (left / wide, bottom / high, (wide - left - right) / wide, (high - bottom - top) / high)
     axes: Axes = figure.add_axes(box)
     return dress(axes)
 
@@ -96,6 +91,21 @@ def dress(axes: Axes) -> Axes:
     axes.xaxis.label.set(color=INK, size=10)
     axes.yaxis.label.set(color=INK, size=10)
     return axes
+
+
+def inches_of(axes: Axes) -> tuple[float, float]:
+    """Returns width and height of axes in inches."""
+    figure, shape = axes.get_figure(root=True), axes.get_position()
+    assert figure is not None
+    return figure.get_figwidth() * shape.width, figure.get_figheight() * shape.height
+
+
+def note(axes: Axes, place: tuple[float, float], text: str, size: float = 9.5, zorder: float = 3) -> None:
+    """Writes text to the left of and below a place in the upper right corner, in fractions of the axes."""
+    axes.text(
+        *place, text, transform=axes.transAxes, ha="right", va="top", size=size, color=SOFT,
+        path_effects=HALO, zorder=zorder,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -152,8 +162,8 @@ def _badge(run: Run) -> float:
 
 
 def origin(run: Run) -> str:
-    """Returns one line of text with the seed, number and length of the road, the driver and the simulator; a
-    map without a route has no length.
+    """Returns one line with the seed, number and length of the road, or "no route", the driver and the
+    simulator.
     """
     seed = f"seed {run.request.seed}"
     said = [f"{seed}, road {run.index}"] if run.words else [seed] if run.drive is not None else []
@@ -165,9 +175,7 @@ def origin(run: Run) -> str:
 
 def save(figure: Figure, path: Path) -> Path:
     """Writes a picture in the format that the path's suffix names; the same figure gives an identical file.
-
-    Raises:
-        UsageError: the suffix is none of .png, .svg and .pdf.
+    Raises UsageError as ``format_of`` does.
     """
     write_whole(path, encoded(figure, format_of(path)))
     return path

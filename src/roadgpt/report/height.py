@@ -9,15 +9,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from roadgpt.geometry.curve import Array
 from roadgpt.report.birds_eye import Scale
-from roadgpt.report.canvas import (
-    FAINT,
-    HALO,
-    INK,
-    SOFT,
-    Header,
-    add_axes,
-    new_figure,
-)  # fmt: skip
+from roadgpt.report.canvas import FAINT, HALO, INK, Header, add_axes, inches_of, new_figure, note
 from roadgpt.report.junctions import shade_junctions
 from roadgpt.report.places import name_places, places_of
 from roadgpt.report.plan_view import stations_of
@@ -36,9 +28,7 @@ EARTH, SURFACE = "#dcd9c3", "#4b5563"
 
 
 def height_profile(run: Run, scale: Scale = "equal") -> Figure:
-    """Returns a picture of the height over the distance along the road; longer sections are labelled with
-    their grade.
-    """
+    """Returns a picture of the height over the distance along the road, with the grades of long sections."""
     assert run.road is not None
     s = stations_of(run.road)
     z = run.road.at(s)[:, 2]
@@ -94,10 +84,7 @@ def _thesis(run: Run, z: Array, top: float) -> tuple[Figure, Axes, Array, str]:
     axes.xaxis.set_major_locator(MultipleLocator(25))
     axes.yaxis.set_major_locator(MultipleLocator(5))
     if run.length > THESIS_X:
-        axes.text(
-            0.995, 0.97, f"goes on to {run.length:.0f} m →", transform=axes.transAxes, ha="right", va="top",
-            size=9.5, color=SOFT, path_effects=HALO,
-        )  # fmt: skip
+        note(axes, (0.995, 0.97), f"goes on to {run.length:.0f} m →")
     return figure, axes, z, label
 
 
@@ -107,7 +94,8 @@ def _slopes(axes: Axes, run: Run, s: Array, z: Array) -> None:
     grade = run.road.grade(s)
     left, right = axes.get_xlim()
     shortest = SHORTEST * (right - left) / (WIDTH - LEFT - RIGHT)
-    lift = 0.13 * _metres_per_inch(axes)
+    low, high = axes.get_ylim()
+    lift = 0.13 * (high - low) / inches_of(axes)[1]
     for middle, slope in _labelled_slopes(s, grade, shortest):
         if not left <= middle <= right - shortest / 2:
             continue
@@ -135,11 +123,3 @@ def _labelled_slopes(s: Array, grade: Array, shortest: float) -> list[tuple[floa
         if way[a] and s[b] - s[a] >= shortest / 2 and is_alone:
             found.append((place, float(grade[steepest])))
     return found
-
-
-def _metres_per_inch(axes: Axes) -> float:
-    """Returns the metres per inch of the vertical axis."""
-    low, high = axes.get_ylim()
-    figure = axes.get_figure(root=True)
-    assert figure is not None
-    return float((high - low) / (axes.get_position().height * figure.get_figheight()))

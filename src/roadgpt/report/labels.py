@@ -6,6 +6,7 @@ from itertools import islice
 
 import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
 from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import HALO, INK, SOFT
@@ -43,12 +44,12 @@ class Labels:
     """Points on the lines that connect labels with their places, each ``(n, 2)``."""
 
     def name_border(self, size: float) -> None:
-        """Labels the border of a square map with sides of ``size`` metres, if the border is visible and there
-        is room.
+        """Labels the border of a square map with sides of ``size`` metres, if it is visible and there is
+        room.
         """
         wide = (inches(BORDER, BORDER_SIZE) + 0.1) * self.per_inch
         offers = _offers(self.frame, size, wide, HIGH * self.per_inch, GAP * self.per_inch)
-        clear = ((box, turned) for box, turned in offers if _away(box, self.clear_of) > CLEAR)
+        clear = ((box, turned) for box, turned in offers if _distances(box, self.clear_of).min() > CLEAR)
         for box, turned in islice(clear, 1):
             self._boxes.append(box)
             self.axes.text(
@@ -64,14 +65,10 @@ class Labels:
         away: Array | None = None,
         is_minor: bool = False,
     ) -> bool:
-        """Labels a place, and returns whether there was room; only minor labels are left out for lack of it.
+        """Labels a place (x, y) in metres, if it is in the frame, and returns whether there was room; only
+        minor labels, which have smaller letters and may be farther away, are left out for lack of it.
 
-        Args:
-            place: x and y in metres; a place outside the frame gets no label.
-            text: the text of the label, in one or more lines.
-            colour: colour of the text.
-            away: preferred direction ``(2,)`` from the place to the label, of length 1.
-            is_minor: whether the label has smaller letters, and may be farther away.
+        ``away`` is the preferred direction ``(2,)`` from the place to the label, of length 1.
         """
         if not self.frame.holds(*place):
             return True
@@ -114,11 +111,9 @@ class Labels:
 
     def _cover(self, x: float, y: float, wide: float, high: float) -> float:
         """Returns the cost of covering what lies under a box: road, labels, or the border of the frame."""
-        x0, x1, y0, y1 = _box(x, y, wide, high)
-        dx = np.maximum(np.abs(self.clear_of[:, 0] - x) - wide / 2, 0)
-        dy = np.maximum(np.abs(self.clear_of[:, 1] - y) - high / 2, 0)
-        cost = 10.0 * float((np.hypot(dx, dy) < self.radius).mean())
-        cost += 2.0 * bool((np.hypot(dx, dy) < self.radius).any())
+        x0, x1, y0, y1 = box = _box(x, y, wide, high)
+        is_covered = _distances(box, self.clear_of) < self.radius
+        cost = 10.0 * float(is_covered.mean()) + 2.0 * bool(is_covered.any())
         cost += COVERED * sum(x0 < b and a < x1 and y0 < d and c < y1 for a, b, c, d in self._boxes)
         frame = self.frame
         return cost + 20.0 * (x0 < frame.x0 or x1 > frame.x1 or y0 < frame.y0 or y1 > frame.y1)
@@ -127,8 +122,8 @@ class Labels:
         """Returns the cost if a label's line crosses other labels, or if their lines cross the label."""
         own = _box(x, y, wide, high)
         line = _leader(place, x, y, own)
-        through = sum(_holds(box, line) for box in self._boxes)
-        return 8.0 * (through + sum(_holds(own, other) for other in self._leaders))
+        through = sum(bool(_inside(box, line).any()) for box in self._boxes)
+        return 8.0 * (through + sum(bool(_inside(own, other).any()) for other in self._leaders))
 
 
 def _box(x: float, y: float, wide: float, high: float) -> Box:
@@ -138,15 +133,14 @@ def _box(x: float, y: float, wide: float, high: float) -> Box:
 def _leader(place: tuple[float, float], x: float, y: float, box: Box) -> Array:
     """Returns points on the line from a place to the box of a label."""
     line = np.linspace(place, (x, y), 24)
-    x0, x1, y0, y1 = box
-    return line[~((line[:, 0] > x0) & (line[:, 0] < x1) & (line[:, 1] > y0) & (line[:, 1] < y1))]
+    return line[~_inside(box, line)]
 
 
-def _holds(box: Box, points: Array) -> bool:
-    """Returns whether one of the points lies in the box."""
+def _inside(box: Box, points: Array) -> NDArray[np.bool_]:
+    """Returns which points ``(n, 2)`` lie in the box."""
     x0, x1, y0, y1 = box
     x, y = points.T
-    return bool(((x > x0) & (x < x1) & (y > y0) & (y < y1)).any())
+    return np.asarray((x > x0) & (x < x1) & (y > y0) & (y < y1))
 
 
 def _offers(frame: Frame, size: float, wide: float, high: float, gap: float) -> Iterator[tuple[Box, bool]]:
@@ -168,9 +162,9 @@ def _along(low: float, high: float) -> list[float]:
     return sorted(np.linspace(low, high, PLACES).tolist(), key=lambda place: abs(place - middle))
 
 
-def _away(box: Box, points: Array) -> float:
-    """Returns the distance from a box to the nearest point, metres."""
+def _distances(box: Box, points: Array) -> Array:
+    """Returns the distances of points ``(n, 2)`` from a box, metres."""
     x0, x1, y0, y1 = box
     dx = np.maximum(np.maximum(x0 - points[:, 0], points[:, 0] - x1), 0)
     dy = np.maximum(np.maximum(y0 - points[:, 1], points[:, 1] - y1), 0)
-    return float(np.hypot(dx, dy).min())
+    return np.hypot(dx, dy)

@@ -15,8 +15,7 @@ from roadgpt.network import Network, NetworkRoad, Route
 from roadgpt.network.arrows import arrows
 from roadgpt.network.ground import ground_of
 from roadgpt.network.markings import JunctionSign, between_crosswalks, signs, strokes
-from roadgpt.network.paved import stations_of
-from roadgpt.network.polygon import Area
+from roadgpt.network.paved import Area, stations_of
 from roadgpt.network.surface import NetworkSurface
 from roadgpt.report.canvas import GRASS
 from roadgpt.report.text_width import POINTS
@@ -40,8 +39,8 @@ STEP = 0.5  # m between the points of the edges of the route
 
 
 def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
-    """Draws the network of a route, and the lane that the route follows, if there is a route; ``per_inch`` is
-    the number of metres per inch of the picture.
+    """Draws the network of a route, and the lane of the route, if there is one, at so many metres
+    ``per_inch``.
     """
     network = route.network
     surface = NetworkSurface.of(network)
@@ -91,11 +90,6 @@ def draw_network_from_far(axes: Axes, route: Route, points: float) -> None:
     axes.plot(line[:, 0], line[:, 1], color=FAR_ROUTE, lw=points, zorder=2.2)
 
 
-def lines_of(route: Route, step: float = 2.0) -> Array:
-    """Returns points ``(n, 3)`` on the reference lines of all roads of a network, ``step`` metres apart."""
-    return np.concatenate([each.road.centreline(step) for each in route.network.roads])
-
-
 def _fill(axes: Axes, area: Area, colour: str, layer: float) -> None:
     axes.add_patch(PathPatch(path_of(area), fc=colour, ec="none", zorder=layer))
 
@@ -136,9 +130,7 @@ def _draw_route(axes: Axes, route: Route, per_inch: float) -> None:
 
 
 def signs_shown(route: Route, per_inch: float) -> tuple[JunctionSign, ...]:
-    """Returns the signs and lights to draw in a picture with ``per_inch`` metres per inch. There are none if
-    ``per_inch`` is more than 50.
-    """
+    """Returns the signs and lights to draw in a picture: none with more than 50 metres per inch."""
     return signs(route.network) if per_inch <= NEAR else ()
 
 

@@ -48,15 +48,17 @@ STYLES = {"INVALID": (0, (3, 1.5)), "ERROR": (0, (1, 1))}
 
 
 @dataclass(frozen=True)
-class Entry:
-    """One road of an overview: its map and its outcome."""
+class Thumbnail:
+    """One road of an overview or a gallery: its map and its outcome."""
 
     number: int
     outcome: str
     points: Array
     """Points of the road, ``(n, 2)``, metres."""
-    failed_at: tuple[float, float] | None
+    failed_at: tuple[float, float] | None = None
     """Position of the car when it failed, x and y in metres; None if it did not fail or has no records."""
+    href: str = ""
+    """Address of the link in a gallery; empty for no link."""
     share: float | None = None
     """Largest share of the car that was outside its lane; None if there is no drive."""
     paved: Outline | None = None
@@ -89,11 +91,7 @@ def overview(folder: Path | str, formats: Sequence[Format] = PNG) -> list[Path]:
 
 
 def pages(folder: Path | str) -> Iterator[Figure]:
-    """Yields the pages of ``overview`` as figures.
-
-    Raises:
-        UsageError: there is no test in the folder, or the file of a test or of the campaign cannot be read.
-    """
+    """Yields the pages of ``overview`` as figures; raises what it raises."""
     folder = Path(folder)
     names = sorted(folder.glob("test.*.json"))
     if not names:
@@ -118,21 +116,18 @@ def _about(folder: Path) -> tuple[tuple[str, str], float]:
         raise UsageError(f"{card} cannot be read ({error!r}); remove it or make the roads again") from error
 
 
-def _entry(path: Path) -> Entry:
+def _entry(path: Path) -> Thumbnail:
+    test = _loaded(path)
     try:
-        return _entry_of(path, _loaded(path))
+        points = np.asarray(test.get("interpolated_points") or np.empty((0, 2)), float)[:, :2]
+        outcome = test.get("test_outcome") or ("VALID" if test.get("is_valid") else "INVALID")
+        records = test.get("execution_data") or []
+        outside = next((record for record in records if record[OUTSIDE]), records[-1] if records else None)
+        place = tuple(outside[PLACE][:2]) if outcome == "FAIL" and outside else None
+        share = _share(path, records, outcome)
+        return Thumbnail(int(test["id"]), outcome, points, place, share=share, paved=_paved(path))
     except (TypeError, ValueError, LookupError, AttributeError, OverflowError) as error:
         raise UsageError(f"{path} cannot be drawn ({error}); remove it or make the road again") from error
-
-
-def _entry_of(path: Path, test: Any) -> Entry:
-    points = np.asarray(test.get("interpolated_points") or np.empty((0, 2)), float)[:, :2]
-    outcome = test.get("test_outcome") or ("VALID" if test.get("is_valid") else "INVALID")
-    records = test.get("execution_data") or []
-    outside = next((record for record in records if record[OUTSIDE]), records[-1] if records else None)
-    place = tuple(outside[PLACE][:2]) if outcome == "FAIL" and outside else None
-    share = _share(path, records, outcome)
-    return Entry(int(test["id"]), outcome, points, place, share, _paved(path))
 
 
 def _paved(path: Path) -> Outline | None:
@@ -170,14 +165,9 @@ def _loaded(path: Path) -> Any:
         raise UsageError(f"{path} cannot be read ({error}); remove it or make it again") from error
 
 
-def page_of(entries: list[Entry], about: tuple[str, str], part: str, size: float) -> Figure:
-    """Returns one page with the maps of roads, in rows.
-
-    Args:
-        entries: the roads.
-        about: the description and the seed, for the header.
-        part: the page number and the number of pages, for the header; empty if there is only one page.
-        size: side of the map, metres.
+def page_of(entries: list[Thumbnail], about: tuple[str, str], part: str, size: float) -> Figure:
+    """Returns one page with the maps of roads, in rows. ``about`` is the description and the seed, ``part``
+    the page number and the number of pages, or empty, and ``size`` the side of the map in metres.
     """
     count = len(entries)
     # a number of columns that gives the page about the shape of a sheet of paper
@@ -217,7 +207,7 @@ def _header(axes: Axes, about: tuple[str, str], part: str, counts: Counter[str],
     )
 
 
-def _key(axes: Axes, entries: list[Entry]) -> None:
+def _key(axes: Axes, entries: list[Thumbnail]) -> None:
     """Draws the key to the signs on the maps: where a road starts, and where the car failed."""
     x = MARGIN + 0.06
     if any(len(entry.points) for entry in entries):
@@ -229,7 +219,7 @@ def _key(axes: Axes, entries: list[Entry]) -> None:
         axes.text(x + 0.12, KEY, "where the car failed", size=8.5, color=SOFT, va="center")
 
 
-def _cell(axes: Axes, entry: Entry, place: tuple[float, float], cell: float, size: float) -> None:
+def _cell(axes: Axes, entry: Thumbnail, place: tuple[float, float], cell: float, size: float) -> None:
     """Draws a road on its map; y grows upwards on the map and downwards on the page."""
     x0, y0 = place
     small = 8.5 if cell > 1.2 else 7

@@ -5,13 +5,21 @@ import textwrap
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator, MultipleLocator
+from matplotlib.ticker import MaxNLocator
 
 from roadgpt.geometry.curve import Array
 from roadgpt.report.birds_eye import THESIS, Scale
-from roadgpt.report.canvas import FAINT, HALO, INK, SOFT, dress, in_our_style, new_figure
+from roadgpt.report.canvas import FAINT, HALO, INK, SOFT, dress, in_our_style, new_figure, note
 from roadgpt.report.height import EARTH, SURFACE, THESIS_X, THESIS_Z
-from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, plan_points, stations_of
+from roadgpt.report.plan_view import (
+    GROUND,
+    Frame,
+    draw_ends,
+    draw_road,
+    plan_points,
+    show_from_above,
+    stations_of,
+)
 from roadgpt.run import Run
 
 WIDTH, LEFT, RIGHT, BOTTOM, TOP, BETWEEN = 10.6, 0.7, 0.25, 0.62, 0.62, 0.95  # inches
@@ -19,17 +27,14 @@ SIDE = 3.3  # inches, of the square that shows a road from above
 MARGIN, LEAST = 14.0, 60.0  # m, around the roads and across the square
 LONGEST = 78  # letters of a title
 STEP_BACK = 17.0  # points from the start to its name
+CORNER = (0.985, 0.97)  # of axes, where it is written that a road goes on
 LOWEST = 6.0  # m that the heights span at least
 
 
 @in_our_style
 def pair(one: Run, other: Run, scale: Scale = "equal") -> Figure:
-    """Returns a figure that shows two roads, one above the other, on the same scales.
-
-    Args:
-        one: the upper Run; it must have a road.
-        other: the lower Run; it must have a road.
-        scale: "equal" for axes that fit both roads; "thesis" for the fixed axes of RoadGPT's thesis.
+    """Returns a figure that shows two roads, one above the other, on the same scales: axes that fit both
+    ("equal"), or the fixed axes of RoadGPT's thesis.
     """
     runs = (one, other)
     row = SIDE + BOTTOM + TOP
@@ -80,15 +85,8 @@ def _square(run: Run, side: float) -> Frame:
 
 def _above(axes: Axes, run: Run, frame: Frame) -> None:
     assert run.road is not None
-    axes.set(xlim=(frame.x0, frame.x1), ylim=(frame.y0, frame.y1), aspect="equal")
+    show_from_above(axes, frame, (10, 20, 50, 100, 200, 500, 1e6), 6)
     axes.set_facecolor(GROUND)
-    step = next(step for step in (10, 20, 50, 100, 200, 500, 1e6) if frame.width / step <= 6)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MultipleLocator(step))
-    axes.grid(color="white", lw=0.8, zorder=0.5)
-    axes.set_axisbelow(True)
-    axes.set_xlabel("x, metres east")
-    axes.set_ylabel("y, metres north")
     draw_road(axes, run.road, run.world, frame.width / SIDE)
     draw_ends(axes, run.road, run.world)
     (x, y), ahead = run.road.at(0.0)[:2], float(run.road.heading(0.0))
@@ -98,7 +96,7 @@ def _above(axes: Axes, run: Run, frame: Frame) -> None:
         ha="center", va="center", annotation_clip=True,
     )  # fmt: skip
     if not all(frame.holds(x, y) for x, y in _plan(run)):
-        _remark(axes, "goes on beyond these axes")
+        note(axes, CORNER, "goes on beyond these axes", 9, zorder=13)
 
 
 def _beside(axes: Axes, run: Run, shown: tuple[float, float], scale: Scale) -> None:
@@ -121,12 +119,4 @@ def _beside(axes: Axes, run: Run, shown: tuple[float, float], scale: Scale) -> N
     axes.set_xlabel("distance along the road, m")
     axes.set_ylabel("height, m")
     if scale == "thesis" and (run.length > THESIS_X or z.max() > THESIS_Z):
-        _remark(axes, f"goes on to {run.length:.0f} m, {z.max():.0f} m high")
-
-
-def _remark(axes: Axes, text: str) -> None:
-    """Writes text in the upper right corner of axes."""
-    axes.text(
-        0.985, 0.97, text, transform=axes.transAxes, ha="right", va="top", size=9, color=SOFT,
-        path_effects=HALO, zorder=13,
-    )  # fmt: skip
+        note(axes, CORNER, f"goes on to {run.length:.0f} m, {z.max():.0f} m high", 9, zorder=13)

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 
 from roadgpt.check import Finding
 from roadgpt.drive import Drive
-from roadgpt.report.canvas import DARKER, HALO, INK, SEVERE, VERMILLION
+from roadgpt.report.canvas import DARKER, HALO, INK, SEVERE, VERMILLION, inches_of
 from roadgpt.report.text_width import fitted, plain
 from roadgpt.run import Run
 from roadgpt.verdict import Incident, Verdict, percent
@@ -97,10 +97,9 @@ def places_of(run: Run) -> list[MarkedPlace]:
 
 
 def minor_places_of(run: Run) -> list[MarkedPlace]:
-    """Returns the places of all incidents on a route, in order of time, without the cause of the failure.
-
-    An incident less than 15 m from the previous one of its kind has no label of its own: the label of the
-    first one gives the number of incidents and their stations.
+    """Returns the places of all incidents on a route, in order of time, without the cause of the failure. An
+    incident less than 15 m from the previous one of its kind has no label of its own: that of the first one
+    gives the number of incidents and their stations.
     """
     verdict = run.verdict
     incidents = () if verdict is None else verdict.incidents or ()
@@ -148,19 +147,10 @@ def _said(finding: Finding) -> str:
 
 
 def name_places(axes: Axes, places: Sequence[MarkedPlace], length: float, at_top: bool = False) -> None:
-    """Labels places on axes whose x is the distance along the road, each label next to the station of its
-    place.
-
-    Args:
-        axes: the axes.
-        places: the places of a road; each next label is written farther from the border of the axes.
-        length: the length of the road in metres.
-        at_top: whether to write the labels at the top of the axes instead of the bottom.
+    """Labels places on axes whose x is the distance along a road of ``length`` metres, each label next to the
+    station of its place, and each next one farther from the bottom of the axes, or from the top.
     """
-    figure = axes.get_figure(root=True)
-    assert figure is not None
-    shape = axes.get_position()
-    wide, high = figure.get_size_inches() * (shape.width, shape.height)
+    wide, high = inches_of(axes)
     for number, place in enumerate(places):
         is_late = place.s > length / 2
         share = place.s / length

@@ -1,11 +1,13 @@
 """Draws the road from above, to scale: shoulders, carriageway, edge lines and centre dashes."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon
+from matplotlib.ticker import MultipleLocator
 
 from roadgpt.geometry.curve import Array
 from roadgpt.network import has_no_route, is_route
@@ -33,14 +35,8 @@ class Frame:
 
     @classmethod
     def around(cls, points: Array, margin: float, least: float, size: float) -> "Frame":
-        """Returns a frame that shows points with a margin, has a minimum size, and stays on the map if
-        possible.
-
-        Args:
-            points: the points that the frame must show, shape ``(n, 2)``, in metres.
-            margin: the margin around the points in metres.
-            least: the smallest width and height in metres.
-            size: the side of the map in metres.
+        """Returns a frame that shows points ``(n, 2)`` with a margin, is at least ``least`` wide and high,
+        and stays on the map, a square with the side ``size``, if possible; all in metres.
         """
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
         width, height = np.maximum(high - low, least)
@@ -65,6 +61,20 @@ class Frame:
         return self.y1 - self.y0
 
 
+def show_from_above(axes: Axes, frame: Frame, steps: Sequence[float], most: int) -> None:
+    """Sets limits, labels and grid of axes that show a frame to scale; the lines of the grid are the first of
+    ``steps`` metres apart with which there are at most ``most`` cells across.
+    """
+    axes.set(xlim=(frame.x0, frame.x1), ylim=(frame.y0, frame.y1), aspect="equal")
+    axes.set_xlabel("x, metres east")
+    axes.set_ylabel("y, metres north")
+    step = next(step for step in steps if frame.width / step <= most)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MultipleLocator(step))
+    axes.grid(color="white", lw=0.8, zorder=0.5)
+    axes.set_axisbelow(True)
+
+
 def stations_of(road: Road) -> Array:
     """Returns stations, shape ``(n,)``, close enough for smooth edges and including both ends of the road."""
     count = int(np.clip(road.length / FINEST, 2, MOST_STATIONS))
@@ -76,9 +86,8 @@ def plan_points(road: Road) -> Array:
     reference lines of all roads in its network."""
     points: Array = road.at(stations_of(road))[:, :2]
     if is_route(road):
-        from roadgpt.report.network_view import lines_of
-
-        return np.concatenate([points, lines_of(road)[:, :2]])
+        lines = [each.road.centreline(2.0)[:, :2] for each in road.network.roads]
+        return np.concatenate([points, *lines])
     return points
 
 

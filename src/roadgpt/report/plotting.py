@@ -10,7 +10,7 @@ from roadgpt.campaign import Campaign
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.network import MapDesign, NetworkDesign, Route, made_from
 from roadgpt.report.birds_eye import birds_eye, driven_path, mark
-from roadgpt.report.canvas import encoded, in_our_style
+from roadgpt.report.canvas import encoded, in_our_style, inches_of
 from roadgpt.report.overview import pages
 from roadgpt.report.places import places_of
 from roadgpt.report.plan_view import draw_ends, draw_road, plan_points, stations_of
@@ -48,7 +48,8 @@ def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None 
     ax.update_datalim(np.concatenate([edges, plan_points(road)]) if isinstance(road, Route) else edges)
     ax.margins(MARGIN)
     ax.autoscale_view()
-    draw_road(ax, road, world, _metres_per_inch(ax))
+    low, high = ax.get_xlim()
+    draw_road(ax, road, world, (high - low) / inches_of(ax)[0])
     draw_ends(ax, road, world)
     if isinstance(what, Run):
         if what.drive is not None:
@@ -72,20 +73,10 @@ def _road_of(what: Any, world: World | None) -> tuple[Road, World]:
     raise UsageError(f"a {type(what).__name__} cannot be plotted; give a Road, a Design or a Run")
 
 
-def _metres_per_inch(ax: Axes) -> float:
-    figure = ax.get_figure(root=True)
-    assert figure is not None
-    low, high = ax.get_xlim()
-    return float((high - low) / (ax.get_position().width * figure.get_figwidth()))
-
-
 @in_our_style
 def png_of(value: Any) -> bytes | None:
-    """Returns the bytes of a PNG file with a picture of the value, or None if there is nothing to show.
-
-    Args:
-        value: a Road, a Design, a Run, or a Campaign. For a Campaign, the first page of ``overview`` is
-            shown.
+    """Returns the bytes of a PNG file with a picture of a Road, a Design, a Run or a Campaign, of which the
+    first page of ``overview`` is shown; None if there is nothing to show.
     """
     figure = _figure(value)
     return None if figure is None else encoded(figure, "png")

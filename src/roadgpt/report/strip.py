@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from roadgpt.drive.outlook import passages
 from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import (
     BLUE,
@@ -16,8 +17,8 @@ from roadgpt.report.canvas import (
     Header,
     add_axes,
     new_figure,
-)  # fmt: skip
-from roadgpt.report.junctions import junction_stretches, shade_junctions
+)
+from roadgpt.report.junctions import shade_junctions
 from roadgpt.report.places import name_places, places_of
 from roadgpt.report.plan_view import stations_of
 from roadgpt.report.text_width import POINTS
@@ -63,7 +64,7 @@ def _curvature(axes: Axes, run: Run, s: Array) -> None:
     assert run.road is not None
     bend, limit = run.road.curvature(s), 1 / run.world.limits.min_radius
     reach = _fill(axes, s, bend, limit)
-    ends = [end for each in junction_stretches(run.road) for end in (each.start, each.end)]
+    ends = [end for each in passages(run.road) for end in (each.start, each.end)]
     # ways through junctions have a limit of their own
     _limits(axes, limit, f"limit: radius {run.world.limits.min_radius:.1f} m", [0.0, *ends, run.length])
     axes.set_ylabel("curvature, 1/m")

@@ -20,7 +20,7 @@ def inches(text: str, size: float, bold: bool = False) -> float:
 
 
 def fitted(text: str, width: float, size: float, bold: bool = False, lines: int = 1) -> str:
-    """Returns text wrapped to at most ``lines`` lines of ``width`` inches; an ellipsis marks what is cut
+    """Returns text wrapped to at most ``lines`` lines of ``width`` inches, with an ellipsis for what is cut
     off.
     """
     words = plain(text).split(" ")

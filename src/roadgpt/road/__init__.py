@@ -18,7 +18,6 @@ from roadgpt.road.world import CrossSection, Limits, Site, World
 
 if TYPE_CHECKING:
     from roadgpt.road.opendrive import ImportedRoad, read_opendrive
-    from roadgpt.road.source import read_blueprint, read_road
 
 __all__ = [
     "CrossSection",
@@ -36,22 +35,12 @@ __all__ = [
     "build",
     "in_short_segments",
     "moved",
-    "read_blueprint",
     "read_design",
     "read_opendrive",
-    "read_road",
 ]
-
-_LATER = {
-    "ImportedRoad": "opendrive",
-    "read_blueprint": "source",
-    "read_opendrive": "opendrive",
-    "read_road": "source",
-}
-"""Names whose modules are loaded when they are first used, because most commands read no road files."""
 
 
 def __getattr__(name: str) -> Any:
-    if name in _LATER:
-        return getattr(import_module(f"roadgpt.road.{_LATER[name]}"), name)
+    if name in ("ImportedRoad", "read_opendrive"):  # most commands read no OpenDRIVE files
+        return getattr(import_module("roadgpt.road.opendrive"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -103,9 +103,8 @@ def _solve(bend: _TurnSpec, entry: float, exit_: float) -> _TurnLayout:
 
 
 def _with_radius(bend: _TurnSpec, own: float, entry: float, exit_: float) -> _TurnLayout | None:
-    """Returns the layout whose arc has the curvature ``own``.
-
-    Returns None if the segment's distance is too short for it, or if the curvature at a joint is larger.
+    """Returns the layout whose arc has the curvature ``own``; None if the distance is too short for it, or if
+    the curvature at a joint is larger.
     """
     first = bend.ramp if entry < own - EQUAL else 0.0
     last = bend.ramp if exit_ < own - EQUAL else 0.0

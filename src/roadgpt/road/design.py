@@ -83,15 +83,11 @@ class Design(FrozenFields):
 
         Whole numbers become integers, as in the answers of the language models in the thesis.
         """
-        out: dict[str, Any] = {
+        return {
             "starting_point": [as_written(v) for v in self.starting_point],
             "theta": as_written(self.theta),
+            **written_segments(self.segments),
         }
-        for number, segment in enumerate(self.segments, 1):
-            out[f"road_segment{number}"] = {
-                key: as_written(value) for key, value in segment.model_dump(exclude_none=True).items()
-            }
-        return out
 
 
 def vertical_curves_of(segments: Sequence[Segment]) -> list[VerticalCurve]:
@@ -106,6 +102,17 @@ def vertical_curves_of(segments: Sequence[Segment]) -> list[VerticalCurve]:
 def as_written(value: Any) -> Any:
     """Returns a float that is a whole number as an integer, and any other value unchanged."""
     return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+def written_fields(value: BaseModel, exclude: set[str] | None = None) -> dict[str, Any]:
+    """Returns the fields that have a value, as in RoadGPT's JSON format."""
+    data = value.model_dump(exclude_none=True, exclude=exclude)
+    return {key: as_written(each) for key, each in data.items()}
+
+
+def written_segments(segments: Sequence[Segment]) -> dict[str, Any]:
+    """Returns segments as in RoadGPT's JSON format, numbered from 1."""
+    return {f"road_segment{number}": written_fields(each) for number, each in enumerate(segments, 1)}
 
 
 def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
@@ -214,10 +221,7 @@ def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
 
 
 def no_truths(what: str, data: Mapping[str, Any]) -> None:
-    """Raises UsageError if a value of ``data``, or an entry of a list in it, is a Boolean.
-
-    ``what`` names the data in the error message.
-    """
+    """Raises UsageError, which names the data, if a value or an entry of a list in it is a Boolean."""
     for name, value in data.items():
         values = value if isinstance(value, (list, tuple)) else (value,)
         if any(isinstance(each, bool) for each in values):

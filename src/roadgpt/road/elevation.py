@@ -33,15 +33,11 @@ class VerticalCurve(NamedTuple):
 def vertical_curves(
     distances: Sequence[float], grades: Sequence[float], radii: Sequence[float | None]
 ) -> list[VerticalCurve]:
-    """Returns the vertical curves where grades change, in order.
+    """Returns the vertical curves where grades change, in order, from the lengths in metres and the grades as
+    ratios of the segments, and the radii in metres of the curves at their starts; None for a default radius.
 
     A curve whose radius is given has the length that this radius requires. It is shortened where it would
     overlap its neighbour or extend beyond the road.
-
-    Args:
-        distances: Lengths of the segments in metres.
-        grades: Grades of the segments as ratios.
-        radii: Radius in metres of the vertical curve at the start of each segment; None for a default radius.
     """
     joints: list[tuple[int, float, float]] = []
     wants: list[float] = []

@@ -49,13 +49,9 @@ class Land:
 
     @classmethod
     def beneath(cls, line: Array, reach: float | None, floor: float) -> "Land":
-        """Returns the terrain beneath one or several roads.
-
-        Args:
-            line: Points ``(n, 3)`` in metres on the centre lines, at most ``LONGEST_STEP`` apart along each.
-            reach: Distance in metres from the lines; up to this distance, the terrain lies below the lines.
-                None for flat terrain below all points.
-            floor: The greatest height in metres of flat terrain; not used if ``reach`` is given.
+        """Returns the terrain beneath roads, which are given by points ``(n, 3)`` in metres, at most
+        ``LONGEST_STEP`` apart. Up to ``reach`` metres from them, it lies below them; with None, it is flat,
+        below all points and at most at height ``floor``.
         """
         low, high = line[:, :2].min(axis=0), line[:, :2].max(axis=0)
         low, high = np.minimum(low, (low + high - LEAST) / 2), np.maximum(high, (low + high + LEAST) / 2)
@@ -133,12 +129,8 @@ def _widened(x: Array, y: Array, heights: Array, away: Array) -> tuple[Array, Ar
     pad = len(far)
     mean = float(heights.mean())
     wide, wide_away = np.pad(heights, pad, mode="edge"), np.pad(away, pad, mode="edge")
-    ring = np.full(wide.shape, 0)
-    for k in range(pad):
-        inner = slice(pad - k, wide.shape[0] - pad + k), slice(pad - k, wide.shape[1] - pad + k)
-        is_out = np.ones(wide.shape, bool)
-        is_out[inner] = False
-        ring[is_out] = k + 1
+    rows, columns = (np.r_[pad:0:-1, np.zeros(n, int), 1 : pad + 1] for n in heights.shape)
+    ring = np.maximum.outer(rows, columns)
     share = np.array([0.0, 0.5, 0.9, 1.0, 1.0])[ring]
     wide = wide * (1 - share) + (mean - 4.0) * share
     return _stretched(x, far), _stretched(y, far), wide, wide_away

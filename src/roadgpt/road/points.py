@@ -39,13 +39,9 @@ MOST_ROWS = 200_000  # of a table
 
 
 def points_in(data: Any) -> list[Any] | None:
-    """Returns the road points in parsed JSON; None if there are none.
-
-    If a dictionary has several lists of points, such as control points and interpolated points, one of them
-    is returned: the list whose key comes first in ``KEYS``.
-
-    Raises:
-        UsageError: The data are a list of more than one road.
+    """Returns the road points in parsed JSON; None if there are none. Of several lists of points in a
+    dictionary, the one whose key comes first in ``KEYS`` is returned. Raises UsageError if there is more than
+    one road.
     """
     if isinstance(data, dict):
         for key in KEYS:
@@ -65,10 +61,7 @@ def _is_test(value: Any) -> bool:
 
 
 def plain(points: list[Any]) -> list[Any]:
-    """Returns points of any supported format as lists [x, y] or [x, y, z].
-
-    Points of an unknown format are returned unchanged.
-    """
+    """Returns points of any supported format as lists [x, y] or [x, y, z], and others unchanged."""
     if all(isinstance(point, dict) and {"x", "y"} <= point.keys() for point in points):
         points = sorted(points, key=_number)
         return [[point[name] for name in ("x", "y", "z") if name in point] for point in points]
@@ -85,10 +78,8 @@ def _number(point: dict[str, Any]) -> float:
 
 
 def points_of_table(text: str) -> list[list[float]]:
-    """Returns the points in the text of a .csv or .tsv table: [x, y] or [x, y, z] for each row.
-
-    Raises:
-        UsageError: The table has no columns for x and y, or a cell is not a number.
+    """Returns the points in the text of a .csv or .tsv table: [x, y] or [x, y, z] for each row. Raises
+    UsageError if it has no columns for x and y, or a cell is not a number.
     """
     lines = [line for line in text.lstrip("\ufeff").splitlines() if line.strip() and line.lstrip()[0] != "#"]
     if len(lines) > MOST_ROWS:
@@ -140,9 +131,8 @@ def _cell(row: list[str], column: int, number: int, delimiter: str | None) -> fl
 
 
 def _value(text: str, delimiter: str | None) -> float | None:
-    """Returns the finite number that a text states; None if the text is not a finite number.
-
-    A decimal comma is accepted if cells are separated by semicolons or tabs.
+    """Returns the finite number that a text states; None if it states none. Between semicolons or tabs, a
+    decimal comma is accepted.
     """
     try:
         value = float(text.replace(",", ".") if delimiter in (";", "\t") else text)

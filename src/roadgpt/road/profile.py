@@ -351,11 +351,10 @@ NEGATIVE = 1e-6  # m, rounding of cubics whose width ends at 0
 def as_cubics(width: Width) -> CubicProfile:
     """Returns a width as cubics from station 0 on; before its first cubic begins, the width is constant."""
     if not isinstance(width, CubicProfile):
-        return CubicProfile((0.0,), ((width, 0.0, 0.0, 0.0),))
+        return CubicProfile.constant(width)
     if width.stations[0] <= 0:
         return width
-    first = (width.coefficients[0][0], 0.0, 0.0, 0.0)
-    return CubicProfile((0.0, *width.stations), (first, *width.coefficients))
+    return CubicProfile.of_rows([(0.0, (width.coefficients[0][0], 0.0, 0.0, 0.0)), *width.rows])
 
 
 def _driving(lanes: Sequence[Lane]) -> Sequence[Lane]:

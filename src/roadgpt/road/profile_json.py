@@ -77,7 +77,7 @@ def _written(width: Width) -> float | list[list[float]]:
 
 
 def _rows(cubics: CubicProfile) -> list[list[float]]:
-    return [[s, *row] for s, row in zip(cubics.stations, cubics.coefficients, strict=True)]
+    return [[s, *row] for s, row in cubics.rows]
 
 
 def _lanes(rows: Any) -> tuple[Lane, ...]:

@@ -95,8 +95,7 @@ class Road:
         control = None if road_points is None else _checked(road_points)[:, :2]
         plan = SplineCurve.through(nodes)
         check_length(plan.length)
-        level = GradeProfile(0.0, (0.0, plan.length), (0.0, 0.0))
-        profile = SplineProfile(plan) if nodes.shape[1] == 3 else level
+        profile = SplineProfile(plan) if nodes.shape[1] == 3 else GradeProfile.level(plan.length)
         check_grade(profile, plan.length)
         return cls(plan, profile, nodes, control)
 
@@ -104,11 +103,9 @@ class Road:
         low, high = self.elevation.height(self.sample().s[[0, -1]])
         (x0, y0), (x1, y1) = self.plan.at(np.array([0.0, self.length]))
         ends = f"({x0:.1f}, {y0:.1f}, {low:.1f}) to ({x1:.1f}, {y1:.1f}, {high:.1f})"
-        return f"Road({self.length:.1f} m, from {ends}, {self._tightest()})"
-
-    def _tightest(self) -> str:
         sharpest = float(np.abs(self.sample().curvature).max())
-        return f"radius {1 / sharpest:.1f} m or more" if sharpest > 1 / LONGEST else "straight"
+        bends = f"radius {1 / sharpest:.1f} m or more" if sharpest > 1 / LONGEST else "straight"
+        return f"Road({self.length:.1f} m, from {ends}, {bends})"
 
     @property
     def length(self) -> float:
@@ -242,8 +239,7 @@ class Road:
             "pieces": [[p.length, p.k0, p.k1] for p in self.plan.pieces],
         }
         if isinstance(self.elevation, CubicProfile):
-            rows = zip(self.elevation.stations, self.elevation.coefficients, strict=True)
-            return {**out, "cubics": [[s, *cubic] for s, cubic in rows]}
+            return {**out, "cubics": [[s, *cubic] for s, cubic in self.elevation.rows]}
         assert isinstance(self.elevation, GradeProfile)
         return {
             **out,
@@ -299,30 +295,21 @@ def _profile(data: Mapping[str, Any]) -> tuple[ElevationProfile, list[float]]:
     """Returns the elevation that ``to_json`` wrote, and all numbers in it."""
     if "cubics" in data:
         rows = [(float(s), (float(a), float(b), float(c), float(d))) for s, a, b, c, d in data["cubics"]]
-        cubics = CubicProfile(tuple(s for s, _ in rows), tuple(cubic for _, cubic in rows))
-        return cubics, [v for s, cubic in rows for v in (s, *cubic)]
+        return CubicProfile.of_rows(rows), [v for s, cubic in rows for v in (s, *cubic)]
     height = float(data["height"])
     stations, grades = tuple(map(float, data["stations"])), tuple(map(float, data["grades"]))
     return GradeProfile(height, stations, grades), [height, *stations, *grades]
 
 
 def check_length(length: float) -> None:
-    """Checks that a road has a usable length.
-
-    Raises:
-        UsageError: The length in plan is below 1 mm or above 50 km.
-    """
+    """Raises UsageError if the length in plan of a road is below 1 mm or above 50 km."""
     if not SHORTEST <= length <= LONGEST:
         longest = f"give one of up to {LONGEST / 1000:g} km"
         raise UsageError(f"the road is {length:.7g} m long in plan; {longest}")
 
 
 def check_grade(profile: ElevationProfile, length: float) -> None:
-    """Checks that a road nowhere climbs or falls more than ten metres per metre in plan.
-
-    Raises:
-        UsageError: The road is steeper than this at some station.
-    """
+    """Raises UsageError if a road somewhere climbs or falls more than ten metres per metre in plan."""
     with np.errstate(all="ignore"):
         steepest = float(np.abs(profile.grade(np.linspace(0.0, length, LOOKED_AT))).max())
     if not steepest <= STEEPEST:

@@ -7,9 +7,8 @@ import math
 import numpy as np
 
 from roadgpt.geometry import wrap_angle
-from roadgpt.road.builder import build
+from roadgpt.road.builder import STUB, build
 from roadgpt.road.design import MAX_SEGMENTS, Design, Direction, Segment
-from roadgpt.road.nodes import STUB
 
 GROWS = 2  # segments with a reduced grade after the stub
 HOP = 2.0  # m; a spline through points this dense keeps a radius of 14.8 m above SBFT's least, 14.33 m

@@ -120,16 +120,10 @@ def lane_speed(
     """Returns the speeds in m/s of a car that starts from rest and drives in the middle of its lane.
 
     The car slows down for bends but not for crests, so that the check for abrupt crests is made at full
-    speed.
-
-    Args:
-        curvature: Curvature of the centre line in 1/m, ``(n,)``.
-        grade: Grade as a ratio, ``(n,)`` or one value for all stations.
-        step: Distance between stations in metres.
-        offset: Offset of the middle of the lane in metres to the left of the centre line, ``(n,)``.
-        limits: The limits of acceleration, speed and power that the driver respects.
-        superelevation: Superelevation in radians, positive where the surface falls to the right, ``(n,)`` or
-            one value for all stations.
+    speed. The centre line is given at stations that are ``step`` metres apart by its curvature in 1/m,
+    ``(n,)``, its grade as a ratio and its superelevation in radians, positive where the surface falls to the
+    right; the middle of the lane by its offset in metres to the left. All but the curvature may be one value
+    for all stations.
     """
     bend = np.asarray(curvature, float)
     angle = np.broadcast_to(np.asarray(superelevation, float), bend.shape)
@@ -143,15 +137,10 @@ def lane_speed(
 def plan_speed(
     line: PathGeometry, limits: DrivingLimits, highest: Sequence[float] | None = None
 ) -> list[float]:
-    """Returns the speed in m/s at every station of the path.
+    """Returns the speed in m/s at every station of the path; ``highest`` limits it further at each station.
 
     The wheel load takes slopes, crests, dips and superelevation into account. Per unit of mass and without
     superelevation, it is ``g cos a + v^2 k cos(a)^3``, where a is the slope angle and k is ``line.crest``.
-
-    Args:
-        line: The path.
-        limits: The limits that the driver respects.
-        highest: A further limit of the speed in m/s for each station; None for no further limits.
     """
     slopes = list(map(_inclination, line.grade, line.superelevation, line.curvature))
     top = list(map(_corner_speed, slopes, line.curvature, line.crest, repeat(limits)))
@@ -182,9 +171,8 @@ def _inclination(grade: float, superelevation: float, curvature: float) -> _Incl
 
 
 def _corner_speed(slope: _Inclination, curvature: float, crest: float, limits: DrivingLimits) -> float:
-    """Returns the highest speed in m/s at one station.
-
-    It respects the speed limit, the lateral limit in a bend, and the least wheel load on a crest.
+    """Returns the highest speed in m/s at one station within the speed limit, the lateral limit and the least
+    wheel load on a crest.
     """
     level, cube, cos, sin = slope
     crest *= cube

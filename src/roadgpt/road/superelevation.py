@@ -29,16 +29,12 @@ Knots = list[tuple[float, float]]
 
 
 def superelevation(plan: PlanCurve, reach: float, speed: float, ratio: float | None = None) -> CubicProfile:
-    """Returns the superelevation in radians as a function of the station.
+    """Returns the superelevation in radians as a function of the station: negative in left bends, because the
+    surface falls to the inside.
 
-    The surface falls to the inside of each bend, so the superelevation is negative in left bends.
-
-    Args:
-        plan: The centre line.
-        reach: Distance in metres from the centre line to the farther edge of the carriageway.
-        speed: Design speed in m/s.
-        ratio: The superelevation of every bend as a ratio; None for the value that CD 109 gives for the
-            radius of the bend.
+    ``reach`` is the distance in metres from the centre line to the farther edge of the carriageway, ``speed``
+    the design speed in m/s, ``ratio`` the superelevation of every bend; None for the value that CD 109 gives
+    for the radius of the bend.
     """
     if isinstance(plan, PieceCurve):
         knots = _of_pieces(plan, reach, speed, ratio)
@@ -77,9 +73,8 @@ def _run_in(
 
 
 def superelevation_for(curvature: Array, speed: float, ratio: float | None = None) -> Array:
-    """Returns the superelevation in radians for curvatures in 1/m (positive to the left), without a run-in.
-
-    ``speed`` and ``ratio`` have the same meaning as in ``superelevation``.
+    """Returns the superelevation in radians for curvatures in 1/m (positive to the left), without a run-in;
+    for ``speed`` and ``ratio`` see ``superelevation``.
     """
     bend = np.abs(curvature)
     if ratio is None:
@@ -92,12 +87,7 @@ def superelevation_for(curvature: Array, speed: float, ratio: float | None = Non
 def _smoothed(plan: PlanCurve, s: Array, speed: float, ratio: float | None) -> Array:
     """Returns the superelevation in radians at each station, averaged over ``RUN_IN`` metres around it."""
     fine = np.linspace(0.0, plan.length, max(2, math.ceil(plan.length)) + 1)
-    total = np.r_[
-        0.0, np.cumsum(np.diff(fine) * _between(superelevation_for(plan.curvature(fine), speed, ratio)))
-    ]
+    angle = superelevation_for(plan.curvature(fine), speed, ratio)
+    total = np.r_[0.0, np.cumsum(np.diff(fine) * ((angle[1:] + angle[:-1]) / 2))]
     low, high = np.clip(s - RUN_IN / 2, 0.0, plan.length), np.clip(s + RUN_IN / 2, 0.0, plan.length)
     return np.asarray((np.interp(high, fine, total) - np.interp(low, fine, total)) / (high - low))
-
-
-def _between(values: Array) -> Array:
-    return np.asarray((values[1:] + values[:-1]) / 2)

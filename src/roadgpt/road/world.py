@@ -9,10 +9,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_serializer, model_validator
+from pydantic import AfterValidator, Field, model_serializer, model_validator
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
+from roadgpt.road.design import FrozenFields
 from roadgpt.road.profile import Marking, Profile
 from roadgpt.road.road import Road
 from roadgpt.road.superelevation import superelevation
@@ -55,10 +56,8 @@ def bank_in(value: str | float, most: float = STEEPEST, unit: str = "a ratio") -
 Lanes = Annotated[str, AfterValidator(lanes_in)]
 
 
-class Site(BaseModel):
+class Site(FrozenFields):
     """The map on which roads are built: its size, its ground, and the friction of its asphalt."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
     """Side length of the square map in metres. One corner of the map is at (0, 0)."""
@@ -72,13 +71,11 @@ class Site(BaseModel):
     """Height in metres of the flat ground of the simulator's map."""
 
 
-class CrossSection(BaseModel):
+class CrossSection(FrozenFields):
     """The lanes, shoulders and banked bends of roads that have no Profile of their own.
 
     A CrossSection is the same for roads of all lengths; ``profile`` makes the Profile of one road from it.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     lanes: Lanes = "1+1"
     """Number of lanes along the road, and number of oncoming lanes, such as "2+1".
@@ -136,13 +133,11 @@ tighter than its turn.
 """
 
 
-class Limits(BaseModel):
+class Limits(FrozenFields):
     """Defines what the validity rules allow, and when a test fails.
 
     Most defaults are those of the RoadGPT thesis.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     speed_limit: Positive = 70 / 3.6
     """Speed limit in m/s. The default is the competition's 70 km/h."""
@@ -207,15 +202,13 @@ def _in_parts(values: Mapping[str, Any]) -> dict[str, Any]:
     return out | flat
 
 
-class World(BaseModel):
+class World(FrozenFields):
     """Everything that the roads of a run or a campaign share: a Site, a CrossSection and Limits.
 
     Files have the fields of all three in one flat table, and ``World.model_validate`` reads such a table.
     ``World(friction=0.6)`` and ``world.friction``, as written for earlier versions, still work, but give a
     DeprecationWarning.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     site: Site = Site()
     section: CrossSection = CrossSection()

@@ -12,33 +12,29 @@ import traceback
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from roadgpt import plugins
 from roadgpt.brief import NoRoomError, read
 from roadgpt.brief.model import Brief
 from roadgpt.chat import Meter, ReplyError, counting
-from roadgpt.check import Finding, inspect, rules_of
+from roadgpt.check import inspect, rules_of
 from roadgpt.design import check_designer, designer_of
-from roadgpt.design.report import DesignReport
 from roadgpt.design.road_search import fits
 from roadgpt.design.room import world_for
-from roadgpt.drive import refuse_ignored, simulate
+from roadgpt.drive import Drive, refuse_ignored, simulate
 from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
 from roadgpt.network import made_from, refuse_without_route
 from roadgpt.road import Design, Geometry, Road, World, in_short_segments
 from roadgpt.run.card import seed_in
 from roadgpt.run.folder import Draw, read_run, write_run
-from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup
-from roadgpt.run.outcome_text import outcome_sentence
-from roadgpt.run.seeds import seed_of
-from roadgpt.run.versions import versions_of
+from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup, seed_of, versions_of
 from roadgpt.stopping import look
-from roadgpt.verdict import judge
+from roadgpt.verdict import Verdict, judge
 
 if TYPE_CHECKING:
-    from roadgpt.network import AnyDesign, Blueprint
+    from roadgpt.network import Blueprint
 
 __all__ = [
     "Draw",
@@ -60,6 +56,12 @@ __all__ = [
 USUAL = World()
 PLAIN = Setup()
 MOST_ROUNDS = 3  # drafts of one road; a designer whose last draft still breaks a rule will not improve
+WENT_ON = {
+    "goal": "then came to the goal",
+    "fell": "then fell",
+    "stuck": "then got stuck",
+    "timeout": "then ran out of time",
+}
 
 
 def perform(
@@ -101,21 +103,10 @@ def perform(
     check_parts(setup, request.world)
     own = seed_of(seed, index)
     with counting(meter, f"road {index}"):
-        made = _designed(brief, request, earlier, own)
+        run = _designed(Run(request, index, own, brief=brief), brief, earlier)
     designing = time.perf_counter() - begun
     spent = meter.spent.since(before)
-    run = Run(
-        request,
-        index,
-        own,
-        brief=brief,
-        design=made.design,
-        road=made.road,
-        findings=made.findings,
-        rounds=made.rounds,
-        designing=made.report,
-        spent=spent if spent.calls else None,
-    )
+    run = replace(run, spent=spent if spent.calls else None)
     return _driven(replace(run, versions=versions_of(setup), seconds=Seconds(designing)))
 
 
@@ -198,31 +189,20 @@ def check_parts(setup: Setup, world: World = USUAL) -> None:
         driver_of(setup.driver)
 
 
-class _Made(NamedTuple):
-    """A draft, its road, and the findings: the rules that the road breaks."""
-
-    design: "AnyDesign"
-    road: Road
-    findings: tuple[Finding, ...]
-    rounds: int
-    report: DesignReport | None
-
-
-def _designed(brief: Brief, request: Request, earlier: Sequence[Design], seed: int) -> _Made:
-    """Returns the first draft that breaks no rule; if every draft breaks one, the last draft."""
-    world, setup = request.world, request.setup
+def _designed(run: Run, brief: Brief, earlier: Sequence[Design]) -> Run:
+    """Returns the Run with the first draft that breaks no rule; if every draft breaks one, the last draft."""
+    world, setup = run.world, run.request.setup
     designer = designer_of(setup.designer, setup.chat)
     check_designer(designer, brief)
     own_geometry: Geometry | None = getattr(designer, "geometry", None)
-    kept: _Made | None = None
     notes: tuple[str, ...] = ()
     for attempt in range(MOST_ROUNDS if getattr(designer, "redrafts", True) else 1):
         look()
         try:
             # another seed each time, so that a designer that does not read notes draws anew
-            design = designer.draft(brief, world, notes, earlier, seed + attempt)
+            design = designer.draft(brief, world, notes, earlier, run.seed + attempt)
         except (DesignError, ReplyError):
-            if kept is None:
+            if run.road is None:
                 raise
             break
         if setup.geometry == "spline" and own_geometry is None and isinstance(design, Design):
@@ -230,12 +210,18 @@ def _designed(brief: Brief, request: Request, earlier: Sequence[Design], seed: i
             design = in_short_segments(design)
         road = made_from(design, world, own_geometry or setup.geometry)
         findings = inspect(road, brief, world, setup.rules)
-        kept = _Made(design, road, findings, attempt + 1, getattr(designer, "report", None))
+        run = replace(
+            run,
+            design=design,
+            road=road,
+            findings=findings,
+            rounds=attempt + 1,
+            designing=getattr(designer, "report", None),
+        )
         if not findings:
             break
         notes = tuple(finding.sentence for finding in findings)
-    assert kept is not None
-    return kept
+    return run
 
 
 def _driven(run: Run, despite_findings: bool = False) -> Run:
@@ -267,13 +253,18 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
             is_lost=isinstance(error, SimulatorError),
             seconds=replace(run.seconds, drive=time.perf_counter() - begun),
         )
-    driving = replace(run.seconds, drive=time.perf_counter() - begun)
-    ended: Outcome = verdict.outcome
     return replace(
         run,
-        outcome=ended,
-        description=outcome_sentence(verdict, drive),
+        outcome=verdict.outcome,
+        description=_sentence(verdict, drive),
         drive=drive,
         verdict=verdict,
-        seconds=driving,
+        seconds=replace(run.seconds, drive=time.perf_counter() - begun),
     )
+
+
+def _sentence(verdict: Verdict, drive: Drive) -> str:
+    """Returns the verdict's sentence, and how the drive ended if the car drove on outside its lane."""
+    if verdict.cause != "out of lane" or drive.ended not in WENT_ON:
+        return verdict.description
+    return f"{verdict.description}, {WENT_ON[drive.ended]} after {drive['s'][-1]:.0f} m"

@@ -11,61 +11,40 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from roadgpt.errors import UsageError, explained
-from roadgpt.network import MapDesign, NetworkDesign, read_blueprint
-from roadgpt.road import Design, World
+from roadgpt.network import read_blueprint
+from roadgpt.road import Design, Road, World
 from roadgpt.run.atomic import json_text, to_bytes
 from roadgpt.run.folder import EDIT_CARD, Draw, write_run
 from roadgpt.run.folder_names import new_folder
-from roadgpt.run.model import Run, Setup
+from roadgpt.run.model import Request, Run
 
 BEFORE = "before"
 
 
-@dataclass(frozen=True)
-class Original:
-    """The Design to change, with the World, Setup and seed of its Run; the seed is 0 if there is no Run."""
-
-    design: Design
-    world: World
-    setup: Setup
-    seed: int
-    path: str
-    remarks: tuple[str, ...] = ()
-    """Notes on adjustments that were made when the road's file was read."""
-
-
-def original_in(path: str, world: World, setup: Setup) -> Original:
-    """Reads the Design in a file, and returns it as the Original to change.
+def original_of(path: str, run: Run | None, world: World) -> tuple[Run, Design, tuple[str, ...]]:
+    """Returns the Run to change, its Design, and notes on adjustments made when a file was read.
 
     Args:
-        path: the file.
-        world: the World for the Design.
-        setup: the Setup for the Design.
+        path: where the Run or the road file is.
+        run: the Run; None for the file of a design, which becomes a Run with the usual Setup and the seed 0.
+        world: the World for the design in a file.
 
     Raises:
-        UsageError: there is no such file, or it holds points or a road with junctions instead of a Design.
+        UsageError: there is no such file, or the road has no Design, only points, or junctions.
     """
-    if not Path(path).exists():
-        raise UsageError(f"there is no {path}; give the folder of a run, or the file of a road")
-    blueprint, remarks = read_blueprint(path)
-    if isinstance(blueprint, (NetworkDesign, MapDesign)):
-        raise UsageError(f"{path} has junctions; only a road without junctions can be changed so far")
-    if not isinstance(blueprint, Design):
-        raise UsageError(f"{path} holds points and no design; only a design with segments can be changed")
-    return Original(blueprint, world, setup, 0, path, remarks)
-
-
-def original_of(run: Run, path: str) -> Original:
-    """Returns the Design of a Run as the Original to change; ``path`` is the path of the Run.
-
-    Raises:
-        UsageError: the Run has no design, or its design has junctions.
-    """
+    remarks: tuple[str, ...] = ()
+    if run is None:
+        if not Path(path).exists():
+            raise UsageError(f"there is no {path}; give the folder of a run, or the file of a road")
+        blueprint, remarks = read_blueprint(path)
+        if isinstance(blueprint, Road):
+            raise UsageError(f"{path} holds points and no design; only a design with segments can be changed")
+        run = Run(Request(world=world), 1, 0, design=blueprint)
     if run.design is None:
         raise UsageError(f"{path} was made from points and has no design; only a design can be changed")
-    if isinstance(run.design, (NetworkDesign, MapDesign)):
+    if not isinstance(run.design, Design):
         raise UsageError(f"{path} has junctions; only a road without junctions can be changed so far")
-    return Original(run.design, run.world, run.request.setup, run.seed, path)
+    return run, run.design, remarks
 
 
 def reject_used(out: Path) -> None:
@@ -112,16 +91,10 @@ class _Beside:
 def write_edit(
     run: Run, before: Run, words: str, changes: Sequence[str], source: str, folder: Path, draw: Draw | None
 ) -> Path:
-    """Writes a changed road; returns the folder of its Run.
+    """Writes a changed road into an empty folder, and returns the folder of its Run.
 
-    Args:
-        run: the Run of the changed road.
-        before: the Run of the original road; this Run has no drive.
-        words: the change request in words.
-        changes: sentences that describe the changes made.
-        source: the path of the original road.
-        folder: an empty folder.
-        draw: draws pictures of the original and of the changed road; None for no pictures.
+    ``before`` is the Run of the original road, without a drive, and ``source`` is its path. ``draw``
+    draws both roads; None for no pictures.
     """
     card = {
         "request": words,
@@ -132,6 +105,3 @@ def write_edit(
     was = replace(before, source=f"before: {words}")
     beside = _Beside(to_bytes(json_text(card)), was, draw)
     return write_run(replace(run, index=1, source=words), folder, beside)
-
-
-__all__ = ["Original", "folder_for", "original_in", "original_of", "reject_used", "write_edit"]

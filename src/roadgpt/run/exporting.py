@@ -22,12 +22,9 @@ def export(run: Run, folder: Path | str, formats: Sequence[str], name: str = NAM
     """
     if run.road is None:
         raise ExportError(f"run {run.index} has no road to export: {run.description}")
-    return save(run.road, folder, formats, run.world, name, poses_of(run))
-
-
-def poses_of(run: Run) -> Poses | None:
-    """Returns the poses of the car during the drive; None without a drive of at least two time steps."""
-    return Poses.of(run.drive.columns) if run.drive is not None and len(run.drive) > 1 else None
+    is_driven = run.drive is not None and len(run.drive) > 1
+    poses = Poses.of(run.drive.columns) if run.drive is not None and is_driven else None
+    return save(run.road, folder, formats, run.world, name, poses)
 
 
 @dataclass(frozen=True)

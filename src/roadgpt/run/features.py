@@ -13,7 +13,7 @@ kept: DIR_COV divides by the 26 edges of the bins, and computes angles by arccos
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from roadgpt.check.sbft import radii
 from roadgpt.run.execution import ExecutionRecord
@@ -31,18 +31,21 @@ def features_of(points: ArrayLike, records: Sequence[ExecutionRecord] = ()) -> d
             the drive are left out.
     """
     plan = np.asarray(points, float)[:, :2]
-    found = {"MAX_CURV": max_curvature(plan), "DIR_COV": direction_coverage(plan)}
-    found = {name: round(value, 6) for name, value in found.items()}
+    curvature = float((1 / radii(plan)).max(initial=0.0))  # 0 for a straight road or fewer than six points
+    step = np.diff(plan, axis=0)
+    length = np.sqrt((step**2).sum(axis=1))
+    moves = length > 0
+    angle = np.degrees(np.arccos(np.clip(step[moves, 1] / length[moves], -1, 1)))
+    edges = np.linspace(0.0, 360.0, BINS + 1)
+    coverage = len(np.unique(np.digitize(angle, edges))) / len(edges)
+    found = {"MAX_CURV": round(curvature, 6), "DIR_COV": round(coverage, 6)}
     steering = [record.steering for record in records]
     return found | features_of_drive(steering, [record.oob_distance for record in records])
 
 
 def features_of_drive(steering: Sequence[float], distances: Sequence[float]) -> dict[str, float]:
-    """Returns the features of a drive, by name; an empty dictionary for fewer than three records.
-
-    Args:
-        steering: angle of the steering wheel in degrees at each record.
-        distances: ``oob_distance`` in metres at each record.
+    """Returns the features of a drive by name, from the angle of the steering wheel in degrees and
+    ``oob_distance`` in metres at each record; none for fewer than three records.
     """
     if len(steering) < FEWEST_RECORDS:
         return {}
@@ -52,21 +55,3 @@ def features_of_drive(steering: Sequence[float], distances: Sequence[float]) -> 
         "MAX_LP": float(np.max(distances)),
     }
     return {name: round(value, 6) for name, value in found.items()}
-
-
-def max_curvature(plan: NDArray[np.float64]) -> float:
-    """Returns the largest curvature in 1/m of a line of points ``(n, 2)``; 0 if the points are collinear or
-    fewer than six.
-    """
-    return float((1 / radii(plan)).max(initial=0.0))
-
-
-def direction_coverage(plan: NDArray[np.float64], bins: int = BINS) -> float:
-    """Returns the number of bins that contain the direction of a step between points ``(n, 2)``, divided by
-    the number of bin edges, ``bins`` + 1."""
-    step = np.diff(plan, axis=0)
-    length = np.sqrt((step**2).sum(axis=1))
-    moves = length > 0
-    angle = np.degrees(np.arccos(np.clip(step[moves, 1] / length[moves], -1, 1)))
-    edges = np.linspace(0.0, 360.0, bins + 1)
-    return len(np.unique(np.digitize(angle, edges))) / len(edges)

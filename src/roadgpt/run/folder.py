@@ -54,18 +54,16 @@ def run_folder(campaign: Path, index: int) -> Path:
     return campaign / RUNS / f"{index:04d}"
 
 
-def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | None = None) -> Path:
+def write_run(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
     """Writes a Run into a campaign's folder, its test file last; returns the Run's own folder.
 
     Args:
         run: the Run.
         campaign: the folder of the campaign.
         draw: draws pictures and saves them in the folder; None for no pictures.
-        test: the content of the file ``test.NNNN.json``; None for the content that ``sbft_json.test_text``
-            returns.
     """
     folder = write_run_folder(run, campaign, draw)
-    write_whole(campaign / test_name(run.index), test_text(run) if test is None else test)
+    write_whole(campaign / test_name(run.index), test_text(run))
     return folder
 
 
@@ -213,22 +211,17 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
         trace=read_text(trace, LARGEST, "a file of a run") if trace.is_file() else "",
         seconds=strictly(Seconds, value("seconds.json") or {}),
     )
-    return _completed(found)
+    judged = found.verdict
+    if found.road is None or found.drive is None or judged is None or judged.beyond is not None:
+        return found
+    # an earlier version of RoadGPT, which did not compute this value, wrote the Run
+    return replace(found, verdict=replace(judged, beyond=most_beyond(found.road, found.drive, found.world)))
 
 
 def _change(card: Any) -> str:
     """Returns the change request that a road was made from; an empty string for any other road."""
     words = card.get("request") if isinstance(card, dict) else None
     return words if isinstance(words, str) else ""
-
-
-def _completed(run: Run) -> Run:
-    """Returns the Run with ``verdict.beyond`` computed if an earlier version of RoadGPT, which did not
-    compute this value, wrote the Run; otherwise returns the Run unchanged."""
-    road, drive, verdict = run.road, run.drive, run.verdict
-    if road is None or drive is None or verdict is None or verdict.beyond is not None:
-        return run
-    return replace(run, verdict=replace(verdict, beyond=most_beyond(road, drive, run.world)))
 
 
 @dataclass(frozen=True)

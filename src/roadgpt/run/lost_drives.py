@@ -30,10 +30,7 @@ class LostDrives(Generic[Key]):
 
     @staticmethod
     def given_up(reason: str, again: str) -> GivenUpError:
-        """Returns the error to raise when RoadGPT gives up on the simulator.
-
-        Args:
-            reason: the simulator's error message for the last drive.
-            again: the part of the message that tells the user how to drive the remaining roads later.
+        """Returns the error to raise when RoadGPT gives up on the simulator: its error message for the last
+        drive, and how the user can drive the remaining roads later (``again``).
         """
         return GivenUpError(f"the simulator failed {MOST} times in a row and is given up ({reason})", again)

@@ -1,14 +1,23 @@
-"""Defines the Run, which holds everything about one road from words to verdict, and the Run's Request."""
+"""Defines the Run, which holds everything about one road from words to verdict, and the Run's Request, seed
+and versions.
+"""
 
+import platform
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Literal, Self
 
+import numpy as np
+
+from roadgpt import __version__
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import permission
+from roadgpt.errors import UsageError
 from roadgpt.road import Design, Geometry, Road, World
 
 if TYPE_CHECKING:
@@ -18,6 +27,9 @@ if TYPE_CHECKING:
 
 Outcome = Literal["PASS", "FAIL", "INVALID", "ERROR", "VALID"]
 """The outcome of a Run. VALID: the road breaks no rule and was not driven."""
+SEED_BITS = 53  # so that a seed survives every JSON reader
+DESIGNING = ("numpy", "scipy", "pydantic")
+DRIVING = ("mujoco-core", "numba")
 
 
 class Setup(Frozen):
@@ -171,3 +183,44 @@ class Run:
     def length(self) -> float:
         """Length of the road in plan, metres; 0 if there is no road."""
         return self.road.length if self.road else 0.0
+
+
+def seed_of(seed: int, index: int) -> int:
+    """Returns the seed of road ``index`` (from 1) of the campaign with seed ``seed``.
+
+    The seed comes from numpy's SeedSequence, so that campaigns with consecutive seeds, such as 1 and 2, have
+    no road in common. numpy guarantees that SeedSequence gives the same numbers in all versions.
+
+    Raises:
+        UsageError: the campaign's seed is negative.
+    """
+    if seed < 0:
+        raise UsageError(f"{seed} is no seed; give a whole number from 0 up")
+    drawn = np.random.SeedSequence([seed, index]).generate_state(1, np.uint64)[0]
+    return int(drawn) >> (64 - SEED_BITS)
+
+
+def versions_of(setup: Setup) -> dict[str, str]:
+    """Returns the versions of RoadGPT, Python and the libraries that affect the results, and the platform.
+
+    With BeamNG, they include its settings, and its Python client, whose version determines that of BeamNG.
+    """
+    found = {
+        "roadgpt": __version__,
+        "python": platform.python_version(),
+        "machine": f"{platform.system()} {platform.machine()}",
+    }
+    found |= {name: _version(name) for name in DESIGNING + (DRIVING if setup.drives else ())}
+    if setup.drives and setup.simulator == "beamng":
+        from roadgpt.drive.simulators.beamng.settings import BeamngSettings
+
+        found |= {"beamngpy": _version("beamngpy"), "beamng": BeamngSettings.of().summary()}
+    return found
+
+
+@cache
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "not installed"

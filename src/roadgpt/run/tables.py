@@ -5,15 +5,18 @@ oob_stats.csv                failures to the left and to the right, and the spar
 experiment_description.csv   the settings: the competition's columns first, then RoadGPT's
 """
 
+import math
 from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from roadgpt.run.atomic import csv_text, write_whole
 from roadgpt.run.execution import records_of
 from roadgpt.run.model import Outcome, Request, Run, Seconds
-from roadgpt.run.sparseness import Departure, Sparseness, departure
+
+if TYPE_CHECKING:
+    from roadgpt.run.sparseness import Departure, Sparseness  # only failures need it
 
 TABLES = ("generation_stats.csv", "oob_stats.csv")
 DESCRIPTION = "experiment_description.csv"
@@ -36,7 +39,7 @@ class TallyEntry(NamedTuple):
     seconds: Seconds
     simulated: float
     """Duration of the drive, seconds of simulated time; 0 if the road was not driven."""
-    departure: Departure | None
+    departure: "Departure | None"
     """Where the car left its lane; None if it stayed in its lane or if the test did not fail."""
 
     @classmethod
@@ -44,6 +47,8 @@ class TallyEntry(NamedTuple):
         """Returns the values of a Run that the tables count."""
         found = None
         if run.outcome == "FAIL" and run.road is not None and run.drive is not None:
+            from roadgpt.run.sparseness import departure
+
             found = departure(run.road.control_points(), records_of(run.road, run.drive, run.world))
         simulated = run.drive.duration if run.drive is not None else 0.0
         return cls(run.index, run.outcome, run.is_valid, run.road is not None, run.seconds, simulated, found)
@@ -58,7 +63,7 @@ class Tally:
         self.valid = 0
         self.with_road = 0
         self.designing = self.driving = self.simulated = 0.0
-        self.spread = Sparseness()
+        self.spread: Sparseness | None = None
 
     def add(self, entry: TallyEntry) -> None:
         """Adds a Run to the counts."""
@@ -71,6 +76,9 @@ class Tally:
         if entry.departure is not None:
             self.sides[entry.departure.side] += 1
             if entry.departure.segment is not None:
+                from roadgpt.run.sparseness import Sparseness
+
+                self.spread = self.spread or Sparseness()
                 self.spread.add(entry.number, entry.departure.segment)
 
     def write(self, folder: Path) -> None:
@@ -97,8 +105,8 @@ class Tally:
             "total_oob": self.sides.total(),
             "left_oob": self.sides["left"],
             "right_oob": self.sides["right"],
-            "avg_sparseness": f"{self.spread.mean:.3f}",
-            "stdev_sparseness": f"{self.spread.deviation:3.0f}",
+            "avg_sparseness": f"{self.spread.mean if self.spread else math.nan:.3f}",
+            "stdev_sparseness": f"{self.spread.deviation if self.spread else math.nan:3.0f}",
         }
 
 
@@ -116,13 +124,9 @@ def write_settings(
 ) -> None:
     """Writes experiment_description.csv: the competition's columns in their order, then RoadGPT's.
 
-    Args:
-        request: the Request whose simulator and world are written.
-        theirs: further values for the competition's columns, by column name. Simulator, map size, tolerance
-            and speed limit come from ``request`` unless given here; a column without a value stays empty.
-        ours: values for RoadGPT's own columns, by column name; they are written before the fields of the
-            world.
-        folder: where the file is written.
+    ``theirs`` has values for the competition's columns; simulator, map size, tolerance and speed limit come
+    from the Request unless given there, and a column without a value stays empty. ``ours`` has values for
+    RoadGPT's own columns, which are written before the fields of the world.
     """
     world = request.world
     known = {

@@ -19,7 +19,7 @@ from roadgpt.check.sbft import keeps_clear
 from roadgpt.children import private_streams
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.geometry import interpolate
-from roadgpt.sbft.json_lines import Message, received, send
+from roadgpt.sbft.client import Message, received, send
 
 LONGEST = 50_000.0  # m of control polyline; the spline through a longer one would fill the memory
 
@@ -59,30 +59,18 @@ def nodes(points: Any) -> Points:
 
 
 def left_lane(points: Any, records: Any, before: float, after: float) -> Message | None:
-    """Returns where a car left its lane, as the competition's analysis finds it; None if the car did not
-    leave its lane.
-
-    The result is a dictionary of the fields of ``sparseness.Departure``; the arguments are those of
-    ``sparseness.departure``.
-    """
+    """Returns the fields of the Departure that ``sparseness.departure`` finds; None if the car did not leave
+    its lane."""
     from roadgpt.run.execution import ExecutionRecord
     from roadgpt.run.sparseness import departure
 
     found = departure(points, [ExecutionRecord(*record) for record in records], before, after)
-    if found is None:
-        return None
-    parts = {"before": found.before, "after": found.after}
-    listed = {name: None if part is None else part.tolist() for name, part in parts.items()}
-    return {"side": found.side, "first": found.first, "number": found.number, **listed}
+    return None if found is None else found._asdict()
 
 
 def spread(segments: Any) -> tuple[float, float]:
-    """Returns the mean and the standard deviation of sparseness, the competition's measure of how much the
-    road segments around the failures differ.
-
-    Args:
-        segments: points ``(n, 2)`` of the road around each failure, in the order of the tests.
-    """
+    """Returns the mean and the standard deviation of the competition's sparseness of segments: points
+    ``(n, 2)`` of the road around each failure, in the order of the tests."""
     from roadgpt.run.sparseness import Sparseness
 
     found = Sparseness()
@@ -96,12 +84,8 @@ _ASKED: list[tuple[Any, Iterator[Any]]] = []
 
 
 def begin(map_size: int | None = None, **asked: Any) -> None:
-    """Starts a sequence of roads for a description; ``another`` then returns the roads.
-
-    Args:
-        map_size: side length of the square map, metres; None: 200 m.
-        asked: attributes of RoadGPTTestGenerator, such as the description; environment variables override
-            them.
+    """Starts a sequence of roads for a description; ``another`` then returns the roads. ``asked`` are
+    attributes of RoadGPTTestGenerator, such as the description.
 
     Raises:
         UsageError: a setting is unknown or invalid.
@@ -112,8 +96,7 @@ def begin(map_size: int | None = None, **asked: Any) -> None:
         raise UsageError(
             f"RoadGPT knows no {', '.join(sorted(unknown))}; are client and RoadGPT of one version?"
         )
-    made = type("Asked", (RoadGPTTestGenerator,), asked)
-    generator = made(None, map_size)
+    generator = type("Asked", (RoadGPTTestGenerator,), asked)(None, map_size)
     _ASKED[:] = [(generator, generator.roads())]
 
 
@@ -135,9 +118,8 @@ def another() -> Points:
 def tell(
     outcome: str, steering: list[float], distances: list[float], outside: list[float] | None = None
 ) -> None:
-    """Reports the outcome of the last road that ``another`` returned, as ``tell_columns`` of
-    RoadGPTTestGenerator does. Has no effect before ``begin``.
-    """
+    """Reports the outcome of the last road, as ``tell_columns`` of RoadGPTTestGenerator does. Has no effect
+    before ``begin``."""
     if _ASKED:
         _ASKED[0][0].tell_columns(outcome, steering, distances, outside)
 

@@ -16,9 +16,9 @@ from roadgpt.errors import PartError, RoadGPTError, UsageError
 from roadgpt.road import Road, Site, World
 from roadgpt.run import Draw, Request, Run, Seconds, Setup, check_parts, prove
 from roadgpt.run.lost_drives import LostDrives
+from roadgpt.sbft.client import Message
 from roadgpt.sbft.experiment import Ending, Experiment
 from roadgpt.sbft.generator_process import GeneratorExitedError, GeneratorProcess
-from roadgpt.sbft.json_lines import Message
 from roadgpt.sbft.results import LOG, Results, new_folder
 from roadgpt.stopping import look
 
@@ -88,18 +88,16 @@ class Competition:
 
     def _begin(self, host: GeneratorProcess) -> None:
         """Loads the generator, and prepares the simulator before the clock starts."""
-        task = self.experiment.model_dump(
-            include={"module_name", "class_name", "module_path", "time_budget", "test_budget", "debug"}
-        )
-        map_size = self.request.world.site.map_size
-        whole = int(map_size) if map_size.is_integer() else map_size
+        task = self.experiment.model_dump(exclude={"python", "patience", "grace"})
         world = self.request.world
+        map_size = world.site.map_size
+        whole = int(map_size) if map_size.is_integer() else map_size
         told = {
             "oob_tolerance": world.limits.oob_tolerance,
             "max_speed_in_kmh": round(world.limits.speed_limit * 3.6, 6),
         }
         host.tell({**task, **told, "map_size": whole, "folder": str(self.folder.resolve())})
-        first = prove(Road.through(WARM), 0, self.request.world, self.request.setup)
+        first = prove(Road.through(WARM), 0, world, self.request.setup)
         if first.outcome == "ERROR":
             raise RoadGPTError(f"not even a straight road can be driven: {first.description}")
         heard = host.hear(LOADING)
@@ -138,7 +136,18 @@ class Competition:
             return
         self.tests += 1
         test = self.results.write(run)
-        answer(_answer(run, test))
+        answer(
+            {
+                "is_over": False,
+                "is_valid": run.is_valid,
+                "message": run.validation_message,
+                "outcome": run.outcome,
+                "description": test.get("description", run.description),
+                "records": test.get("execution_data", []),
+                "features": test.get("features", {}),
+                "seconds": run.seconds.drive,
+            }
+        )
         yield run
         if self._losses.count(run.index, run.is_lost):
             raise self._losses.given_up(
@@ -168,8 +177,7 @@ class Competition:
 
     def _silent(self) -> Ending:
         if self._is_over:
-            sentence = "budget used up; it did not notice, and was stopped"
-            return Ending(how="budget", sentence=sentence)
+            return Ending(how="budget", sentence="budget used up; it did not notice, and was stopped")
         patience = f"{self.experiment.patience:g} s"
         return Ending(how="hung", sentence=f"it submitted no test within {patience}, and was stopped")
 
@@ -231,52 +239,36 @@ def compete(
     return Competition(experiment, request, folder, results)
 
 
-def _answer(run: Run, test: dict[str, Any]) -> Message:
-    """Returns the answer to the generator for its test."""
-    return {
-        "is_over": False,
-        "is_valid": run.is_valid,
-        "message": run.validation_message,
-        "outcome": run.outcome,
-        "description": test.get("description", run.description),
-        "records": test.get("execution_data", []),
-        "features": test.get("features", {}),
-        "seconds": run.seconds.drive,
-    }
-
-
 def _died(status: int | None) -> str:
     if status is not None and status < 0:
         return f"its process was ended by signal {-status}"
     return f"its process ended without an answer (exit status {status})"
 
 
-def run_test(points: Any, index: int, request: Request, generating: float, is_test: bool = True) -> Run:
-    """Validates and drives one test, and returns its Run.
+def run_test(points: Any, index: int, request: Request, generating: float, is_test: bool) -> Run:
+    """Validates and drives one test, and returns its Run, which is invalid and without a road if the
+    generator submitted something that is not a test.
 
-    Args:
-        points: control points ``(n, 2)`` in metres; ignored if ``is_test`` is False.
-        index: number of the test.
-        request: the world, setup and seed of the test; the rules in the setup must be the competition's.
-        generating: seconds that the generator took to make the test.
-        is_test: False if the generator submitted something that is not a test; the Run is then invalid and
-            has no road.
+    ``points`` are control points ``(n, 2)`` in metres. The rules in the request must be the competition's.
+    ``generating`` is the number of seconds that the generator took to make the test.
 
     Raises:
         PartError: a plug-in is not installed.
     """
-    if not is_test:
-        return _invalid(WRONG_TYPE, None, index, request, generating)
-    table = np.asarray(points, float).reshape(-1, 2)
-    if len(table) < 2:
-        return _invalid(TOO_FEW, None, index, request, generating)
-    try:
-        road = Road.through(table)
-        is_valid, message = sbft_verdict(table, request.world.site.map_size)
-    except RoadGPTError as error:
-        return _invalid(str(error), None, index, request, generating)
-    if not is_valid:
-        return _invalid(message, road, index, request, generating)
+    table = np.asarray(points if is_test else [], float).reshape(-1, 2)
+    road, message = None, TOO_FEW if is_test else WRONG_TYPE
+    if len(table) >= 2:
+        try:
+            road = Road.through(table)
+            _, message = sbft_verdict(table, request.world.site.map_size)
+        except RoadGPTError as error:
+            road, message = None, str(error)
+    if road is None or message:
+        findings = (Finding("sbft", message),)
+        return Run(
+            request, index, request.seed, "INVALID", message, road=road, findings=findings,
+            seconds=Seconds(generating),
+        )  # fmt: skip
     try:
         run = prove(road, request.seed, request.world, request.setup, index)
     except PartError:
@@ -285,9 +277,3 @@ def run_test(points: Any, index: int, request: Request, generating: float, is_te
         said = str(error) if isinstance(error, RoadGPTError) else f"the test failed: {error!r}"
         run = Run(request, index, request.seed, outcome="ERROR", description=said, road=road)
     return replace(run, request=request, seconds=Seconds(generating, run.seconds.drive))
-
-
-def _invalid(message: str, road: Road | None, index: int, request: Request, generating: float) -> Run:
-    finding = (Finding("sbft", message),)
-    seconds = Seconds(generating)
-    return Run(request, index, request.seed, "INVALID", message, road=road, findings=finding, seconds=seconds)

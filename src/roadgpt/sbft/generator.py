@@ -15,18 +15,23 @@ import logging
 import os
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
-from importlib import import_module
+from dataclasses import replace
 from itertools import count
-from typing import Any
+from typing import Any, TypeVar
 
 from roadgpt.brief.model import Brief
+from roadgpt.campaign.behaviour import behaviour_of
+from roadgpt.campaign.generators.quality_diversity import QualityDiversity
+from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.chat import ReplyError
 from roadgpt.check import sbft_verdict
+from roadgpt.design import draft_road
 from roadgpt.errors import DesignError, UsageError
-from roadgpt.road import Design, Road, Site, World
-from roadgpt.run import Setup, brief_of, perform
-from roadgpt.sbft.search import RoadSearch
+from roadgpt.geometry import interpolate
+from roadgpt.road import Design, Road, Site, World, build
+from roadgpt.run import Request, Setup, brief_of, perform
+from roadgpt.run.features import FEWEST_RECORDS, features_of, features_of_drive
+from roadgpt.sbft.client import ClientTestGenerator
 
 log = logging.getLogger(__name__)
 
@@ -37,18 +42,116 @@ DENSE = 2.0  # m, largest distance of road points at which the competition's spl
 MOST_POINTS = 500
 GIVE_UP = 20  # failed roads in a row after which the generator gives up
 REMEMBERED = 50  # previous designs that the next one must not repeat
+CAR_WIDTH = 2.0  # m, width of a typical car, with which the margin of a drive is estimated
 
 Points = list[tuple[float, float]]
+T = TypeVar("T")
+U = TypeVar("U")
 
 
-class RoadGPTTestGenerator:
-    """Submits roads that meet a description, one after another, until the budget is used up."""
+class HerePool:
+    """Replaces a pool of worker processes: calls all functions in this process."""
 
-    description = USUAL
-    seed = 0
-    designer = "planner"
-    reader = "model"
-    search = True
+    def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
+        """Returns the results of ``function`` for all items."""
+        return [function(item) for item in items]
+
+
+class RoadSearch:
+    """Searches for roads on which a car fails: ``ask`` returns a road, and ``tell`` receives its outcome.
+    Roads without an outcome are ignored.
+    """
+
+    def __init__(self, brief: Brief, words: str, seed: int, world: World, setup: Setup) -> None:
+        """Begins a search among the roads that meet a description (``brief`` and ``words``) and the rules of
+        a setup. The world has the share of the car outside its lane above which a drive fails.
+
+        Raises:
+            UsageError: a search cannot make such roads, for example because they have junctions.
+        """
+        self._brief, self._world = brief, world
+        request = Request(words=words, seed=seed, world=world, setup=setup)
+        cell = Cell("c01", request, brief, "quality_diversity", "failures")
+        self._search = QualityDiversity(cell, is_interpolated=True)
+        self._waiting: deque[Proposal] = deque()
+        self._asked: tuple[Road, Result] | None = None
+        """The last road, and its result but for the outcome; None once the outcome is known."""
+        self._told: list[Result] = []
+        self._batch = self._number = 0
+
+    def ask(self) -> Road:
+        """Returns the road of the next test.
+
+        Raises:
+            DesignError: no road can be designed.
+        """
+        if not self._waiting:
+            self._search.tell(self._told)
+            self._told = []
+            found = self._search.ask(self._batch, self._number + 1, self._search.batch_size, HerePool())
+            self._batch += 1
+            if not found:
+                raise DesignError("no road was found that keeps the description; ask for less")
+            self._waiting.extend(found)
+        proposal = self._waiting.popleft()
+        self._number += 1
+        given = proposal.design
+        design = (
+            given if isinstance(given, Design) else draft_road(self._brief, self._world, seed=proposal.seed)
+        )
+        road = self._world.lay(build(design))
+        blank = Result(self._number, self._batch, replace(proposal, design=design), "ERROR", "", design)
+        self._asked = road, blank
+        return road
+
+    def tell(
+        self,
+        outcome: str,
+        steering: Sequence[float],
+        distances: Sequence[float],
+        outside: Sequence[float] | None = None,
+    ) -> None:
+        """Receives the outcome of the last road; it is heard once, and further ones are ignored.
+
+        Args:
+            outcome: "PASS" or "FAIL"; tests with another outcome, or with fewer than three records, are
+                ignored.
+            steering: angle of the steering wheel in degrees at each record of the drive.
+            distances: distance in metres from the car's middle to the edge of its lane at each record,
+                negative outside (``oob_distance`` of the competition).
+            outside: where the car was farthest outside, ``[x, y]`` in metres; None if this is not known, and
+                then the search learns less of where the car fails.
+        """
+        asked, self._asked = self._asked, None
+        if asked is None or outcome not in ("PASS", "FAIL") or len(distances) < FEWEST_RECORDS:
+            return
+        road, blank = asked
+        margin = min(distances) + (self._world.limits.oob_tolerance - 0.5) * CAR_WIDTH
+        features = behaviour_of(road, self._brief) | features_of(interpolate(road.control_points()))
+        features |= features_of_drive(steering, distances)
+        self._told.append(
+            replace(
+                blank,
+                outcome="FAIL" if outcome == "FAIL" else "PASS",
+                length=road.length,
+                at_s=float(road.locate(*outside[:2])[0]) if outcome == "FAIL" and outside else None,
+                margin=min(margin, -1e-3) if outcome == "FAIL" else max(margin, 1e-3),
+                features=features,
+            )
+        )
+
+
+class RoadGPTTestGenerator(ClientTestGenerator):
+    """Submits roads that meet a description, one after another, until the budget is used up.
+
+    It is used as the client for other interpreters is, but designs the roads in its own process. So ``start``
+    raises the errors of ``roads``.
+    """
+
+    description: str = USUAL
+    designer: str = "planner"
+    reader: str = "model"
+    search: bool = True
     """Whether outcomes steer the choice of roads. Without a search, or with another designer than
     ``planner``, roads are drafted one after another."""
     oob_tolerance: float | None = None
@@ -60,15 +163,14 @@ class RoadGPTTestGenerator:
         """Takes the arguments that the competition passes. Environment variables take precedence over class
         attributes.
 
-        Args:
-            executor: the competition's executor, which drives the roads; None if only ``roads`` is used.
-            map_size: side length of the square map, metres; None: 200 m.
+        If only ``roads`` is used, no executor is needed. ``map_size`` is the side length of the square map in
+        metres, by default 200.
 
         Raises:
             UsageError: the environment variable ROADGPT_SEED or ROADGPT_SEARCH has an invalid value.
         """
-        self.executor = executor
-        self.map_size = map_size or MAP_SIZE
+        super().__init__(executor)
+        self.map_size: int = map_size or MAP_SIZE
         self.description = os.environ.get("ROADGPT_DESCRIPTION", self.description)
         self.designer = os.environ.get("ROADGPT_DESIGNER", self.designer)
         self.reader = os.environ.get("ROADGPT_READER", self.reader)
@@ -76,38 +178,7 @@ class RoadGPTTestGenerator:
         self.search = _yes_or_no(os.environ.get("ROADGPT_SEARCH"), self.search)
         if self.oob_tolerance is None:
             self.oob_tolerance = getattr(executor, "oob_tolerance", None)
-        self._told: Callable[[str, Sequence[float], Sequence[float], Sequence[float] | None], None] = _unheard
-
-    def start(self) -> None:
-        """Submits tests to the executor, one after another, until the budget is used up.
-
-        Raises:
-            BriefError: the description cannot be read, or demands something that the map does not allow.
-            DesignError: no valid road was found in 20 attempts in a row.
-            ChatError: a language model cannot be used, or its answers are not usable.
-        """
-        create: Callable[[Points], Any] = import_module(
-            "code_pipeline.tests_generation"
-        ).RoadTestFactory.create_road_test
-        for points in self.roads():
-            if self.executor.is_over():
-                return
-            outcome, said, records = self.executor.execute_test(create(points))
-            log.info("%s: %s", outcome, said)
-            self.tell(outcome, records)
-
-    def tell(self, outcome: str, records: Sequence[Any] | None) -> None:
-        """Reports the outcome of the last road, so that the search learns from it.
-
-        Args:
-            outcome: "PASS", "FAIL" or another outcome of the competition.
-            records: the execution data of the drive; each record has ``steering`` and ``oob_distance``, and
-                should have ``pos``.
-        """
-        steering = [float(record.steering) for record in records or ()]
-        distances = [float(record.oob_distance) for record in records or ()]
-        outside = min(records, key=lambda record: float(record.oob_distance)) if records else None
-        self.tell_columns(outcome, steering, distances, getattr(outside, "pos", None))
+        self._road_search: RoadSearch | None = None
 
     def tell_columns(
         self,
@@ -116,30 +187,28 @@ class RoadGPTTestGenerator:
         distances: Sequence[float],
         outside: Sequence[float] | None = None,
     ) -> None:
-        """Reports the outcome of the last road as ``tell`` does, with the records as two columns.
-
-        Args:
-            outcome: as for ``tell``.
-            steering: angle of the steering wheel in each record, degrees.
-            distances: ``oob_distance`` of each record, metres.
-            outside: position ``[x, y]`` of the record with the smallest ``oob_distance``, if known.
-        """
-        self._told(outcome, steering, distances, outside)
+        """Passes the outcome of the last road on to the search, if there is one."""
+        if self._road_search is not None:
+            self._road_search.tell(outcome, steering, distances, outside)
 
     def roads(self) -> Iterator[Points]:
         """Yields roads without end, each as its control points in metres. The points are at most 2 m apart,
         there are at most 500 per road, and every road is valid in the competition.
 
         Raises:
-            BriefError, DesignError, ChatError: as for ``start``.
+            BriefError: the description cannot be read, or demands something that the map does not allow.
+            DesignError: no valid road was found in 20 attempts in a row.
+            ChatError: a language model cannot be used, or its answers are not usable.
         """
         world = World(site=Site(map_size=float(self.map_size)))
         setup = Setup(reader=self.reader, designer=self.designer, drives=False, chat=_chat(self))
         brief = brief_of(self.description, world, setup)
         if brief.friction is not None:
             log.warning("the competition's simulator sets the friction; the surface in the words is not used")
-        searches = self.search and self.designer == "planner"
-        another = self._searching(brief, world, setup) if searches else self._drafting(brief, world, setup)
+        if self.search and self.designer == "planner":
+            another = self._searching(brief, world, setup)
+        else:
+            another = self._drafting(brief, world, setup)
         failures = 0
         while True:
             try:
@@ -167,14 +236,8 @@ class RoadGPTTestGenerator:
         if isinstance(tolerance, int | float) and 0 < tolerance < 1:
             world = world.changed(oob_tolerance=float(tolerance))
         official = setup.model_copy(update={"rules": "sbft"})
-        search = RoadSearch(brief, self.description, self.seed, world, official)
-
-        def another() -> Road:
-            number, _, road = search.ask()
-            self._told = partial(search.tell, number)
-            return road
-
-        return another
+        self._road_search = RoadSearch(brief, self.description, self.seed, world, official)
+        return self._road_search.ask
 
     def _drafting(self, brief: Brief, world: World, setup: Setup) -> Callable[[], Road | None]:
         """Returns a function that drafts the next road; the function returns None if a rule is broken."""
@@ -220,10 +283,3 @@ def _chat(made: RoadGPTTestGenerator) -> Any:
 
     parts = (plugins.find("designers", made.designer), plugins.find("readers", made.reader))
     return configured({}) if any(map(asks_a_model, parts)) else None
-
-
-def _unheard(
-    outcome: str, steering: Sequence[float], distances: Sequence[float], outside: Sequence[float] | None
-) -> None:
-    """Takes an outcome from which nobody learns."""
-    del outcome, steering, distances, outside

@@ -15,7 +15,7 @@ from typing import IO
 
 from roadgpt import children
 from roadgpt.errors import UsageError
-from roadgpt.sbft.json_lines import Message, received, send
+from roadgpt.sbft.client import Message, received, send
 
 NAMES = Path(__file__).with_name("names")  # the folder that the generator's interpreter runs
 OURS = "ROADGPT_PYTHON"  # names RoadGPT's interpreter, if the generator runs in another one

@@ -31,13 +31,9 @@ HEIGHT = -28.0  # m, of the ground of the competition's level
 
 
 def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, tuple[Path, ...]]:
-    """Creates the folder for results.
+    """Creates the folder for results; if ``out`` is None, in ``results`` and with the competition's name.
 
-    If ``out`` is None, the folder is in ``results`` and has the name that the competition would give it.
-
-    Returns:
-        Two values: the folder, and all folders that this function created on the folder's path, the innermost
-        first.
+    Returns the folder, and all folders that were created on its path, the innermost first.
 
     Raises:
         UsageError: the folder is not empty, or cannot be created.

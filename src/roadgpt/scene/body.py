@@ -1,16 +1,15 @@
-"""The shapes of the saloon: a hull lofted through cross-sections, a cabin with windows, and the parts mounted
-on them."""
+"""The shapes of the saloon: a hull lofted through cross-sections, a cabin with windows, the parts mounted on
+them, and wheels with five spokes."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from roadgpt.export.ego import CAR
 from roadgpt.geometry.curve import Array
-from roadgpt.scene.mesh import grid
-from roadgpt.scene.palette import GLASS, HEAD, HIGH, PAINT, PLATE, TAIL, TRIM
+from roadgpt.scene.mesh import Patch, grid
+from roadgpt.scene.palette import GAP, GLASS, HEAD, HIGH, PAINT, PLATE, RIM, TAIL, TRIM, TYRE
 
 # Cross-sections from the tail to the nose: x; height of the underside, half width of the sill; half width and
 # height where it is widest; of the shoulder; of the deck's edge; height of the deck's middle. All m.
@@ -29,43 +28,29 @@ SECTIONS = (
     (2.280, 0.26, 0.65, 0.745, 0.48, 0.690, 0.620, 0.54, 0.670, 0.695),
     (2.350, 0.34, 0.50, 0.570, 0.46, 0.520, 0.550, 0.38, 0.580, 0.590),
 )
-SILL, BELT, ROOF = (
-    0.80,
-    0.935,
-    1.385,
-)  # m: half width and height of the cabin's foot; height of the roof's edge
+# m: half width and height of the cabin's foot; height of the roof's edge
+SILL, BELT, ROOF = 0.80, 0.935, 1.385
 NARROW = 0.575  # m, half width of the roof
 FRONT, REAR = (1.02, 0.28), (-1.74, -1.02)  # m: windscreen and rear window, foot and top
 CROWN = 0.055  # m that the roof's middle is higher than its edge
 
-
-@dataclass(frozen=True, eq=False)
-class CarPart:
-    """A part of the car's surface: triangles, with a normal vector at each point."""
-
-    points: Array
-    normals: Array
-    triangles: NDArray[np.int64]
-    kinds: NDArray[np.int64]
-
-    def moved(self, by: Array) -> "CarPart":
-        """Returns a copy of the part that is moved by a vector in metres."""
-        return CarPart(self.points + by, self.normals, self.triangles, self.kinds)
+AROUND = 30  # corners of a wheel
+OUTER, INNER = 0.155, -0.09  # m from the hub's middle outward: the tyre's faces
+RIM_RADIUS, HUB_RADIUS = 0.232, 0.06  # m
+SPOKE = 0.5  # of a fifth of the rim
 
 
-def surface(net: Array, kind: int) -> CarPart:
+def surface(net: Array, kind: int) -> Patch:
     """Returns a smooth surface through a grid of points ``(rows, columns, 3)``. Its normals point in the
     direction of the cross product a x b, where a is the direction of increasing row index and b the direction
     of increasing column index."""
     along, across = np.gradient(net, axis=0), np.gradient(net, axis=1)
     normals = np.cross(along, across)
-    size = np.linalg.norm(normals, axis=-1, keepdims=True)
-    normals = (normals / np.maximum(size, 1e-12)).reshape(-1, 3)
-    patch = grid(net, np.zeros_like(net), kind)
-    return CarPart(patch.points, normals, patch.triangles, patch.kinds)
+    normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
+    return grid(net, normals, kind)
 
 
-def body() -> Iterator[CarPart]:
+def body() -> Iterator[Patch]:
     """Yields the surfaces of the hull and the cabin."""
     rings = np.stack([_ring(*section) for section in SECTIONS])
     ends = [np.repeat(ring.mean(axis=0)[None], len(ring), axis=0) for ring in (rings[0], rings[-1])]
@@ -88,7 +73,7 @@ def _half(*numbers: float) -> Array:
     return np.array([*side, (deck, deck_z), (deck / 2, middle - 0.25 * (middle - deck_z)), (0, middle)])
 
 
-def _cabin() -> Iterator[CarPart]:
+def _cabin() -> Iterator[Patch]:
     """Yields windows in painted frames, and the roof."""
     (front_low, front_top), (rear_low, rear_top) = FRONT, REAR
     for side in (-1.0, 1.0):
@@ -111,7 +96,7 @@ def _cabin() -> Iterator[CarPart]:
 
 def _glazed(
     low: Array, top: Array, along: Sequence[float], up: Sequence[float], glazed: set[int], is_turned: bool
-) -> Iterator[CarPart]:
+) -> Iterator[Patch]:
     """Yields the cells of a slightly curved wall between a lower and an upper edge.
 
     Args:
@@ -137,12 +122,11 @@ def _glazed(
             kind = GLASS if i in glazed and j == 1 else PAINT
             triangles = whole.triangles[at : at + 2]
             used, where = np.unique(triangles, return_inverse=True)
-            yield CarPart(
-                whole.points[used], whole.normals[used], where.reshape(2, 3), np.full(2, kind, np.int64)
-            )
+            corners = where.reshape(2, 3)
+            yield Patch(whole.points[used], whole.attributes[used], corners, np.full(2, kind, np.int64))
 
 
-def trim() -> Iterator[CarPart]:
+def trim() -> Iterator[Patch]:
     """Yields the bumpers, number plate, seams, grille, wheel arches and mirrors."""
     wide = np.array([-0.76, -0.7, -0.6, -0.3, 0.0, 0.3, 0.6, 0.7, 0.76])
     yield _on_hull(-0.97 * wide, (0.315, 0.36, 0.41), TRIM, -1)
@@ -157,7 +141,7 @@ def trim() -> Iterator[CarPart]:
         yield from _box(np.array([0.74, side * 0.985, 1.0]), np.array([0.09, 0.11, 0.065]), PAINT)
 
 
-def lamps() -> Iterator[CarPart]:
+def lamps() -> Iterator[Patch]:
     """Yields tail lamps that reach around the rear corners, a third brake lamp in the rear window, and
     headlamps."""
     tail, head = np.array([0.40, 0.55, 0.70, 0.77, 0.82, 0.855]), np.array([0.46, 0.56, 0.66, 0.74, 0.80])
@@ -168,7 +152,7 @@ def lamps() -> Iterator[CarPart]:
     yield surface(np.stack([high, high + [0.035, 0.0, 0.028]], axis=1), HIGH)
 
 
-def _on_hull(across: Array, heights: tuple[float, ...], kind: int, end: int, lift: float = 0.012) -> CarPart:
+def _on_hull(across: Array, heights: tuple[float, ...], kind: int, end: int, lift: float = 0.012) -> Patch:
     """Returns a strip on the tail (end -1, from left to right) or on the nose (end 1, from right to left)."""
     x = np.linspace(SECTIONS[0][0], SECTIONS[-1][0], 4701)[::-end]
     table = np.array(SECTIONS)
@@ -184,20 +168,49 @@ def _on_hull(across: Array, heights: tuple[float, ...], kind: int, end: int, lif
     return surface(net, kind)
 
 
-def _disc(x: float, y: float, z: float, radius: float, kind: int) -> CarPart:
+def _disc(x: float, y: float, z: float, radius: float, kind: int) -> Patch:
     """Returns an upright disc that faces away from the car."""
     angle = np.linspace(0.0, 2 * np.pi, 25) * (-1 if y > 0 else 1)
     rim = np.column_stack([x + radius * np.cos(angle), np.full(25, y), z + radius * np.sin(angle)])
     rim[:, 2] = np.maximum(rim[:, 2], 0.18)
     middle = np.repeat([[x, y, z]], 25, axis=0)
     part = surface(np.stack([rim, middle], axis=1), kind)
-    return CarPart(part.points, np.tile([0.0, np.sign(y), 0.0], (50, 1)), part.triangles, part.kinds)
+    return part._replace(attributes=np.tile([0.0, np.sign(y), 0.0], (50, 1)))
 
 
-def _box(middle: Array, half: ArrayLike, kind: int) -> Iterator[CarPart]:
+def _box(middle: Array, half: ArrayLike, kind: int) -> Iterator[Patch]:
     for axis in range(3):
         for sign in (-1.0, 1.0):
             u, v, w = (np.eye(3)[(axis + k) % 3] * np.asarray(half) for k in range(3))
             corners = [middle + sign * u + a * v + b * w for a in (-1, 1) for b in (-1, 1)]
             net = np.array(corners).reshape(2, 2, 3)
             yield surface(net if sign > 0 else net[::-1], kind)
+
+
+def wheel(side: float) -> Iterator[Patch]:
+    """Yields the parts of a wheel around its hub; ``side`` is 1 for left wheels, -1 for right ones."""
+    radius = CAR.wheel / 2
+    yield _turned([(radius, INNER), (radius, OUTER - 0.03), (radius - 0.03, OUTER)], side, TYRE)
+    yield _turned([(radius - 0.03, OUTER), (RIM_RADIUS, OUTER - 0.005)], side, TYRE)
+    yield _turned([(RIM_RADIUS, OUTER - 0.005), (RIM_RADIUS - 0.022, OUTER + 0.004)], side, RIM)
+    yield _turned([(RIM_RADIUS - 0.022, OUTER - 0.03), (0.0, OUTER - 0.03)], side, GAP)
+    yield _turned([(HUB_RADIUS, OUTER + 0.004), (0.0, OUTER + 0.006)], side, RIM)
+    for k in range(5):
+        middle = 2 * np.pi * k / 5
+        angles = middle + np.array([-1.0, 1.0]) * SPOKE * np.pi / 5
+        inner = _circle(HUB_RADIUS, OUTER + 0.002, middle + np.array([-0.7, 0.7]), side)
+        outer = _circle(RIM_RADIUS - 0.02, OUTER + 0.002, angles, side)
+        yield surface(np.stack([outer, inner], axis=1), RIM)
+
+
+def _turned(profile: list[tuple[float, float]], side: float, kind: int) -> Patch:
+    """Returns the surface of revolution of a profile of (radius, distance outwards) about the axle."""
+    angles = np.linspace(0.0, 2 * np.pi, AROUND + 1)
+    return surface(np.stack([_circle(r, y, angles, side) for r, y in profile], axis=1), kind)
+
+
+def _circle(radius: float, outward: float, angles: Array, side: float) -> Array:
+    turned = -angles * side
+    return np.column_stack(
+        [radius * np.cos(turned), np.full(len(angles), side * outward), radius * np.sin(turned)]
+    )

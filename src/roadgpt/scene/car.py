@@ -13,26 +13,21 @@ from numpy.typing import NDArray
 
 from roadgpt.export.ego import CAR
 from roadgpt.geometry.curve import Array
-from roadgpt.scene.body import CarPart, body, lamps, trim
+from roadgpt.scene.body import body, lamps, trim, wheel
 from roadgpt.scene.camera import CameraPose, Pose, axes_of
 from roadgpt.scene.light import SUN, daylight
-from roadgpt.scene.mesh import Mesh, Patch
+from roadgpt.scene.mesh import Mesh, joined, sphere_around
 from roadgpt.scene.palette import BRAKE, GLOSS, PALETTE, SHINING
-from roadgpt.scene.wheel import wheel
 
 MIRRORED = 0.05  # share of light that paint and glass reflect at normal incidence (refractive index 1.5)
 
 
 @dataclass(frozen=True, eq=False)
 class Saloon:
-    """The surface of the car in its rest position, its normals, and the points that rotate with each
-    wheel."""
+    """The surface of the car in its rest position, and the points that rotate with each wheel."""
 
     mesh: Mesh
-    """The triangles of the car. Their attributes are zero here, because they depend on the pose; ``placed``
-    computes them.
-    """
-    normals: Array
+    """The triangles of the car, whose attributes are their normals."""
     gloss: Array
     shade: Array
     """Fraction of the light, 0 to 1, that reaches each point; it is less than 1 near the ground and under the
@@ -40,11 +35,11 @@ class Saloon:
     wheels: tuple[tuple[slice, Array, bool], ...]
     """For each wheel: the slice of its points, the position of its hub, and whether it steers."""
 
-    def placed(self, pose: Pose, eye: CameraPose) -> tuple[Array, Array]:
-        """Returns the points ``(n, 3)`` of a car at ``pose`` in world coordinates, and their attributes
-        ``(n, 3)``: the light that they reflect to the camera ``eye``, an unused column, and their brightness.
+    def placed(self, pose: Pose, eye: CameraPose) -> Mesh:
+        """Returns the mesh of a car at ``pose`` in world coordinates. The attributes of its points are the
+        light that they reflect to the camera ``eye``, an unused column, and their brightness.
         """
-        points, normals = self.mesh.points.copy(), self.normals.copy()
+        points, normals = self.mesh.points.copy(), self.mesh.attributes.copy()
         for part, hub, steers in self.wheels:
             turn = _turn(pose.wheel, pose.steer if steers else 0.0)
             points[part] = (points[part] - hub) @ turn.T + hub
@@ -55,7 +50,8 @@ class Saloon:
         points = points @ axes + np.array([pose.x, pose.y, pose.z])
         normals = normals @ axes
         light = daylight(normals) * self.shade
-        return points, np.stack([self._shine(points, normals, eye), light, light], axis=1)
+        seen = np.stack([self._shine(points, normals, eye), light, light], axis=1)
+        return self.mesh._replace(points=points, attributes=seen, spheres=sphere_around(points)[None])
 
     def _shine(self, points: Array, normals: Array, eye: CameraPose) -> Array:
         """Returns the light of sky, ground and sun that glossy points reflect."""
@@ -82,26 +78,21 @@ def _turn(rolled: float, steer: float) -> Array:
 @cache
 def saloon() -> Saloon:
     """Returns the car model; it is built at the first call and then reused."""
-    parts: list[CarPart] = [*body(), *trim(), *lamps()]
+    parts = [*body(), *trim(), *lamps()]
     count = sum(len(part.points) for part in parts)
     wheels = []
     for ahead, steers in ((CAR.front_axle - CAR.middle, True), (CAR.rear_axle - CAR.middle, False)):
         for side in (-1.0, 1.0):
             hub = np.array([ahead, side * CAR.track / 2, CAR.wheel / 2])
-            made = [part.moved(hub) for part in wheel(side)]
+            made = [part._replace(points=part.points + hub) for part in wheel(side)]
             size = sum(len(part.points) for part in made)
             wheels.append((slice(count, count + size), hub, steers))
             parts += made
             count += size
-    patches = [Patch(p.points, np.zeros_like(p.points), p.triangles, p.kinds) for p in parts]
-    mesh = Mesh.of(patches)
-    whole = Mesh(
-        mesh.points, mesh.attributes, mesh.triangles, mesh.kinds,
-        np.array([[0, len(mesh.points), 0, len(mesh.triangles)]]), np.zeros((1, 4)),
-    )  # fmt: skip
+    mesh = Mesh.of([joined(parts)])
     gloss = np.concatenate([np.full(len(p.points), GLOSS.get(int(p.kinds[0]), 0.0)) for p in parts])
     shade = 0.45 + 0.55 * np.clip((mesh.points[:, 2] - 0.05) / 0.5, 0.0, 1.0)
-    return Saloon(whole, np.concatenate([p.normals for p in parts]), gloss, shade, tuple(wheels))
+    return Saloon(mesh, gloss, shade, tuple(wheels))
 
 
 def palette_of(pose: Pose | None) -> NDArray[np.float64]:

@@ -1,6 +1,6 @@
 """Stores triangles in patches; a patch that lies completely outside the camera's view is not drawn."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,23 +11,22 @@ ROAD, GRASS, POST, PLAIN = 0, 1, 2, 3
 """Kinds of surface; PLAIN and all higher numbers are colours of a palette."""
 
 
-@dataclass(frozen=True, eq=False)
-class Patch:
+class Patch(NamedTuple):
     """Triangles that lie close together."""
 
     points: Array
     """Points in metres, (n, 3)."""
     attributes: Array
-    """Attributes of each point, (n, 3): two surface coordinates, and the brightness of the light."""
+    """Attributes of each point, (n, 3): two surface coordinates, and the brightness of the light. Parts of
+    the car have their normals here, because their light depends on the car's pose."""
     triangles: NDArray[np.int64]
     """Indices of points, (m, 3), counter-clockwise as seen from the visible side."""
     kinds: NDArray[np.int64]
     """Surface type of each triangle, such as grass or paint, as a number, (m,)."""
 
 
-@dataclass(frozen=True, eq=False)
-class Mesh:
-    """Patches stored in flat arrays for compiled code."""
+class Mesh(NamedTuple):
+    """Patches joined to one, for compiled code; the first four fields are those of a Patch."""
 
     points: Array
     attributes: Array
@@ -46,18 +45,25 @@ class Mesh:
         ends = np.cumsum([(len(p.points), len(p.triangles)) for p in patches], axis=0)
         starts = np.concatenate([np.zeros((1, 2), np.int64), ends[:-1]])
         ranges = np.stack([starts[:, 0], ends[:, 0], starts[:, 1], ends[:, 1]], axis=1)
-        spheres = []
-        for patch in patches:
-            centre = (patch.points.min(axis=0) + patch.points.max(axis=0)) / 2
-            spheres.append([*centre, np.linalg.norm(patch.points - centre, axis=1).max()])
-        return cls(
-            np.concatenate([p.points for p in patches]),
-            np.concatenate([p.attributes for p in patches]),
-            np.concatenate([p.triangles + start for p, start in zip(patches, starts[:, 0], strict=True)]),
-            np.concatenate([p.kinds for p in patches]),
-            ranges,
-            np.array(spheres),
-        )
+        spheres = np.stack([sphere_around(p.points) for p in patches])
+        return cls(*joined(patches), ranges, spheres)
+
+
+def joined(patches: list[Patch]) -> Patch:
+    """Returns one patch of several."""
+    starts = np.cumsum([0, *(len(patch.points) for patch in patches)])
+    return Patch(
+        np.concatenate([patch.points for patch in patches]),
+        np.concatenate([patch.attributes for patch in patches]),
+        np.concatenate([patch.triangles + at for patch, at in zip(patches, starts, strict=False)]),
+        np.concatenate([patch.kinds for patch in patches]),
+    )
+
+
+def sphere_around(points: Array) -> Array:
+    """Returns the centre and the radius of a sphere that holds all points, (4,)."""
+    centre = (points.min(axis=0) + points.max(axis=0)) / 2
+    return np.asarray(np.r_[centre, np.linalg.norm(points - centre, axis=1).max()])
 
 
 def grid(points: Array, attributes: Array, kind: int) -> Patch:

@@ -10,13 +10,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from roadgpt.export.embankments import FOOT, OUTSIDE, RUN, embankments
+from roadgpt.export.embankments import OUTSIDE, bank_from, embankments
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Network, NetworkRoad, RoadEnd, Route, has_no_route
 from roadgpt.network.arrows import arrows
 from roadgpt.network.markings import between_crosswalks, signs, strokes
-from roadgpt.network.polygon import Area
+from roadgpt.network.paved import Area
 from roadgpt.network.surface import (
     ROUND,
     JunctionSurface,
@@ -25,8 +26,6 @@ from roadgpt.network.surface import (
     polygons,
     triangulated,
 )
-from roadgpt.road import World
-from roadgpt.road.land import LONGEST_STEP, Land
 from roadgpt.road.profile import LINE as PAINTED
 from roadgpt.scene.junction_signs import SignColour, faces_of
 from roadgpt.scene.light import daylight, level_light
@@ -47,13 +46,6 @@ COLOURS: dict[SignColour, int] = {
     "grey": RIM, "white": WHITE, "red": RED, "yellow": YELLOW, "green": GREEN, "black": BLACK,
     "dim red": DIM_RED, "dim yellow": DIM_YELLOW,
 }  # fmt: skip
-
-
-def land_of(route: Route, world: World) -> Land:
-    """Returns the terrain around a route's network; the terrain is flat if the roads have no shoulders."""
-    parts = NetworkSurface.of(route.network)
-    lines = np.concatenate([each.road.centreline(LONGEST_STEP) for each in route.network.roads])
-    return Land.beneath(lines, parts.reach if parts.shoulder > 0 else None, world.site.z_floor)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,9 +130,7 @@ def network_patches(
         ):
             out.append(_painted(stroke.points, stroke.width))
     for arrow in arrows(route.network):
-        values = attributes(0.0, 0.0, np.full(len(arrow.points), level_light()))
-        kinds = np.full(len(arrow.corners), WHITE, np.int64)
-        out.append(Patch(arrow.points + [0.0, 0.0, LIFT], values, arrow.corners, kinds))
+        out.append(_patch(arrow.points + [0.0, 0.0, LIFT], level_light(), arrow.corners, WHITE))
     out += _start_and_goal(route)
     for sign in signs(route.network):
         out += [_flat(face.points, COLOURS[face.colour]) for face in faces_of(sign)]
@@ -218,12 +208,13 @@ def _level(area: Area, height: float, kind: int, station: float, beside: "Area |
 def _wall(ring: Array, foot: float, high: float) -> Patch:
     """Returns a wall around a closed counter-clockwise ring ``(n, 2)``, seen from outside."""
     low = np.column_stack([ring, np.full(len(ring), foot)])
-    return _strip(low, low + [0.0, 0.0, high], attributes(0.0, 0.0, np.full((len(ring), 2), 0.7)), CONCRETE)
+    return _strip(low, low + [0.0, 0.0, high], 0.7, CONCRETE)
 
 
-def _strip(right: Array, left: Array, values: Array, kind: int) -> Patch:
-    """Returns a strip between two lines ``(n, 3)``, seen from the side on which they run as their names say;
-    ``values`` ``(n, 2, 3)`` are the attributes of both."""
+def _strip(right: Array, left: Array, light: float, kind: int) -> Patch:
+    """Returns a strip between two lines ``(n, 3)``, seen from the side on which they run as their names
+    say."""
+    values = attributes(0.0, 0.0, np.full((len(right), 2), light))
     return grid(np.stack([right, left], axis=1), values, kind)
 
 
@@ -249,13 +240,12 @@ def _kerb_line(points: Array, station: float) -> Patch:
     inner = _offset(points, BESIDE - PAINTED / 2) + [0.0, 0.0, LIFT]
     s = station + np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     values = attributes(s[:, None], np.array([0.0, -BESIDE]), level_light())
-    return _strip(edge, inner, values, ROAD)
+    return grid(np.stack([edge, inner], axis=1), values, ROAD)
 
 
 def _painted(points: Array, width: float, kind: int = WHITE) -> Patch:
-    lift = [0.0, 0.0, LIFT]
-    values = attributes(0.0, 0.0, np.full((len(points), 2), level_light()))
-    return _strip(_offset(points, -width / 2) + lift, _offset(points, width / 2) + lift, values, kind)
+    right, left = (_offset(points, t) + [0.0, 0.0, LIFT] for t in (-width / 2, width / 2))
+    return _strip(right, left, level_light(), kind)
 
 
 def _start_and_goal(route: Route) -> list[Patch]:
@@ -282,7 +272,10 @@ def _flat(points: Array, kind: int) -> Patch:
     corners = np.arange(1, len(points) - 1)
     triangles = np.stack([np.zeros_like(corners), corners, corners + 1], axis=1)
     normal = np.cross(points[1] - points[0], points[2] - points[0])
-    light = daylight((normal / np.linalg.norm(normal))[None])[0]
+    return _patch(points, daylight((normal / np.linalg.norm(normal))[None])[0], triangles, kind)
+
+
+def _patch(points: Array, light: float, triangles: NDArray[np.int64], kind: int) -> Patch:
     values = attributes(0.0, 0.0, np.full(len(points), light))
     return Patch(points, values, triangles, np.full(len(triangles), kind, np.int64))
 
@@ -299,9 +292,6 @@ def _banks(area: JunctionSurface, terrain: LitTerrain) -> list[Patch]:
             [np.asarray(ring.coords, float)[:, :2], np.full(len(ring.coords), area.height)]
         )
         near = _offset(edge, -OUTSIDE)
-        drop = area.height - np.minimum(terrain.land.height(near[:, 0], near[:, 1]), area.height) + FOOT
-        outward = (near - edge)[:, :2] / OUTSIDE
-        foot = np.column_stack([edge[:, :2] + RUN * drop[:, None] * outward, edge[:, 2] - drop])
-        values = attributes(0.0, 0.0, np.full((len(edge), 2), level_light()))
-        out.append(_strip(foot, edge, values, GRASS))
+        bank = bank_from(edge, near, (near - edge)[:, :2] / OUTSIDE, terrain.land, is_left=False)
+        out.append(_strip(bank.foot, bank.edge, level_light(), GRASS))
     return out

@@ -7,11 +7,14 @@ holds for corners behind the camera, so that only the outline of the triangle in
 Source: M. Olano and T. Greer, Triangle scan conversion using 2D homogeneous coordinates, 1997.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry.curve import Array
 from roadgpt.scene.compiled import compiled, inlined
+from roadgpt.scene.mesh import Mesh
 
 NEAR = 0.12  # m; anything nearer is not drawn
 SAMPLES = 4
@@ -21,6 +24,23 @@ PLANE = 12  # numbers per triangle: three each for depth, two coordinates and li
 
 Depth = NDArray[np.float32]
 Numbers = NDArray[np.int32]
+
+
+class RenderBuffers(NamedTuple):
+    """Working memory for one image. Each thread has its own buffers, so that threads can render at once."""
+
+    depth: Depth
+    """Inverse depth of each sample in 1/m, ``(4 * height, width)``."""
+    ids: Numbers
+    """Number of the triangle that each sample shows, same shape as ``depth``; -1 for the sky."""
+    planes: Array
+    """Plane equations ``(n, PLANE)`` of the triangles that ``ids`` numbers."""
+    kinds: NDArray[np.int64]
+    """Surface types ``(n,)`` of these triangles."""
+    seen: Array
+    """The points of one patch in camera coordinates, (n, 3)."""
+    picture: NDArray[np.float32]
+    """The image in linear light, (height, width, 3)."""
 
 
 @inlined
@@ -173,41 +193,25 @@ def _plane_equations(
 
 
 @compiled
-def draw(
-    points: Array, attributes: Array, triangles: NDArray[np.int64], kinds: NDArray[np.int64],
-    ranges: NDArray[np.int64], spheres: Array, eye: Array, depth: Depth, ids: Numbers, planes: Array,
-    seen: Array, seen_kinds: NDArray[np.int64], count: int,
-) -> int:  # fmt: skip
-    """Draws the patches of a `Mesh` into the samples; returns ``count`` plus the number of triangles drawn.
+def draw(mesh: Mesh, eye: Array, buffers: RenderBuffers, count: int) -> int:
+    """Draws a mesh into the samples, and writes down the planes and kinds of the triangles that it draws;
+    returns ``count``, the number of triangles that earlier calls have drawn, plus the number drawn here.
 
-    Args:
-        points: coordinates of the points, as in `Mesh`.
-        attributes: attributes of the points, as in `Mesh`.
-        triangles: indices of the corners, as in `Mesh`.
-        kinds: surface type of each triangle, as in `Mesh`.
-        ranges: index ranges of the patches, as in `Mesh`.
-        spheres: bounding spheres of the patches, as in `Mesh`.
-        eye: shape (13,): the camera's position, its axes to the right, downwards and forward, and its focal
-            length in pixels.
-        depth: inverse depth in 1/m, ``(4 * height, width)``; updated where a triangle is nearer than the
-            stored depth.
-        ids: number of the triangle that each sample shows, same shape as ``depth``; updated together with
-            ``depth``.
-        planes: (n, PLANE): plane equations; row k is for triangle k of ``ids``; filled by this function.
-        seen: working memory for the points of a patch, (n, 3).
-        seen_kinds: (n,): surface types of the triangles in ``planes``; filled by this function.
-        count: number of triangles that earlier calls have drawn.
+    ``eye`` has the shape (13,): the camera's position, its axes to the right, downwards and forward, and its
+    focal length in pixels.
     """
+    triangles, ranges = mesh.triangles, mesh.ranges
+    depth, planes, seen = buffers.depth, buffers.planes, buffers.seen
     rows, columns = depth.shape
     focal, middle_x, middle_y = eye[12], columns / 2.0, rows / 8.0
     reach_x, reach_y = middle_x / focal, middle_y / focal
     codes = np.empty(seen.shape[0], np.uint8)
     px, py, three, across = np.empty(4), np.empty(4), np.empty((3, 3)), np.empty((3, 3))
     for patch in range(ranges.shape[0]):
-        if _is_outside(spheres[patch], eye, reach_x, reach_y):
+        if _is_outside(mesh.spheres[patch], eye, reach_x, reach_y):
             continue
         first = ranges[patch, 0]
-        _to_camera(points, first, ranges[patch, 1], eye, reach_x, reach_y, seen, codes)
+        _to_camera(mesh.points, first, ranges[patch, 1], eye, reach_x, reach_y, seen, codes)
         for t in range(ranges[patch, 2], ranges[patch, 3]):
             i0, i1, i2 = triangles[t, 0] - first, triangles[t, 1] - first, triangles[t, 2] - first
             if codes[i0] & codes[i1] & codes[i2]:  # all beyond the same border
@@ -221,8 +225,10 @@ def draw(
             if not _holds_samples(px, py, corners, rows, columns):
                 continue
             plane = planes[count]
-            _plane_equations(attributes, triangles, t, across, volume, focal, middle_x, middle_y, plane)
-            seen_kinds[count] = kinds[t]
-            _fill(px, py, corners, plane[0], plane[1], plane[2], count, depth, ids)
+            _plane_equations(
+                mesh.attributes, triangles, t, across, volume, focal, middle_x, middle_y, plane,
+            )  # fmt: skip
+            buffers.kinds[count] = mesh.kinds[t]
+            _fill(px, py, corners, plane[0], plane[1], plane[2], count, depth, buffers.ids)
             count += 1
     return count

@@ -6,13 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from roadgpt.export.edges import line, stations
+from roadgpt.export.edges import line, normals, stations
 from roadgpt.export.embankments import FOOT, Embankment, embankments
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.profile import LINE
 from roadgpt.scene.light import daylight, level_light
-from roadgpt.scene.mesh import GRASS, POST, ROAD, Mesh, Patch, attributes, grid
+from roadgpt.scene.mesh import GRASS, POST, ROAD, Patch, attributes, grid, joined
 from roadgpt.scene.palette import CONCRETE
 from roadgpt.scene.terrain import LitTerrain
 
@@ -91,9 +91,7 @@ def _upwards(road: Road, s: Array) -> Array:
         along, left = np.gradient(road.at(s), axis=0), road.at(s, 1.0) - road.at(s)
         banked = np.cross(along, left)
         return np.asarray(banked / np.linalg.norm(banked, axis=-1, keepdims=True))
-    heading, grade = road.heading(s), road.grade(s)
-    up = np.stack([-grade * np.cos(heading), -grade * np.sin(heading), np.ones_like(grade)], axis=-1)
-    return np.asarray(up / np.linalg.norm(up, axis=-1, keepdims=True))
+    return normals(road, s)
 
 
 def slope(bank: Embankment, terrain: LitTerrain) -> list[Patch]:
@@ -103,9 +101,9 @@ def slope(bank: Embankment, terrain: LitTerrain) -> list[Patch]:
     rows = np.stack([edge, foot] if is_left else [foot, edge], axis=1)
     along = np.gradient(edge, axis=0)
     down = foot - edge
-    normals = np.cross(along, down) if is_left else np.cross(down, along)
-    normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-9)
-    own, met = daylight(normals), terrain.light_at(foot[:, 0], foot[:, 1])
+    outward = np.cross(along, down) if is_left else np.cross(down, along)
+    outward /= np.maximum(np.linalg.norm(outward, axis=-1, keepdims=True), 1e-9)
+    own, met = daylight(outward), terrain.light_at(foot[:, 0], foot[:, 1])
     at_foot = met + (own - met) * np.clip((edge[:, 2] - foot[:, 2] - FOOT - 1.5) / 4.0, 0.0, 1.0)
     light = np.stack([np.full_like(own, level_light()), at_foot], axis=1)
     return _blocks(rows, attributes(0.0, 0.0, light if is_left else light[:, ::-1]), GRASS)
@@ -166,5 +164,4 @@ def _post() -> tuple[Patch, Array]:
     lid = np.column_stack([ring[[0, 3, 1, 2]], np.full(4, POST_HIGH)]).reshape(2, 2, 3)
     parts.append(grid(lid.swapaxes(0, 1), attributes(0.0, POST_HIGH, np.zeros((2, 2))), POST))
     facing += [np.array([0.0, 0.0, 1.0])] * 4
-    whole = Mesh.of(parts)
-    return Patch(whole.points, whole.attributes, whole.triangles, whole.kinds), np.array(facing)
+    return joined(parts), np.array(facing)

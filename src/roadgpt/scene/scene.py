@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from roadgpt.errors import UsageError
 from roadgpt.export.ego import CAR
-from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
 from roadgpt.network.surface import NetworkSurface
 from roadgpt.road import Road, World
@@ -16,32 +15,19 @@ from roadgpt.road.land import LONGEST_STEP, Land
 from roadgpt.scene.camera import Camera, Pose, axes_of
 from roadgpt.scene.car import palette_of, saloon
 from roadgpt.scene.mesh import Mesh
-from roadgpt.scene.network_mesh import StationAxis, land_of, network_patches
-from roadgpt.scene.raster import PLANE, SAMPLES, draw
+from roadgpt.scene.network_mesh import StationAxis, network_patches
+from roadgpt.scene.raster import PLANE, SAMPLES, RenderBuffers, draw
 from roadgpt.scene.road_mesh import road_patches
 from roadgpt.scene.shade import shade, to_screen
-from roadgpt.scene.sprites import overlay
 from roadgpt.scene.surfaces import LaneBoundaries
 from roadgpt.scene.terrain import LitTerrain
 from roadgpt.scene.textures import noise, screen_table
-from roadgpt.scene.trees import Trees, pictures, plant
+from roadgpt.scene.trees import Trees, overlay, pictures, plant
 
 Image = NDArray[np.uint8]
 
 
 FARTHEST = 1e7  # m or rad; greatest number in a pose
-
-
-@dataclass(eq=False)
-class RenderBuffers:
-    """Working memory for one image. Each thread has its own buffers, so that threads can render at once."""
-
-    depth: NDArray[np.float32]
-    ids: NDArray[np.int32]
-    picture: NDArray[np.float32]
-    planes: NDArray[np.float64]
-    kinds: NDArray[np.int64]
-    seen: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,12 +64,14 @@ class Scene:
     @classmethod
     def _of_network(cls, route: Route, world: World) -> "Scene":
         """Returns the scene of a route, with all roads of its network."""
-        parts, land = NetworkSurface.of(route.network), land_of(route, world)
+        parts = NetworkSurface.of(route.network)
+        lines = np.concatenate([each.road.centreline(LONGEST_STEP) for each in route.network.roads])
+        # without shoulders, the roads float above flat land
+        land = Land.beneath(lines, parts.reach if parts.shoulder > 0 else None, world.site.z_floor)
         terrain = LitTerrain(land)
         widest = max([0.0, *(float(np.ptp(each.paved.bounds[::2])) for each in parts.areas)])
         axis = StationAxis.of(route.network, parts.roads, widest)
         ground = Mesh.of([*network_patches(route, parts, axis, terrain), *terrain.patches()])
-        lines = np.concatenate([each.road.centreline(LONGEST_STEP) for each in route.network.roads])
         return cls(route, world, land, ground, plant(lines[:, :2], parts.reach, land), axis.lanes)
 
     def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:
@@ -111,20 +99,14 @@ class Scene:
         numbers = np.concatenate([eye.position, eye.axes.ravel(), [eye.focal]])
         buffers.depth.fill(0.0)
         buffers.ids.fill(-1)
-        count = _draw(self.ground, self.ground.points, self.ground.attributes, numbers, buffers, 0)
-        if car is not None:
-            made = saloon()
-            count = _draw(made.mesh, *made.placed(car, eye), numbers, buffers, count)
-        shade(
-            buffers.ids, buffers.depth, buffers.planes, buffers.kinds, palette_of(car), noise(), numbers,
-            self.lanes, _shade_of(car), buffers.picture,
-        )  # fmt: skip
+        meshes = [self.ground, *([] if car is None else [saloon().placed(car, eye)])]
+        count = 0
+        for mesh in meshes:
+            count = draw(mesh, numbers, buffers, count)
+        shade(buffers, palette_of(car), noise(), numbers, self.lanes, _shade_of(car))
         trees = self.trees
         order = np.argsort((eye.position - trees.places) @ eye.axes[2], kind="stable")
-        overlay(
-            order, trees.places, trees.sizes, trees.looks, trees.tints, pictures(),
-            numbers, buffers.depth, buffers.picture,
-        )  # fmt: skip
+        overlay(order, trees, pictures(), numbers, buffers)
         to_screen(buffers.picture, screen_table(), out)
         return out
 
@@ -138,26 +120,12 @@ class Scene:
             kept[key] = RenderBuffers(
                 np.empty((SAMPLES * high, wide), np.float32),
                 np.empty((SAMPLES * high, wide), np.int32),
-                np.empty((high, wide, 3), np.float32),
                 np.empty((count, PLANE)),
                 np.empty(count, np.int64),
                 np.empty((max(*np.ptp(self.ground.ranges[:, :2], axis=1), len(saloon().mesh.points)), 3)),
+                np.empty((high, wide, 3), np.float32),
             )
         return kept[key]
-
-
-def _draw(
-    mesh: Mesh, points: Array, attributes: Array, eye: Array, buffers: RenderBuffers, count: int
-) -> int:
-    """Draws a mesh and returns the new count. ``points`` differ from ``mesh.points`` for a car."""
-    spheres = mesh.spheres
-    if points is not mesh.points:
-        middle = (points.min(axis=0) + points.max(axis=0)) / 2
-        spheres = np.r_[middle, np.linalg.norm(points - middle, axis=1).max()][None]
-    return draw(
-        points, attributes, mesh.triangles, mesh.kinds, mesh.ranges, spheres,
-        eye, buffers.depth, buffers.ids, buffers.planes, buffers.seen, buffers.kinds, count,
-    )  # fmt: skip
 
 
 def _shade_of(car: Pose | None) -> NDArray[np.float64]:

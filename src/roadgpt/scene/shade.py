@@ -16,7 +16,7 @@ from roadgpt.scene.compiled import compiled, inlined
 from roadgpt.scene.light import SUN_X, SUN_Y, SUN_Z
 from roadgpt.scene.mesh import PLAIN, POST, ROAD
 from roadgpt.scene.patterns import Tiles, length_of, smooth
-from roadgpt.scene.raster import OFFSETS
+from roadgpt.scene.raster import OFFSETS, RenderBuffers
 from roadgpt.scene.surfaces import Colour, LaneBoundaries, grass, road, sky
 from roadgpt.scene.textures import STEPS
 
@@ -199,19 +199,14 @@ def _sky(tiles: Tiles, dx: float, dy: float, dz: float) -> Colour:
 
 @compiled
 def shade(
-    ids: NDArray[np.int32], depth: NDArray[np.float32], planes: Array, kinds: NDArray[np.int64],
-    palette: Array, tiles: Tiles, eye: Array, lanes: LaneBoundaries, numbers: Array,
-    picture: NDArray[np.float32],
-) -> None:  # fmt: skip
-    """Colours all pixels of ``picture`` (height, width, 3) from the four samples of each pixel.
+    buffers: RenderBuffers, palette: Array, tiles: Tiles, eye: Array, lanes: LaneBoundaries, numbers: Array
+) -> None:
+    """Colours all pixels of the picture from the four samples of each pixel.
 
     Haze and level of detail change slowly, so they are computed once for BLOCK neighbouring pixels.
 
     Args:
-        ids: triangle of each sample, from `raster.draw`.
-        depth: inverse depth of each sample, from `raster.draw`.
-        planes: plane equations of the triangles, from `raster.draw`.
-        kinds: surface type of each triangle.
+        buffers: the samples that `raster.draw` has filled, and the picture.
         palette: (n, 6): for each surface type without a pattern, its colour and the colour of the light that
             it emits.
         tiles: the noise tiles from `textures.noise`.
@@ -220,8 +215,9 @@ def shade(
         numbers: data for the car's shadow: the point on the ground below the car's centre of gravity (3
             numbers), the car's direction (2), its length, its width, how far its middle is ahead of that
             point, and 1 if there is a car, else 0.
-        picture: the image in linear light; filled by this function.
     """
+    ids, depth, planes = buffers.ids, buffers.depth, buffers.planes
+    kinds, picture = buffers.kinds, buffers.picture
     rows, columns = picture.shape[0], picture.shape[1]
     pixel = 1.0 / eye[12]
     shares = np.zeros(4, np.int64)

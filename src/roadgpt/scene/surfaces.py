@@ -47,7 +47,7 @@ class LaneBoundaries(NamedTuple):
 # Wider than the judged line (road.profile.LINE), and not at the very edge of the lane: the network of
 # examples/vision was trained on such images, and with judged lines drives 0.24 m farther to the right.
 LINE, INSET = 0.15, 0.10  # m: width of a line, and width of the asphalt outside an edge line
-PAINT = {"none": 0, "solid": 1, "broken": 2, "double": 1}
+PAINT = {"none": NONE, "solid": SOLID, "broken": BROKEN, "double": SOLID}
 """How a boundary is drawn, by its marking; a double line is drawn as one line."""
 PERIOD = DASH + GAP  # m from one dash to the next
 WHEEL, TRACK, OIL = 0.79, 0.55, 0.60  # m: from mid-lane to a wheel track; half widths of track, oil

@@ -35,14 +35,12 @@ class LitTerrain:
     def patches(self) -> list[Patch]:
         """Returns the surface of the terrain as patches."""
         land = self.land
-        x, y = np.meshgrid(land.x, land.y)
-        points, values = np.stack([x, y, land.heights], axis=-1), attributes(0.0, 0.0, self.light)
+        x, y = np.meshgrid(land.x, land.y, indexing="ij")
+        points, values = np.stack([x, y, land.heights.T], axis=-1), attributes(0.0, 0.0, self.light.T)
         rows, columns = land.heights.shape
-        return [
-            grid(part.swapaxes(0, 1), value.swapaxes(0, 1), GRASS)
+        blocks = [
+            (slice(i, i + BLOCK + 1), slice(j, j + BLOCK + 1))
             for j in range(0, rows - 1, BLOCK)
             for i in range(0, columns - 1, BLOCK)
-            for part, value in [
-                (points[j : j + BLOCK + 1, i : i + BLOCK + 1], values[j : j + BLOCK + 1, i : i + BLOCK + 1])
-            ]
         ]
+        return [grid(points[block], values[block], GRASS) for block in blocks]

@@ -25,7 +25,7 @@ def noise() -> NDArray[np.float32]:
     grain = _shaped(rng, lambda f: np.exp(-((f / 0.42) ** 2)) + 1.9 * np.exp(-((f / 0.13) ** 2)))
     cloud = _shaped(rng, lambda f: np.maximum(f, 1.0 / SIDE) ** -1.55)
     meadow = _shaped(rng, lambda f: np.exp(-((f / 0.4) ** 2)) + 0.035 * np.maximum(f, 2.0 / SIDE) ** -1.35)
-    tiles = [_halved(tile) for tile in (grain, np.clip(cloud, -2.5, 2.5), meadow)]
+    tiles = [mipmapped(tile) for tile in (grain, np.clip(cloud, -2.5, 2.5), meadow)]
     return np.stack(tiles).astype(np.float32)
 
 
@@ -38,12 +38,16 @@ def _shaped(rng: np.random.Generator, gain: Callable[[Array], Array]) -> Array:
     return np.asarray(field / field.std())
 
 
-def _halved(tile: Array) -> Array:
-    levels = [tile.ravel()]
-    while len(tile) > 1:
-        n = len(tile) // 2
-        tile = tile.reshape(n, 2, n, 2).mean(axis=(1, 3))
-        levels.append(tile.ravel())
+def mipmapped(picture: Array) -> Array:
+    """Returns the pixels of a picture ``(side, side, ...)``, followed by those of its copies of half, a
+    quarter, ... of the side, down to 1 pixel.
+    """
+    rest = picture.shape[2:]
+    levels = [picture.reshape(-1, *rest)]
+    while len(picture) > 1:
+        n = len(picture) // 2
+        picture = picture.reshape(n, 2, n, 2, *rest).mean(axis=(1, 3))
+        levels.append(picture.reshape(-1, *rest))
     return np.concatenate(levels)
 
 

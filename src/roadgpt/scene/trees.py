@@ -1,8 +1,10 @@
-"""Creates the pictures and the positions of trees beside the road. The trees are so far from the road that
-cars cannot reach them."""
+"""Plants trees beside the road, creates their pictures, and draws them upright over the image, from the
+farthest to the nearest. The trees are so far from the road that cars cannot reach them.
+"""
 
-from dataclasses import dataclass
+import math
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +12,12 @@ from scipy.spatial import cKDTree
 
 from roadgpt.geometry.curve import Array
 from roadgpt.road.land import Land
-from roadgpt.scene.light import SUN
+from roadgpt.scene.compiled import compiled, inlined
+from roadgpt.scene.light import SUN, SUN_X, SUN_Y
+from roadgpt.scene.raster import RenderBuffers
+from roadgpt.scene.shade import air, hazy
+from roadgpt.scene.surfaces import Colour
+from roadgpt.scene.textures import mipmapped
 
 SEED = 11
 SIDE = 128  # texels; width and height of a picture
@@ -18,11 +25,12 @@ BROAD, CONIFERS = 3, 2  # numbers of pictures of broad-leaved trees and of conif
 CLEAR = 9.0  # m from the outer edge of the shoulder to the nearest tree
 EACH = 210.0  # m^2 of land per tree, before trees near roads are removed
 MOST = 900  # trees
+SMALLEST = 0.7  # pixels high, of a tree that is drawn
+NEAREST = 2.0  # m from the camera
 BORDER = 4  # outermost rows and columns of the land on each side, where no trees stand
 
 
-@dataclass(frozen=True, eq=False)
-class Trees:
+class Trees(NamedTuple):
     """The trees of a scene: upright pictures that face the camera."""
 
     places: Array
@@ -68,16 +76,7 @@ def pictures() -> NDArray[np.float32]:
     rng = np.random.default_rng(SEED)
     drawn = [_tree(*_crown(rng), rng, (0.085, 0.15, 0.035)) for _ in range(BROAD)]
     drawn += [_tree(*_cone(rng), rng, (0.035, 0.085, 0.035)) for _ in range(CONIFERS)]
-    return np.stack([_halved(picture) for picture in drawn]).astype(np.float32)
-
-
-def _halved(picture: Array) -> Array:
-    levels = [picture.reshape(-1, 4)]
-    while len(picture) > 1:
-        n = len(picture) // 2
-        picture = picture.reshape(n, 2, n, 2, 4).mean(axis=(1, 3))
-        levels.append(picture.reshape(-1, 4))
-    return np.concatenate(levels)
+    return np.stack([mipmapped(picture) for picture in drawn]).astype(np.float32)
 
 
 def _crown(rng: np.random.Generator) -> tuple[Array, Array, Array]:
@@ -122,7 +121,7 @@ def _tree(
     inner = 0.55 + 0.45 * np.clip(size / 0.62, 0.0, 1.0)
     for k in np.argsort(-places[:, 1]):
         x, _, z = places[k]
-        inside = ((across - x) / 1.0) ** 2 + ((up - z) * 2) ** 2 < (2 * radii[k]) ** 2
+        inside = (across - x) ** 2 + ((up - z) * 2) ** 2 < (2 * radii[k]) ** 2
         tone = (
             (0.62 + 0.55 * max(lit[k], -0.45))
             * inner[k]
@@ -131,3 +130,105 @@ def _tree(
         )
         picture[inside] = [*(np.array(leaf) * tone * 1.35), 1.0]
     return picture
+
+
+@inlined
+def _texel(
+    pictures: NDArray[np.float32], look: int, start: int, side: int, u: float, v: float, k: int
+) -> float:
+    """Returns channel k of a picture at (u, v) in its texels, interpolated between four of them; 0
+    outside."""
+    fu, fv = math.floor(u - 0.5), math.floor(v - 0.5)
+    du, dv = u - 0.5 - fu, v - 0.5 - fv
+    out = 0.0
+    for j in range(2):
+        for i in range(2):
+            if 0 <= fu + i < side and 0 <= fv + j < side:
+                part = (du if i else 1.0 - du) * (dv if j else 1.0 - dv)
+                out += part * pictures[look, start + (fv + j) * side + fu + i, k]
+    return out
+
+
+@inlined
+def _mip_level(high: float) -> tuple[int, int]:
+    """Returns the first texel and the side of the smallest copy of a picture that is sharp enough for a tree
+    of this height in pixels."""
+    side, start = SIDE, 0
+    while side > 1 and side > 1.4 * high:
+        start += side * side
+        side >>= 1
+    return start, side
+
+
+@inlined
+def _range(a: float, b: float, reach: float, size: int) -> tuple[int, int]:
+    """Returns the first pixel, and the end, of the range between two places in the image, extended by
+    ``reach`` pixels on both sides and limited to 0 and ``size``."""
+    return max(0, int(min(a, b) - reach)), min(size, int(max(a, b) + reach) + 1)
+
+
+@inlined
+def _blend(
+    picture: NDArray[np.float32], row: int, i: int, pictures: NDArray[np.float32], look: int, start: int,
+    side: int, u: float, v: float, cover: float, light: float, haze: Colour, part: float,
+) -> None:  # fmt: skip
+    """Blends a tree into one pixel; ``part`` is the share of the pixel where nothing hides the tree."""
+    cover *= part
+    for k in range(3):
+        colour = _texel(pictures, look, start, side, u, v, k) * light * part
+        picture[row, i, k] = picture[row, i, k] * (1.0 - cover) + colour + haze[k] * cover
+
+
+@compiled
+def overlay(
+    order: NDArray[np.int64], trees: Trees, pictures: NDArray[np.float32], eye: Array, buffers: RenderBuffers
+) -> None:
+    """Draws trees over the image, except where nearer surfaces hide them.
+
+    ``order`` has the indices of the trees, the farthest first; ``eye`` is the camera, as in `raster.draw`.
+    """
+    places, sizes, looks, tints = trees
+    depth, picture = buffers.depth, buffers.picture
+    rows, columns = picture.shape[0], picture.shape[1]
+    foot, top = np.empty(3), np.empty(3)
+    for n in order:
+        dx, dy, dz = places[n, 0] - eye[0], places[n, 1] - eye[1], places[n, 2] - eye[2]
+        for k in range(3):
+            a, b, c = eye[3 + 3 * k], eye[4 + 3 * k], eye[5 + 3 * k]
+            foot[k] = dx * a + dy * b + dz * c
+            top[k] = foot[k] + sizes[n, 0] * c
+        if foot[2] < NEAREST or top[2] < NEAREST:
+            continue
+        x0, y0 = columns / 2.0 + eye[12] * foot[0] / foot[2], rows / 2.0 + eye[12] * foot[1] / foot[2]
+        ux, uy = columns / 2.0 + eye[12] * top[0] / top[2] - x0, rows / 2.0 + eye[12] * top[1] / top[2] - y0
+        high = math.sqrt(ux * ux + uy * uy)
+        if high < SMALLEST:
+            continue
+        wide = high * sizes[n, 1] / sizes[n, 0]
+        left, right = _range(x0, x0 + ux, abs(uy) / high * wide / 2 + 1, columns)
+        above, below = _range(y0, y0 + uy, abs(ux) / high * wide / 2 + 1, rows)
+        if left >= right or above >= below:
+            continue
+        start, side = _mip_level(high)
+        near = 1.0 / foot[2]
+        far = math.sqrt(dx * dx + dy * dy + dz * dz)
+        thin, warm = air(far, (dx * SUN_X + dy * SUN_Y) / far)
+        haze = hazy(0.0, 0.0, 0.0, thin, warm)
+        for row in range(above, below):
+            for i in range(left, right):
+                px, py = i + 0.5 - x0, row + 0.5 - y0
+                v = 1.0 - (px * ux + py * uy) / (high * high)
+                u = 0.5 + (py * ux - px * uy) / (high * wide)
+                if not (-0.1 < u < 1.1 and -0.1 < v < 1.1):
+                    continue
+                cover = _texel(pictures, looks[n], start, side, u * side, v * side, 3)
+                if cover <= 0.003:
+                    continue
+                free = 0
+                for k in range(4):
+                    free += depth[4 * row + k, i] < near
+                if free > 0:
+                    _blend(
+                        picture, row, i, pictures, looks[n], start, side, u * side, v * side, cover,
+                        tints[n] * thin, haze, free / 4.0,
+                    )  # fmt: skip

@@ -1,6 +1,6 @@
 """Makes and evaluates many roads from many descriptions, as RoadGPT's thesis did, and compares roads.
 
-plan, execution   define a study (descriptions, designers, number of roads); make its roads
+plan, execution   read prompts and define a study (descriptions, designers, number of roads); make its roads
 road_record       collects the properties of each road for the reports, from the files of its run
 study_report      writes the report of a study and of a folder of runs, from the sections in ``chapters``
 campaign_report   writes the report of a campaign, from the sections in ``chapters``

@@ -4,15 +4,16 @@ report on a million tests needs little memory."""
 from collections.abc import Sequence
 from pathlib import Path
 
-from roadgpt.campaign.cell_status import CellStatus
 from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.status import Status, status_of
-from roadgpt.campaign.store_check import reading_store
+from roadgpt.campaign.rows import reading_store
+from roadgpt.campaign.status import CellStatus, Status, status_of
 from roadgpt.plural import plural
 from roadgpt.reading import json_of
-from roadgpt.report.page import Block, Figure, Page, Section, Table, TableCell, linked, write
+from roadgpt.report.page import write
 from roadgpt.report.page.forest import forest
+from roadgpt.report.page.model import Block, Figure, Page, Section, Table, TableCell, linked
+from roadgpt.run import Request
 from roadgpt.study.chapters.campaign_tests import (
     boundary,
     coverage,
@@ -44,10 +45,8 @@ TABLES = ("results.csv", "cells.csv")
 def write_store_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
     """Writes the report of a campaign into its folder and returns the path of the HTML page.
 
-    Args:
-        folder: the campaign's folder.
-        command: the command that repeats the campaign, as shown in the report; empty: none is shown.
-        next_steps: what to try if no test failed, as pairs of a suggestion and its command.
+    The report shows the ``command`` that repeats the campaign, unless it is empty, and what to try if no test
+    failed.
 
     Raises:
         UsageError: the folder holds no campaign, or the campaign has no finished test.
@@ -60,6 +59,8 @@ def write_store_report(folder: Path, command: str = "", next_steps: Steps = ()) 
 
 
 def _page(folder: Path, record: Record, status: Status, command: str, next_steps: Steps) -> Page:
+    first = record.cell(record.names()[0]).request
+    goes_on = first.setup.keep_driving  # whether cars drive on after they have left their lane
     fields = [c for c in status.cells if c.done]
     words = list(dict.fromkeys(c.words for c in status.cells if c.words))
     title = words[0] if len(words) == 1 else f"A campaign of {plural(len(status.cells), 'cell')}"
@@ -74,17 +75,16 @@ def _page(folder: Path, record: Record, status: Status, command: str, next_steps
     sections += what_to_try(next_steps)
     sections.append(Section("Outcomes", _outcomes(record, status, fields)))
     if any(_driven(each)[1] for each in fields):
-        goes_on = _drives_on(record)
         sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS], goes_on)))
         near: list[Block] = [*outside_table(passed_tests(record)), margins(record, goes_on)]
         sections.append(Section("How near to failing", near))
     sections += [Section("At the boundary", boundary(folder, pairs))] if pairs else []
     summary = headline(found, summaries) if _driven(status)[1] else []
-    summary += [*_summary(record, status, fields), *nearest_sentence(pairs)]
+    summary += [*_summary(record, first, status, fields), *nearest_sentence(pairs)]
     return Page(title, summary, sections, _card(command, record, status), lead)
 
 
-def _summary(record: Record, status: Status, cells: Sequence[CellStatus]) -> list[str]:
+def _summary(record: Record, first: Request, status: Status, cells: Sequence[CellStatus]) -> list[str]:
     counts, (failed, driven) = status.outcomes, _driven(status)
     told = ", ".join(f"{number:,} {outcome}" for outcome, number in sorted(counts.items()))
     out = [f"{status.done:,} tests: {told or 'nothing yet'}."]
@@ -93,20 +93,15 @@ def _summary(record: Record, status: Status, cells: Sequence[CellStatus]) -> lis
         best = max(cells, key=_failing)
         if len(cells) > 1:
             out.append(f"Most fail in {best.name}: {percent(_failing(best))} of its driven roads.")
-        out += outside_sentences(passed_tests(record), record.cells()[0].request.world)
-        out += near_and_far(_least(record, "PASS"), _least(record, "FAIL") if _drives_on(record) else None)
+        out += outside_sentences(passed_tests(record), first.world)
+        farthest = _least(record, "FAIL") if first.setup.keep_driving else None
+        out += near_and_far(_least(record, "PASS"), farthest)
     out += [sentence for each in cells if (sentence := each.remark)]
     wrong = counts.get("INVALID", 0) + counts.get("ERROR", 0)
     out.append(f"Of all tests {share_of(wrong, status.done)} were invalid or ended in an error.")
     if status.seconds:
         out.append(f"It took {status.seconds:,.0f} s, {status.done / status.seconds:.1f} tests a second.")
     return out
-
-
-def _drives_on(record: Record) -> bool:
-    """Returns whether cars drive on after they have left their lane."""
-    ((name,),) = record.query("SELECT name FROM cells ORDER BY name LIMIT 1")
-    return record.cell(name).request.setup.keep_driving
 
 
 def _least(record: Record, outcome: str) -> tuple[float, str] | None:
@@ -170,10 +165,13 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
 
 def _about(of: CellStatus) -> dict[str, str]:
     """Returns the settings of a cell as texts; the keys are the headings of a table."""
-    words = of.words or "roads that were given"
-    friction = f"{of.friction:g}"
-    own = {"description": words, "generator": of.generator, "driver": of.driver, "seed": str(of.seed)}
-    return own | {"friction": friction}
+    return {
+        "description": of.words or "roads that were given",
+        "generator": of.generator,
+        "driver": of.driver,
+        "seed": str(of.seed),
+        "friction": f"{of.friction:g}",
+    }
 
 
 def _what_differs(cells: Sequence[CellStatus]) -> tuple[list[str], str]:

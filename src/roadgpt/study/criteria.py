@@ -69,17 +69,24 @@ def _of_features(found: Measures, asked: Outline) -> dict[Criterion, bool]:
     """Returns the criteria of individual turns and straights, each checked without the other criteria."""
     out: dict[Criterion, bool] = {}
     for criterion, fields in FEATURE_FIELDS.items():
-        own = (replace(group, feature=_part(group.feature, fields)) for group in asked.groups)
-        wanted = _merged(tuple(own))
-        if criterion != "order":
-            wanted = tuple(replace(group, alternating=False) for group in wanted)
+        is_order = criterion == "order"
+        wanted: list[Group] = []
+        for group in asked.groups:
+            part = _part(group.feature, fields)
+            if part.kind == "straight" and wanted and wanted[-1].feature == part:
+                continue  # neighbouring straights with the same requirements are one
+            wanted.append(replace(group, feature=part, alternating=is_order and group.alternating))
         first, last = (each and _part(each, fields) for each in (asked.starts, asked.ends))
-        ends = replace(FREE, starts=first, ends=last)
-        says = [_says(criterion, group) for group in wanted]
-        ends_say = [each for each in (first, last) if each and (criterion == "order" or _is_specified(each))]
-        if any(says) or ends_say:
-            good = not any(says) or _has_sequence(found, wanted)
-            out[criterion] = good and (not ends_say or not complaints(found, ends))
+        # any straight, and whatever is at the ends, sets a requirement of the order
+        says = any(
+            (is_order and (group.alternating or group.feature.kind == "straight")) or _says(group.feature)
+            for group in wanted
+        )
+        ends_say = any(each and (is_order or _says(each)) for each in (first, last))
+        if says or ends_say:
+            good = not says or _has_sequence(found, tuple(wanted))
+            at_ends = replace(FREE, starts=first, ends=last)
+            out[criterion] = good and (not ends_say or not complaints(found, at_ends))
     return out
 
 
@@ -92,25 +99,9 @@ def _part(feature: Feature, fields: tuple[str, ...]) -> Feature:
     return Feature(feature.kind, feature.name, **own)
 
 
-def _is_specified(feature: Feature) -> bool:
+def _says(feature: Feature) -> bool:
+    """Returns whether a feature sets any requirement."""
     return feature != Feature(feature.kind, feature.name)
-
-
-def _says(criterion: Criterion, group: Group) -> bool:
-    """Returns whether a group sets a requirement of a criterion; any straight sets one of the order."""
-    if criterion == "order" and (group.alternating or group.feature.kind == "straight"):
-        return True
-    return _is_specified(group.feature)
-
-
-def _merged(groups: tuple[Group, ...]) -> tuple[Group, ...]:
-    """Merges neighbouring straights that have the same requirements."""
-    out: list[Group] = []
-    for group in groups:
-        if group.feature.kind == "straight" and out and out[-1].feature == group.feature:
-            continue
-        out.append(group)
-    return tuple(out)
 
 
 def _has_sequence(found: Measures, groups: tuple[Group, ...]) -> bool:

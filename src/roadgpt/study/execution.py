@@ -47,18 +47,20 @@ def work(
 ) -> list[Problem]:
     """Makes all roads of a study that do not exist yet.
 
+    Parts whose designer or reader asks a language model are made in this process, one after another; all
+    others on ``workers`` processes, or in this process if ``workers`` is 1.
+
     Args:
         plan: the study.
         folder: the study's folder, which must exist.
-        workers: number of worker processes; 1: the roads are made in this process. Parts whose designer or
-            reader asks a language model are always made in this process, one after another.
+        workers: number of worker processes.
         draw: function that draws pictures of a run into its folder; None: no pictures.
         tell: called with the number of finished roads, after each road.
         note: called with a sentence for each part whose description names a surface, such as a wet road, or
             needs a larger map.
 
     Returns:
-        One Problem for each study part that lacks roads; empty if all roads were made.
+        One Problem for each study part that lacks roads.
 
     Raises:
         GivenUpError: the simulator failed three times in a row; repeating the command makes the missing
@@ -100,7 +102,9 @@ class _Session:
             for said in world_remarks(brief, plan.world, world):
                 self.note(f"{part.name}: {said}")
             request = Request(words=brief.words, seed=plan.seed, world=world, setup=setup)
-            folders[part.name] = runs = RunFolder.opened(request, brief, plan.roads, self._place(part))
+            place = self.folder / part.name
+            place.parent.mkdir(parents=True, exist_ok=True)
+            folders[part.name] = runs = RunFolder.opened(request, brief, plan.roads, place)
             if meter is not None:
                 meter.add(runs.spent)
         several = workers if workers > 1 else 0
@@ -125,8 +129,3 @@ class _Session:
                 self.problems[part.name] = problem = Problem(part.name, str(error), is_of_chat=True)
                 if not isinstance(error, ReplyError):
                     silent[part.designer] = problem
-
-    def _place(self, part: StudyPart) -> Path:
-        place = self.folder / part.name
-        place.parent.mkdir(parents=True, exist_ok=True)
-        return place

@@ -10,14 +10,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
 from roadgpt.check import inspect
 from roadgpt.check.measures import measure
 from roadgpt.errors import RoadGPTError
 from roadgpt.reading import read_json
 from roadgpt.report.canvas import FORMATS
-from roadgpt.road import Road, World
+from roadgpt.road import Road
 from roadgpt.run import Run, read_run
 from roadgpt.run.folder import finished, run_folder
 from roadgpt.run.sbft_json import test_name
@@ -25,6 +24,7 @@ from roadgpt.study.criteria import Criterion, criteria_of
 from roadgpt.study.plan import StudyPart
 from roadgpt.study.similarity import Likeness, Spread, likeness, spread
 from roadgpt.study.truth import Truth
+from roadgpt.verdict import Verdict
 
 Array = NDArray[np.float64]
 
@@ -39,8 +39,6 @@ class RoadRecord:
     """The properties of one road, as used in reports."""
 
     index: int
-    folder: str
-    """The folder of the road's run, relative to the report's folder, with forward slashes."""
     outcome: str
     says: str
     """The outcome as a sentence."""
@@ -53,15 +51,10 @@ class RoadRecord:
     sbft_says: str
     """The first reason why the SBFT competition's validator rejects the road, or "no road"; empty if it
     accepts the road."""
-    has_left: bool
-    """True if the car left its lane or fell."""
-    margin: float | None
-    """Smallest distance to failure during the drive, metres (see ``Verdict.margin``); negative if the car
-    left its lane or fell, None if the road was not driven."""
+    verdict: Verdict | None
+    """The result of the drive; None if the road was not driven."""
     points: Array
     """Points of the centre line ``(n, 2)``, metres, one every 2 m; empty if there is no road."""
-    failed_at: tuple[float, float] | None
-    """Position ``(x, y)`` where the car failed, metres; None if it did not fail."""
     kept: Mapping[Criterion, bool]
     """For each criterion that the description mentions, True if the road meets it."""
     likeness: Likeness | None
@@ -71,11 +64,6 @@ class RoadRecord:
     """Features of the SBFT competition's feature maps, by name; empty if they are not known."""
     versions: Mapping[str, str] = field(default_factory=dict)
     """Versions of RoadGPT and of the libraries that made the run, by name."""
-    max_oob: float | None = None
-    """Largest fraction of the car's bounding box outside its lane, 0 to 1; None if the road was not
-    driven."""
-    beyond: float | None = None
-    """Largest distance of the car beyond the lane marking, metres; None if it is not known."""
     friction: float | None = None
     """Friction coefficient of the road; None if it is not known."""
 
@@ -83,6 +71,11 @@ class RoadRecord:
     def is_driven(self) -> bool:
         """True if the road was driven and the drive was evaluated."""
         return self.outcome in ("PASS", "FAIL")
+
+    @property
+    def has_left(self) -> bool:
+        """True if the car left its lane or fell."""
+        return self.verdict is not None and self.verdict.cause in DEPARTURES
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,21 +121,22 @@ class StudyPartRecord:
         """The roads that are compared with each other: the first 150 roads that can be compared."""
         return tuple(road for road in self.roads if road.likeness is not None)[:MOST_COMPARED]
 
-    def likenesses(self, most: int = MOST_COMPARED) -> list[Likeness]:
-        """Returns the Likeness of each of the first ``most`` roads in ``compared``: the properties by which
-        roads are compared."""
-        return [road.likeness for road in self.compared if road.likeness is not None][:most]
+    @cached_property
+    def likenesses(self) -> list[Likeness]:
+        """The properties by which the roads in ``compared`` are compared."""
+        return [road.likeness for road in self.compared if road.likeness is not None]
 
     @cached_property
     def spread(self) -> Spread:
         """How different the compared roads are; indices in the Spread refer to roads in ``compared``."""
-        return spread(self.likenesses())
+        return spread(self.likenesses)
 
     def href(self, road: RoadRecord) -> str:
         """Returns the address of the road's bird's-eye view, or of its file run.json if no picture was
         drawn."""
         is_drawn = self.picture_format and len(road.points)
-        return f"{road.folder}/{f'birds_eye.{self.picture_format}' if is_drawn else 'run.json'}"
+        name = f"birds_eye.{self.picture_format}" if is_drawn else "run.json"
+        return f"{self.home}/runs/{road.index:04d}/{name}".lstrip("/")
 
     @property
     def overview(self) -> str:
@@ -155,67 +149,47 @@ class StudyPartRecord:
 def read_part(
     place: Path, part: StudyPart, home: str = "", problem: str = "", wanted: int = 1
 ) -> StudyPartRecord:
-    """Returns all roads of a folder of runs.
-
-    Args:
-        place: the folder of runs.
-        part: the study part, which names the description and the designer.
-        home: path of the folder, relative to the report's folder; empty if they are the same.
-        problem: the reason why roads are missing; empty if none is missing.
-        wanted: number of roads that the user requested.
+    """Returns all roads of the folder of runs ``place``; the other arguments are the fields of the record.
 
     Raises:
         UsageError: a run cannot be read.
     """
     roads = tuple(
-        _record_of(read_run(run_folder(place, n)), part, home, _features(place / test_name(n)))
+        _record_of(read_run(run_folder(place, n)), part, _features(place / test_name(n)))
         for n in (finished(place) if place.is_dir() else [])
     )
     drawn = next((kind for kind in FORMATS if (place / f"overview.{kind}").is_file()), "")
     return StudyPartRecord(part, roads, home, problem, drawn, wanted)
 
 
-def _record_of(run: Run, part: StudyPart, home: str, features: Mapping[str, float]) -> RoadRecord:
-    verdict, road = run.verdict, run.road
+def _record_of(run: Run, part: StudyPart, features: Mapping[str, float]) -> RoadRecord:
+    road = run.road
     sbft = inspect(road, None, run.world, "sbft") if road is not None else ()
     return RoadRecord(
         index=run.index,
-        folder=f"{home}/runs/{run.index:04d}".lstrip("/"),
         outcome=run.outcome,
         says=run.description,
         is_valid=run.is_valid,
         is_sound=road is not None and all(finding.rule == "promises" for finding in run.findings),
         is_sbft=road is not None and not sbft,
         sbft_says=sbft[0].sentence if sbft else "" if road is not None else "no road",
-        has_left=verdict is not None and verdict.cause in DEPARTURES,
-        margin=verdict.margin if verdict is not None else None,
+        verdict=run.verdict,
         points=road.centreline(2.0)[:, :2] if road is not None else np.empty((0, 2)),
-        failed_at=verdict.at_xy if verdict is not None else None,
-        kept=kept_of(road, run.brief, run.world, part.prompt.truth),
+        kept=kept_of(run, part.prompt.truth),
         likeness=_likeness(road),
         features=features,
         versions=run.versions,
-        max_oob=verdict.max_oob if verdict is not None else None,
-        beyond=verdict.beyond if verdict is not None else None,
         friction=run.world.site.friction,
     )
 
 
-def kept_of(
-    road: Road | None, brief: Brief | None, world: World, truth: Truth | None = None
-) -> dict[Criterion, bool]:
-    """Returns, for each criterion of a description, whether a road meets it.
-
-    Args:
-        road: the road; None if no road was made: all criteria are then False.
-        brief: the requirements that the reader found; None if the description was not read.
-        world: the world of the road; the size of its map affects some requirements.
-        truth: requirements that people wrote down; if given, they are checked instead of those in ``brief``.
-    """
-    points = road.centreline() if road is not None else STRAIGHT
-    is_road = road is not None and bool(np.isfinite(points).all()) and len(points) > 1
+def kept_of(run: Run, truth: Truth | None = None) -> dict[Criterion, bool]:
+    """Returns, for each criterion of a description, whether the road of a run meets it; all are False if no
+    road was made. The requirements are those of ``truth`` or, without it, those that the reader found."""
+    points = run.road.centreline() if run.road is not None else STRAIGHT
+    is_road = run.road is not None and bool(np.isfinite(points).all()) and len(points) > 1
     points = points if is_road else STRAIGHT
-    read = outline(brief, world.site.map_size) if brief is not None else None
+    read = outline(run.brief, run.world.site.map_size) if run.brief is not None else None
     asked = truth.outline() if truth is not None else read
     if asked is None:
         return {}

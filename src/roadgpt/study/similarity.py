@@ -25,7 +25,7 @@ from math import nan
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.check.measures import MeasuredFeature, measure
+from roadgpt.check.measures import measure
 from roadgpt.design.variety import ENOUGH, POINTS, PlanShape, shape_of
 from roadgpt.errors import UsageError
 from roadgpt.road import Road
@@ -102,7 +102,7 @@ def likeness(road: Road) -> Likeness:
     found = measure(points)
     return Likeness(
         found.length,
-        "".join(_letter(feature) for feature in found.features),
+        "".join((feature.side or "straight")[0].upper() for feature in found.features),
         shape_of(s, line[:, 0] + 1j * line[:, 1]),
         100 * np.asarray(road.grade(shares)),
         steps_of(whole[:, :2]),
@@ -110,14 +110,9 @@ def likeness(road: Road) -> Likeness:
 
 
 def similarity(one: Likeness, other: Likeness, mirror: bool = False) -> Similarity:
-    """Returns how similar two roads are; neither their position nor their orientation matters.
-
-    Args:
-        one: properties of a road.
-        other: properties of another road.
-        mirror: True if a road and its mirror image count as the same.
-    """
-    metres = plan_apart(one.shape, other.shape, mirror)
+    """Returns how similar two roads are; neither their position nor their orientation matters. If ``mirror``
+    is True, a road and its mirror image count as the same."""
+    metres = _plan_apart(one.shape, other.shape, mirror)
     points = float(np.abs(one.grades - other.grades).mean())
     return Similarity(
         turns=_ratio(len(one.sides), len(other.sides)),
@@ -131,15 +126,9 @@ def similarity(one: Likeness, other: Likeness, mirror: bool = False) -> Similari
     )
 
 
-def plan_apart(one: PlanShape, other: PlanShape, mirror: bool) -> float:
+def _plan_apart(one: PlanShape, other: PlanShape, mirror: bool) -> float:
     """Returns the root mean square distance in metres between two roads in plan view, after the best shift
-    and rotation.
-
-    Args:
-        one: the shape of a road in plan view.
-        other: the shape of another road.
-        mirror: True if a road and its mirror image count as the same.
-    """
+    and rotation."""
     turned = float(abs(np.vdot(one.shares, other.shares)))
     if mirror:
         turned = max(turned, float(abs(np.vdot(one.shares, other.shares.conj()))))
@@ -149,10 +138,6 @@ def plan_apart(one: PlanShape, other: PlanShape, mirror: bool) -> float:
 
 def _ratio(one: float, other: float) -> float:
     return min(one, other) / max(one, other) if max(one, other) > 0 else 1.0
-
-
-def _letter(feature: MeasuredFeature) -> str:
-    return "S" if feature.kind == "straight" else "L" if feature.side == "left" else "R"
 
 
 @lru_cache(maxsize=100_000)  # many roads have the same few letters
@@ -190,20 +175,12 @@ class Spread:
 
     @property
     def nearest(self) -> Array:
-        """For each road the smallest distance to another road, metres ``(n,)``; NaN if there is only one
-        road."""
-        if len(self.metres) < 2:
-            return np.full(len(self.metres), np.nan)
+        """For each of two or more roads the smallest distance to another road, metres ``(n,)``."""
         return np.asarray(np.nanmin(self.metres, axis=1))
 
 
 def spread(roads: Sequence[Likeness], mirror: bool = True) -> Spread:
-    """Compares all pairs of roads.
-
-    Args:
-        roads: the properties of each road.
-        mirror: True if a road and its mirror image count as the same.
-    """
+    """Compares all pairs of roads; ``mirror`` is as for ``similarity``."""
     n = len(roads)
     found = {(i, j): similarity(roads[i], roads[j], mirror) for i, j in combinations(range(n), 2)}
     metres, apart = np.full((n, n), np.nan), np.zeros((n, n))
@@ -217,21 +194,3 @@ def spread(roads: Sequence[Likeness], mirror: bool = True) -> Spread:
         float(np.maximum(apart, apart.T).max(axis=1).mean()) if found else nan,
         float(np.mean([each.general for each in found.values()])) if found else nan,
     )
-
-
-@dataclass(frozen=True)
-class Between:
-    """How similar the roads of two descriptions are."""
-
-    general: float
-    metres: float
-    """Root mean square distance in plan view between the two most similar roads, metres."""
-    duplicates: int
-
-
-def between(ones: Sequence[Likeness], others: Sequence[Likeness], mirror: bool = True) -> Between:
-    """Compares every road of one description with every road of another description."""
-    found = [similarity(one, other, mirror) for one in ones for other in others]
-    general = float(np.mean([each.general for each in found])) if found else nan
-    nearest = min((each.metres for each in found), default=nan)
-    return Between(general, nearest, sum(each.is_duplicate for each in found))

@@ -139,13 +139,10 @@ def clopper_pearson(k: int, n: int) -> Interval:
 
 def bootstrap(groups: Sequence[Sequence[float]]) -> Estimate:
     """Returns the mean of all values, with its 95 % percentile interval from a bootstrap that resamples
-    groups.
+    groups; empty groups are left out.
 
     Roads of one prompt are alike, so whole prompts are resampled instead of single roads. The random seed is
     fixed: the same groups always give the same interval.
-
-    Args:
-        groups: the values of each group, such as the roads of one prompt; empty groups are left out.
     """
     sums, sizes = (np.array([size(group) for group in groups if len(group)], float) for size in (sum, len))
     if not len(sums):
@@ -241,10 +238,6 @@ def trend(successes: Sequence[int], totals: Sequence[int]) -> Trend:
     z is r * sqrt(n - 1), where n is the number of all trials, and r is the correlation between the success of
     a trial (0 or 1) and the number of its group. The variance is computed with the total number of successes
     and the number of trials in each group held fixed.
-
-    Args:
-        successes: number of successes in each group.
-        totals: number of trials in each group.
     """
     k, n = np.asarray(successes, float), np.asarray(totals, float)
     x = np.arange(len(k), dtype=float)
@@ -354,9 +347,8 @@ def krippendorff(ratings: ArrayLike) -> float:
     number of ratings that lie between the two values, plus half of the ratings that equal one of them.
     Source: Krippendorff, Computing Krippendorff's alpha-reliability (2011).
 
-    Returns:
-        Alpha: 1 is full agreement, 0 is agreement by chance. NaN if no unit has two ratings, or if all
-        ratings are equal, so that no disagreement is possible.
+    1 is full agreement, 0 is agreement by chance. Alpha is NaN if no unit has two ratings, or if all ratings
+    are equal, so that no disagreement is possible.
     """
     x = np.asarray(ratings, float)
     x = x[:, np.isfinite(x).sum(axis=0) >= 2]

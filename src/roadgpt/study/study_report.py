@@ -2,14 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from hashlib import sha256
-from importlib.util import find_spec
 from pathlib import Path
 
+from roadgpt import brief
 from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
 from roadgpt.reading import read_json
-from roadgpt.report.page import Page, Section, write
+from roadgpt.report.page import write
+from roadgpt.report.page.model import Page, Section
 from roadgpt.road import World
 from roadgpt.run import Setup
 from roadgpt.run.atomic import json_text, write_whole
@@ -20,22 +21,20 @@ from roadgpt.study.chapters.faults import Steps, fault_summaries, faults, headli
 from roadgpt.study.chapters.out_of_lane import outside_sentences, passed_roads
 from roadgpt.study.chapters.roads import coverage, every_road, overview
 from roadgpt.study.chapters.validity import (
+    LEFT,
     NAME,
     SBFT,
     STRICT,
     THESIS_LEFT,
     THESIS_VALID,
-    Source,
     departures,
-    left_source,
     of_thesis,
-    valid_source,
+    source_of,
     validity,
 )
 from roadgpt.study.chapters.wording import near_and_far, percent, share_of
 from roadgpt.study.execution import Problem
-from roadgpt.study.plan import StudyPart, StudyPlan, read_plan
-from roadgpt.study.prompts import Prompt
+from roadgpt.study.plan import Prompt, StudyPart, StudyPlan, read_plan
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord, read_part
 
 PROBLEMS = "problems.json"
@@ -82,12 +81,7 @@ def _problems(folder: Path) -> Mapping[str, str]:
 
 
 def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> Page:
-    """Returns the page with the report of a study.
-
-    Args:
-        plan: the study.
-        parts: the roads of each study part.
-    """
+    """Returns the page with the report of a study."""
     is_thesis = plan.kind == "thesis"
     valid, left = (make(parts, plan.designers, has_baseline=is_thesis) for make in (validity, departures))
     kept, first = alignment(parts, plan.designers), overview(parts, plan.world.site.map_size)
@@ -125,37 +119,27 @@ def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> list[str]:
 def _sentences(
     parts: Sequence[StudyPartRecord], world: World, is_thesis: bool, near: Sequence[str] = ()
 ) -> list[str]:
-    """Returns the sentences on one designer.
-
-    Args:
-        parts: the designer's roads.
-        world: the world of the roads.
-        is_thesis: whether to count only the thesis' prompts, and to add the thesis' counts for comparison.
-        near: sentences on the drives that came nearest to failing.
-    """
+    """Returns the sentences on the roads of one designer, among them the given ones on the drives that came
+    ``near`` to failing. If ``is_thesis``, only the thesis' prompts are counted, beside the thesis' counts."""
     designer = parts[0].designer
     counted = of_thesis(parts) if is_thesis else parts
-    strict, sbft = (valid_source(designer, counted, kind) for kind in (STRICT, SBFT))
-    left, lines = left_source(designer, counted), []
+    strict, sbft = (source_of(designer, counted, kind) for kind in (STRICT, SBFT))
+    left, lines = source_of(designer, counted, LEFT), []
     if strict.total:
-        beside = f"; {NAME} had {_share(THESIS_VALID)} by its own checks" if is_thesis else ""
+        beside = f"; {NAME} had {THESIS_VALID.share} by its own checks" if is_thesis else ""
         lines.append(
-            f"{_share(strict)} roads are valid by strict rules, words included, "
-            f"and {_share(sbft)} by the SBFT competition's{beside}."
+            f"{strict.share} roads are valid by strict rules, words included, "
+            f"and {sbft.share} by the SBFT competition's{beside}."
         )
     if left.total:
-        beside = f"; in the thesis on {_share(THESIS_LEFT)}" if is_thesis else ""
-        lines.append(f"The car left its lane on {_share(left)} driven roads{beside}.")
+        beside = f"; in the thesis on {THESIS_LEFT.share}" if is_thesis else ""
+        lines.append(f"The car left its lane on {left.share} driven roads{beside}.")
     lines += [*outside_sentences(passed_roads([road for part in parts for road in part.roads]), world), *near]
     good, turns = ([kept for part in parts for kept in part.kept(name)] for name in ("general", "turns"))
     if good:
         right = f"; the number of turns is right on {percent(sum(turns) / len(turns))}" if turns else ""
         lines.append(f"{share_of(sum(good), len(good))} roads keep every word{right}.")
     return [*lines, _different(parts)]
-
-
-def _share(source: Source) -> str:
-    return share_of(source.hits, source.total)
 
 
 def _different(parts: Sequence[StudyPartRecord]) -> str:
@@ -173,10 +157,8 @@ def _different(parts: Sequence[StudyPartRecord]) -> str:
 def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
     """Writes the report of runs made by ``roadgpt run`` into their folder; returns the path of the HTML page.
 
-    Args:
-        folder: the folder of runs.
-        command: the command that repeats the runs, as shown in the report; empty: none is shown.
-        next_steps: what to try if no road failed, as pairs of a suggestion and its command.
+    The report shows the ``command`` that repeats the runs, unless it is empty, and what to try if no road
+    failed.
 
     Raises:
         UsageError: the folder holds no finished run, or a run cannot be read.
@@ -209,9 +191,7 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
 
 def _least(roads: Sequence[RoadRecord], outcome: str) -> tuple[float, str] | None:
     """Returns the smallest margin, in metres, of all roads with this outcome, and the name of that road."""
-    found = [
-        (road.margin, road.index) for road in roads if road.outcome == outcome and road.margin is not None
-    ]
+    found = [(road.verdict.margin, road.index) for road in roads if road.outcome == outcome and road.verdict]
     return (min(found)[0], f"road {min(found)[1]}") if found else None
 
 
@@ -262,10 +242,8 @@ def _hashes(reader: str) -> str:
     name, _, folder = reader.partition(":")
     if name != "model":
         return ""
-    spec = find_spec("roadgpt.brief.readers.model")
-    home = Path(spec.origin).parent / "weights" if spec and spec.origin else None
-    place = Path(folder) if folder else home
-    if place is None or not place.is_dir():
+    place = Path(folder) if folder else Path(brief.__file__).parent / "readers" / "model" / "weights"
+    if not place.is_dir():
         return ""
     files: Mapping[str, bytes] = {
         path.name: path.read_bytes() for path in sorted(place.iterdir()) if path.suffix in WEIGHTS

@@ -1,5 +1,3 @@
-"""Defines the Incident: one thing that a car did wrong on a route through junctions."""
-
 from dataclasses import dataclass
 from typing import Literal
 

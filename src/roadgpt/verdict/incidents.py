@@ -46,13 +46,14 @@ STEP = 1.0  # m, between points at which the heading of other roads is known
 
 def incidents_of(route: Route, drive: "Drive", world: "World") -> tuple[Incident, ...]:
     """Returns what the car did wrong on a route, in order of time."""
-    found: list[tuple[int, IncidentKind]] = [
-        (step, "out of lane") for step in begins(is_outside(route, drive, world))
-    ]
-    found += [(step, "wrong turn") for step in begins(_is_on_wrong_road(route, drive))]
-    found += [(step, "wrong way") for step in begins(_is_backwards(route, drive))]
-    found += [(step, "off road") for step in begins(_is_off_road(route, drive))]
-    found += [(step, "stop line") for step in _stops_missed(route, drive)]
+    steps_of: dict[IncidentKind, list[int]] = {
+        "out of lane": begins(is_outside(route, drive, world)),
+        "wrong turn": begins(_is_on_wrong_road(route, drive)),
+        "wrong way": begins(_is_backwards(route, drive)),
+        "off road": begins(_is_off_road(route, drive)),
+        "stop line": _stops_missed(route, drive),
+    }
+    found = [(step, kind) for kind, steps in steps_of.items() for step in steps]
     return tuple(
         Incident(
             kind,

@@ -48,8 +48,18 @@ SBFT: dict[Cause | None, str] = {
     "stop line": "Successful test",
 }
 
-FAILING: tuple[Cause, ...] = ("wrong turn", "wrong way", "stop line")
-"""The incidents that fail a test if nothing else failed. A tyre off the road fails no test."""
+FAILING: dict[str, Cause] = {"wrong turn": "wrong turn", "wrong way": "wrong way", "stop line": "stop line"}
+"""The incidents that fail a test if nothing else failed, and the cause. A tyre off the road fails no test."""
+
+FAILED: dict[Cause, str] = {
+    "out of lane": "left its lane to the {side}{where} {reached} {fast}{how}",
+    "fell": "fell off the road to the {side} {reached} {fast}",
+    "wrong turn": "took a wrong turn {reached} {fast}",
+    "wrong way": "drove against the direction of its lane {reached} {fast}",
+    "stop line": "did not stop at the stop sign {reached}: it crossed the line {fast}",
+    "stuck": "was stuck {reached}: it moved less than 1 m in 10 s",
+    "timeout": "ran out of time {reached} of {length:.0f} m",
+}
 
 
 def judge(
@@ -83,8 +93,9 @@ def judge(
         step, cause = _first_of(incidents or (), drive, step)
     every = margins(road, drive, world)
     least = float(every[: drive.lane_steps].min())
-    left = _left(road, drive, step, world)
-    side: Side | None = ("left" if left else "right") if cause in ("out of lane", "fell") else None
+    side: Side | None = None
+    if cause in ("out of lane", "fell"):
+        side = "left" if drive["t"][step] > world.profile_of(road).middle(drive["s"][step]) else "right"
     if cause == "fell":
         least = min(least, -EPSILON)
     beyond = most_beyond(road, drive, world)
@@ -147,9 +158,8 @@ def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, C
 def _first_of(incidents: Sequence[Incident], drive: "Drive", step: int) -> tuple[int, Cause | None]:
     """Returns the step and the cause of the first failing incident; ``step`` and None if there is none."""
     for each in incidents:
-        for cause in FAILING:
-            if each.kind == cause:
-                return int(np.searchsorted(drive["time"], each.at_time)), cause
+        if each.kind in FAILING:
+            return int(np.searchsorted(drive["time"], each.at_time)), FAILING[each.kind]
     return step, None
 
 
@@ -165,10 +175,6 @@ def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
         often = "once," if count == 1 else f"{count} times, first"
         words.append(f"{INCIDENTS[str(kind)]} {often} after {first:.0f} m")
     return "".join(f"; {each}" for each in words)
-
-
-def _left(road: "Road", drive: "Drive", step: int, world: "World") -> bool:
-    return bool(drive["t"][step] > world.profile_of(road).middle(drive["s"][step]))
 
 
 def far_beyond(beyond: float) -> str:
@@ -191,23 +197,13 @@ def _kept(road: "Road", drive: "Drive", world: "World", margin: float, beyond: f
 
 
 def _failed(road: "Road", drive: "Drive", world: "World", step: int, cause: Cause, side: Side | None) -> str:
-    reached = f"after {drive['s'][step]:.0f} m"
-    fast = f"at {drive['speed'][step] * 3.6:.0f} km/h"
-    if cause == "out of lane":
-        crossed = has_departed(road, drive, world)[step]
-        how = ": a front tyre passed the marking" if crossed else ""
-        profile = world.profile_of(road)
-        is_beside = side == ("right" if profile.left_hand else "left") and profile.driven > 0
-        where = ", into the next lane of its direction," if is_beside else ""
-        return f"left its lane to the {side}{where} {reached} {fast}{how}"
-    if cause == "fell":
-        return f"fell off the road to the {side} {reached} {fast}"
-    if cause == "wrong turn":
-        return f"took a wrong turn {reached} {fast}"
-    if cause == "wrong way":
-        return f"drove against the direction of its lane {reached} {fast}"
-    if cause == "stop line":
-        return f"did not stop at the stop sign {reached}: it crossed the line {fast}"
-    if cause == "stuck":
-        return f"was stuck {reached}: it moved less than 1 m in 10 s"
-    return f"ran out of time {reached} of {road.length:.0f} m"
+    profile = world.profile_of(road)
+    is_beside = side == ("right" if profile.left_hand else "left") and profile.driven > 0
+    return FAILED[cause].format(
+        side=side,
+        where=", into the next lane of its direction," if is_beside else "",
+        reached=f"after {drive['s'][step]:.0f} m",
+        fast=f"at {drive['speed'][step] * 3.6:.0f} km/h",
+        how=": a front tyre passed the marking" if has_departed(road, drive, world)[step] else "",
+        length=road.length,
+    )

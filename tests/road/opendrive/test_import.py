@@ -14,6 +14,7 @@ from roadgpt.errors import UsageError
 from roadgpt.export import save
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.geometry import GradeProfile
+from roadgpt.network import read_blueprint
 from roadgpt.road import (
     CrossSection,
     ImportedRoad,
@@ -23,7 +24,6 @@ from roadgpt.road import (
     World,
     build,
     moved,
-    read_blueprint,
     read_opendrive,
 )
 from strategies import designs
@@ -207,6 +207,17 @@ def test_borders_instead_of_widths(tmp_path: Path) -> None:
     )
     found = read_opendrive(file(tmp_path, right=right))
     assert (found.lane_width, found.shoulder) == (3.1, 1.0)
+
+
+def test_a_border_that_narrows_is_the_same_line_as_a_width_that_narrows(tmp_path: Path) -> None:
+    left_side = '<left><lane id="1" type="driving"><width sOffset="0" a="3"/></lane></left>'
+    driven = '<lane id="-2" type="driving"><width sOffset="0" a="3"/></lane>'
+    roads = []
+    for inner in ('<width sOffset="0" a="2" b="-0.04"/>', '<border sOffset="0" a="-2" b="0.04"/>'):
+        path = file(tmp_path, right=f'<lane id="-1" type="median">{inner}</lane>{driven}')
+        path.write_text(path.read_text().replace(left_side, ""))
+        roads.append(read_opendrive(path).road)
+    assert apart(*roads) < 1e-6
 
 
 def test_kinks_are_rounded_off_and_told_of(tmp_path: Path) -> None:

@@ -15,15 +15,13 @@ from scipy import stats
 
 from roadgpt.errors import UsageError
 from roadgpt.report.canvas import Format, save_all
-from roadgpt.report.page import Figure
+from roadgpt.report.page.model import Figure
 from roadgpt.study.survey import rating_charts
 from roadgpt.study.survey.analysis import analyse, load_answers
-from roadgpt.study.survey.answers import answers_of_raters, synthetic
-from roadgpt.study.survey.questions import CHECK, MATCHES
+from roadgpt.study.survey.answers import alpha_of, answers_of_raters, synthetic, tally
 from roadgpt.study.survey.rating_charts import rating_bars
-from roadgpt.study.survey.store import ANSWERS, AnswerStore
-from roadgpt.study.survey.survey import Survey
-from roadgpt.study.survey.tally import agreement, tally
+from roadgpt.study.survey.store import ANSWERS, AnswerStore, code_of
+from roadgpt.study.survey.survey import CHECK, MATCHES, Survey
 from survey_made import EVIL, folder_of, survey
 
 WORDS = ("report.html", "report.md")
@@ -88,7 +86,7 @@ def test_known_agreement_comes_out_as_such(said: float, low: float, high: float)
     answers = synthetic(survey(roads=6, pairs=6), 80, 3, said, failing=0)
     for part in ("alignment", "similarity"):
         found = tally(answers, part)
-        assert low <= agreement(found.units) <= high
+        assert low <= alpha_of(found.units) <= high
 
 
 def test_two_raters_who_never_agree_have_a_negative_alpha(asked: Survey) -> None:
@@ -98,9 +96,9 @@ def test_two_raters_who_never_agree_have_a_negative_alpha(asked: Survey) -> None
         "b" * 64: {id_: MATCHES[4 if n % 2 else 0] for n, id_ in enumerate(overall)},
     }
     found = tally(answers_of_raters(asked, given, "people", 2), "alignment")
-    assert math.isnan(agreement(found.overall[:1])), "one road alone tells nothing of agreement"
+    assert math.isnan(alpha_of(found.overall[:1])), "one road alone tells nothing of agreement"
     # 5 units, each with one 1 and one 5: observed 1, by chance 50/90
-    assert agreement(found.overall) == pytest.approx(1 - 1 / (50 / 90))
+    assert alpha_of(found.overall) == pytest.approx(1 - 1 / (50 / 90))
 
 
 def test_the_same_seed_gives_the_same_bytes_and_another_one_others(
@@ -266,6 +264,6 @@ def test_a_survey_that_nobody_answered_is_told(tmp_path: Path) -> None:
     answers = load_answers(folder)
     store.close()
     assert [(row.source, row.score, row.attention) for row in answers.rows] == [("people", 5, "not answered")]
-    assert answers.unchecked == {rater.code}
+    assert answers.unchecked == {code_of(rater.digest)}
     with pytest.raises(UsageError, match="made-up raters are"):
         synthetic(survey(), 0)

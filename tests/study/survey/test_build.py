@@ -22,9 +22,8 @@ from roadgpt.run import Run, Setup, perform, prove, write_run
 from roadgpt.run.card import CARD as CAMPAIGN
 from roadgpt.run.card import Card
 from roadgpt.study.survey import build, media
-from roadgpt.study.survey.item_criteria import criteria_of
 from roadgpt.study.survey.media import Axes
-from roadgpt.study.survey.plan import plan_from_runs, plan_text, read_plan
+from roadgpt.study.survey.plan import criteria_of, plan_from_runs, plan_text, read_plan
 from roadgpt.study.survey.survey import Survey, read_survey
 
 SETUP = Setup(drives=False)

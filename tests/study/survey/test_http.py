@@ -17,9 +17,9 @@ from hypothesis import strategies as st
 
 from roadgpt.study.survey.app import CLOSED, FORM, JSON
 from roadgpt.study.survey.limits import MOST_ADDRESS, MOST_BYTES
-from roadgpt.study.survey.questions import CHECK, MATCHES, MOST_LETTERS
 from roadgpt.study.survey.server import Server
-from roadgpt.study.survey.store import AnswerStore, Rater
+from roadgpt.study.survey.store import AnswerStore, Rater, code_of
+from roadgpt.study.survey.survey import CHECK, MATCHES, MOST_LETTERS
 from survey_made import EVIL, PICTURE, Client, agreed, folder_of, port_of, served, survey
 
 STATUSES = {200, 206, 303, 400, 403, 404, 405, 410, 411, 413, 414, 415, 416, 422}
@@ -243,7 +243,7 @@ def test_tokens_that_are_nobodys_open_nothing(server: Server, client: Client) ->
         token.swapcase(),
         token[::-1],
         rater.digest,
-        rater.code,
+        code_of(rater.digest),
         "",
         "0" * 64,
         "%00",

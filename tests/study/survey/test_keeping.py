@@ -17,11 +17,10 @@ import pytest
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey import serving
-from roadgpt.study.survey.questions import ALIKE, MATCHES
 from roadgpt.study.survey.server import Server
 from roadgpt.study.survey.serving import LINKS, open_server
 from roadgpt.study.survey.store import ANSWERS, AnswerStore, digest_of
-from roadgpt.study.survey.survey import read_survey
+from roadgpt.study.survey.survey import ALIKE, MATCHES, read_survey
 from survey_made import Client, agreed, folder_of, port_of, served, survey
 
 RATERS = 50

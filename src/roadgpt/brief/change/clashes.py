@@ -47,15 +47,8 @@ def clash(one: Change, other: Change) -> EditError:
 def _check_count(change: Change) -> None:
     target = change.target
     assert target is not None
-    plain = Target(
-        "turn",
-        kind=target.kind,
-        side=target.side,
-        sharpness=target.sharpness,
-        way=target.way,
-        every=target.every,
-        words=target.words,
-    )
+    of_all = ("kind", "side", "sharpness", "way", "every", "words")
+    plain = Target("turn", **{name: getattr(target, name) for name in of_all})
     if target != plain:
         raise EditError(
             f"'{change.words}' counts the turns of a place; only all turns, or those of a side or a kind, "

@@ -1,6 +1,7 @@
 """Parses one change of a plan, such as "turn 2: radius x0.75". Main class: ``ChangeParser``."""
 
 import re
+from collections.abc import Container, Mapping
 from dataclasses import replace
 from typing import Any, Literal, cast, get_args
 
@@ -23,12 +24,23 @@ SPACES = re.compile(r" (?=[(),=])|(?<=[(=]) ")
 """Spaces between tokens that a place is written without."""
 KINDS = frozenset(get_args(Kind)) - {"straight", "turn"}
 NOUNS = ("turn", "straight", "start", "end", "road")
-PROPERTIES = {
-    **dict.fromkeys(get_args(Side), "side"),
-    **dict.fromkeys(get_args(Sharpness), "sharpness"),
-    **dict.fromkeys(get_args(Way), "way"),
-    **dict.fromkeys(("long", "short"), "size"),
+OF_TURNS: dict[str, tuple[str, Any]] = {
+    **{word: ("side", word) for word in get_args(Side)},
+    **{word: ("sharpness", word) for word in get_args(Sharpness)},
 }
+"""Words that describe turns, each with the field that it sets and its value."""
+OF_TARGETS = {
+    **OF_TURNS,
+    **{word: ("way", word) for word in get_args(Way)},
+    **{word: ("size", word) for word in ("long", "short")},
+    **{word: ("most", most) for word, most in SUPERLATIVES.items()},
+    **{word: ("half", half) for word, half in HALVES.items()},
+    "all": ("every", True),
+    "middle": ("middle", True),
+}
+"""The same for words that describe places."""
+OF_NEW = {**OF_TURNS, "whole": ("is_whole", True)}
+"""The same for words that describe what is added."""
 NUMBERS = {"deg": "degrees", "len": "length", "r": "radius", "pct": "grade"}
 NEXT_TO = ("after", "before", "between", "on")
 """Positions, relative to other elements, at which a new element can be added."""
@@ -178,26 +190,32 @@ class ChangeParser:
             raise self._error(kind)
         noun: Any = "straight" if kind == "straight" else "turn"
         own = cast(Kind, kind) if kind in KINDS else None
-        change = Change("add", Target(noun, words=kind), kind=own)
         fields: dict[str, Any] = {}
         while word := self._next():
-            self.at += 1
-            if word == "x":
-                self._set(fields, "count", self._whole())
-            elif word == "whole":
-                self._set(fields, "is_whole", True)
-            elif word in NUMBERS:
-                self._set(fields, NUMBERS[word], self._equal())
-            elif word in WAYS:
-                self._set(fields, "way", word.rpartition("_")[2])
-                fields["steepness"] = word.rpartition("_")[0] or None
-            elif PROPERTIES.get(word) in ("side", "sharpness"):
-                self._set(fields, PROPERTIES[word], word)
-            elif word in ENDS or word in NEXT_TO:
-                self._set(fields, "place", self._position(word))
+            if word in WAYS:
+                self.at += 1
+                steepness, _, way = word.rpartition("_")
+                self._set(fields, "way", way)
+                fields["steepness"] = steepness or None
             else:
-                raise self._error(word)
-        return replace(change, **fields)
+                self._set(fields, *self._described(OF_NEW, NUMBERS, NEXT_TO))
+        return Change("add", Target(noun, words=kind), kind=own, **fields)
+
+    def _described(
+        self, fixed: Mapping[str, tuple[str, Any]], keys: Container[str], places: Container[str]
+    ) -> tuple[str, Any]:
+        """Returns the field that the next word sets, and its value, which may stand behind the word."""
+        word = self._word()
+        if word in fixed:
+            return fixed[word]
+        if word == "x":
+            return "count", self._whole()
+        if word in keys:
+            self._need("=")
+            return NUMBERS[word], self._figure()
+        if word in places or word in ENDS:
+            return "place", self._position(word)
+        raise self._error(word)
 
     def _position(self, word: str) -> Place:
         if word in ENDS:
@@ -220,30 +238,12 @@ class ChangeParser:
         while (word := self._next()) not in ("", ":", ")", ",", ".."):
             if _is_number(word):
                 self._set(fields, "numbers", self._list())
-                continue
-            self.at += 1
-            if word == "all":
-                self._set(fields, "every", True)
-            elif word == "middle":
-                self._set(fields, "middle", True)
-            elif word in SUPERLATIVES:
-                self._set(fields, "most", SUPERLATIVES[word])
-            elif word == "x":
-                self._set(fields, "count", self._whole())
-            elif word in ("deg", "len"):
-                self._set(fields, NUMBERS[word], self._equal())
-            elif word in HALVES:
-                self._set(fields, "half", HALVES[word])
-            elif word in PROPERTIES:
-                self._set(fields, PROPERTIES[word], word)
-            elif word in POSITIONS or word in ENDS:
-                self._set(fields, "place", self._position(word))
-            elif word == "but":
+            elif self._take("but"):
                 self._need("(")
                 self._set(fields, "but", self._target())
                 self._need(")")
             else:
-                raise self._error(word)
+                self._set(fields, *self._described(OF_TARGETS, ("deg", "len"), POSITIONS))
         words = SPACES.sub("", " ".join(self.tokens[begun : self.at]))
         return Target(cast(Any, "turn" if noun in KINDS else noun), words=words, **fields)
 
@@ -258,10 +258,6 @@ class ChangeParser:
         if name in fields:
             raise EditError(f"the change '{self.text[:60]}' gives its {name} twice; give it once")
         fields[name] = value
-
-    def _equal(self) -> float:
-        self._need("=")
-        return self._figure()
 
     def _figure(self) -> float:
         word = self._word()

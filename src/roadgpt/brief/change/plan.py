@@ -21,10 +21,7 @@ def change_plan(request: EditRequest) -> str:
 def _change(change: Change) -> str:
     if change.what == "add":
         return " ".join(["add", *_added(change)])
-    if change.target is None:
-        place = "road"
-    else:
-        place = _place(change.target)
+    place = _place(change.target) if change.target else "road"
     return f"{place}: {' '.join(_wish(change))}"
 
 

@@ -12,8 +12,7 @@ from itertools import groupby
 from pydantic import BaseModel, Field
 
 from roadgpt.brief.feasible import check
-from roadgpt.brief.junctions import NAMES
-from roadgpt.brief.map_clause import MAP
+from roadgpt.brief.junctions import MAP, NAMES
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import BETWEEN, JUNCTIONS, KINDS, WHOLE, is_junction, is_map, read_plan

@@ -14,6 +14,45 @@ A job that is run again, on any worker, returns the same value, so an executor k
 seconds to import.
 """
 
-from roadgpt.campaign.jobs import MOST_DEATHS, Executor, FinishedJob, Job, RunningJob, WorkerConfig
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+from roadgpt.campaign.jobs import MOST_DEATHS, FinishedJob, Job, RunningJob, WorkerConfig
+from roadgpt.campaign.model import Pool
 
 __all__ = ["MOST_DEATHS", "Executor", "FinishedJob", "Job", "RunningJob", "WorkerConfig"]
+
+
+class Executor(Pool, Protocol):
+    """The interface of executors. The items of ``map`` go to free workers before the jobs that wait."""
+
+    def __init__(self, staff: WorkerConfig) -> None: ...
+
+    def share(self, name: str, value: Any) -> None:
+        """Keeps a value under a name, for the jobs that list this name in ``Job.needs``; it is sent to each
+        worker at most once."""
+        ...
+
+    def forget(self, name: str) -> None:
+        """Drops a shared value that no later job needs."""
+        ...
+
+    def submit(self, jobs: Sequence[Job]) -> None:
+        """Queues jobs and returns at once; the jobs begin roughly in the given order."""
+        ...
+
+    def done(self, seconds: float) -> list[FinishedJob]:
+        """Returns the jobs that have ended since the last call; waits at most ``seconds`` for the first one.
+
+        Raises:
+            RoadGPTError: no workers are left, and none can be started.
+        """
+        ...
+
+    def under_way(self) -> list[RunningJob]:
+        """Returns the jobs that are running, and the worker of each."""
+        ...
+
+    def stop(self) -> None:
+        """Ends every worker at once."""
+        ...

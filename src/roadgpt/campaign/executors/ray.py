@@ -9,20 +9,30 @@ Ray's own retries are off: Ray cannot distinguish between a job that kills its w
 switched off.
 """
 
+import faulthandler
 import os
 import queue
 import socket
+import sys
 import threading
 import time
 from collections import deque
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from roadgpt.campaign.jobs import MOST_DEATHS, RunningJob, WorkerConfig
-from roadgpt.campaign.workers.job_queue import JobQueue, QueuedJob
-from roadgpt.campaign.workers.messages import pickled, unpickled
-from roadgpt.campaign.workers.process_loop import READY, JobMessage
-from roadgpt.campaign.workers.ray_actor import RayActor
+from roadgpt import __version__
+from roadgpt.campaign.jobs import WorkerConfig
+from roadgpt.campaign.workers.job_queue import JobQueue, QueuedJob, QueueWorker
+from roadgpt.campaign.workers.process_loop import (
+    ERROR,
+    READY,
+    JobMessage,
+    answer,
+    pickled,
+    portable,
+    unpickled,
+)
 from roadgpt.errors import RoadGPTError, UsageError
 
 ROUND = 0.5  # s between two looks at all workers
@@ -33,22 +43,13 @@ ANSWER = 10.0  # s for the head of a cluster to accept a connection
 PATIENCE = 600.0  # s for the cluster to find room for one worker
 
 
-@dataclass(eq=False)
-class _Worker:
-    """A worker, as this process sees it."""
-
+@dataclass(eq=False, kw_only=True)
+class _Worker(QueueWorker):
     actor: Any
-    name: str
-    is_ready: bool = False
-    works: list[QueuedJob] = field(default_factory=list)
-    begun: float = 0.0
-    has: set[str] = field(default_factory=set)
     node: str = ""
-    fault: str = ""
-    """Why the worker was ended; empty if it ended by itself."""
 
 
-class Ray(JobQueue):
+class Ray(JobQueue[_Worker]):
     """Workers on a Ray cluster."""
 
     def __init__(self, staff: WorkerConfig) -> None:
@@ -62,39 +63,20 @@ class Ray(JobQueue):
             UsageError: Ray is not installed.
             RoadGPTError: no cluster answers.
         """
-        super().__init__(staff.workers)
-        self._staff = staff
-        self._prepare = pickled(staff.prepare)
+        super().__init__(staff)
         self._ray, self._is_ours = _connected(staff)
         self._alone: set[QueuedJob] = set()  # sent singly, since a worker died while it had them and others
-        self._in_vain = 0  # workers that ended before they were ready, since one last became ready
-        self._started = 0
         self._since = time.monotonic()  # since then no worker has been ready
         self._events: queue.SimpleQueue[tuple[_Worker, Any]] = queue.SimpleQueue()
-        self._stops = threading.Event()
-        self._workers: list[_Worker] = []
         with self._changed:
             for _ in range(staff.workers):
                 self._hire()
         self._thread = threading.Thread(target=self._listen, name="roadgpt-ray", daemon=True)
         self._thread.start()
 
-    def under_way(self) -> list[RunningJob]:
-        """Returns the jobs that were sent to workers and have not ended; a job's running time is counted
-        from when its message was sent.
-        """
-        now = time.monotonic()
-        with self._changed:
-            return [
-                RunningJob(work.key, worker.name, now - worker.begun)
-                for worker in self._workers
-                for work in worker.works
-                if work.key is not None
-            ]
-
     def stop(self) -> None:
-        """Ends every worker. If this executor opened the connection to Ray, closes it; a cluster that was
-        started for the workers then ends, too."""
+        """Ends every worker, and a connection to Ray that this executor opened, with a cluster that it
+        started."""
         if self._stops.is_set():
             return
         self._stops.set()
@@ -105,11 +87,9 @@ class Ray(JobQueue):
             self._ray.shutdown()
 
     def _hire(self) -> None:
-        from roadgpt import __version__
-
         self._started += 1
         kind = self._ray.remote(num_cpus=1, max_restarts=0, max_task_retries=0)(RayActor)
-        worker = _Worker(kind.remote(self._staff.patience), f"worker {self._started}")
+        worker = _Worker(name=f"worker {self._started}", actor=kind.remote(self._staff.patience))
         self._workers.append(worker)
         self._expect(worker, worker.actor.begin.remote(__version__, self._prepare))
 
@@ -134,39 +114,20 @@ class Ray(JobQueue):
                     self._bury(worker, worker.fault or _reason(error))
                 self._changed.notify_all()
 
-    def _hear(self, worker: _Worker, message: Any) -> None:
-        if worker.is_ready:
-            works, worker.works = worker.works, []
-            for work, (kind, what) in zip(works, message, strict=True):
-                self._alone.discard(work)
-                self._end(work, kind, what)
-        elif message[0] == READY:
-            worker.is_ready, self._in_vain = True, 0
-            worker.node, where = unpickled(message[1])
+    def _hear(self, worker: _Worker, answers: Sequence[tuple[str, bytes]]) -> None:
+        self._alone.difference_update(worker.works)
+        if answers[0][0] == READY:
+            worker.node, where = unpickled(answers[0][1])
             worker.name += f" ({where})"
-        else:
-            self._broken = unpickled(message[1])
-            return
-        self._next(worker)
+        super()._hear(worker, answers)
 
-    def _hand_out(self) -> None:
-        for worker in self._workers:
-            if worker.is_ready and not worker.works:
-                self._next(worker)
-
-    def _next(self, worker: _Worker) -> None:
-        works = self._some(self._urgent or self._waiting)
-        if not works:
-            return
-        worker.works, worker.begun = works, time.monotonic()
-        new, old = self._news(worker.has, works)
-        first, *more = works
-        orders = [JobMessage(first.call, new, old), *(JobMessage(work.call, {}, ()) for work in more)]
+    def _send(self, worker: _Worker, works: Sequence[QueuedJob]) -> None:
+        orders = [self._message(worker, work) for work in works]
         self._expect(worker, worker.actor.work.remote(orders))
 
     def _some(self, waiting: deque[QueuedJob]) -> list[QueuedJob]:
         """Takes jobs for one message: some of the waiting jobs, or one job that may have killed a worker."""
-        most = min(TOGETHER, -(-len(waiting) // (PER_WORKER * self._size)))
+        most = min(TOGETHER, -(-len(waiting) // (PER_WORKER * self._staff.workers)))
         works: list[QueuedJob] = []
         while waiting and len(works) < most and not (works and waiting[0] in self._alone):
             works.append(waiting.popleft())
@@ -184,16 +145,10 @@ class Ray(JobQueue):
             else:
                 self._alone.add(work)
                 self._give_again(work, how)
-        self._in_vain += not worker.is_ready
-        if self._in_vain >= MOST_DEATHS:
-            self._broken = RoadGPTError(
-                f"workers end before they begin (the last one {how}); Ray's log has what they printed"
-            )
-        if self._broken is None:
-            if not any(other.is_ready for other in self._workers):
-                self._since = time.monotonic()
-            self._hire()
-            self._hand_out()
+        if not any(other.is_ready for other in self._workers):
+            self._since = time.monotonic()
+        self._replace(worker, how, "Ray's log")
+        self._hand_out()
 
     def _nodes(self) -> set[str]:
         return {node["NodeID"] for node in self._ray.nodes() if node["Alive"]}
@@ -251,3 +206,48 @@ def _reason(error: BaseException) -> str:
     """Returns the first line of Ray's message about the end of a worker."""
     reason = str(error).strip().partition("\n")[0]
     return f"ended: {reason}" if reason else "ended"
+
+
+class RayActor:
+    """A worker, which Ray runs in a process of its own: it is prepared once, and then runs the jobs of each
+    message one after another."""
+
+    def __init__(self, patience: float) -> None:
+        """Takes the seconds after which a job is treated as hanging and the worker ends; they apply only to
+        messages with several jobs."""
+        self._patience = patience
+        self._shared: dict[str, Any] = {}
+
+    def begin(self, version: str, prepare: bytes) -> list[tuple[str, bytes]]:
+        """Prepares the worker. Returns READY and, pickled, the id of the Ray node and a text with host name
+        and process id; or ERROR and the pickled error."""
+        import ray
+
+        os.environ.setdefault("MPLBACKEND", "Agg")
+        os.environ.setdefault("NUMBA_NUM_THREADS", "1")  # it has one core
+        here = socket.gethostname()
+        try:
+            if __version__ != version:
+                raise UsageError(
+                    f"{here} has RoadGPT {__version__} and this machine {version}; install the same on all"
+                )
+            unpickled(prepare)()
+        except Exception as error:  # whatever it is, the campaign has to hear of it
+            return [(ERROR, portable(error))]
+        return [(READY, pickled((ray.get_runtime_context().get_node_id(), f"{here}, {os.getpid()}")))]
+
+    def work(self, orders: Sequence[JobMessage]) -> list[tuple[str, bytes]]:
+        """Runs jobs one after another; returns how each job ended, and its pickled value or error. Of several
+        jobs, the worker itself limits the time of each, and ends if one hangs; of one job, the sender
+        does."""
+        if len(orders) == 1:
+            return [answer(orders[0], self._shared)]
+        return [self._timed(order) for order in orders]
+
+    def _timed(self, order: JobMessage) -> tuple[str, bytes]:
+        # the timer is no Python code, so that it ends a worker that hangs in a library, too
+        faulthandler.dump_traceback_later(self._patience, exit=True, file=sys.__stderr__ or 2)
+        try:
+            return answer(order, self._shared)
+        finally:
+            faulthandler.cancel_dump_traceback_later()

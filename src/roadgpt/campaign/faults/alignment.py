@@ -1,8 +1,8 @@
 """Changes the curvature and the grade of a road piece by piece, and builds the changed road.
 
-A road is sampled every half metre. A change makes some samples longer or shorter and changes their curvature
-or grade; the road after these samples moves accordingly. The changed road is built for one drive only, so it
-may leave the map or overlap itself.
+A change makes some samples of a road longer or shorter and changes their curvature or grade; the road after
+these samples moves accordingly. The changed road is built for one drive only, so it may leave the map or
+overlap itself.
 """
 
 from dataclasses import dataclass, replace
@@ -10,12 +10,10 @@ from itertools import pairwise
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
+from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
-
-Array = NDArray[np.float64]
 
 STEP = 0.5  # m, between samples
 STRAIGHT = 1 / 250  # 1/m; a road that bends less is called straight
@@ -60,19 +58,14 @@ class Alignment:
         return [Bend(int(first), int(end) - 1) for first, end in pieces if side[first]]
 
     def widened(self, bend: Bend, factor: float) -> Self:
-        """Returns a copy in which the radius and the length of a bend are multiplied by ``factor``, so that
-        the bend turns as many degrees as before.
-        """
-        within = slice(bend.first, bend.last + 1)
-        steps, curvature = self.steps.copy(), self.curvature.copy()
-        steps[bend.first + 1 : bend.last + 1] *= factor
-        curvature[within] /= factor
-        return replace(self, steps=steps, curvature=curvature)
+        """Returns a copy with radius and length of a bend times ``factor``: it turns as many degrees as
+        before."""
+        curvature = self.curvature.copy()
+        curvature[bend.first : bend.last + 1] /= factor
+        return replace(self.shortened(bend, factor), curvature=curvature)
 
     def shortened(self, bend: Bend, factor: float) -> Self:
-        """Returns a copy in which the length of a bend is multiplied by ``factor`` at the same radius. With a
-        factor below 1, the bend turns fewer degrees.
-        """
+        """Returns a copy with the length of a bend times ``factor``: below 1, it turns fewer degrees."""
         steps = self.steps.copy()
         steps[bend.first + 1 : bend.last + 1] *= factor
         return replace(self, steps=steps)

@@ -5,7 +5,7 @@ Bisection then finds the smallest fraction of that change that still makes the c
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from roadgpt.brief.model import Brief
@@ -15,16 +15,15 @@ from roadgpt.road import Design, Segment
 from roadgpt.run import Run
 
 FINEST = 1 / 64  # of the change
-UNITS = {"turn_degrees": " degrees", "incline": " %"} | dict.fromkeys(
-    ("distance", "radius", "transition", "vertical_radius"), " m"
-)
-NAMES = {
-    "distance": "length",
-    "turn_degrees": "turn",
-    "transition": "clothoid",
-    "incline": "grade",
-    "vertical_radius": "vertical radius",
+TOLD = {
+    "distance": ("length", " m"),
+    "turn_degrees": ("turn", " degrees"),
+    "radius": ("radius", " m"),
+    "transition": ("clothoid", " m"),
+    "incline": ("grade", " %"),
+    "vertical_radius": ("vertical radius", " m"),
 }
+"""The name and the unit of a field of a segment in texts."""
 
 
 @dataclass(frozen=True)
@@ -40,9 +39,9 @@ class Difference:
     @property
     def sentence(self) -> str:
         """The difference as text for users."""
-        unit = UNITS.get(self.field, "")
+        name, unit = TOLD.get(self.field, (self.field, ""))
         before, after = (_value_text(value, unit) for value in (self.kept, self.failing))
-        return f"segment {self.segment + 1}: {NAMES.get(self.field, self.field)} {before} -> {after}"
+        return f"segment {self.segment + 1}: {name} {before} -> {after}"
 
 
 def _value_text(value: Any, unit: str) -> str:
@@ -87,17 +86,13 @@ def smallest_change(
             "a smallest change is looked for between roads of equally many"
         )
     trial = Trial(failure, brief, most)
-    base = _at_the_start_of(failure.plain_design, kept.plain_design)
+    # from the start of the failing road; the car drives the same anywhere on the map
+    base = failure.plain_design.model_copy(update={"segments": kept.plain_design.segments})
     every = _differences(base, failure.plain_design)
     needed = _fewest(base, every, trial)
     least = _least(base, needed, trial)
     run = trial.fails(_changed(base, least))
     return SmallestChange(run or failure, tuple(least), trial.drives)
-
-
-def _at_the_start_of(failing: Design, kept: Design) -> Design:
-    """Returns ``kept`` moved to the start of ``failing``; the car drives the same anywhere on the map."""
-    return failing.model_copy(update={"segments": kept.segments})
 
 
 def _differences(kept: Design, failing: Design) -> list[Difference]:
@@ -146,7 +141,7 @@ def _least(base: Design, differences: Sequence[Difference], trial: Trial) -> lis
 
 def _scaled(differences: Sequence[Difference], share: float) -> list[Difference]:
     return [
-        Difference(each.segment, each.field, each.kept, each.kept + share * (each.failing - each.kept))
+        replace(each, failing=each.kept + share * (each.failing - each.kept))
         if isinstance(each.kept, float) and isinstance(each.failing, float)
         else each
         for each in differences

@@ -9,7 +9,6 @@ more than 1000 failures. Each cluster is a group of similar failures; several gr
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +16,8 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import cdist, squareform
 
 from roadgpt.campaign.faults.reason import lane_curvature
+from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
-
-Array = NDArray[np.float64]
 
 AROUND = 30.0  # m, the competition's, before and after the departure
 STEP = 1.0  # m
@@ -37,26 +35,16 @@ class Surroundings:
     """The lane around a departure, sampled every metre."""
 
     bends: Array
-    """Smoothed curvature of the lane, 1/m; NaN beyond the ends of the road. At either end, the array extends
-    ``SHIFT`` values beyond the compared part.
-    """
+    """Smoothed curvature of the lane, 1/m; NaN beyond the ends of the road. The array extends ``SHIFT``
+    values beyond the compared part at either end."""
     grades: Array
     """Smoothed grade as a ratio, at the same stations; NaN beyond the ends of the road."""
     kind: str
-    """Text that states the cause and the side of the failure, and the driver, simulator and world. Failures
-    with different texts never belong to the same group.
-    """
+    """Cause and side of the failure, driver, simulator and world as text; a group has one kind."""
 
 
 def surroundings(road: Road, world: World, station: float, kind: str) -> Surroundings:
-    """Returns the lane around a departure.
-
-    Args:
-        road: the road.
-        world: determines the width of the lane.
-        station: station of the departure, metres along the road.
-        kind: text that states cause and side of the failure and more, see ``Surroundings.kind``.
-    """
+    """Returns the lane around a departure at ``station``, metres along the road."""
     reach = COUNT + SHIFT + SMOOTHING
     s = station + STEP * np.arange(-reach, reach + 1)
     on = (s >= 0) & (s <= road.length)
@@ -73,61 +61,37 @@ def _smoothed(values: Array) -> Array:
     return np.convolve(values, window / window.sum(), mode="valid")
 
 
-def distances(one: Surroundings, others: Sequence[Surroundings]) -> Array:
-    """Returns the distances from one failure to n others, as an array of shape ``(n,)``.
+def between(some: Sequence[Surroundings], others: Sequence[Surroundings]) -> Array:
+    """Returns the distances, ``(len(some), len(others))``, between the failures of two lists.
 
     A distance of 1 is an RMS difference of ``BEND`` in curvature, or of ``GRADE`` in grade; the distance is
     the root of the sum of both squares. Beyond its ends, a road counts as straight and level. If two failures
     differ in ``kind``, their distance is infinite. Distances are symmetric.
     """
-    return np.asarray(between([one], others)[0])
-
-
-def between(some: Sequence[Surroundings], others: Sequence[Surroundings]) -> Array:
-    """Returns the distance from each failure in one list to each failure in the other, as an array of shape
-    ``(len(some), len(others))``; see ``distances``.
-    """
     least = np.full((len(some), len(others)), np.inf)
     if not least.size:
         return least
-    one, other = _Stacked.of(some), _Stacked.of(others)
+    one, other = _stacked(some), _stacked(others)
     for shift in range(-SHIFT, SHIFT + 1):
         # each profile is moved by half of the shift, so that distances are symmetric
-        a, b = one.moved(shift // 2), other.moved(shift // 2 - shift)
-        apart = cdist(a.bends, b.bends, "sqeuclidean") / BEND**2
-        apart += cdist(a.grades, b.grades, "sqeuclidean") / GRADE**2
+        here, there = (slice(SHIFT + steps, steps - SHIFT) for steps in (shift // 2, shift // 2 - shift))
+        a, b = one[..., here], other[..., there]
+        apart = cdist(a[0], b[0], "sqeuclidean") / BEND**2 + cdist(a[1], b[1], "sqeuclidean") / GRADE**2
         # averaged over the stations at which at least one of the two roads exists
-        np.minimum(least, apart / (a.beyond.shape[1] - a.beyond @ b.beyond.T), out=least)
-    alike = np.equal.outer(one.kinds, other.kinds)
+        np.minimum(least, apart / (a.shape[-1] - a[2] @ b[2].T), out=least)
+    alike = np.equal.outer(*(np.array([each.kind for each in them], object) for them in (some, others)))
     return np.where(alike, np.sqrt(least), np.inf)
 
 
-class _Stacked(NamedTuple):
-    """Several Surroundings as rows of arrays; values beyond the ends of a road are 0."""
-
-    bends: Array
-    grades: Array
-    beyond: Array
-    """1 where there is no road."""
-    kinds: NDArray[np.object_]
-
-    @classmethod
-    def of(cls, them: Sequence[Surroundings]) -> Self:
-        bends, grades = np.stack([o.bends for o in them]), np.stack([o.grades for o in them])
-        kinds = np.array([o.kind for o in them], object)
-        return cls(np.nan_to_num(bends), np.nan_to_num(grades), np.isnan(bends).astype(float), kinds)
-
-    def moved(self, steps: int) -> Self:
-        """Returns the rows with the departure moved by ``steps`` steps."""
-        part = slice(SHIFT + steps, self.bends.shape[1] - SHIFT + steps)
-        return self._replace(
-            bends=self.bends[:, part], grades=self.grades[:, part], beyond=self.beyond[:, part]
-        )
+def _stacked(them: Sequence[Surroundings]) -> Array:
+    """Returns an array ``(3, n, stations)``: the bends and the grades, both 0 beyond the ends of a road, and
+    1 where there is no road."""
+    bends, grades = np.stack([each.bends for each in them]), np.stack([each.grades for each in them])
+    return np.stack([np.nan_to_num(bends), np.nan_to_num(grades), np.isnan(bends)])
 
 
 def groups_of(failures: Sequence[Surroundings], alike: float = ALIKE, most: int = MOST) -> list[int]:
-    """Returns for each failure the number of its group; groups are numbered from 0 in order of their first
-    failure.
+    """Returns for each failure the number of its group; groups are numbered from 0 by their first failure.
 
     Args:
         failures: all failures to group.

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,7 @@ import numpy as np
 from roadgpt.campaign.faults.distinct import Surroundings, surroundings
 from roadgpt.campaign.faults.reason import Manner, manner_of
 from roadgpt.campaign.folder_record import open_record
-from roadgpt.campaign.model import Cell
-from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.record import Record
 from roadgpt.errors import RoadGPTError
 from roadgpt.road import World
@@ -26,7 +26,7 @@ class LocatedFailure:
     name: NumberedTest
     around: Surroundings
     system: str
-    """Text that identifies driver, simulator and world; see ``system_of``."""
+    """Text that identifies driver, simulator and world: failures that differ in it are never joined."""
     manner: Manner
     station: float
     """Station of the failure, metres along the road."""
@@ -36,29 +36,12 @@ class LocatedFailure:
     """Largest distance of the car's body beyond the lane marking, metres."""
 
 
-@dataclass(frozen=True)
-class Failures:
-    """The failures in a folder: all of them, or an evenly spread sample."""
+def failures_of(folder: Path, most: int | None = None, cell: str = "") -> tuple[list[LocatedFailure], int]:
+    """Returns the failures of a run, a folder of runs, or a campaign, cell by cell, and their number; see
+    ``fault.faults_in``.
 
-    known: tuple[LocatedFailure, ...]
-    every: int
-    """Number of all failures in the folder, or in the cell that was chosen. It includes failures that are not
-    in the sample, and failures whose road is not stored.
-    """
-
-
-def failures_of(folder: Path, most: int | None = None, cell: str = "") -> Failures:
-    """Returns the failures of a run, of a folder of runs, or of a campaign, cell by cell.
-
-    Failures whose road is not stored, or cannot be built, are counted but not returned.
-
-    Args:
-        folder: the folder of the run, the runs or the campaign.
-        most: maximum number of failures to return, evenly spread over all; None: no limit.
-        cell: name of a cell of a campaign; empty: all cells.
-
-    Raises:
-        UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.
+    Failures that are not in the evenly spread sample of ``most``, or whose road is not stored or cannot be
+    built, are counted but not returned.
     """
     with open_record(folder) as record:
         names = record.query(
@@ -67,15 +50,11 @@ def failures_of(folder: Path, most: int | None = None, cell: str = "") -> Failur
             (cell, cell),
         )
         some = [NumberedTest(*names[at]) for at in _spread(len(names), most)]
-        return Failures(tuple(_located(record, some)), len(names))
+        return [*_located(record, some)], len(names)
 
 
 def drivers_of(folder: Path) -> set[str]:
-    """Returns the names of the drivers of a run, a folder of runs or a campaign.
-
-    Raises:
-        UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.
-    """
+    """Returns the names of the drivers of a run, a folder of runs or a campaign; raises UsageError."""
     with open_record(folder) as record:
         return {cell.request.setup.driver for cell in record.cells()}
 
@@ -87,14 +66,13 @@ def _spread(count: int, most: int | None) -> Sequence[int]:
 
 
 def _located(record: Record, some: Sequence[NumberedTest]) -> Iterator[LocatedFailure]:
-    cells: dict[str, Cell] = {cell.name: cell for cell in record.cells()}
-    wanted = {name: [each.number for each in some if each.cell == name] for name in cells}
-    for name, cell in cells.items():
-        if not wanted[name]:
-            continue
+    """Yields those of the failures, which are sorted by cell, whose road can be built."""
+    cells = {cell.name: cell for cell in record.cells()}
+    for name, tests in groupby(some, key=lambda each: each.cell):
+        cell, every = cells[name], [each.number for each in tests]
         system = system_of(cell.request.world, cell.request.setup)
-        for start in range(0, len(wanted[name]), AT_ONCE):
-            numbers = wanted[name][start : start + AT_ONCE]
+        for start in range(0, len(every), AT_ONCE):
+            numbers = every[start : start + AT_ONCE]
             where = f"tests.number IN ({', '.join('?' * len(numbers))})"
             for its in record.results(name, where, numbers):
                 try:
@@ -111,8 +89,5 @@ def _located(record: Record, some: Sequence[NumberedTest]) -> Iterator[LocatedFa
 
 
 def system_of(world: World, setup: Setup) -> str:
-    """Returns a text that identifies the driver, simulator and world of a cell.
-
-    Failures with different texts never belong to the same group or fault.
-    """
+    """Returns a text that identifies the driver, simulator and world of a cell."""
     return f"{setup.driver} {setup.simulator} {setup.keep_driving} {world.model_dump_json()}"

@@ -1,7 +1,7 @@
 """Finds the distinct faults in a folder from stored results; this module drives no road.
 
 A fault is a set of failures that disappear with the same small change of the test. Failures are first grouped
-by the similarity of the road around them. Once ``remedy_log`` has driven some failures of each group with
+by the similarity of the road around them. Once ``remedy`` has driven some failures of each group with
 small changes, the groups are joined into faults. Then it drives further failures of each fault with the
 changes, ``AT_A_TIME`` failures at a time, until ``CHECKED`` failures of the fault have disappeared. After
 each time, the groups are joined again, with the new results.
@@ -14,10 +14,9 @@ from pathlib import Path
 from roadgpt.campaign.faults.distinct import groups_of, typical
 from roadgpt.campaign.faults.failures import LocatedFailure, failures_of
 from roadgpt.campaign.faults.reason import Way
-from roadgpt.campaign.faults.remedy import REMEDIES, Removed
-from roadgpt.campaign.faults.remedy_log import has_remedies, stored_remedies, task_of
+from roadgpt.campaign.faults.remedy import REMEDIES, Removed, has_remedies, stored_remedies
 from roadgpt.campaign.faults.told_apart import TriedGroup, faults_by_remedy
-from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.model import NumberedTest
 from roadgpt.plural import plural
 
 DEFINED = (
@@ -52,9 +51,7 @@ class Fault:
     members: tuple[LocatedFailure, ...]
     """All failures of the fault or group, in the order of their tests."""
     typical: tuple[LocatedFailure, ...]
-    """Up to three typical failures, the most typical one of the largest group first; see
-    ``distinct.typical``.
-    """
+    """Up to three typical failures, that of the largest group first; see ``distinct.typical``."""
     remedy: str | None = None
     """Name of the small change with which the failures disappear; None if this is a group, not a fault."""
     tested_first: tuple[LocatedFailure, ...] = ()
@@ -63,9 +60,7 @@ class Fault:
 
     @property
     def removed_by(self) -> str:
-        """The small change with which the failures disappear, as text for users, such as 'a 15 % larger
-        radius of the bend'; empty for a group.
-        """
+        """The small change with which the failures disappear, as text for users; empty for a group."""
         return SENTENCES[self.remedy] if self.remedy else ""
 
     @property
@@ -96,9 +91,8 @@ class Faults:
 
     @property
     def headline(self) -> str:
-        """The number of faults or groups and how the car failed: '3 distinct faults in 9 failures: the car
-        ran wide of ...'.
-        """
+        """The sentence, and how the car failed: '3 distinct faults in 9 failures: the car ran wide of
+        ...'."""
         ways = "; it ".join(self.ways[:MOST_WAYS])
         more = len(self.ways) - MOST_WAYS
         also = f"; and in {more} other way{'s' * (more > 1)}" if more > 0 else ""
@@ -161,26 +155,25 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
 
     Args:
         folder: the folder of the run, the runs or the campaign.
-        most: maximum number of failures to compare, evenly spread over all; None: all failures. If small
-            changes were tried on failures of the folder, ``most`` is ignored, because the stored results
-            belong to groups that were formed from all failures.
+        most: maximum number of failures to compare, evenly spread over all; None: all failures. It is ignored
+            if small changes were tried on failures of the folder, since the stored results belong to groups
+            that were formed from all failures.
         cell: name of a cell of a campaign; empty: all cells.
 
     Raises:
         UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.
     """
-    # which groups there are depends on what is compared: stored results belong to groups of all failures
-    failures = failures_of(folder, None if has_remedies(folder) else most, cell)
-    groups = _grouped(failures.known)
-    tested = _tested(folder, failures.known)
+    known, failures = failures_of(folder, None if has_remedies(folder) else most, cell)
+    groups = _grouped(known)
+    tested = _tested(folder, known)
     to_test = [each for group in groups for each in group.tested_first if each.name not in tested]
     joined: list[Fault] = []
     if not to_test:
         joined = _joined(groups, tested)
         to_test = [each for fault in joined if fault.remedy for each in _checked_next(fault, groups, tested)]
     is_tested = bool(groups) and not to_test
-    them = tuple(_numbered(joined if is_tested else groups))
-    return Faults(them, is_tested, tuple(to_test), failures.every, len(failures.known))
+    them = tuple(replace(each, number=n) for n, each in enumerate(joined if is_tested else groups, 1))
+    return Faults(them, is_tested, tuple(to_test), failures, len(known))
 
 
 def _grouped(known: Sequence[LocatedFailure]) -> list[Fault]:
@@ -213,14 +206,13 @@ def _tested(folder: Path, known: Sequence[LocatedFailure]) -> Tested:
     """Returns the stored results of all failures that were driven with small changes."""
     if not has_remedies(folder):
         return {}
-    stored = {each.name: stored_remedies(task_of(folder, each)) for each in known}
+    stored = {each.name: stored_remedies(folder, each) for each in known}
     return {name: removed for name, removed in stored.items() if removed is not None}
 
 
 def _checked_next(fault: Fault, groups: Sequence[Fault], tested: Tested) -> tuple[LocatedFailure, ...]:
-    """Returns failures of a fault to test next, evenly spread over the untested ones of its groups; none
-    if ``CHECKED`` disappeared besides those tested first.
-    """
+    """Returns failures of a fault to test next, evenly spread over the untested ones of its groups; none if
+    ``CHECKED`` disappeared besides those tested first."""
     first = {each.name for group in groups for each in group.tested_first}
     members = {each.name for each in fault.members}
     every = [each for group in groups for each in group.members if each.name in members]
@@ -237,7 +229,11 @@ def _joined(groups: Sequence[Fault], tested: Tested) -> list[Fault]:
     found: list[Fault] = []
     for those in systems.values():
         joined: dict[str, list[Fault]] = {}
-        remedies = faults_by_remedy([_tried(each, tested) for each in those])
+        tried = [
+            TriedGroup(len(one.members), tuple(tested[it.name] for it in one.members if it.name in tested))
+            for one in those
+        ]
+        remedies = faults_by_remedy(tried)
         for group, remedy in zip(those, remedies, strict=True):
             if remedy is None:
                 found.append(group)
@@ -246,11 +242,6 @@ def _joined(groups: Sequence[Fault], tested: Tested) -> list[Fault]:
         for remedy, its in joined.items():
             found += _parted(remedy, its, tested)
     return sorted(found, key=_order)
-
-
-def _tried(group: Fault, tested: Tested) -> TriedGroup:
-    removed = (tested.get(each.name) for each in group.members)
-    return TriedGroup(len(group.members), tuple(each for each in removed if each is not None))
 
 
 def _parted(remedy: str, groups: Sequence[Fault], tested: Tested) -> Iterator[Fault]:
@@ -264,8 +255,3 @@ def _parted(remedy: str, groups: Sequence[Fault], tested: Tested) -> Iterator[Fa
     members = tuple(each for each in every if not stays(each))
     yield Fault(0, members, tuple(typical_ones[:TRIED]) or members[:TRIED], remedy)
     yield from _grouped([each for each in every if stays(each)])
-
-
-def _numbered(found: Sequence[Fault]) -> Iterator[Fault]:
-    for number, each in enumerate(found, 1):
-        yield replace(each, number=number)

@@ -8,27 +8,26 @@ DIR/faults/
   simplest/c01/    a folder of runs: the simplified road of each failure, under the failure's test number
   faults.csv       one line per fault; the fault with the most failures comes first. A line without
                    ``removed_by`` is a group of similar failures that belongs to no fault
-  remedies/        which small changes remove a failure (see ``remedy_log``)
+  remedies/        which small changes remove a failure (see ``remedy``)
   failures.csv     one line per failure, with the fault that it belongs to
 
 For a folder of runs, the level c01/ is left out.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from roadgpt.campaign.faults.fault import Fault
 from roadgpt.campaign.faults.minimise import simplest
 from roadgpt.campaign.faults.reason import FailureReason, reason_of
-from roadgpt.campaign.faults.remedy_log import FOLDER, made_folder
+from roadgpt.campaign.faults.remedy import FOLDER, made_folder, page_of, stored
 from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
-from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.rerun import kept_run
-from roadgpt.errors import UsageError
-from roadgpt.reading import read_json, strictly
+from roadgpt.reading import strictly
 from roadgpt.run import Run, write_run
 from roadgpt.run.atomic import csv_text, json_text, write_whole
 from roadgpt.run.folder import is_run, run_folder
@@ -42,12 +41,9 @@ HEAD = (
 HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "max_oob", "beyond_m")
 
 
-class FailureDrawing(Protocol):
-    """A function that writes a picture of a failure to a file, such as ``report.birds_eye.draw_fault``."""
-
-    def __call__(self, run: Run, reason: FailureReason, more: str, path: Path) -> object:
-        """Writes a picture of a failing Run to ``path``, with ``more`` as an additional sentence."""
-        ...
+FailureDrawing = Callable[[Run, FailureReason, str, Path], object]
+"""A function that writes a picture of a failing Run, with an additional sentence, to a file, such as
+``report.birds_eye.draw_fault``."""
 
 
 class AnalysisTask(NamedTuple):
@@ -74,21 +70,16 @@ class FailureAnalysis:
     reason: FailureReason
     stability: Stability
     simplest: str = ""
-    """A sentence about the simplest road that reproduces the failure; empty if no simplification was
-    requested.
-    """
+    """A sentence about the simplest road that reproduces the failure; empty if none was requested."""
 
 
 def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
-    """Analyses a fault: why its typical failure happens, how often this failure happens again and, if
-    ``task.minimise`` is set, the simplest road that reproduces the failure.
+    """Returns the number of a fault and its analysis: why its typical failure happens, how often this failure
+    happens again and, if ``task.minimise`` is set, the simplest road that reproduces the failure.
 
     The failure analysed is the most typical one of ``task.names`` that fails again in at least half of the
-    disturbed drives; if there is none, the one that fails most often. If a stored analysis exists for the
-    same road and the same number of drives, it is read instead.
-
-    Returns:
-        The number of the fault, and the analysis of the chosen failure.
+    disturbed drives; if there is none, the one that fails most often. A stored analysis of the same road and
+    the same number of drives is read instead.
 
     Raises:
         UsageError: the run or a stored analysis cannot be read, or a plug-in is not installed.
@@ -107,7 +98,7 @@ def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
 
 def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
     """Returns the analysis of one failure; drives and draws the failure unless that was done before."""
-    run, path = kept_run(task.folder, *name), _page(task.folder, name)
+    run, path = kept_run(task.folder, *name), page_of(task.folder / FOLDER, name)
     there = _read(path, run, name, task.times)
     found = there or FailureAnalysis(name, reason_of(run), repeated(run, task.times))
     made_folder(path.parent)
@@ -128,21 +119,16 @@ def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
     least = simplest(run)
     write_run(least.run, made_folder(place.parent.parent))
     found = replace(found, simplest=least.sentence)
-    write_whole(_page(task.folder, found.name), json_text(_written(run, found)))
+    write_whole(page_of(task.folder / FOLDER, found.name), json_text(_written(run, found)))
     return found
 
 
 def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
-    """Returns the stored analysis of a fault; None if there is none.
-
-    If several failures of the fault have a stored analysis, returns the one that ``analyse`` would choose.
-
-    Raises:
-        UsageError: a stored analysis cannot be read.
-    """
-    pages = [name for name in fault.names if _page(folder, name).is_file()]
+    """Returns the stored analysis of a fault, of several the one that ``analyse`` would choose; None if there
+    is none. Raises UsageError if one cannot be read."""
+    pages = [name for name in fault.names if page_of(folder / FOLDER, name).is_file()]
     runs = [(name, kept_run(folder, *name, has_drive=False)) for name in pages]
-    found = [its for name, run in runs if (its := _read(_page(folder, name), run, name))]
+    found = [its for name, run in runs if (its := _read(page_of(folder / FOLDER, name), run, name))]
     # of equal ones max returns the first, which is the most typical
     return max(found, key=lambda its: its.stability.is_stable or its.stability.share, default=None)
 
@@ -152,20 +138,9 @@ def simplest_of(folder: Path, name: NumberedTest) -> Path:
     return run_folder(folder / FOLDER / SIMPLEST / name.cell, name.number)
 
 
-def _page(folder: Path, name: NumberedTest) -> Path:
-    return folder / FOLDER / name.cell / f"{name.number:04d}.json"
-
-
 def write_tables(faults: Sequence[Fault], looked: Mapping[int, FailureAnalysis], folder: Path) -> Path:
-    """Writes ``faults.csv`` and ``failures.csv``; the same failures give the same bytes.
-
-    Args:
-        faults: the faults of the folder.
-        looked: the analysis of each fault, by fault number.
-        folder: the folder of the campaign or of the runs.
-
-    Returns:
-        The path of ``faults.csv``.
+    """Writes ``faults.csv``, whose path is returned, and ``failures.csv``; the same failures give the same
+    bytes. ``looked`` holds the analysis of each fault by its number.
 
     Raises:
         RoadGPTError: a file cannot be written.
@@ -205,33 +180,29 @@ def _written(run: Run, found: FailureAnalysis) -> dict[str, Any]:
         "description": run.description,
         "why": asdict(found.reason),
         "stability": found.stability.sentence,
-        "drives": [_drive(drive) for drive in found.stability.drives],
+        # a driver that broke down has no margin, and JSON has no NaN
+        "drives": [
+            asdict(drive) | {"margin": drive.margin if math.isfinite(drive.margin) else None}
+            for drive in found.stability.drives
+        ],
         "simplest": found.simplest,
     }
-
-
-def _drive(drive: Repeated) -> dict[str, Any]:
-    # a driver that broke down has no margin, and JSON has no NaN
-    return {**asdict(drive), "margin": drive.margin if math.isfinite(drive.margin) else None}
 
 
 def _read(path: Path, run: Run, name: NumberedTest, times: int | None = None) -> FailureAnalysis | None:
     """Returns the stored analysis if it belongs to this Run and, where ``times`` is given, has that many
     drives; otherwise None."""
-    try:
-        data = read_json(path)
+
+    def analysis_in(data: Any) -> FailureAnalysis | None:
         if data["seed"] != run.seed or data["description"] != run.description:
             return None
         if not data["drives"] or len(data["drives"]) != (times or len(data["drives"])):
             return None
         stability = Stability(tuple(_drive_of(drive) for drive in data["drives"]))
-        return FailureAnalysis(
-            name, strictly(FailureReason, data["why"]), stability, str(data.get("simplest", ""))
-        )
-    except FileNotFoundError:
-        return None
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise UsageError(f"{path} cannot be read ({error}); remove it, and it is made again") from error
+        reason = strictly(FailureReason, data["why"])
+        return FailureAnalysis(name, reason, stability, str(data.get("simplest", "")))
+
+    return stored(path, analysis_in)
 
 
 def _drive_of(data: dict[str, Any]) -> Repeated:

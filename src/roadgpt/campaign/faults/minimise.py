@@ -5,17 +5,38 @@ IEEE Transactions on Software Engineering 28 (2002). Unless the drives run out, 
 1-minimal: any single further simplification makes the failure disappear.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.faults.reductions import Simplification, simplifications, simplified
 from roadgpt.check import inspect
 from roadgpt.errors import RoadGPTError, UsageError
-from roadgpt.road import Design, build
+from roadgpt.road import Design, Segment, build
 from roadgpt.run import Run, prove
 
 MOST_DRIVES = 400  # of one minimisation; at 20 to 25 drives a second that is under half a minute
+ROUNDED = (
+    ("distance", 50.0), ("turn_degrees", 30.0), ("distance", 10.0), ("turn_degrees", 10.0), ("radius", 10.0),
+    ("distance", 5.0), ("turn_degrees", 5.0), ("radius", 5.0), ("distance", 1.0), ("turn_degrees", 1.0),
+    ("radius", 1.0),
+)  # fmt: skip
+"""The fields that are rounded, each with the unit, metres or degrees; the coarsest first."""
+
+Change = Callable[[Segment], Segment | None]
+"""Returns the simplified segment, or None to remove the segment."""
+
+
+class Simplification(NamedTuple):
+    """One simplification of one segment."""
+
+    segment: int
+    """Index of the segment, from 0, in the Design that is simplified."""
+    change: Change
+
+
+Simplifier = Callable[[Design], list[Simplification]]
+"""Lists the simplifications of one type for every segment of a Design."""
 
 
 @dataclass(frozen=True)
@@ -23,9 +44,7 @@ class Simplest:
     """A failing road after simplification."""
 
     run: Run
-    """The Run on the simplified road; it fails for the same cause and to the same side as the original
-    Run.
-    """
+    """The Run on the simplified road; it fails for the same cause and to the same side as the original."""
     segments_before: int
     drives: int
     """Number of drives that the search took."""
@@ -45,12 +64,10 @@ class Simplest:
 
 
 class Trial:
-    """Drives simplified versions of one failing road, each at most once, and counts the drives.
-
-    The constructor raises UsageError if the Run did not fail or has no Design.
-    """
+    """Drives simplified versions of one failing road, each at most once, and counts the drives."""
 
     def __init__(self, failure: Run, brief: Brief | None, most: int) -> None:
+        """Begins without a drive; raises UsageError if the Run did not fail or has no Design."""
         if failure.verdict is None or failure.verdict.kept or failure.plain_design is None:
             raise UsageError(
                 f"road {failure.index} did not fail, or has no design without junctions; "
@@ -65,10 +82,8 @@ class Trial:
 
     def fails(self, design: Design | None) -> Run | None:
         """Drives the road of a Design; returns the Run if the car fails for the same cause and to the same
-        side as in the original failure.
-
-        Returns None if the car does not fail in this way, if the road is invalid even in the middle of the
-        map, or if all drives are used up.
+        side as in the original failure. Returns None if it does not, if the road is invalid even in the
+        middle of the map, or if all drives are used up.
         """
         if design is None:
             return None
@@ -94,8 +109,8 @@ class Trial:
 
 
 def _moved(design: Design, failure: Run) -> list[Design]:
-    """Returns the Design moved to the middle of the map, because a simplified road may leave the map; an
-    empty list if the road cannot be built."""
+    """Returns the Design in the middle of the map, since a simplified road may leave it; nothing if the road
+    cannot be built."""
     try:
         points = build(design, failure.request.setup.geometry).centreline()
     except RoadGPTError:
@@ -123,7 +138,7 @@ def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) 
     design, before = failure.plain_design, None
     while design != before:
         before = design
-        for way in simplifications():
+        for way in SIMPLIFIERS:
             design = _reduced(design, way(design), trial)
     run = failure if design == failure.plain_design else trial.fails(design)
     assert run is not None
@@ -146,3 +161,63 @@ def _reduced(design: Design, steps: Sequence[Simplification], trial: Trial) -> D
 
     take(steps)
     return simplified(design, kept) or design
+
+
+def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None:
+    """Returns the Design with all the given simplifications applied; None if no segment would be left."""
+    segments: list[Segment | None] = list(design.segments)
+    for step in steps:
+        segment = segments[step.segment]
+        if segment is not None:
+            segments[step.segment] = step.change(segment)
+    left = tuple(segment for segment in segments if segment is not None)
+    return design.model_copy(update={"segments": left}) if left else None
+
+
+def _dropping(design: Design) -> list[Simplification]:
+    # the last segment first: what comes after the departure matters least
+    return [Simplification(index, lambda segment: None) for index in reversed(range(len(design.segments)))]
+
+
+def _straight(segment: Segment) -> Segment:
+    return Segment(
+        distance=segment.distance,
+        direction="straight",
+        incline=segment.incline,
+        vertical_radius=segment.vertical_radius,
+    )
+
+
+def _changing(field: str, change: Change, unit: float = 0.0) -> Simplifier:
+    """Returns a Simplifier that changes every segment whose ``field`` is not 0, and no multiple of ``unit``
+    where one is given."""
+
+    def way(design: Design) -> list[Simplification]:
+        values = [getattr(segment, field) for segment in design.segments]
+        return [
+            Simplification(index, change)
+            for index, value in enumerate(values)
+            if value and (not unit or value % unit)
+        ]
+
+    return way
+
+
+def _rounding(field: str, unit: float) -> Simplifier:
+    def rounded(segment: Segment) -> Segment:
+        value = round(getattr(segment, field) / unit) * unit
+        return segment.model_copy(update={field: value}) if value else segment
+
+    return _changing(field, rounded, unit)
+
+
+SIMPLIFIERS: tuple[Simplifier, ...] = (
+    _dropping,
+    _changing("incline", lambda segment: segment.model_copy(update={"incline": 0.0})),
+    _changing("turn_degrees", _straight),
+    *(_rounding(field, unit) for field, unit in ROUNDED),
+    _changing(
+        "incline", lambda segment: segment.model_copy(update={"incline": float(round(segment.incline))}), 1.0
+    ),
+)
+"""The types of simplification; those that simplify the road most come first."""

@@ -11,17 +11,15 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roadgpt.campaign.faults.alignment import STRAIGHT
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
+from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.run import Run
-from roadgpt.verdict import Verdict
 from roadgpt.verdict.verdict import Cause
 
-Array = NDArray[np.float64]
 Way = Literal["wide", "inside", "off", "stopped", "late"]
 """The car ran wide of a bend, cut its inside, left a straight, came to a standstill, or ran out of time."""
 
@@ -53,11 +51,8 @@ class FailureReason:
     sentence: str
     station: float
     radius: float | None
-    """Smallest radius of the bend's centre line, metres; None if ``side`` is None."""
     side: Literal["left", "right"] | None
-    """The side to which the road bends; None if the road is straight there, or if the car stopped or was too
-    late.
-    """
+    """Radius and side of the bend, as in ``Manner``."""
     entered: float
     """Speed, m/s, where the bend begins, or where the car left its lane if that was earlier; the last speed
     if the car stopped or was too late.
@@ -84,16 +79,38 @@ def reason_of(run: Run) -> FailureReason:
     """
     if run.verdict is None or run.drive is None or run.road is None or run.verdict.kept:
         raise UsageError(f"road {run.index} did not fail; only failures have a reason")
-    station = float(run.verdict.at_s or 0.0)
-    if run.verdict.cause in ("stuck", "timeout"):
-        return _standing(run.road, run.drive, run.world, station, run.verdict.cause == "stuck")
-    return _departed(run.road, run.drive, run.verdict, run.world, station)
+    road, drive, verdict, world = run.road, run.drive, run.verdict, run.world
+    station, friction = float(verdict.at_s or 0.0), world.site.friction
+    how = manner_of(road, world, station, verdict.cause, verdict.side)
+    if how.way in ("stopped", "late"):
+        grade, speed = float(road.grade(station)), float(drive["speed"][-1])
+        what = "came to a standstill" if how.way == "stopped" else "was too slow to arrive in time"
+        sentence = f"{what} after {station:.0f} m{_slope_text(grade, 0.0)}"
+        return FailureReason(how.way, sentence, station, None, None, speed, 0.0, friction, grade, 0.0)
+    near, bend, place = bend_at(road, world, station)
+    begin = _entry(road, world, place, bend)
+    entered, speed = _speed_at(drive, min(begin, station)), _speed_at(drive, min(place, station))
+    grade = float(road.grade(place))
+    hill = speed**2 * float(np.mean(road.vertical_curvature(near))) / GRAVITY
+    needed = _needed(road, drive, world, begin, station)
+    slope = _slope_text(grade, hill)
+    if how.radius is None:
+        left = f"left a straight to the {verdict.side}"
+        sentence = f"{left} at {speed * 3.6:.0f} km/h after {station:.0f} m{slope}"
+    else:
+        before = _after(road, begin, bend)
+        did = "and ran wide" if how.way == "wide" else "and cut its inside"
+        sentence = (
+            f"entered an R {how.radius:.0f} m {how.side} at {entered * 3.6:.0f} km/h{before}{slope} {did} "
+            f"after {station:.0f} m; the lane's middle needs {needed:.2f} g of {friction:.2f}"
+        )
+    return FailureReason(
+        how.way, sentence, station, how.radius, how.side, entered, needed, friction, grade, hill
+    )
 
 
 def lane_curvature(road: Road, world: World, stations: Array) -> Array:
-    """Returns the curvature, 1/m, of the middle of the driven lane, one value for each station of the centre
-    line.
-    """
+    """Returns the curvature, 1/m, of the middle of the driven lane at stations of the centre line."""
     bend = road.curvature(stations)
     middle = world.profile_of(road).middle(stations)
     return np.asarray(bend / np.maximum(1 - bend * middle, 0.2))
@@ -115,15 +132,8 @@ def bend_at(road: Road, world: World, station: float) -> tuple[Array, float, flo
 def manner_of(
     road: Road, world: World, station: float, cause: Cause | None, left_to: Literal["left", "right"] | None
 ) -> Manner:
-    """Derives how a car failed from the road and the location of the failure, without the recorded drive.
-
-    Args:
-        road: the road.
-        world: determines the width of the lane.
-        station: station of the departure, metres along the road.
-        cause: cause of the failure.
-        left_to: the side to which the car left its lane.
-    """
+    """Derives how a car failed without the drive: from the road, the station of the departure in metres, the
+    cause, and the side to which the car left its lane."""
     if cause in ("stuck", "timeout"):
         return Manner("stopped" if cause == "stuck" else "late", None, None)
     _, bend, place = bend_at(road, world, station)
@@ -131,44 +141,6 @@ def manner_of(
         return Manner("off", None, None)
     side: Literal["left", "right"] = "left" if bend > 0 else "right"
     return Manner("inside" if left_to == side else "wide", side, 1 / float(np.abs(road.curvature(place))))
-
-
-def _standing(road: Road, drive: Drive, world: World, station: float, is_stuck: bool) -> FailureReason:
-    grade = float(road.grade(station))
-    speed = float(drive["speed"][-1])
-    where = _slope_text(grade, 0.0)
-    what = "came to a standstill" if is_stuck else "was too slow to arrive in time"
-    sentence = f"{what} after {station:.0f} m{where}"
-    way: Way = "stopped" if is_stuck else "late"
-    return FailureReason(way, sentence, station, None, None, speed, 0.0, world.site.friction, grade, 0.0)
-
-
-def _departed(road: Road, drive: Drive, verdict: Verdict, world: World, station: float) -> FailureReason:
-    near, bend, place = bend_at(road, world, station)
-    begin = _entry(road, world, place, bend)
-    entered = _speed_at(drive, min(begin, station))
-    speed = _speed_at(drive, min(place, station))
-    grade = float(road.grade(place))
-    hill = speed**2 * float(np.mean(road.vertical_curvature(near))) / GRAVITY
-    needed = _needed(road, drive, world, begin, station)
-    slope = _slope_text(grade, hill)
-    how = manner_of(road, world, station, verdict.cause, verdict.side)
-    if how.side is None or how.radius is None:
-        sentence = (
-            f"left a straight to the {verdict.side} at {speed * 3.6:.0f} km/h after {station:.0f} m{slope}"
-        )
-        return FailureReason(
-            "off", sentence, station, None, None, entered, needed, world.site.friction, grade, hill
-        )
-    before = _after(road, begin, bend)
-    did = "and ran wide" if how.way == "wide" else "and cut its inside"
-    sentence = (
-        f"entered an R {how.radius:.0f} m {how.side} at {entered * 3.6:.0f} km/h{before}{slope} {did} after "
-        f"{station:.0f} m; the lane's middle needs {needed:.2f} g of {world.site.friction:.2f}"
-    )
-    return FailureReason(
-        how.way, sentence, station, how.radius, how.side, entered, needed, world.site.friction, grade, hill
-    )
 
 
 def _needed(road: Road, drive: Drive, world: World, begin: float, station: float) -> float:

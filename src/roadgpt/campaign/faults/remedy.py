@@ -1,24 +1,37 @@
-"""Tries small changes of the road around a failure, and finds which of them make the failure disappear.
+"""Tries small changes of the road around a failure, and stores which of them make the failure disappear.
 
 Failures that disappear with the same small change have the same cause, whatever their roads look like
 elsewhere. A failure has disappeared if the car passes the test, or fails more than 30 m after the place of
 the departure.
+
+DIR/faults/remedies/c01/0017.json    for each change, whether it removes the failure; null: the change does
+                                     not apply to the road
+
+For a folder of runs, the level c01/ is left out.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from roadgpt.campaign.faults.alignment import Alignment, Bend
 from roadgpt.campaign.faults.distinct import AROUND
+from roadgpt.campaign.faults.failures import LocatedFailure
 from roadgpt.campaign.faults.reason import bend_at
+from roadgpt.campaign.model import NumberedTest
+from roadgpt.campaign.rerun import kept_run
+from roadgpt.errors import RoadGPTError, UsageError, explained
+from roadgpt.reading import read_json
 from roadgpt.road import Road, World
 from roadgpt.run import Run, prove
+from roadgpt.run.atomic import json_text, refuse_links, write_whole
 from roadgpt.run.lost_drives import LostDrives
 
 NEAR = 40.0  # m; a bend farther from the failing one, or from the departure, is not changed
+FOLDER, REMEDY_FOLDER = "faults", "remedies"
 HILLY = 0.01  # as a ratio; a road whose steepest grade is above this is not level
 
 
@@ -38,6 +51,11 @@ class FailurePlace(NamedTuple):
     """The bend after ``bend``; None if none begins within 40 m after the departure."""
 
 
+T = TypeVar("T")
+
+Change = Callable[[FailurePlace], Alignment | None]
+
+
 @dataclass(frozen=True)
 class Remedy:
     """One small change of a road, or of the speed limit."""
@@ -46,7 +64,7 @@ class Remedy:
     """Kind and size, such as 'wider 15'."""
     sentence: str
     """The change as text for users, which completes 'it disappears with ...'."""
-    change: Callable[[FailurePlace], Alignment | None]
+    change: Change
     """Returns the changed alignment; None if the change does not apply."""
     limit: float = 1.0
     """Factor of the speed limit."""
@@ -57,58 +75,42 @@ class Remedy:
         return self.name.split()[0]
 
 
+def _of(which: str, change: Callable[[Alignment, Bend, float], Alignment], size: float) -> Change:
+    """Returns a change of one of the bends of a FailurePlace, which applies if there is such a bend."""
+
+    def changed(place: FailurePlace) -> Alignment | None:
+        bend: Bend | None = getattr(place, which)
+        return change(place.alignment, bend, size) if bend else None
+
+    return changed
+
+
 def _remedies(percent: int, metres: int, flatter: float, grades: str) -> Iterator[Remedy]:
-    """Yields a change of each kind.
-
-    Args:
-        percent: by how much a radius becomes larger, a bend shorter, and a speed limit lower.
-        metres: length of a straight that is inserted, and over which curvature is averaged.
-        flatter: factor of the grades.
-        grades: the size of the changed grades, as text: 'half' or 'no'.
-    """
+    """Yields a change of each kind: radii and speed limits by some percent, metres of straight or of averaged
+    curvature, and grades times ``flatter``, which texts call ``grades``."""
     more, less = 1 + percent / 100, 1 - percent / 100
+    bigger = f"a {percent} % larger radius of the bend"
 
-    def wider(bend: Bend | None, alignment: Alignment) -> Alignment | None:
-        return alignment.widened(bend, more) if bend else None
+    def apart(place: FailurePlace) -> Alignment | None:
+        return place.alignment.with_straight(place.bend, metres) if place.bend and place.before else None
 
-    def is_hilly(place: FailurePlace) -> bool:
-        return bool(np.abs(place.alignment.grade).max() > HILLY)
+    def flat(place: FailurePlace) -> Alignment | None:
+        is_hilly = np.abs(place.alignment.grade).max() > HILLY
+        return place.alignment.levelled(flatter) if is_hilly else None
 
+    yield Remedy(f"wider {percent}", bigger, _of("bend", Alignment.widened, more))
     yield Remedy(
-        f"wider {percent}",
-        f"a {percent} % larger radius of the bend",
-        lambda its: wider(its.bend, its.alignment),
-    )
-    yield Remedy(
-        f"shorter {percent}",
-        f"a bend that turns {percent} % less",
-        lambda its: its.alignment.shortened(its.bend, less) if its.bend else None,
+        f"shorter {percent}", f"a bend that turns {percent} % less", _of("bend", Alignment.shortened, less)
     )
     yield Remedy(
         f"eased {metres}",
         f"curvature that changes over {metres} m more",
-        lambda its: its.alignment.eased(its.bend, metres) if its.bend else None,
+        _of("bend", Alignment.eased, metres),
     )
-    yield Remedy(
-        f"apart {metres}",
-        f"{metres} m of straight between the bend and the one before",
-        lambda its: its.alignment.with_straight(its.bend, metres) if its.bend and its.before else None,
-    )
-    yield Remedy(
-        f"before {percent}",
-        f"a {percent} % larger radius of the bend before",
-        lambda its: wider(its.before, its.alignment),
-    )
-    yield Remedy(
-        f"after {percent}",
-        f"a {percent} % larger radius of the bend after",
-        lambda its: wider(its.after, its.alignment),
-    )
-    yield Remedy(
-        f"flatter {grades}",
-        f"{grades} grades",
-        lambda its: its.alignment.levelled(flatter) if is_hilly(its) else None,
-    )
+    yield Remedy(f"apart {metres}", f"{metres} m of straight between the bend and the one before", apart)
+    yield Remedy(f"before {percent}", f"{bigger} before", _of("before", Alignment.widened, more))
+    yield Remedy(f"after {percent}", f"{bigger} after", _of("after", Alignment.widened, more))
+    yield Remedy(f"flatter {grades}", f"{grades} grades", flat)
     yield Remedy(f"slower {percent}", f"a speed limit {percent} % lower", lambda its: its.alignment, less)
 
 
@@ -123,16 +125,9 @@ def remedies_of(run: Run, kinds: Collection[str] = KINDS) -> Removed:
     """Drives a failing Run's road with each change, and returns which changes make the failure disappear.
 
     If a small change removes the failure, the larger change of the same kind is not driven and counts as
-    removing the failure, too. No change applies to a road that has its own cross-section but no Design,
-    because the cross-section is given by station.
-
-    Args:
-        run: the Run of the failing test.
-        kinds: kinds of changes to try.
-
-    Returns:
-        For each change, by its name, whether it removes the failure; None if the change does not apply, for
-        example because there is no bend before the failure.
+    removing the failure, too. A change may not apply, for example because there is no bend before the
+    failure; none applies to a road that has its own cross-section but no Design, because the cross-section is
+    given by station.
 
     Raises:
         UsageError: the driver or the simulator cannot be loaded.
@@ -197,3 +192,62 @@ def _driven(run: Run, road: Road, world: World) -> Run:
             raise losses.given_up(tried.description, "fix it and run the same command again, which continues")
         if not tried.is_lost:
             return tried
+
+
+def try_remedies(folder: Path, failure: LocatedFailure) -> None:
+    """Drives the road of a failure with each small change and stores the results in the folder of its tests,
+    unless they are stored already. Raises the errors of ``remedies_of``, and RoadGPTError if a file cannot be
+    written."""
+    if stored_remedies(folder, failure) is None:
+        removed = remedies_of(kept_run(folder, *failure.name))
+        path = page_of(folder / FOLDER / REMEDY_FOLDER, failure.name)
+        made_folder(path.parent)
+        write_whole(path, json_text({"station": failure.station, "removed": dict(removed)}))
+
+
+def stored_remedies(folder: Path, failure: LocatedFailure) -> Removed | None:
+    """Returns the stored results for a failure; None if there are none, or if they belong to another road or
+    other changes."""
+
+    def removed_in(data: Any) -> Removed | None:
+        removed = {str(name): None if gone is None else bool(gone) for name, gone in data["removed"].items()}
+        is_this = float(data["station"]) == failure.station
+        return removed if is_this and removed.keys() == {remedy.name for remedy in REMEDIES} else None
+
+    return stored(page_of(folder / FOLDER / REMEDY_FOLDER, failure.name), removed_in)
+
+
+def has_remedies(folder: Path) -> bool:
+    """Tells whether small changes were tried on any failure of a folder."""
+    return (folder / FOLDER / REMEDY_FOLDER).is_dir()
+
+
+def page_of(place: Path, name: NumberedTest) -> Path:
+    """Returns the path of the stored results for a test."""
+    return place / name.cell / f"{name.number:04d}.json"
+
+
+def stored(path: Path, result_in: Callable[[Any], T]) -> T | None:
+    """Returns the result in the data of a JSON file; None if there is no such file.
+
+    Raises:
+        UsageError: the file cannot be read.
+    """
+    try:
+        return result_in(read_json(path))
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise UsageError(f"{path} cannot be read ({error}); remove it, and it is made again") from error
+
+
+def made_folder(place: Path) -> Path:
+    """Makes the folder ``place`` inside ``DIR/faults``, unless it exists, and returns ``place``.
+
+    Raises:
+        RoadGPTError: the folder cannot be made, or a part of its path from ``faults`` on is a symbolic link.
+    """
+    refuse_links(place, *(each for each in place.parents if FOLDER in (each.name, each.parent.name)))
+    with explained(RoadGPTError, f"cannot make {place}", "make room there"):
+        place.mkdir(parents=True, exist_ok=True)
+    return place

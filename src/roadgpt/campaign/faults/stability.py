@@ -1,27 +1,86 @@
 """Drives a failing road again with small disturbances, and measures the fraction of these drives that fail.
 
-A failure that recurs in at least half of the drives counts as stable; other failures are attributed to
-chance.
+A disturbance changes the friction, the start position, and the delay of the driver's perception. A failure
+that recurs in at least half of the drives counts as stable, and is due to the road; other failures are
+attributed to chance.
 """
 
+from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from inspect import signature
+from typing import Any
 
+import numpy as np
 from scipy.stats import beta
 
 from roadgpt import plugins
-from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, disturbance_of
-from roadgpt.drive import Simulator, simulate
+from roadgpt.drive import Command, Simulator, View, simulate
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.permission import require_permission
 from roadgpt.errors import DriverError, SimulationError, SimulatorError
+from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.run.lost_drives import LostDrives
 from roadgpt.verdict import Verdict, judge
 
 SURE = 0.95  # confidence level of the interval
 STABLE = 0.5  # share of drives that fail, from which a failure counts as stable
+GRIP = 0.05  # standard deviation of friction, as a share: patches of one dry road differ by this much
+START = 0.10  # m, standard deviation of the lateral start position: a positioning system with corrections
+DELAY = 0.06  # s, longest delay of what the driver sees: a camera and its network take up to 100 ms
+MOST = 3.0  # standard deviations; a number beyond this is drawn again
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """One random disturbance of a drive."""
+
+    friction: float
+    """Factor by which the friction coefficient of the road is multiplied."""
+    offset: float
+    """Lateral offset of the start position from the middle of the lane, metres, positive to the left."""
+    delay: float
+    """Delay of the driver's perception, seconds."""
+
+
+def disturbance_of(seed: int, number: int) -> Disturbance:
+    """Returns the disturbance for repetition ``number``, from 1, of the drive with a seed."""
+    rng = np.random.default_rng([seed, number, 0xD157])
+    return Disturbance(1 + GRIP * _normal(rng), START * _normal(rng), float(rng.uniform(0.0, DELAY)))
+
+
+def _normal(rng: np.random.Generator) -> float:
+    while abs(value := float(rng.normal())) > MOST:
+        pass
+    return value
+
+
+class LateDriver:
+    """A driver whose perception is delayed by some seconds, rounded to whole control steps. It always sees
+    the world without disturbance, even if the simulated friction is disturbed."""
+
+    def __init__(self, driver: Any, delay: float, world: World) -> None:
+        self.name = str(getattr(driver, "name", type(driver).__name__))
+        self._driver, self._delay, self._world = driver, delay, world
+        if hasattr(driver, "camera"):
+            self.camera = driver.camera
+        self._seen: deque[View] = deque()
+
+    def start(self, road: Road, world: World, seed: int) -> None:
+        """Starts the driver in the world without disturbance, instead of ``world``."""
+        del world
+        self._seen.clear()
+        if hasattr(self._driver, "start"):
+            self._driver.start(road, self._world, seed)
+
+    def steer(self, view: View) -> Command:
+        """Returns the driver's command for the view of ``delay`` seconds ago, or else for the first view."""
+        self._seen.append(view._replace(world=self._world))
+        if len(self._seen) > round(self._delay / view.dt) + 1:
+            self._seen.popleft()
+        command: Command = self._driver.steer(self._seen[0])
+        return command
 
 
 @dataclass(frozen=True)
@@ -109,24 +168,18 @@ def once(task: tuple[Run, int]) -> Repeated:
     while True:
         try:
             verdict = drive_disturbed(run, disturbance)
+            return Repeated(number, disturbance, not verdict.kept, verdict.margin, verdict.at_s)
         except SimulatorError as error:
             if losses.count(number, is_lost=True):
                 raise losses.given_up(
                     str(error), "fix it and run the same command again, which continues"
                 ) from error
-            continue
         except (DriverError, SimulationError):
             return Repeated(number, disturbance, True, float("nan"), None)
-        break
-    return Repeated(number, disturbance, not verdict.kept, verdict.margin, verdict.at_s)
 
 
 def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
-    """Drives a Run's road once with its driver and a disturbance, and returns the verdict.
-
-    Raises:
-        DriverError, SimulationError: as raised by ``roadgpt.drive.simulate``.
-    """
+    """Drives a Run's road once with its driver and a disturbance; raises the errors of ``drive.simulate``."""
     road, world, setup = run.road, run.world, run.request.setup
     assert road is not None
     driver = LateDriver(driver_of(setup.driver), disturbance.delay, world)

@@ -6,16 +6,14 @@ different faults do not. Groups for which there is no such change belong to no f
 """
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from itertools import combinations
+from collections.abc import Sequence
+from itertools import chain, combinations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roadgpt.campaign.faults.remedy import REMEDIES, Removed
-
-Array = NDArray[np.float64]
+from roadgpt.geometry.curve import Array
 
 WITHIN = 0.85  # smallest share of the pairs of failures in one fault that its change removes
 JOINS = 0.7  # a group joins a fault if the fault's change removes more than this share of its tested failures
@@ -48,7 +46,8 @@ def faults_by_remedy(groups: Sequence[TriedGroup]) -> list[str | None]:
     shares = np.array([[_share(group, remedy.name) for remedy in REMEDIES] for group in groups])
     best: list[int | None] = [None] * len(groups)
     most = 0.0
-    for chosen in _subsets(range(len(REMEDIES))):
+    every = range(len(REMEDIES))
+    for chosen in chain.from_iterable(combinations(every, count) for count in range(1, MOST + 1)):
         found = _assigned(shares, chosen)
         sizes = Counter[int]()
         for group, at in zip(groups, found, strict=True):
@@ -59,12 +58,6 @@ def faults_by_remedy(groups: Sequence[TriedGroup]) -> list[str | None]:
         if value > most and is_seen_often and _is_apart(groups, shares, found):
             best, most = found, value
     return [None if at is None else REMEDIES[at].name for at in best]
-
-
-def _subsets(numbers: Sequence[int]) -> Iterator[tuple[int, ...]]:
-    """Yields all sets of one to four numbers, small sets first."""
-    for count in range(1, MOST + 1):
-        yield from combinations(numbers, count)
 
 
 def _share(group: TriedGroup, name: str) -> float:

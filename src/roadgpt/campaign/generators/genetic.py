@@ -10,14 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from roadgpt.campaign.model import Cell, Goal, Pool, Proposal, Result
-from roadgpt.campaign.search import (
-    batch_rng,
-    context_of,
-    is_usable,
-    make_candidates,
-    proposals_of,
-    settings_of,
-)
+from roadgpt.campaign.search import SearchGenerator, is_usable
 from roadgpt.campaign.variation import VariationTask
 from roadgpt.road import Design
 
@@ -26,26 +19,21 @@ TOURNAMENT = 3
 CROSSED = 0.6  # share of children with two parents; the others have one
 
 
-class Genetic:
+class Genetic(SearchGenerator):
     """A genetic algorithm with tournaments, crossover and mutation."""
 
     goals: tuple[Goal, ...] = ("failures", "hardest")  # both need only a comparison of margins
 
     def __init__(self, cell: Cell) -> None:
-        """Begins with an empty population.
-
-        Raises:
-            UsageError: a setting cannot be used.
-        """
-        self._cell, self._setting = cell, context_of(cell)
-        self.batch_size = settings_of(cell).batch
+        """Begins with an empty population; raises UsageError if a setting cannot be used."""
+        super().__init__(cell)
         self._fittest: list[tuple[float, int, Design]] = []
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
         """Proposes children of the fittest roads; until the first results arrive, proposes random drafts."""
-        rng = batch_rng(self._cell, batch)
+        rng = self._rng(batch)
         tasks = [self._task(rng) for _ in range(n)]
-        return proposals_of(self._cell, first, n, make_candidates(tasks, pool))
+        return self._proposals(first, n, self._candidates(tasks, pool))
 
     def tell(self, results: Sequence[Result]) -> None:
         """Adds results to the population, and keeps only the fittest."""

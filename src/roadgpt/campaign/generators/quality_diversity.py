@@ -21,14 +21,7 @@ from roadgpt.campaign.behaviour import DRIVEN
 from roadgpt.campaign.boundary_pairs import paired
 from roadgpt.campaign.departure import FEWEST_FAILURES, DepartureModel
 from roadgpt.campaign.model import GOALS, Cell, Goal, Pool, Proposal, Result
-from roadgpt.campaign.search import (
-    batch_rng,
-    context_of,
-    is_usable,
-    make_candidates,
-    proposals_of,
-    settings_of,
-)
+from roadgpt.campaign.search import SearchGenerator, is_usable
 from roadgpt.campaign.sketch import Sketch, candidate_of, sketch, sketch_of
 from roadgpt.campaign.surrogate import FEWEST, MOST, TREES, Surrogate, target_of
 from roadgpt.campaign.surrogate_features import NAMES, STEERING, hazard_of
@@ -49,26 +42,17 @@ SHARES = (0.5, 0.3, 0.7)  # position between the roads of a pair; changes by bat
 CLOSE = 0.05  # distance up to which a pair is near enough (see boundary_pairs.distance)
 
 
-class QualityDiversity:
+class QualityDiversity(SearchGenerator):
     """Searches for roads that serve a goal; uses one or two feature maps of elites and a surrogate model."""
 
     goals = GOALS
 
     def __init__(self, cell: Cell, is_interpolated: bool = False) -> None:
-        """Begins with empty maps.
-
-        Args:
-            cell: words, requirements and settings.
-            is_interpolated: whether the roads are driven as the competition interpolates them.
-
-        Raises:
-            UsageError: a setting cannot be used.
-        """
-        self._cell = cell
-        self._setting = context_of(cell)._replace(is_interpolated=is_interpolated)
-        self._wanted = settings_of(cell)
+        """Begins with empty maps; raises UsageError if a setting cannot be used. ``is_interpolated`` says
+        whether the roads are driven as the competition interpolates them."""
+        super().__init__(cell)
+        self._setting = self._setting._replace(is_interpolated=is_interpolated)
         self._goal: Goal = cell.goal or "failures"
-        self.batch_size = self._wanted.batch
         self._maps = [Archive(axes, self._wanted.cells, self._wanted.archive) for axes in self._wanted.maps]
         self._driven = [axis for axis in self._setting.axes if axis in DRIVEN]
         self._results: dict[int, Result] = {}
@@ -88,7 +72,7 @@ class QualityDiversity:
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
         """Proposes the candidates that are most valuable for the goal."""
-        rng = batch_rng(self._cell, batch)
+        rng = self._rng(batch)
         self._look(pool)
         elites = dict.fromkeys(number for each in self._maps for number in each.elites())
         self._elites = [*elites] or list(self._results)
@@ -99,7 +83,7 @@ class QualityDiversity:
         tasks = [self._task(rng) for _ in range(missing * each)]
         sketches = [one for one in pool.map(sketch, tasks) if one is not None]
         found += self._built(self._chosen(sketches, SPARE * missing), missing, pool)
-        return proposals_of(self._cell, first, n, found)
+        return self._proposals(first, n, found)
 
     def _look(self, pool: Pool) -> None:
         """Sketches the roads added since the last call; keeps those of the last 1500."""
@@ -107,8 +91,7 @@ class QualityDiversity:
         self._looks = {number: self._looks[number] for number in known if number in self._looks}
         self._shapes = {number: self._shapes[number] for number in self._looks}
         new = [number for number in known if number not in self._looks]
-        designs = [self._results[number].plain_design for number in new]
-        found = pool.map(sketch_of, [(design, self._setting) for design in designs if design])
+        found = pool.map(sketch_of, [(self._design(number), self._setting) for number in new])
         for number, (look, shape) in zip(new, found, strict=True):
             self._looks[number], self._shapes[number] = look, shape
 
@@ -137,7 +120,7 @@ class QualityDiversity:
         if kind == "wild":
             return VariationTask(kind, (), "draft", seed, self._setting)
         numbers = [self._parent(rng) for _ in range(1 + (kind == "cross"))]
-        parents = tuple(d for number in numbers if (d := self._results[number].plain_design))
+        parents = tuple(self._design(number) for number in numbers)
         origin = f"{kind} {'+'.join(map(str, numbers))}"
         numeric = NUMERIC[self._goal == "boundary"]  # relatives have the same row of turns and straights
         return VariationTask(kind, parents, origin, seed, self._setting, numeric=numeric)
@@ -199,9 +182,8 @@ class QualityDiversity:
 
     def _bisected(self, batch: int, n: int, pool: Pool) -> list[Candidate]:
         """Returns roads that lie between a passed test and the most similar failed test."""
-        for number, result in self._results.items():
-            if number not in self._roads and result.plain_design:
-                self._roads[number] = elements_of(result.plain_design.segments)
+        for number in self._results.keys() - self._roads:
+            self._roads[number] = elements_of(self._design(number).segments)
         kept = [number for number, result in self._results.items() if not result.failed]
         lost = [number for number, result in self._results.items() if result.failed]
         tasks: list[VariationTask] = []
@@ -211,7 +193,7 @@ class QualityDiversity:
                 origin = f"between {pair.kept}+{pair.lost}"
                 share = SHARES[batch % len(SHARES)]
                 tasks.append(VariationTask("between", ends, origin, (batch,), self._setting, share))
-        return make_candidates(tasks, pool)
+        return self._candidates(tasks, pool)
 
     def _design(self, number: int) -> Design:
         design = self._results[number].plain_design

@@ -1,1 +1,1 @@
-"""Code that executors share, such as the queue of jobs, a worker's main loop, and its messages."""
+"""Code that executors share, such as the queue of jobs, and a worker's main loop and messages."""

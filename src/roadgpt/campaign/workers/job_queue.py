@@ -1,25 +1,25 @@
-"""The job queue of an executor: waiting jobs, finished jobs, and the error that stopped all workers, if any.
+"""What executors share: the queue of jobs, and the workers that they are sent to.
 
-An executor inherits from JobQueue and defines how a waiting job gets to a worker (``_hand_out``). The
-executor's threads hold the condition ``_changed`` while they access the queue, and notify it when a job has
-ended.
+The executor's threads hold the condition ``_changed`` while they access the queue, and notify it when a job
+has ended.
 """
 
 import threading
+import time
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, TypeVar
+from dataclasses import dataclass, field
+from typing import Any, Generic, TypeVar
 
-from roadgpt.campaign.jobs import MOST_DEATHS, FinishedJob, Job
-from roadgpt.campaign.workers.messages import pickled, unpickled
-from roadgpt.campaign.workers.process_loop import VALUE, apply_each
+from roadgpt.campaign.jobs import MOST_DEATHS, FinishedJob, Job, RunningJob, WorkerConfig
+from roadgpt.campaign.workers.process_loop import READY, JobMessage, apply_each, pickled, unpickled
 from roadgpt.errors import RoadGPTError
 
 T = TypeVar("T")
 U = TypeVar("U")
 
+LOST = "lost"  # kind of the end of a job that was given up; also named as a field of FinishedJob
 CHUNKS = 4  # parts per worker into which ``map`` divides its items: few messages, no long wait for the last
 
 
@@ -35,19 +35,50 @@ class QueuedJob:
     end: FinishedJob | None = None
 
 
-class JobQueue(ABC):
-    """The waiting and finished jobs of an executor."""
+@dataclass(eq=False)
+class QueueWorker:
+    """A worker, as the campaign's process sees it."""
 
-    def __init__(self, workers: int) -> None:
-        """Makes an empty queue for this number of workers."""
-        self._size = workers
+    name: str
+    """Shown to people."""
+    is_ready: bool = False
+    works: list[QueuedJob] = field(default_factory=list)
+    """The jobs that were sent to the worker and have not ended."""
+    begun: float = field(default_factory=time.monotonic)
+    """When these jobs were sent, or else when the worker was started."""
+    has: set[str] = field(default_factory=set)
+    """Names of the shared values that were sent to the worker."""
+    fault: str = ""
+    """Why the worker was ended; empty if it ended by itself."""
+
+
+W = TypeVar("W", bound=QueueWorker)
+
+
+class JobQueue(ABC, Generic[W]):
+    """The jobs and the workers of an executor, which defines how a worker is hired and how it gets jobs."""
+
+    def __init__(self, staff: WorkerConfig) -> None:
+        self._staff = staff
+        self._prepare = pickled(staff.prepare)
         self._changed = threading.Condition()
+        self._stops = threading.Event()
+        self._workers: list[W] = []
+        self._started = 0
+        self._in_vain = 0  # workers that ended before they were ready, since one last became ready
         self._shared: dict[str, bytes] = {}
         self._urgent: deque[QueuedJob] = deque()
         self._waiting: deque[QueuedJob] = deque()
-        self._ended: deque[tuple[QueuedJob, int, bytes]] = deque()
-        self._lost: deque[FinishedJob] = deque()
+        self._ended: deque[tuple[QueuedJob, str, bytes]] = deque()
         self._broken: Exception | None = None
+
+    @abstractmethod
+    def _hire(self) -> None:
+        """Starts one more worker; raises RoadGPTError."""
+
+    @abstractmethod
+    def _send(self, worker: W, works: Sequence[QueuedJob]) -> None:
+        """Sends jobs to a worker."""
 
     def share(self, name: str, value: Any) -> None:
         """Keeps a value under a name, for the jobs that list this name in ``Job.needs``."""
@@ -73,22 +104,20 @@ class JobQueue(ABC):
                 raised instead.
         """
         with self._changed:
-            self._changed.wait_for(lambda: self._ended or self._lost or self._broken, seconds)
-            ended, lost = [*self._ended], [*self._lost]
+            self._changed.wait_for(lambda: self._ended or self._broken, seconds)
+            ended = [*self._ended]
             self._ended.clear()
-            self._lost.clear()
-            if self._broken is not None and not ended and not lost:
+            if self._broken is not None and not ended:
                 raise self._broken
-        return [_finished_job(work, kind, what) for work, kind, what in ended] + lost
+        return [_finished_job(*each) for each in ended]
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """Returns the results of ``function`` for all items, in order; raises any error that ``function``
-        raises.
+        """Returns the results of ``function`` for all items, in order; raises any error that it raises.
 
         Raises:
             RoadGPTError: three workers died while computing the same items, or no workers are left.
         """
-        size = max(1, -(-len(items) // (CHUNKS * self._size)))
+        size = max(1, -(-len(items) // (CHUNKS * self._staff.workers)))
         parts = [items[first : first + size] for first in range(0, len(items), size)]
         works = [QueuedJob(pickled((apply_each, (function, [*part]), ())), (), None) for part in parts]
         with self._changed:
@@ -107,23 +136,55 @@ class JobQueue(ABC):
             found += work.end.value
         return found
 
-    @abstractmethod
+    def under_way(self) -> list[RunningJob]:
+        """Returns the jobs that were sent to workers and have not ended, and the worker of each."""
+        now = time.monotonic()
+        with self._changed:
+            return [
+                RunningJob(work.key, worker.name, now - worker.begun)
+                for worker in self._workers
+                for work in worker.works
+                if work.key is not None
+            ]
+
     def _hand_out(self) -> None:
         """Gives waiting jobs to workers that are free, urgent jobs first."""
+        for worker in self._workers:
+            if worker.is_ready and not worker.works:
+                self._next(worker)
 
-    def _news(self, has: set[str], works: Sequence[QueuedJob]) -> tuple[dict[str, bytes], tuple[str, ...]]:
-        """Returns the shared values that a worker lacks for these jobs, and the names that it can drop.
+    def _next(self, worker: W) -> None:
+        works = self._some(self._urgent or self._waiting)
+        if works:
+            worker.begun, worker.works = time.monotonic(), works
+            self._send(worker, works)
 
-        Updates ``has``, the names that the worker has.
-        """
-        old = tuple(name for name in has if name not in self._shared)
-        wanted = [name for work in works for name in work.needs]
-        new = {name: self._shared[name] for name in wanted if name not in has}
-        has.difference_update(old)
-        has.update(new)
-        return new, old
+    def _some(self, waiting: deque[QueuedJob]) -> list[QueuedJob]:
+        """Takes the jobs for one message."""
+        return [waiting.popleft()] if waiting else []
 
-    def _end(self, work: QueuedJob, kind: int, what: bytes) -> None:
+    def _message(self, worker: W, work: QueuedJob) -> JobMessage:
+        """Returns the message of a job, and notes in ``worker.has`` which values the worker then has."""
+        old = tuple(name for name in worker.has if name not in self._shared)
+        new = {name: self._shared[name] for name in work.needs if name not in worker.has}
+        worker.has.difference_update(old)
+        worker.has.update(new)
+        return JobMessage(work.call, new, old)
+
+    def _hear(self, worker: W, answers: Sequence[tuple[str, bytes]]) -> None:
+        """Handles the answers of a worker to its jobs, or its answer when it was prepared."""
+        if worker.is_ready:
+            works, worker.works = worker.works, []
+            for work, (kind, what) in zip(works, answers, strict=True):
+                self._end(work, kind, what)
+        elif answers[0][0] == READY:
+            worker.is_ready, self._in_vain = True, 0
+        else:
+            self._broken = unpickled(answers[0][1])
+        if self._broken is None:
+            self._next(worker)
+
+    def _end(self, work: QueuedJob, kind: str, what: bytes) -> None:
         if work.key is None:
             work.end = _finished_job(work, kind, what)
         else:
@@ -135,21 +196,27 @@ class JobQueue(ABC):
         work.deaths += 1
         if work.deaths < MOST_DEATHS:
             (self._waiting if work.key is not None else self._urgent).appendleft(work)
-            return
-        end = FinishedJob(
-            work.key or 0, lost=f"given up: {MOST_DEATHS} workers ended over it (the last one {how})"
-        )
-        if work.key is None:
-            work.end = end
         else:
-            self._lost.append(end)
+            lost = f"given up: {MOST_DEATHS} workers ended over it (the last one {how})"
+            self._end(work, LOST, pickled(lost))
+
+    def _replace(self, worker: W, how: str, printed: object) -> None:
+        """Hires another worker for one that has ended, unless workers end before they are ready; ``printed``
+        is where people find what it printed."""
+        self._in_vain += not worker.is_ready
+        if self._in_vain >= MOST_DEATHS and self._broken is None:
+            self._broken = RoadGPTError(
+                f"workers end before they begin (the last one {how}); {printed} has what they printed"
+            )
+        if self._broken is None:
+            try:
+                self._hire()
+            except RoadGPTError as error:
+                self._broken = error
 
 
-def _finished_job(work: QueuedJob, kind: int, what: bytes) -> FinishedJob:
+def _finished_job(work: QueuedJob, kind: str, what: bytes) -> FinishedJob:
     try:
-        value = unpickled(what)
+        return FinishedJob(work.key or 0, **{kind: unpickled(what)})
     except Exception as error:  # an error whose class cannot be unpickled, for example
         return FinishedJob(work.key or 0, error=RuntimeError(f"an answer cannot be read: {error}"))
-    return (
-        FinishedJob(work.key or 0, value=value) if kind == VALUE else FinishedJob(work.key or 0, error=value)
-    )

@@ -5,21 +5,28 @@ a job holds the call (function, item, names of shared values), the shared values
 yet, and the names of shared values that the worker can drop. The worker sends a sign of life every second,
 and the pickled value or error of each job. Calls and values are pickled one by one; if one cannot be
 unpickled, only its own job is lost.
+
+A message is a pickled value after its length. ``send`` and ``receive`` connect processes that RoadGPT started
+on one machine. ``pickled`` and ``unpickled`` also serve the executor ``ray``, whose workers may run on other
+machines of its cluster. Nothing else is read.
 """
 
 import os
+import pickle
 import signal
+import struct
 import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
 from typing import IO, Any, NamedTuple
 
-from roadgpt.campaign.workers.messages import pickled, receive, send, unpickled
 from roadgpt.children import ends_its_own, private_streams
 
+HEAD = struct.Struct("<Q")
 BEAT = 1.0  # s between signs of life
-ALIVE, READY, VALUE, ERROR = range(4)  # kinds of messages from a worker to its parent
+ALIVE, READY, VALUE, ERROR = "alive", "ready", "value", "error"
+"""Kinds of messages from a worker to its parent; the last two are named as fields of FinishedJob."""
 
 
 class JobMessage(NamedTuple):
@@ -43,7 +50,7 @@ class _Sender:
         self._stream = stream
         self._lock = threading.Lock()
 
-    def send(self, kind: int, what: bytes = b"") -> None:
+    def send(self, kind: str, what: bytes = b"") -> None:
         try:
             with self._lock:
                 send(self._stream, (kind, what))
@@ -78,7 +85,7 @@ def main() -> None:
         return
 
 
-def answer(order: JobMessage, shared: dict[str, Any]) -> tuple[int, bytes]:
+def answer(order: JobMessage, shared: dict[str, Any]) -> tuple[str, bytes]:
     """Runs a job and updates the shared values; returns how the job ended, and its pickled value or error."""
     try:
         for name in order.old:
@@ -92,12 +99,40 @@ def answer(order: JobMessage, shared: dict[str, Any]) -> tuple[int, bytes]:
 
 
 def portable(error: Exception) -> bytes:
-    """Returns a pickled error. An error that cannot be pickled is replaced by a RuntimeError with its type
-    and text.
-    """
+    """Returns a pickled error, or else a RuntimeError with its type and text if it cannot be pickled."""
     try:
         data = pickled(error)
         unpickled(data)
     except Exception:  # pickling may fail in any way
         return pickled(RuntimeError(f"{type(error).__name__}: {error}"))
+    return data
+
+
+def pickled(value: Any) -> bytes:
+    """Returns a value as bytes."""
+    return pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
+
+
+def unpickled(data: bytes) -> Any:
+    """Returns the value that was pickled into these bytes."""
+    return pickle.loads(data)  # noqa: S301 - from our own process
+
+
+def send(stream: IO[bytes], message: Any) -> None:
+    """Sends a message; raises OSError if the other process has ended."""
+    body = pickled(message)
+    stream.write(HEAD.pack(len(body)) + body)
+    stream.flush()
+
+
+def receive(stream: IO[bytes]) -> Any:
+    """Returns the next message; raises EOFError if the other process has ended."""
+    (length,) = HEAD.unpack(_exactly(stream, HEAD.size))
+    return unpickled(_exactly(stream, length))
+
+
+def _exactly(stream: IO[bytes], count: int) -> bytes:
+    data = stream.read(count)
+    if len(data) != count:
+        raise EOFError
     return data

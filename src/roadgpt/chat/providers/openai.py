@@ -1,33 +1,84 @@
 """Asks any server with OpenAI's protocol: OpenAI, Azure, Ollama, llama.cpp, vLLM, LM Studio and others.
 
-A server may not support schemas, may silently ignore them, or may reject a parameter. The provider tries one
-response format after another, beginning with the strictest, and remembers which of them the server supports.
-The reply is always validated.
+A server may not support schemas, may silently ignore them, or may reject a parameter. There are three ways of
+asking for JSON: with a schema that the server enforces; as any JSON object, with the schema in the prompt; as
+plain text, from which the JSON is extracted. The provider tries one after another, beginning with the
+strictest, and remembers which parameters and formats the server accepts, so that each process has to find
+this out only once. The reply is always validated.
 """
 
 import json
 import time
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from enum import IntEnum
+from functools import cache
 from typing import Any
 from weakref import WeakKeyDictionary
 
 from pydantic import BaseModel
 
-from roadgpt.chat.account import Account, tokens_in
-from roadgpt.chat.answer import Answer, from_chat, from_responses
+from roadgpt.chat.answer import Answer, RequestError, from_chat, from_responses
 from roadgpt.chat.client import ApiClient
 from roadgpt.chat.config import key_for
 from roadgpt.chat.json_schema import schema_of
-from roadgpt.chat.meter import Meter
+from roadgpt.chat.meter import Account, Meter, tokens_in
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent, Usage
-from roadgpt.chat.request_error import RequestError
-from roadgpt.chat.server_quirks import ResponseFormat, ServerQuirks, quirks_of
+from roadgpt.chat.prices import has_openai_prices
 from roadgpt.chat.strict_json import NotReadableError, plain, read_as
 from roadgpt.errors import ChatError, RefusedError, UnparsableError
 
 MOST_TURNS = 20  # messages that are sent along if the server stores none
 FULL = ("context_length", "context window", "too long", "maximum context")
+# after so many unusable replies in a row in one format, the server is taken not to support it
+UNUSABLE_IN_A_ROW = 2
+
+
+class ResponseFormat(IntEnum):
+    """The ways of asking for JSON, from the strictest to the loosest."""
+
+    SCHEMA = 0
+    OBJECT = 1
+    TEXT = 2
+
+
+@dataclass
+class ServerQuirks:
+    """What has been found out about one model on one server."""
+
+    caps: tuple[str, ...]
+    """Names that the server may use for the parameter that limits the length of a reply; the first is
+    tried first.
+    """
+    response_format: ResponseFormat = ResponseFormat.SCHEMA
+    takes_temperature: bool = True
+    unusable: Counter[int] = field(default_factory=Counter)
+    """How many replies in a row were unusable, by response format."""
+    keeps_conversations: bool = True
+
+    def worked(self, response_format: ResponseFormat, refused: set[ResponseFormat]) -> None:
+        """Notes that a reply in this response format was usable. If all stricter formats were rejected or
+        failed repeatedly, this one is tried first from now on.
+        """
+        self.unusable[response_format] = 0
+        above = range(self.response_format, response_format)
+        if all(one in refused or self.unusable[one] >= UNUSABLE_IN_A_ROW for one in above):
+            self.response_format = max(self.response_format, response_format)
+
+
+@cache
+def quirks_of(place: str, model: str, api: str) -> ServerQuirks:
+    """Returns what has been found out about a model on a server, for one of the server's two APIs."""
+    del model  # a key of the cache
+    # OpenAI's newer models reject the old name, most other servers silently ignore the new one
+    caps = ("max_completion_tokens", "max_tokens")
+    caps = caps if has_openai_prices(place) else caps[::-1]
+    return ServerQuirks(("max_output_tokens",) if api == "responses" else caps)
+
+
+forget = quirks_of.cache_clear
+"""Forgets everything about all servers, as if the process had just started."""
 
 
 class Conversation:
@@ -57,20 +108,22 @@ class Conversation:
             self._begin(client, quirks)
         if self.name is None:
             asked = [*self._turns, *asked]
-            return from_responses(client.respond({**body, "input": _input(asked), "store": False}))
         try:
-            return from_responses(client.respond({**body, "input": _input(asked), "conversation": self.name}))
+            return self._exchange(client, asked, body)
         except RequestError as fault:
-            if not any(word in fault.details for word in FULL):
+            if self.name is None or not any(word in fault.details for word in FULL):
                 raise
             self.name = None  # it has grown too long: start a new one
             self._begin(client, quirks)
-            rest = {"conversation": self.name} if self.name else {"store": False}
-            return from_responses(client.respond({**body, "input": _input(asked), **rest}))
+            return self._exchange(client, asked, body)
+
+    def _exchange(self, client: ApiClient, asked: Sequence[Message], body: dict[str, Any]) -> Answer:
+        place = {"conversation": self.name} if self.name else {"store": False}
+        return from_responses(client.send("responses", {**body, "input": _input(asked), **place}))
 
     def _begin(self, client: ApiClient, quirks: ServerQuirks) -> None:
         try:
-            name = client.begin_conversation().get("id")
+            name = client.send("conversations", {}).get("id")
         except RequestError as fault:
             if fault.status not in (400, 403, 404, 405, 422, 501):
                 raise
@@ -117,28 +170,41 @@ class OpenAI:
         return names[0]
 
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
-        """Returns the answer, in whatever format the server supports; raises the errors of ``Chat.ask``."""
-        before = self.spent
-        first = self._quirks.response_format if schema is not None else ResponseFormat.TEXT
-        way = FormatFallback(list(messages), first, schema is None)
-        answer = Answer()
+        """Returns the answer, in whatever format the server supports; raises the errors of ``Chat.ask``.
+
+        If the server may have rejected the format of a request, or the answer is not usable, the question is
+        asked in the next looser format. Plain text is asked for once more if it does not give the JSON.
+        """
+        before, answer, why = self.spent, Answer(), ""
+        way = self._quirks.response_format if schema is not None else ResponseFormat.TEXT
+        refused, asked, is_last = set[ResponseFormat](), messages, schema is None
         for _ in range(MOST_REQUESTS):
             try:
-                answer = self._exchange(way.messages, schema, way.response_format)
+                answer = self._exchange(asked, schema, way)
                 data = _data(answer, schema)
             except RequestError as fault:
-                if not self._adapts(fault) and not way.goes_down(fault):
+                if self._adapts(fault):
+                    continue
+                if way == ResponseFormat.TEXT or not _is_about_format(fault):
                     raise ChatError(fault.sentence) from None
+                refused.add(way)
+                way = ResponseFormat(way + 1)
             except NotReadableError as error:
-                self._quirks.failed(way.response_format)
-                if not way.tries_again(messages, str(error)):
+                why = str(error)
+                self._quirks.unusable[way] += 1
+                if way == ResponseFormat.TEXT and is_last:
                     break
+                is_last = way == ResponseFormat.TEXT
+                way = ResponseFormat(min(way + 1, ResponseFormat.TEXT))
+                complaint = f"(The answer before this could not be used: {why}. Answer with JSON alone.)"
+                asked = [*messages, Message(role="user", text=complaint)]
             else:
-                self._quirks.worked(way.response_format, way.refused)
+                self._quirks.worked(way, refused)
                 self._conversation().keep(messages, answer.text)
                 return self._reply(answer, data, before)
-        sentence = f"no answer of the model '{plain(self._model)}' can be used: {way.why}"
-        raise UnparsableError(sentence, answer.text)
+        raise UnparsableError(
+            f"no answer of the model '{plain(self._model)}' can be used: {why}", answer.text
+        )
 
     def _reply(self, answer: Answer, data: BaseModel | None, before: Spent) -> Reply:
         spent = self.spent.since(before)
@@ -167,15 +233,17 @@ class OpenAI:
         told = list(messages)
         if form is not None and response_format > ResponseFormat.SCHEMA:
             told.append(_instruction(form))
-        room = self._account.reply_tokens(told, self._model)
+        prompt = tokens_in(*(message.text for message in told))
+        room = self._account.meter.reply_tokens(told, self._settings, self._model)
         begun = time.perf_counter()
         try:
             answer = self._sent(told, self._body(form, response_format, room))
         except NotReadableError:  # too long an answer: its cost is not known
-            usage = Usage(prompt=sum(tokens_in(one.text) for one in told), completion=room)
+            usage = Usage(prompt=prompt, completion=room)
             self._account.count(self._model, usage, time.perf_counter() - begun)
             raise
-        usage = answer.usage if answer.usage.total else _guessed(told, answer)
+        guessed = Usage(prompt=prompt, completion=tokens_in(answer.text))  # not all servers report them
+        usage = answer.usage if answer.usage.total else guessed
         self._account.count(answer.model, usage, time.perf_counter() - begun)
         return answer
 
@@ -183,8 +251,7 @@ class OpenAI:
         """Sends one request through the API that the settings select."""
         if self._settings.api == "responses":
             return self._conversation().respond(self._client, self._quirks, messages, body)
-        turns = [{"role": message.role, "content": message.text} for message in messages]
-        return from_chat(self._client.chat({**body, "messages": turns}))
+        return from_chat(self._client.send("chat.completions", {**body, "messages": _input(messages)}))
 
     def _body(
         self, form: dict[str, Any] | None, response_format: ResponseFormat, room: int
@@ -222,51 +289,6 @@ class OpenAI:
         return False
 
 
-@dataclass
-class FormatFallback:
-    """Asks one question in different response formats, from the strictest to the loosest, until one works."""
-
-    messages: list[Message]
-    response_format: ResponseFormat
-    is_last: bool
-    """True if the next unusable reply in plain text ends the attempts."""
-    refused: set[ResponseFormat] = field(default_factory=set)
-    why: str = ""
-    """The reason why the last answer was not usable."""
-
-    def goes_down(self, fault: RequestError) -> bool:
-        """Changes to the next looser format after a failed request, if the server may have rejected the
-        request because of its format.
-
-        Returns:
-            True if the format was changed; False if the format was not the cause or there is no looser one.
-        """
-        if self.response_format == ResponseFormat.TEXT or not _is_about_format(fault):
-            return False
-        self.refused.add(self.response_format)
-        self.response_format = ResponseFormat(self.response_format + 1)
-        return True
-
-    def tries_again(self, messages: Sequence[Message], why: str) -> bool:
-        """Prepares another attempt after an unusable answer: with the next looser format or, if there is
-        none, once more as plain text.
-
-        Args:
-            messages: the original question.
-            why: the reason why the answer was not usable; it is included in the next request to the model.
-
-        Returns:
-            False if no attempt is left.
-        """
-        self.why = why
-        if self.response_format == ResponseFormat.TEXT and self.is_last:
-            return False
-        self.is_last = self.response_format == ResponseFormat.TEXT
-        self.response_format = ResponseFormat(min(self.response_format + 1, ResponseFormat.TEXT))
-        self.messages = [*messages, _complaint(why)]
-        return True
-
-
 def _is_about_format(fault: RequestError) -> bool:
     """True if the response format may be the cause; status 400 or 422 alone says too little to exclude it."""
     if fault.status not in OTHER_WAY or any(word in fault.details for word in FULL):
@@ -276,11 +298,8 @@ def _is_about_format(fault: RequestError) -> bool:
 
 
 def _data(answer: Answer, schema: type[BaseModel] | None) -> BaseModel | None:
-    """Returns the validated answer; None if no schema was given.
-
-    Raises:
-        RefusedError: the model declined to answer.
-        NotReadableError: the answer is blank or does not fit the schema.
+    """Returns the validated answer; None if no schema was given. Raises RefusedError if the model declined to
+    answer, and NotReadableError if the answer is blank or does not fit the schema.
     """
     if answer.refusal is not None:
         told = plain(answer.refusal, 160) or "no reason given"
@@ -304,14 +323,3 @@ def _instruction(form: dict[str, Any]) -> Message:
         text="Answer with one JSON object and nothing else. It must fit this JSON schema, with every field:\n"
         + json.dumps(form, separators=(",", ":")),
     )
-
-
-def _complaint(why: str) -> Message:
-    return Message(
-        role="user", text=f"(The answer before this could not be used: {why}. Answer with JSON alone.)"
-    )
-
-
-def _guessed(messages: Sequence[Message], answer: Answer) -> Usage:
-    """Returns estimated numbers of tokens, for servers that do not report them."""
-    return Usage(prompt=sum(tokens_in(one.text) for one in messages), completion=tokens_in(answer.text))

@@ -3,12 +3,10 @@ the same answers.
 """
 
 from collections.abc import Sequence
-from pathlib import Path
 
 from pydantic import BaseModel
 
-from roadgpt.chat.account import Account
-from roadgpt.chat.meter import occasion
+from roadgpt.chat.meter import Account, occasion
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent
 from roadgpt.chat.recording import ExchangeStore, question_of
 from roadgpt.errors import ChatError, RefusedError, ReplyError, UnparsableError, UsageError
@@ -22,22 +20,16 @@ class Replay:
     def __init__(self, settings: ChatSettings) -> None:
         if settings.replay is None:
             raise UsageError("no recording is named; give its folder with --replay FOLDER")
-        if not Path(settings.replay).is_dir():
-            raise UsageError(f"there is no recording in {settings.replay}; make one with --record")
         self._store = ExchangeStore(settings.replay)
         self._account = Account(settings)
-        if settings.provider == "replay":  # chosen by that name; recordings are made of servers
-            settings = settings.model_copy(update={"provider": "openai"})
-        self._settings = self._with_model(settings)
-
-    def _with_model(self, settings: ChatSettings) -> ChatSettings:
-        """Fills in the model if the recording has only one."""
         models = self._store.models()
         if not models:
             raise UsageError(f"there is no recording in {settings.replay}; make one with --record")
+        if settings.provider == "replay":  # chosen by that name; recordings are made of servers
+            settings = settings.model_copy(update={"provider": "openai"})
         if settings.model is None and len(models) == 1:
-            return settings.model_copy(update={"model": models[0]})
-        return settings
+            settings = settings.model_copy(update={"model": models[0]})
+        self._settings = settings
 
     @property
     def spent(self) -> Spent:
@@ -53,11 +45,16 @@ class Replay:
             ReplyError: the recorded question got no usable answer; the recorded error is raised again.
             UsageError: the recording cannot be read.
         """
-        self._account.reply_tokens(messages, self._settings.model or "")
+        self._account.meter.reply_tokens(messages, self._settings, self._settings.model or "")
         question = question_of(self._settings, messages, schema)
         kept = self._store.take(question, occasion(), self._account.meter.turns)
         if kept is None:
-            raise ChatError(self._missing())
+            models = ", ".join(str(model) for model in self._store.models())
+            raise ChatError(
+                f"the recording in {self._settings.replay} holds no answer to this question; use the same "
+                f"description, seed and options as when it was made (model {models}), or record it with "
+                "--record"
+            )
         try:
             self._account.add(Spent.model_validate(kept["spent"]))
             if "failure" in kept:
@@ -69,10 +66,3 @@ class Replay:
             raise UsageError(
                 f"a recording in {self._settings.replay} cannot be read; record it again with --record"
             ) from None
-
-    def _missing(self) -> str:
-        models = ", ".join(str(model) for model in self._store.models())
-        return (
-            f"the recording in {self._settings.replay} holds no answer to this question; use the same "
-            f"description, seed and options as when it was made (model {models}), or record it with --record"
-        )

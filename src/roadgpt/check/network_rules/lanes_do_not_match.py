@@ -6,13 +6,21 @@ names must exist.
 Source: OpenDRIVE 1.8, road linkage: linked lanes connect without gaps.
 """
 
+import math
+from functools import lru_cache
+
 from roadgpt.check.finding import Finding
-from roadgpt.check.lanes_at_ends import gap, lanes_into, lanes_out_of
+from roadgpt.check.footprint import footprint
 from roadgpt.check.network_places import junction_finding
 from roadgpt.network import Connection, LaneLink, Network, RoadEnd, Route
+from roadgpt.network.building import width_at
 from roadgpt.road import World
 
 MOST = 1e-3  # m
+
+Point = tuple[float, float]
+LaneEnd = tuple[RoadEnd, int]
+"""One end of one lane: the end of its road, and the id of the lane."""
 
 
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
@@ -38,16 +46,16 @@ def _no_arm(each: Connection, arms: set[RoadEnd]) -> str | None:
 def _wrong(network: Network, each: Connection, lanes: LaneLink) -> str | None:
     lane, own, target = lanes
     start, finish = RoadEnd(each.road, "start"), RoadEnd(each.road, "end")
-    if lane not in lanes_into(network, each.incoming):
+    if lane not in network.lanes_into(each.incoming):
         return f"road {each.incoming.road} has no lane {lane} that leads into it; name a lane that does"
-    if own not in lanes_out_of(network, start):
+    if own not in network.lanes_out_of(start):
         return f"connecting road {each.road} has no lane {own} along it; name a lane that it has"
-    apart = gap(network, (each.incoming, lane), (start, own))
+    apart = _gap(network, (each.incoming, lane), (start, own))
     if apart > MOST:
         return _said(each.road, each.incoming.road, apart)
-    if target not in lanes_out_of(network, each.outgoing):
+    if target not in network.lanes_out_of(each.outgoing):
         return f"road {each.outgoing.road} has no lane {target} that leads out of it; name a lane that does"
-    apart = gap(network, (finish, own), (each.outgoing, target))
+    apart = _gap(network, (finish, own), (each.outgoing, target))
     return _said(each.road, each.outgoing.road, apart) if apart > MOST else None
 
 
@@ -56,3 +64,32 @@ def _said(connecting: int, road: int, apart: float) -> str:
         f"the lanes of roads {connecting} and {road} do not meet: their edges are {apart:.3f} m apart; give "
         "both the same place, heading and width there"
     )
+
+
+def _gap(network: Network, one: LaneEnd, other: LaneEnd) -> float:
+    """Returns the larger of two distances in metres: of the inner and of the outer edges of two lanes."""
+    points = _points(network)
+    (a, b), (c, d) = points[one], points[other]
+    return max(math.dist(a, c), math.dist(b, d))
+
+
+@lru_cache(maxsize=2)
+def _points(network: Network) -> dict[LaneEnd, tuple[Point, Point]]:
+    """Returns the points of the inner and of the outer edge of every lane at both ends of its road."""
+    found: dict[LaneEnd, tuple[Point, Point]] = {}
+    for end, pose in footprint(network).ends.items():
+        member = network.road(end.road)
+        s = 0.0 if end.contact == "start" else member.road.length
+        profile = member.profile
+        begin = width_at(profile.offset, s)
+        for ids, lanes, t in (
+            (profile.along_ids, profile.along, begin),
+            (profile.against_ids, profile.against, begin - profile.side * profile.median),
+        ):
+            outer = pose.beside(t)
+            for lane, own in zip(ids, lanes, strict=False):
+                width = width_at(own.width, s)
+                t = t - width if lane < 0 else t + width
+                inner, outer = outer, pose.beside(t)
+                found[(end, lane)] = (inner, outer)
+    return found

@@ -6,7 +6,6 @@ Source: OpenDRIVE 1.8, junctions: connections describe all ways through a juncti
 """
 
 from roadgpt.check.finding import Finding
-from roadgpt.check.lanes_at_ends import lanes_into, lanes_out_of, reached
 from roadgpt.check.network_places import junction_finding, road_finding
 from roadgpt.network import Network, RoadEnd, Route
 from roadgpt.road import World
@@ -19,13 +18,13 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     found = []
     for junction in network.junctions:
         left = {(each.incoming, lane) for each in junction.connections for lane, *_ in each.lanes}
-        entered = {lane for each in junction.connections for lane in reached(network, each)}
+        entered = {(each.outgoing, lanes.outgoing) for each in junction.connections for lanes in each.lanes}
         for arm in junction.arms:
-            for lane in lanes_into(network, arm.end):
+            for lane in network.lanes_into(arm.end):
                 if (arm.end, lane) not in left:
                     what = f"lane {lane} of road {arm.end.road} leads into it and has no way on; connect it"
                     found.append(junction_finding("unreachable", route, junction, what))
-            for lane in lanes_out_of(network, arm.end):
+            for lane in network.lanes_out_of(arm.end):
                 if (arm.end, lane) not in entered:
                     what = f"no way leads to lane {lane} of road {arm.end.road}, which leaves it; connect it"
                     found.append(junction_finding("unreachable", route, junction, what))

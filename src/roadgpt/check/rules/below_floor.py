@@ -2,7 +2,7 @@
 
 from roadgpt.brief.model import Brief
 from roadgpt.check.extremes import lowest
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, findings_at
 from roadgpt.road import Road, World
 
 ROUNDING = 1e-6  # m
@@ -10,19 +10,11 @@ ROUNDING = 1e-6  # m
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the lowest place of the road if it is below the ground of the level."""
-    found = low_place(road, world)
-    if found is None:
-        return ()
-    s, what = found
-    x, y, _ = (float(v) for v in road.at(s))
-    return (Finding("below_floor", f"at s = {s:.0f} m: {what}", s, x, y),)
+    return findings_at("below_floor", road, low_place(road, world))
 
 
 def low_place(road: Road, world: World) -> tuple[float, str] | None:
-    """Returns the station in metres where the road is lowest, and what is wrong there.
-
-    The result is None if no part of the road is below the ground.
-    """
+    """Returns the station in metres where the road is lowest, and what is wrong there; None if nothing is."""
     s, z = lowest(road.elevation, road.length)
     if z >= world.site.z_floor - ROUNDING:
         return None

@@ -18,10 +18,8 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def missing_number(road: Road) -> tuple[float | None, str] | None:
-    """Returns the first station in metres where a value is not finite, and which value it is.
-
-    The station is None if the length of the road is not finite. The whole result is None if all values are
-    finite.
+    """Returns the first station in metres where a value is not finite, and which value it is; None if all are
+    finite. The station is None if the length of the road is not finite.
     """
     if not np.isfinite(road.length):
         return None, "the length of the road is not a number"

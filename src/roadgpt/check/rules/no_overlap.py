@@ -27,14 +27,9 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def overlap_with_itself(road: Road, world: World) -> tuple[tuple[int, str] | None, int, float]:
-    """Returns where the road first overlaps itself, and how near two of its parts come to each other.
-
-    Returns:
-        - the index of the sample at which the road folds or overlaps an earlier part, and what is wrong
-          there; None if it does neither,
-        - the index of the sample at which two parts of the road are nearest to each other,
-        - the distance in metres between these parts: 0 if the road folds or overlaps itself; it may be
-          infinite if it is more than ``SPLINE_REACH``.
+    """Returns the index of the first sample at which the road folds or overlaps an earlier part, with what is
+    wrong there, or None; the index of the sample at which two parts are nearest to each other; and the metres
+    between these: 0 if the road folds or overlaps itself, perhaps infinite above ``SPLINE_REACH``.
     """
     samples = road.sample()
     offsets = world.profile_of(road).edges(samples.s)

@@ -13,7 +13,7 @@ import numpy as np
 from roadgpt.brief.model import Brief
 from roadgpt.check.bumps import bumps_asked
 from roadgpt.check.extremes import vertical_bends
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, findings_at
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import GRAVITY, expected_speed
@@ -25,19 +25,12 @@ ROUNDING = 1e-3  # of the limit
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the crest or dip that exceeds its limit by the largest factor, if there is one."""
-    found = abrupt_place(road, brief, world)
-    if found is None:
-        return ()
-    s, what = found
-    x, y, _ = (float(v) for v in road.at(s))
-    return (Finding("too_abrupt", f"at s = {s:.0f} m: {what}", s, x, y),)
+    return findings_at("too_abrupt", road, abrupt_place(road, brief, world))
 
 
 def abrupt_place(road: Road, brief: Brief | None, world: World) -> tuple[float, str] | None:
     """Returns the station in metres of the crest or dip that exceeds its limit by the largest factor, and
-    what is wrong there.
-
-    The result is None if the whole road satisfies the limits.
+    what is wrong there; None if there is none.
     """
     begin, end, bend = vertical_bends(road)
     suspects = np.flatnonzero(np.abs(bend) * world.limits.speed_limit**2 > MOST * (1 + ROUNDING))

@@ -8,7 +8,7 @@ import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.check.extremes import steepest
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, findings_at
 from roadgpt.road import Road, World
 
 WINDOW = 10.0  # m
@@ -17,19 +17,13 @@ ROUNDING = 1e-6  # ratio
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the steepest place of the road if its grade exceeds the limit."""
-    found = steep_place(road, world)
-    if found is None:
-        return ()
-    s, what = found
-    x, y, _ = (float(v) for v in road.at(s))
-    return (Finding("too_steep", f"at s = {s:.0f} m: {what}", s, x, y),)
+    return findings_at("too_steep", road, steep_place(road, world))
 
 
 def steep_place(road: Road, world: World) -> tuple[float, str] | None:
-    """Returns the station in metres where the road is too steep, and what is wrong there.
-
+    """Returns the station in metres where the road is too steep, and what is wrong there; None if nothing is.
     The station is the middle of the steepest 10 m or, if their mean grade satisfies the limit, the steepest
-    point. The result is None if both satisfy the limit.
+    point.
     """
     for (s, grade), over in ((_over_a_window(road), f" over {WINDOW:.0f} m"), (steepest(road), "")):
         if abs(grade) > world.limits.max_grade + ROUNDING:

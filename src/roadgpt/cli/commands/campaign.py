@@ -1,12 +1,9 @@
-"""``roadgpt campaign``: runs thousands of tests with many workers; can be resumed after any interruption."""
-
 import sys
 from contextlib import redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from roadgpt.cli import options
 from roadgpt.cli.campaigns import watch
@@ -95,13 +92,9 @@ def work_to_the_end(
 ) -> None:
     """Runs the remaining tests of a campaign or a folder of runs and prints the results.
 
-    If requested, writes a JUnit file and analyses the failures.
-
-    Args:
-        folder: The folder of the campaign or of the runs.
-        given: Values of the options for workers, analysis of faults, JUnit file and output.
-        chat: Settings of the language model, if the user changed a limit; None: the stored settings.
-        draw: Function that adds pictures and road files to a folder of runs; None: neither is written.
+    If ``given``, the values of the options, says so, writes a JUnit file and analyses the failures. ``chat``
+    has the settings of the language model if the user changed a limit; ``draw`` adds pictures and road files
+    to a folder of runs.
     """
     from roadgpt.campaign.lifecycle import work
 
@@ -123,24 +116,19 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
     from roadgpt.chat.config import Layer, configured
     from roadgpt.drive.permission import check_named_driver
 
-    chat = {flag.field for flag in options.CHAT}
+    typed = options.typed(ctx)
+    wrong = typed - BESIDE_A_FILE - {flag.field for flag in options.CHAT}
     for parameter in ctx.command.params:
-        name = parameter.name or ""
-        is_given = ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE
-        if is_given and name not in BESIDE_A_FILE | chat and name in rest:
+        if parameter.name in wrong:
             raise UsageError(f"{parameter.opts[0]} cannot be given with {path}; write it into the file")
-    if ctx.get_parameter_source("drivers") is ParameterSource.COMMANDLINE:
-        rest["drivers"] = [driver_again(one) for one in rest["drivers"]]
+    drivers = [driver_again(one) for one in rest["drivers"]] if "drivers" in typed else []
     written = read_plan(path)
-    told = {
-        flag.field: flag.read(rest[flag.field]) for flag in options.CHAT if rest.get(flag.field) is not None
-    }
-    if ctx.get_parameter_source("drivers") is ParameterSource.COMMANDLINE:
-        for one in rest["drivers"]:
-            check_named_driver(one, {*written.plan.drivers}, path)
+    for one in drivers:
+        check_named_driver(one, {*written.plan.drivers}, path)
     if not written.plan.asks_a_model:
         return written.plan
-    return written.plan.model_copy(update={"chat": configured(told, Layer(str(path), written.chat))})
+    chat = configured(options.chat_values(rest), Layer(str(path), written.chat))
+    return written.plan.model_copy(update={"chat": chat})
 
 
 def _described(text: str, rest: dict[str, Any]) -> "Plan":

@@ -1,6 +1,4 @@
-"""``roadgpt check``: checks roads from files against the rules."""
-
-import time
+from dataclasses import replace
 from typing import Any
 
 import click
@@ -8,17 +6,16 @@ import click
 from roadgpt.cli import options
 from roadgpt.cli.option import named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.result_row import Row
-from roadgpt.cli.roads import blueprint_of, each_road
+from roadgpt.cli.result_row import Row, row_of
+from roadgpt.cli.roads import LANES, UNREADABLE, blueprint_of, each_road
 from roadgpt.cli.screen import Screen
 
 INVALID = 1  # exit status, so that a script can ask
-UNREADABLE = 2
 
 
 OPTIONS = (
     *named(options.SETUP, "rules"),
-    *named(options.WORLD, "map_size", "lanes", "lane_width", "lane_width_end", "shoulder", "bank"),
+    *named(options.WORLD, "map_size", *LANES),
     *named(options.SETUP, "geometry"),
     *options.SCREEN,
 )
@@ -40,28 +37,17 @@ def command(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **
 
 
 def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -> Row:
-    from roadgpt.check import inspect
-    from roadgpt.network import has_no_route, made_from
+    from roadgpt.network import has_no_route
+    from roadgpt.run import Setup, prove
 
-    begun = time.perf_counter()
     blueprint, remarks = blueprint_of(file, world)
-    road = made_from(blueprint, world, geometry)
-    findings = inspect(road, None, world, rules)
-    seconds = time.perf_counter() - begun
-    if is_only_map := has_no_route(road):
+    run = prove(blueprint, world=world, setup=Setup(rules=rules, geometry=geometry, drives=False))
+    row = row_of(run, file)
+    if is_only_map := run.road is not None and has_no_route(run.road):
         remarks = (*remarks, "the map has no route, so only its roads and junctions are checked")
     for remark in remarks:
         screen.say(f"{file}: {remark}")
-    for finding in findings[1:]:
-        screen.detail(f"{file}: also, {finding.sentence}")
-    sentence = findings[0].sentence if findings else ""
-    return Row(
-        file,
-        "INVALID" if findings else "VALID",
-        sentence or f"valid by the rules '{rules}'",
-        is_valid=not findings,
-        validation_message=sentence,
-        findings=tuple(finding.sentence for finding in findings),
-        length_m=None if is_only_map else road.length,
-        seconds=seconds,
-    )
+    for sentence in row.findings[1:]:
+        screen.detail(f"{file}: also, {sentence}")
+    said = row.description if row.findings else f"valid by the rules '{rules}'"
+    return replace(row, description=said, length_m=None if is_only_map else row.length_m)

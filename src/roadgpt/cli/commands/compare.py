@@ -1,5 +1,3 @@
-"""``roadgpt compare``: measures how alike two roads are."""
-
 import json
 from dataclasses import asdict
 from pathlib import Path
@@ -59,7 +57,8 @@ def command(
     roadgpt compare a.json b.json --axes thesis --mirror
     """
     from roadgpt.network import refuse_without_route
-    from roadgpt.report.canvas import format_of
+    from roadgpt.report.canvas import format_of, save
+    from roadgpt.report.pair import pair
     from roadgpt.study import compare
 
     if not no_plot:
@@ -79,7 +78,10 @@ def command(
     else:
         _tell(found)
     if not no_plot:
-        _draw(runs, out, axes)
+        check_file(out, "picture", PICTURE)
+        with explained(RoadGPTError, f"cannot write {out}", "name another file with --out"):
+            out.parent.mkdir(parents=True, exist_ok=True)
+            save(pair(runs[0], runs[1], axes), out)
         click.echo(str(out), err=as_json)
 
 
@@ -89,13 +91,3 @@ def _tell(found: "Similarity") -> None:
         click.echo(f"{said:<30} {getattr(found, name):5.2f}{more.get(name, '')}")
     if found.is_duplicate:
         click.echo("near duplicates: they are one test rather than two")
-
-
-def _draw(runs: list[Any], out: Path, axes: Any) -> None:
-    from roadgpt.report.canvas import save
-    from roadgpt.report.pair import pair
-
-    check_file(out, "picture", PICTURE)
-    with explained(RoadGPTError, f"cannot write {out}", "name another file with --out"):
-        out.parent.mkdir(parents=True, exist_ok=True)
-        save(pair(runs[0], runs[1], axes), out)

@@ -1,7 +1,3 @@
-"""``roadgpt compete``: runs a test generator of the SBFT competition, or the server of the SDC
-competition.
-"""
-
 import logging
 import sys
 from pathlib import Path
@@ -31,7 +27,6 @@ def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None)
     del param
     if path is None:
         return
-    from roadgpt.errors import UsageError
     from roadgpt.run.atomic import write_whole
     from roadgpt.sbft.generator_process import NAMES
 

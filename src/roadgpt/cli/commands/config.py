@@ -1,5 +1,3 @@
-"""``roadgpt config``: lists all settings with their origin, and all plug-ins."""
-
 import inspect
 import json
 import re
@@ -12,7 +10,7 @@ import click
 
 from roadgpt import plugins
 from roadgpt.cli import options
-from roadgpt.cli.configuration import TABLES, read_layers
+from roadgpt.cli.configuration import TABLES
 from roadgpt.cli.option import Option
 from roadgpt.cli.option_groups import CommandGroup, GroupedCommand
 from roadgpt.cli.streams import warn
@@ -139,7 +137,7 @@ def _of_options() -> Iterator[ShownSetting]:
         UsageError: A setting cannot be used, or must not be set by the source that sets it.
     """
     context = click.Context(click.Command(None), resilient_parsing=True)
-    layers = read_layers(options.settable_keys())
+    layers = options.layers()
     for option in options.SETTABLE:
         setting = option.found(layers)
         value = option.converted(context, setting) if setting else option.get_default(context)
@@ -160,7 +158,7 @@ def _of_chat(values: dict[str, Any]) -> Iterator[ShownSetting]:
     """Yields the settings of language models, and the masked key of their server."""
     from roadgpt.chat.config import key_for, settings_from, settings_with_origin
 
-    found = settings_with_origin({flag.field: flag.read(values[flag.field]) for flag in options.CHAT})
+    found = settings_with_origin(options.chat_values(values))
     settings = settings_from(found)
     for name, setting in found.items():
         yield ShownSetting("chat", name, getattr(settings, name), setting.origin)

@@ -1,5 +1,3 @@
-"""``roadgpt doctor``: checks this installation, or an installed BeamNG, and says how to solve problems."""
-
 import json
 import platform
 import sys

@@ -1,5 +1,3 @@
-"""``roadgpt drive``: drives roads from files, or repeats tests of a campaign."""
-
 import sys
 from collections.abc import Sequence
 from contextlib import redirect_stdout
@@ -7,7 +5,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from roadgpt.cli import options
 from roadgpt.cli.campaigns import one_line
@@ -15,7 +12,7 @@ from roadgpt.cli.option import Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import driver_again, folder
 from roadgpt.cli.result_row import Row, row_of
-from roadgpt.cli.roads import blueprint_of, each_road, made
+from roadgpt.cli.roads import UNREADABLE, blueprint_of, each_road, made
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
 from roadgpt.errors import UsageError
@@ -23,11 +20,9 @@ from roadgpt.errors import UsageError
 if TYPE_CHECKING:
     from roadgpt.campaign.selection import Choice, Selection
     from roadgpt.report import Format, Scale
-    from roadgpt.road import World
     from roadgpt.run.lost_drives import LostDrives
-    from roadgpt.run.model import Setup
+    from roadgpt.run.model import Request
 
-UNREADABLE = 2  # exit status
 OF_AGAIN = (
     Option("--out", "Folder for the runs. [default: CAMPAIGN/again]", folder),
     *options.CHOICES,
@@ -73,8 +68,7 @@ def command(
     _refuse_mixture(ctx, again)
     choice, pictures = options.choice_of(rest), options.pictures_of(rest)
     if again:
-        is_named = ctx.get_parameter_source("driver") is ParameterSource.COMMANDLINE
-        driver = driver_again(rest["driver"]) if is_named else None
+        driver = driver_again(rest["driver"]) if "driver" in options.typed(ctx) else None
         drive_again(files, choice, out, driver, axes, pictures)
         return 0
     from roadgpt.run import Request, Setup, check_parts
@@ -87,11 +81,9 @@ def command(
     asked = Request(seed=seed, world=world, setup=setup)
     screen = Screen(len(files), as_json, quiet, verbose)
     if junit is not None:
-        from roadgpt.cli.junit import junit_writer
-
-        screen.junit = junit_writer(junit, asked)
+        screen.junit = junit, asked
     losses: LostDrives[str] = LostDrives()
-    each_road(files, screen, lambda file: _driven(screen, file, seed, world, setup, losses))
+    each_road(files, screen, lambda file: _driven(screen, file, asked, losses))
     return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0
 
 
@@ -102,11 +94,11 @@ def _refuse_mixture(ctx: click.Context, again: bool) -> None:
         UsageError: An option that --again does not accept is given with --again, or an option that needs
             --again is given without it.
     """
+    typed = options.typed(ctx) - BOTH
     for parameter in ctx.command.params:
-        name = parameter.name or ""
-        is_of_again, is_of_both = name in ONLY_AGAIN, name in BOTH or not parameter.expose_value
-        if is_of_both or ctx.get_parameter_source(name) is not ParameterSource.COMMANDLINE:
+        if parameter.name not in typed:
             continue
+        is_of_again = parameter.name in ONLY_AGAIN
         if again and not is_of_again:
             raise UsageError(
                 f"a test keeps its world and its seed; leave out {parameter.opts[0]} with --again"
@@ -118,16 +110,15 @@ def _refuse_mixture(ctx: click.Context, again: bool) -> None:
             )
 
 
-def _driven(
-    screen: Screen, file: str, seed: int, world: "World", setup: "Setup", losses: "LostDrives[str]"
-) -> Row:
+def _driven(screen: Screen, file: str, asked: "Request", losses: "LostDrives[str]") -> Row:
     from roadgpt.run import prove
 
-    blueprint, remarks = blueprint_of(file, world)
+    blueprint, remarks = blueprint_of(file, asked.world)
     for remark in remarks:
         screen.say(f"{file}: {remark}")
     with redirect_stdout(sys.stderr):  # what a user's driver prints is no row
-        run = prove(blueprint, seed, world, setup, despite_findings=setup.rules == "strict")
+        is_strict = asked.setup.rules == "strict"
+        run = prove(blueprint, asked.seed, asked.world, asked.setup, despite_findings=is_strict)
     screen.detail(f"{file}: {run.description}")
     for finding in run.findings:
         screen.detail(f"{file}: finding: {finding.sentence}")
@@ -151,33 +142,30 @@ def drive_again(
 ) -> None:
     """Repeats tests, writes a run folder for each, and warns if a result differs from the recorded one.
 
-    Args:
-        names: A folder and numbers of its tests, or single tests, such as CAMPAIGN/c02/17.
-        choice: Which tests to drive if a name means a whole campaign.
-        out: Folder in which the run folders are written; None: ``again`` in the folder of the tests.
-        driver: The driver of the tests as given with ``--driver``; None if it was not given.
-        axes: "equal" for axes to scale, "thesis" for the fixed ranges of RoadGPT's thesis.
-        formats: Formats of the pictures; none are drawn if empty.
+    The names are a folder and numbers of its tests, or single tests, such as CAMPAIGN/c02/17. Without
+    ``out``, the run folders are written into ``again`` in the folder of the tests. ``driver`` is what the
+    user gave with ``--driver``. No pictures are drawn without ``formats``.
 
     Raises:
         UsageError: A name is wrong, or the driver is not that of the campaign.
     """
     from roadgpt.campaign.faults.failures import drivers_of
-    from roadgpt.campaign.numbered_test import NumberedTest
+    from roadgpt.campaign.model import NumberedTest
     from roadgpt.campaign.rerun import is_same, run_again
     from roadgpt.drive.permission import check_named_driver
-    from roadgpt.report import drawing
     from roadgpt.run import write_run
+    from roadgpt.run.atomic import refuse_links
 
     tests = _named(names, choice)
     for folder_ in {place.folder for place in tests}:
         check_named_driver(driver, drivers_of(folder_), folder_)
-    draw = drawing(axes, formats) if formats else None
+    draw = options.drawing_of(formats, axes)
     for place in tests:
         cell, number = place.cell, place.number or 0
         run, result = run_again(place.folder, cell, number)
         home = (out or place.folder / AGAIN) / cell
-        written = write_run(run, _made(home), draw)
+        refuse_links(*([home.parent] if home.parent.name == AGAIN else []), home)
+        written = write_run(run, made(home), draw)
         name = NumberedTest(cell, number)
         click.echo(f"{run.outcome:<8} {name}  {written}  {one_line(run.description)}")
         if not is_same(run, result):
@@ -185,13 +173,6 @@ def drive_again(
             warn(
                 f"test {name} was {said}; it was driven with another version of roadgpt or on another machine"
             )
-
-
-def _made(path: Path) -> Path:
-    from roadgpt.run.atomic import refuse_links
-
-    refuse_links(*([path.parent] if path.parent.name == AGAIN else []), path)
-    return made(path)
 
 
 def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":

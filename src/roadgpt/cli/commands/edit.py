@@ -1,5 +1,3 @@
-"""``roadgpt edit``: changes a road according to a request in plain words."""
-
 import json
 import sys
 from contextlib import redirect_stdout
@@ -21,7 +19,6 @@ if TYPE_CHECKING:
     from roadgpt.design.edit import Edited, EditRequest
     from roadgpt.report import Format
     from roadgpt.road import World
-    from roadgpt.run.editing import Original
 
 PARAMETERS = (
     Argument("run", "RUN", "Name the folder of a run, or the file of a design."),
@@ -73,52 +70,58 @@ def edit_road(
 ) -> Path:  # fmt: skip
     """Changes a road as requested, checks and drives it, writes and prints its run, and returns its folder.
 
-    Args:
-        screen: Prints the result.
-        road: The folder of a run, a test of a campaign, or a file with a design.
-        words: The change request.
-        world: The World for a road from a design file, which does not contain a World.
-        out: The folder for the changed road; None: a new one.
-        designer: The plug-in that changes the road.
-        chat: The settings of the designer's language model; None if the designer uses none.
-        driver: The run's driver as given with ``--driver``; None if it was not given.
-        drives: Whether to drive the changed road; it is never driven if the original road was not.
-        pictures: The formats of the pictures; none are drawn if empty.
-        is_plan: Whether the change request is a plan.
+    ``road`` is a run, a test of a campaign, or a file with a design, which ``world`` belongs to. ``driver``
+    is what the user gave with ``--driver``. The changed road is driven only if the original road was.
 
     Raises:
         RoadGPTError: The request or the road cannot be used; nothing is written.
     """
+    from roadgpt import plugins
     from roadgpt.brief import SURE
+    from roadgpt.brief.change.plan import read_change_plan
+    from roadgpt.chat import Meter, asks_a_model, counting
+    from roadgpt.design.edit import edit
     from roadgpt.drive.permission import check_named_driver, require_permission
-    from roadgpt.run import Setup, prove
-    from roadgpt.run.editing import folder_for, original_in, original_of, reject_used, write_edit
+    from roadgpt.run import prove
+    from roadgpt.run.editing import folder_for, original_of, reject_used, write_edit
     from roadgpt.run.sbft_json import test_name
 
     if out is not None:
         reject_used(out)
     (named,) = roads_named([road], None)
-    before = original_of(named.run(), road) if named.run else original_in(road, world, Setup())
-    for remark in before.remarks:
+    before, design, remarks = original_of(road, named.run() if named.run else None, world)
+    for remark in remarks:
         screen.say(f"{road}: {remark}")
-    check_named_driver(driver, {before.setup.driver}, road)
-    if drives and before.setup.drives:
-        require_permission(before.setup.driver)
-    made = _edited(before, _planned(words, designer) if is_plan else words, designer, chat, screen)
-    drives = drives and before.setup.drives
-    setup = before.setup.model_copy(update={"designer": designer, "chat": chat, "drives": drives})
-    old = prove(before.design, before.seed, before.world, setup.model_copy(update={"drives": False}))
+    setup = before.request.setup
+    check_named_driver(driver, {setup.driver}, road)
+    drives = drives and setup.drives
+    if drives:
+        require_permission(setup.driver)
+    request: str | EditRequest = words
+    if is_plan:
+        if asks_a_model(plugins.find("designers", designer)):
+            raise UsageError(f"--plan needs no language model; leave out --designer {designer}")
+        request = read_change_plan(words)
+    meter = Meter.of(chat)
+    try:
+        with counting(meter, "edit"):
+            made = edit(design, request, before.world, setup.geometry, designer, chat)
+    finally:  # a language model costs money even if the change failed
+        if meter.spent.calls:
+            screen.say(f"language model: {spending(meter.spent)}")
+    setup = setup.model_copy(update={"designer": designer, "chat": chat, "drives": drives})
+    old = prove(design, before.seed, before.world, setup.model_copy(update={"drives": False}))
     with redirect_stdout(sys.stderr):  # a user's driver may print
         run = prove(made.design, before.seed, before.world, setup)
     folder = folder_for(words, before.seed, out)
-    place = write_edit(run, old, words, made.changes, before.path, folder, options.drawing_of(pictures))
+    place = write_edit(run, old, words, made.changes, road, folder, options.drawing_of(pictures))
     row = row_of(run, str(folder / test_name(1)), test_name(1))
     if screen.as_json:
-        told = {"request": words, "of": before.path, "changes": made.changes, "unused": made.unused}
+        told = {"request": words, "of": road, "changes": made.changes, "unused": made.unused}
         sure = {"confidence": made.confidence, "is_sure": made.confidence >= SURE, "other": made.other}
         print(json.dumps({**told, **sure, **json.loads(row.to_json())}, ensure_ascii=False))
-        return place
-    _print_edit(screen, made, row, place, pictures)
+    else:
+        _print_edit(screen, made, row, place, pictures)
     return place
 
 
@@ -143,34 +146,3 @@ def _print_edit(
     if pictures:
         kind = pictures[0]
         screen.say(f"pictures: {place}/*.{kind}, and of the road as it was: {place}/before/*.{kind}")
-
-
-def _planned(line: str, designer: str) -> "EditRequest":
-    """Returns the changes of a plan.
-
-    Raises:
-        UsageError: The plan cannot be read, or the designer asks a language model.
-    """
-    from roadgpt import plugins
-    from roadgpt.brief.change.plan import read_change_plan
-    from roadgpt.chat import asks_a_model
-
-    if asks_a_model(plugins.find("designers", designer)):
-        raise UsageError(f"--plan needs no language model; leave out --designer {designer}")
-    return read_change_plan(line)
-
-
-def _edited(
-    before: "Original", words: "str | EditRequest", designer: str, chat: "ChatSettings | None", screen: Screen
-) -> "Edited":
-    """Returns the changed design, and prints what a language model has cost even if the change failed."""
-    from roadgpt.chat import Meter, counting
-    from roadgpt.design.edit import edit
-
-    meter = Meter.of(chat)
-    try:
-        with counting(meter, "edit"):
-            return edit(before.design, words, before.world, before.setup.geometry, designer, chat)
-    finally:
-        if meter.spent.calls:
-            screen.say(f"language model: {spending(meter.spent)}")

@@ -1,19 +1,18 @@
-"""``roadgpt faults``: groups failures into distinct faults, and finds why each occurs."""
-
 import os
 import shlex
 from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.option import Argument, Heading, Option
+from roadgpt.cli.option import Argument, Heading, Option, words_of
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import folder, whole
 from roadgpt.cli.progress import watched
-from roadgpt.cli.streams import warn
+from roadgpt.cli.streams import resumable
 
 if TYPE_CHECKING:
     from roadgpt.campaign.faults.fault import Faults
@@ -22,16 +21,19 @@ if TYPE_CHECKING:
 REPEAT = 10  # disturbed drives of each fault, unless the user gives another number
 DRIVES = whole(1, 1000, "drives")
 
+MINIMISE = "For each fault, also find the simplest road on which it still occurs"
+DISTURB = "Number of further drives for each fault, with small disturbances"
+GROUPS = (
+    "Analyse each group of similar failures; do not test which groups are one fault. A test takes up to 16 "
+    "drives."
+)
+_failures = partial(Option, heading=Heading.FAILURES)
 FAULT_OPTIONS = (
-    Option("--faults", "At the end, analyse the failures as 'roadgpt faults' does.", bool,
-           heading=Heading.FAILURES),
-    Option("--minimise", "For each fault, also find the simplest road on which it still occurs; implies "
-           "--faults.", bool, heading=Heading.FAILURES),
-    Option("--repeat", "Number of further drives for each fault, with small disturbances; implies "
-           f"--faults. [default: {REPEAT}]", DRIVES, heading=Heading.FAILURES),
-    Option("--groups", "Analyse each group of similar failures; do not test which groups are one fault. A "
-           "test takes up to 16 drives. Implies --faults.", bool, heading=Heading.FAILURES),
-)  # fmt: skip
+    _failures("--faults", "At the end, analyse the failures as 'roadgpt faults' does.", bool),
+    _failures("--minimise", f"{MINIMISE}; implies --faults.", bool),
+    _failures("--repeat", f"{DISTURB}; implies --faults. [default: {REPEAT}]", DRIVES),
+    _failures("--groups", f"{GROUPS} Implies --faults.", bool),
+)
 
 
 class AnalysisOptions(NamedTuple):
@@ -43,21 +45,16 @@ class AnalysisOptions(NamedTuple):
     formats: tuple[str, ...] = ("png",)
     """Formats of the pictures; empty: no pictures are drawn."""
     is_quiet: bool = False
-    tests_groups: bool = True
-    """Whether to find out by small changes which groups of failures are one fault."""
+    groups: bool = False
+    """Whether to leave out the small changes that show which groups of failures are one fault."""
     is_apart: bool = False
     """Whether text is printed on standard error, because standard output is reserved for JSON."""
 
     @property
     def words(self) -> list[str]:
         """The command-line options with which ``roadgpt faults`` would repeat this analysis."""
-        asked = [] if self.repeat == REPEAT else ["--repeat", str(self.repeat)]
-        asked += ["--minimise"] if self.minimise else []
-        asked += [] if self.tests_groups else ["--groups"]
-        asked += ["-j", str(self.workers)] if self.workers > 1 else []
-        if self.formats != ("png",):
-            asked += ["--format", ",".join(self.formats)] if self.formats else ["--no-plot"]
-        return asked
+        drawn = {"picture_formats": self.formats or None, "no_plot": not self.formats}
+        return words_of(OPTIONS, {**self._asdict(), **drawn})
 
     def say(self, text: str, is_news: bool = False) -> None:
         """Prints a text unless ``is_quiet``; progress messages (``is_news``) go to standard error."""
@@ -78,7 +75,7 @@ def analysis_options(given: dict[str, Any]) -> AnalysisOptions | None:
         minimise=given["minimise"],
         workers=here,
         is_quiet=given["quiet"],
-        tests_groups=not given["groups"],
+        groups=given["groups"],
         is_apart=given["as_json"],
     )
 
@@ -93,6 +90,7 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     from roadgpt.campaign.faults.failures import drivers_of
     from roadgpt.campaign.faults.fault import faults_in
     from roadgpt.campaign.faults.fault_log import FAILURES, write_tables
+    from roadgpt.campaign.faults.remedy import FOLDER
     from roadgpt.drive.permission import require_permission
 
     found = faults_in(place)
@@ -101,19 +99,18 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
         return
     for driver in sorted(drivers_of(place)):
         require_permission(driver)  # here, where the user can be asked, and not in each of the workers
-    try:
+    go_on = shlex.join(["roadgpt", "faults", str(place), *look.words])
+    with resumable(f"finished work is kept; continue with: {go_on}"):
         found = _tested(place, found, look)
         look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
         looked = _analysed(place, found, look)
-    except KeyboardInterrupt:
-        go_on = shlex.join(["roadgpt", "faults", str(place), *look.words])
-        warn(f"stopped; finished work is kept; continue with: {go_on}")
-        raise
     table = write_tables(found.them, looked, place)
     look.say("\n".join(_summary(place, found, looked)))
     look.say(f"tables: {table} and {table.with_name(FAILURES)}")
     if look.formats:
-        look.say(f"pictures: {_pictures(place, found, look.formats)}")
+        cells = sorted({fault.typical[0].name.cell for fault in found.them})
+        drawn = (f"{place / FOLDER / cell}/*.{kind}" for cell in cells for kind in look.formats)
+        look.say(f"pictures: {', '.join(drawn)}")
 
 
 def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
@@ -121,15 +118,15 @@ def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
     the faults.
     """
     from roadgpt.campaign.faults.fault import faults_in
-    from roadgpt.campaign.faults.remedy_log import task_of, try_remedies
+    from roadgpt.campaign.faults.remedy import try_remedies
     from roadgpt.campaign.unordered_map import unordered_map
     from roadgpt.campaign.workers.worker_log import LOG
 
-    while found.to_test and look.tests_groups:
-        tasks = [task_of(place, each) for each in found.to_test]
-        look.say(f"{found.sentence}; trying small changes on {len(tasks):,} of them", is_news=True)
-        steps = unordered_map(try_remedies, tasks, look.workers, place / LOG)
-        for _ in watched(steps, len(tasks), "failures", look.is_quiet):
+    while found.to_test and not look.groups:
+        count = len(found.to_test)
+        look.say(f"{found.sentence}; trying small changes on {count:,} of them", is_news=True)
+        steps = unordered_map(partial(try_remedies, place), found.to_test, look.workers, place / LOG)
+        for _ in watched(steps, count, "failures", look.is_quiet):
             pass
         found = faults_in(place)
     return found
@@ -177,20 +174,11 @@ def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis
         yield f"look at one: {shlex.join(['roadgpt', 'view', f'{place}/{looked[1].name}'])}"
 
 
-def _pictures(place: Path, found: "Faults", formats: tuple[str, ...]) -> str:
-    from roadgpt.campaign.faults.remedy_log import FOLDER
-
-    cells = sorted({fault.typical[0].name.cell for fault in found.them})
-    return ", ".join(f"{place / FOLDER / cell}/*.{kind}" for cell in cells for kind in formats)
-
-
 # fmt: off
 OPTIONS = (
-    Option("--repeat", "Number of further drives for each fault, with small disturbances.",
-           DRIVES, REPEAT),
-    Option("--minimise", "For each fault, also find the simplest road on which it still occurs.", bool),
-    Option("--groups", "Analyse each group of similar failures; do not test which groups are one fault. A "
-           "test takes up to 16 drives.", bool),
+    Option("--repeat", f"{DISTURB}.", DRIVES, REPEAT),
+    Option("--minimise", f"{MINIMISE}.", bool),
+    Option("--groups", GROUPS, bool),
     Option("-j workers", "Number of failures analysed in parallel.", whole(1, 256, "processes"), 1),
     *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
 )
@@ -229,4 +217,4 @@ def command(
     if driver is not None:
         check_named_driver(driver, drivers_of(place), place)
     formats = options.pictures_of(rest)
-    analyse_failures(place, AnalysisOptions(repeat, minimise, workers, formats, quiet, not groups))
+    analyse_failures(place, AnalysisOptions(repeat, minimise, workers, formats, quiet, groups))

@@ -1,5 +1,3 @@
-"""``roadgpt import``: reads a road from an OpenDRIVE file."""
-
 import json
 import shlex
 from pathlib import Path
@@ -52,7 +50,9 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
     road, world, told = (found.road, found.world(World()), []) if keep_place else _on_a_map(found)
     for remark in () if quiet else (*found.remarks, *told):
         warn(f"{file}: {remark}")
-    out = out or _new(Path.cwd(), f"{file.stem}-{found.id}")
+    stem = f"{file.stem}-{found.id}"
+    plain = "".join(c if c.isalnum() or c in "-_." else "_" for c in stem)[:100]
+    out = out or next(path for path in map(Path, numbered(plain, ".json")) if not path.exists())
     with explained(RoadGPTError, f"cannot write {out}", "name another file with --out"):
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(json.dumps(road.to_json()) + "\n", encoding="utf-8")
@@ -97,9 +97,3 @@ def _drive(file: Path, world: "World") -> str:
     world = world.changed(speed_limit=round(world.limits.speed_limit * 3.6, 3) / 3.6)
     words = words_of(options.WORLD, world.values(), World().values())
     return shlex.join(["roadgpt", "drive", str(file), *words])
-
-
-def _new(folder: Path, stem: str) -> Path:
-    """Returns a file name that is not taken."""
-    plain = "".join(c if c.isalnum() or c in "-_." else "_" for c in stem)[:100]
-    return next(path for path in map(Path, numbered(plain, ".json")) if not (folder / path).exists())

@@ -19,7 +19,7 @@ from roadgpt.errors import LearnError
 
 if TYPE_CHECKING:
     from roadgpt.learn.evaluate import Reading
-    from roadgpt.learn.generator import Pair
+    from roadgpt.learn.pair import Pair
 
 SPLITS = ("train", "validation", "test", "exam")
 NETWORKS_OF_READER = ("first", "second", "routes")
@@ -122,6 +122,7 @@ def data(out: Path, hand: Path, number: int, seed: int) -> None:
 
     A pair is a description and the requirements that it states.
     """
+    from roadgpt.learn.generator import pairs
     from roadgpt.learn.near_duplicates import report
 
     splits = {name: _pairs_of(hand / name) for name in SPLITS if (hand / name).is_dir()}
@@ -132,13 +133,6 @@ def data(out: Path, hand: Path, number: int, seed: int) -> None:
     path = out / "generated.jsonl"
     seen = {_key(pair) for its in splits.values() for pair in its}
     out.mkdir(parents=True, exist_ok=True)
-    click.echo(f"{_generate(path, number, seed, seen)} different pairs generated in {path}")
-
-
-def _generate(path: Path, number: int, seed: int, seen: set[str]) -> int:
-    """Writes pairs that are not in ``seen``, and returns how many."""
-    from roadgpt.learn.generator import pairs
-
     written = 0
     with path.open("w", encoding="utf-8") as file:
         for pair in pairs(seed):
@@ -148,7 +142,7 @@ def _generate(path: Path, number: int, seed: int, seen: set[str]) -> int:
                 written += 1
             if written == number:
                 break
-    return written
+    click.echo(f"{written} different pairs generated in {path}")
 
 
 @command.command(params=[*OF_TRAIN])
@@ -186,7 +180,7 @@ def train(
     installed |= second
     if weights and installed:
         raise LearnError("a training starts from --weights or from what is --installed; name one of them")
-    pairs = [*_trained_on(hand, changes, networks), *(_pairs_of(own) if own else [])]
+    pairs = [*_all_pairs(hand, TRAINED_ON, changes, networks, "train"), *(_pairs_of(own) if own else [])]
     pairs += islice(measured_pairs(seed), MEASURED)
     pieces = begin(out, weights, WEIGHTS if installed else None)
     start = weights / "model.safetensors" if weights else WEIGHTS if installed else None
@@ -223,11 +217,9 @@ def export(
     from roadgpt.learn.told_prompts import told_prompts
     from roadgpt.learn.word_meanings import filler_words, word_meanings
 
-    told = [pair for folder in HELD_BACK for pair in _pairs_of(hand / folder)]
+    told = _all_pairs(hand, HELD_BACK, changes, networks, "validation")
     held_back = [pair for pair in told if not is_for_roads_only(pair)]
-    held_back += _network_pairs_of(networks / "validation")
-    held_back += _pairs_of(changes / "validation", is_change=True)
-    trained_on = _trained_on(hand, changes, networks)
+    trained_on = _all_pairs(hand, TRAINED_ON, changes, networks, "train")
     words = filler_words(trained_on), word_meanings(trained_on)
     endings = dict(zip(NETWORKS_OF_READER, ("", SECOND, ROUTES), strict=True))
     first = endings.get(only or "first", "")
@@ -240,11 +232,14 @@ def export(
         _write_chats(out, chats, seed)
 
 
-def _trained_on(hand: Path, changes: Path, networks: Path) -> list["Pair"]:
-    """Returns all hand-written pairs for training."""
-    pairs = [pair for folder in TRAINED_ON for pair in _pairs_of(hand / folder)]
-    pairs += _network_pairs_of(networks / "train")
-    return [*pairs, *_pairs_of(changes / "train", is_change=True)]
+def _all_pairs(hand: Path, folders: Sequence[str], changes: Path, networks: Path, part: str) -> list["Pair"]:
+    """Returns the hand-written pairs in these folders of ``hand``, and those in one part of the others."""
+    from roadgpt.learn.data import NETWORK
+
+    pairs = [pair for folder in folders for pair in _pairs_of(hand / folder)]
+    # the mark in the family says that they are routes with junctions
+    pairs += [replace(pair, family=f"{NETWORK}{pair.family}") for pair in _pairs_of(networks / part)]
+    return [*pairs, *_pairs_of(changes / part, is_change=True)]
 
 
 @command.command(params=[*OF_CHATS])
@@ -308,13 +303,6 @@ def _write_card(path: Path, hand: Path, found: "dict[str, list[Reading]]", shown
 def _key(pair: "Pair") -> str:
     """Returns a text that is equal for descriptions that differ in blanks and capitals only."""
     return " ".join(pair.text.lower().split())
-
-
-def _network_pairs_of(place: Path) -> "list[Pair]":
-    """Returns the pairs of a folder, with a mark in their families that they are routes with junctions."""
-    from roadgpt.learn.data import NETWORK
-
-    return [replace(pair, family=f"{NETWORK}{pair.family}") for pair in _pairs_of(place)]
 
 
 def _pairs_of(place: Path, is_change: bool = False) -> "list[Pair]":

@@ -1,5 +1,3 @@
-"""``roadgpt read``: shows how a description is interpreted, without making a road."""
-
 import json
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
@@ -13,7 +11,6 @@ from roadgpt.cli.option_types import whole
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
-    from roadgpt.chat import ChatSettings
     from roadgpt.road import World
 
 FEW = whole(1, 10, "the number of readings")
@@ -41,11 +38,16 @@ def command(words: tuple[str, ...], as_table: bool, as_json: bool, number: int, 
     roadgpt read "drei Kurven, dann 80 m geradeaus bergab" --table
     roadgpt read "a road" --alternatives 3
     """
+    from roadgpt.brief import alternatives
     from roadgpt.cli.commands.run import understood
     from roadgpt.design.room import world_for
+    from roadgpt.run import Setup, brief_of
 
-    world, reader = options.world_of(rest), options.reader_of(rest)
-    briefs = _readings(" ".join(words), reader, world, number, options.chat_of(rest, reader))
+    world, reader, text = options.world_of(rest), options.reader_of(rest), " ".join(words)
+    chat = options.chat_of(rest, reader)
+    briefs: Sequence[Brief] = (brief_of(text, world, Setup(reader=reader, chat=chat)),)
+    if number > 1 and chat is None:  # a language model says what it takes for likeliest
+        briefs = alternatives(text, number, reader, world.site.map_size, TEMPERATURE)
     if as_json:
         found = [_as_data(brief, world_for(brief, world), world) for brief in briefs]
         click.echo(json.dumps(found if number > 1 else found[0], indent=2, ensure_ascii=False))
@@ -56,18 +58,6 @@ def command(words: tuple[str, ...], as_table: bool, as_json: bool, number: int, 
     click.echo(understood(briefs[0], world_for(briefs[0], world), world))
     if as_table:
         click.echo(_table(briefs[0]))
-
-
-def _readings(
-    words: str, reader: str, world: "World", number: int, chat: "ChatSettings | None"
-) -> "tuple[Brief, ...]":
-    from roadgpt.brief import alternatives
-    from roadgpt.run import Setup, brief_of
-
-    first = brief_of(words, world, Setup(reader=reader, chat=chat))
-    if number == 1 or chat is not None:  # a language model says what it takes for likeliest
-        return (first,)
-    return alternatives(words, number, reader, world.site.map_size, TEMPERATURE)
 
 
 def _as_data(brief: "Brief", world: "World", usual: "World") -> dict[str, object]:

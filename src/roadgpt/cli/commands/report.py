@@ -1,5 +1,3 @@
-"""``roadgpt report``: writes a report on a folder of runs, a campaign or a study."""
-
 import shlex
 from pathlib import Path
 
@@ -25,25 +23,22 @@ def command(folder: Path, opens: bool, junit: Path | None) -> None:
     \b
     roadgpt report roadgpt-runs/an-uphill-road-with-3-turns-7 --open
     """
-    page = _written(folder)
-    if junit is not None:
-        write_folder(junit, folder)
-    click.echo(str(page))
-    if opens:
-        open_page(page)
-
-
-def _written(folder: Path) -> Path:
     from roadgpt.campaign.folder_record import is_store
     from roadgpt.campaign.status import status_of
     from roadgpt.study import plan, study_report
     from roadgpt.study.campaign_report import write_store_report
 
     if (folder / plan.CARD).is_file():
-        return study_report.write_study(folder)
-    steps = next_steps(of_status(status_of(folder)))
-    write = write_store_report if is_store(folder) else study_report.write_run_report
-    return write(folder, command_of(folder), steps)
+        page = study_report.write_study(folder)
+    else:
+        steps = next_steps(of_status(status_of(folder)))
+        write = write_store_report if is_store(folder) else study_report.write_run_report
+        page = write(folder, command_of(folder), steps)
+    if junit is not None:
+        write_folder(junit, folder)
+    click.echo(str(page))
+    if opens:
+        open_page(page)
 
 
 def command_of(folder: Path) -> str:

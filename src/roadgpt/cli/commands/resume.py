@@ -1,5 +1,3 @@
-"""``roadgpt resume``: continues a campaign or a run that was interrupted."""
-
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 

@@ -1,5 +1,3 @@
-"""``roadgpt show``: summarises a run, a folder of runs or a campaign, or shows a campaign's progress."""
-
 from pathlib import Path
 from typing import Any
 

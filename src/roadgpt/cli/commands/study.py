@@ -1,5 +1,3 @@
-"""``roadgpt study``: evaluates roads as RoadGPT's thesis did, by measurements and by asking people."""
-
 import shlex
 import time
 from collections.abc import Sequence
@@ -16,13 +14,12 @@ from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import CommandGroup, GroupedCommand
 from roadgpt.cli.option_types import PATH, ROADS, whole
 from roadgpt.cli.progress import progress
-from roadgpt.cli.streams import warn
+from roadgpt.cli.streams import resumable, warn
 from roadgpt.errors import ChatError
 
 if TYPE_CHECKING:
     from roadgpt.study.execution import Problem
-    from roadgpt.study.plan import Kind, StudyPlan
-    from roadgpt.study.prompts import Prompt
+    from roadgpt.study.plan import Kind, Prompt, StudyPlan
 
 NOT_ASKED = ChatError.exit_status
 SHOWN = ("reader", "driver", "simulator", "keep_driving", "geometry")
@@ -64,7 +61,7 @@ def thesis(no_drive: bool, **rest: Any) -> int:
     roadgpt study thesis
     roadgpt study thesis --roads 20 --designer planner --designer thesis --model gpt-5-mini
     """
-    from roadgpt.study.prompts import thesis_prompts
+    from roadgpt.study.plan import thesis_prompts
 
     return _study("thesis", thesis_prompts(), "", not no_drive, rest)
 
@@ -81,7 +78,7 @@ def alignment(prompts: Path, drives: bool, **rest: Any) -> int:
     roadgpt study alignment prompts.jsonl
     roadgpt study alignment prompts.jsonl -n 3 --designer chat --model gpt-5-mini
     """
-    from roadgpt.study.prompts import read_prompts
+    from roadgpt.study.plan import read_prompts
 
     return _study("alignment", read_prompts(prompts), str(prompts), drives, rest)
 
@@ -110,12 +107,9 @@ def _study(kind: "Kind", prompts: "Sequence[Prompt]", source: str, drives: bool,
             f"by {' and '.join(plan.designers)}, into {place}"
         )
     begun, notes = time.perf_counter(), list[str]()
-    try:
-        with progress("roads", total, quiet) as tell:
-            problems = work(plan, place, workers, draw, tell, notes.append)
-    except KeyboardInterrupt:
-        warn("stopped; finished roads are complete, and the same command continues")
-        raise
+    advice = "finished roads are complete, and the same command continues"
+    with resumable(advice), progress("roads", total, quiet) as tell:
+        problems = work(plan, place, workers, draw, tell, notes.append)
     keep_problems(place, problems)
     if not quiet:
         click.echo("".join(f"note: {note}\n" for note in notes), nl=False)

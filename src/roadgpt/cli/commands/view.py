@@ -1,28 +1,22 @@
-"""``roadgpt view``: writes a page with the road in 3-D and a replay of its drive, or pictures."""
-
-from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH, picture_formats
 from roadgpt.cli.option_types import folder as folder_of
-from roadgpt.cli.roads import check_file, numbered, open_page, roads_named, run_of, shown_runs
-from roadgpt.cli.streams import warn
+from roadgpt.cli.roads import NamedRoad, check_file, numbered, open_page, run_of, shown_runs, use_each
 from roadgpt.errors import UsageError, explained
 
 if TYPE_CHECKING:
-    from roadgpt.campaign.selection import Choice
     from roadgpt.report import Format, Scale
     from roadgpt.road import Geometry, World
 
 MOST = 2  # roads side by side
-UNREADABLE = 2  # exit status
 PAGE, PLOTS = Path("roadgpt-view.html"), Path("plots")
 ENDINGS = (".html", ".htm")
 
@@ -63,8 +57,9 @@ def command(
         if opens:
             raise UsageError("--open is for the page; leave out --format")
         place = folder_of(str(out)) if out is not None else PLOTS
-        return _draw_pictures(files, choice, place, axes, formats, world, geometry, quiet) or None
-    if ctx.get_parameter_source("axes") is ParameterSource.COMMANDLINE:
+        draw_one = partial(_draw_pictures, place, axes, formats, world, geometry, quiet)
+        return use_each(files, choice, draw_one) or None
+    if "axes" in options.typed(ctx):
         raise UsageError("--axes is for pictures; say --format png as well")
     out = out or PAGE
     check_file(out, "page", PAGE, ENDINGS)
@@ -79,48 +74,23 @@ def command(
 
 
 def _draw_pictures(
-    files: Sequence[str],
-    choice: "Choice | None",
     out: Path,
     axes: "Scale",
-    formats: "Sequence[Format]",
+    formats: "tuple[Format, ...]",
     world: "World",
     geometry: "Geometry",
     quiet: bool,
-) -> int:
-    """Draws pictures of each road into a new folder named after the road, and prints their paths.
-
-    Args:
-        files, choice: As for ``roads_named``.
-        out: Folder in which the new folders are made.
-        axes: "equal" for axes to scale, "thesis" for the fixed ranges of RoadGPT's thesis.
-        formats: Formats of the pictures: png, svg or pdf.
-        world, geometry: World and geometry for road files, which do not contain them.
-        quiet: Whether to print errors only.
-
-    Returns:
-        The exit status: 2 if a name could not be used (the other roads are still drawn), else 0.
+    named: NamedRoad,
+) -> None:
+    """Draws pictures of a road into a new folder in ``out``, named after the road, and prints their paths.
+    ``world`` and ``geometry`` are for road files, which do not contain them.
     """
     from roadgpt.report import draw
 
-    status = 0
-
-    def complain(error: UsageError) -> None:
-        nonlocal status
-        warn(error)
-        status = UNREADABLE
-
-    for each in roads_named(files, choice, complain=complain):
-        try:
-            run = run_of(each, world, geometry)
-            place = _place(out, each.stem)
-            pictures = draw(run, place, axes, tuple(formats))
-        except UsageError as error:
-            complain(error)
-            continue
-        if not quiet:
-            click.echo("\n".join(str(picture) for picture in pictures))
-    return status
+    run = run_of(named, world, geometry)
+    pictures = draw(run, _place(out, named.stem), axes, formats)
+    if not quiet:
+        click.echo("\n".join(str(picture) for picture in pictures))
 
 
 def _place(out: Path, name: str) -> Path:

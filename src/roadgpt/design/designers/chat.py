@@ -11,7 +11,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.chat import Chat, ChatSettings, configured, open_chat
 from roadgpt.design.answer import AnswerRoad
 from roadgpt.design.asking import request, rules
-from roadgpt.design.dialogue import DesignTask, Outcome, judged_road, stepwise, whole
+from roadgpt.design.dialogue import DesignTask, judged_road, stepwise, whole
 from roadgpt.design.differences import changes_between
 from roadgpt.design.report import DesignReport
 from roadgpt.design.variety import ENOUGH, Shapes, nearest, shape_of
@@ -42,13 +42,8 @@ class ChatDesigner:
     ) -> Design | NetworkDesign:
         """Returns the best Design of all rounds, or NetworkDesign for a network, even if it is not valid.
 
-        Args:
-            brief: the requirements for the road.
-            world: size of the map, and limits that the rules check, such as the steepest grade.
-            notes: sentences that say which rules an earlier draft violated.
-            earlier: designs of the campaign so far; the new one should not be like any of them. For networks,
-                they are ignored.
-            seed: determines the start that is suggested to the model.
+        It should not be like any of the earlier designs; for networks, they are ignored. The seed determines
+        the start that is suggested to the model.
 
         Raises:
             DesignError: no answer was a road, the Brief asks for a map of roads, or the settings ask for a
@@ -74,11 +69,18 @@ class ChatDesigner:
             lambda design: self._is_new(design, earlier),
             seed,
         )
-        outcome = _outcome(chat, task)
+        if brief.is_of_network:
+            from roadgpt.design.network_dialogue import route_outcome  # a single road does not need it
+
+            outcome = route_outcome(chat, task)
+        elif self._settings.strategy == "stepwise":
+            outcome = stepwise(chat, task)
+        else:
+            outcome = whole(chat, task, AnswerRoad, judged_road)
         spent = chat.spent.since(before)
         self.report = DesignReport(
             rounds=outcome.questions,
-            changes=_changes(outcome),
+            changes=(*outcome.remarks, *changes_between(outcome.proposed, outcome.design)),
             tokens=spent.usage,
             seconds=spent.seconds,
             cost=spent.cost,
@@ -93,18 +95,3 @@ class ChatDesigner:
         samples = build(design).sample()
         shape = shape_of(samples.s, samples.x + 1j * samples.y)
         return nearest(shape, self._shapes.of(earlier), by_metres=False) >= ENOUGH
-
-
-def _outcome(chat: Chat, task: DesignTask) -> Outcome:
-    """Returns the outcome of the dialogue about a road or a route."""
-    if task.brief.is_of_network:
-        from roadgpt.design.network_dialogue import route_outcome  # a single road does not need it
-
-        return route_outcome(chat, task)
-    if task.settings.strategy == "stepwise":
-        return stepwise(chat, task)
-    return whole(chat, task, AnswerRoad, judged_road)
-
-
-def _changes(outcome: Outcome) -> tuple[str, ...]:
-    return (*outcome.remarks, *changes_between(outcome.proposed, outcome.design))

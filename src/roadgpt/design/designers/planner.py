@@ -31,13 +31,8 @@ class Planner:
     ) -> "AnyDesign":
         """Returns a valid Design that meets the Brief; a NetworkDesign or a MapDesign for a network.
 
-        Args:
-            brief: the requirements for the road.
-            world: size of the map, and limits that the rules check, such as the steepest grade.
-            notes: sentences about an earlier draft; only their number matters, as it changes the seed.
-            earlier: designs of the campaign so far; the new one differs from them as far as possible. For
-                networks, they are ignored.
-            seed: seed of the random number generator.
+        It differs from the earlier designs as far as possible; for networks, they are ignored. Of the notes
+        only their number matters, as it changes the seed.
 
         Raises:
             DesignError: no draft was accepted; the message says which requirement failed, and what to do.

@@ -43,14 +43,7 @@ class ThesisDesigner:
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> Design:
-        """Returns the Design that the model answers with.
-
-        Args:
-            brief: the description that is sent to the model.
-            world: the map and the limits that the prompt names.
-            notes: not used.
-            earlier: not used.
-            seed: not used.
+        """Returns the Design that the model answers with; ``notes``, ``earlier`` and ``seed`` are not used.
 
         Raises:
             ReplyError: the answer is not a design.

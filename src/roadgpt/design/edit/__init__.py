@@ -9,19 +9,19 @@ road before the edit. Elements that the request does not name keep all their val
 may be shifted or rotated, so that it stays inside the map.
 """
 
+from contextlib import suppress
 from typing import NamedTuple
 
 from roadgpt import plugins
 from roadgpt.brief.change import EditRequest, checked_request, read_request, second_reading
 from roadgpt.brief.change.request import OF_SLOPE
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
-from roadgpt.check.measures import Measures
 from roadgpt.design.differences import grades_changed, sentences
 from roadgpt.design.edit.candidates import candidates_of
 from roadgpt.design.edit.chatting import edited_by_chat
 from roadgpt.design.edit.placing import placed
 from roadgpt.design.edit.search import made
-from roadgpt.design.road_elements import RoadElements, elements_on_road
+from roadgpt.design.road_elements import elements_on_road
 from roadgpt.errors import EditError, IdleEditError, UnclearPlaceError
 from roadgpt.road import Design, Geometry, World
 
@@ -66,39 +66,24 @@ def edit(
         PartError: there is no designer of that name.
         ChatError: the language model could not be asked.
     """
-    elements, found = elements_on_road(design, geometry)
     if asks_a_model(plugins.find("designers", designer)):
-        model, said = chat or configured(), words if isinstance(words, str) else words.words
-        allowed = _allowed(words, elements)
-        road = edited_by_chat(
-            open_chat(model), model, design, said, elements, found, allowed, world, geometry
-        )
-        return Edited(road.design, sentences(design, elements, found, road, road.design))
+        return _edited_by_model(design, words, world, geometry, chat or configured())
     request = checked_request(words)
     try:
-        return _edited(design, request, elements, found, world, geometry)
+        return _edited(design, request, world, geometry)
     except (IdleEditError, UnclearPlaceError) as error:
         other = second_reading(request)
-        if other is None or (isinstance(error, UnclearPlaceError) and not _is_of_road(other)):
+        if other is None:
             raise
-        return _edited(design, other, elements, found, world, geometry)
+        # "the descent" of a road that falls all the way is the whole road
+        if isinstance(error, UnclearPlaceError) and not all(each.is_of_road for each in other.changes):
+            raise
+        return _edited(design, other, world, geometry)
 
 
-def _is_of_road(request: EditRequest) -> bool:
-    """Returns whether all changes are of the whole road: "the descent" of a road that falls all the way."""
-    targets = [change.target for change in request.changes]
-    return all(target is not None and target.noun == "road" for target in targets)
-
-
-def _edited(
-    design: Design,
-    request: EditRequest,
-    elements: RoadElements,
-    found: Measures,
-    world: World,
-    geometry: Geometry,
-) -> Edited:
+def _edited(design: Design, request: EditRequest, world: World, geometry: Geometry) -> Edited:
     """Returns the Design with the changes of a request that was read."""
+    elements, found = elements_on_road(design, geometry)
     changes = placed(request.changes, elements)
     if len(changes) > MOST_CHANGES:
         raise EditError(f"{len(changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer")
@@ -115,19 +100,22 @@ def _edited(
     return Edited(road.design, tuple(told), request.unused, request.confidence, request.other)
 
 
-def _allowed(words: str | EditRequest, elements: RoadElements) -> set[int] | None:
-    """Returns the numbers, from 1, of the segments that a request refers to.
-
-    Returns None if it cannot be read, or not all of it: a language model may understand it all the same.
-    """
-    try:
+def _edited_by_model(
+    design: Design, words: str | EditRequest, world: World, geometry: Geometry, settings: ChatSettings
+) -> Edited:
+    """Returns the Design as a language model changed it."""
+    elements, found = elements_on_road(design, geometry)
+    allowed: set[int] | None = None  # a model may understand what cannot be read, or not all of it
+    with suppress(EditError):
         request = checked_request(words)
         changes = placed(request.changes, elements)
-    except EditError:
-        return None
-    if request.unused:
-        return None
-    return {i + 1 for change in changes for element in change.elements for i in element.members}
+        if not request.unused:
+            allowed = {i + 1 for change in changes for element in change.elements for i in element.members}
+    said = words if isinstance(words, str) else words.words
+    road = edited_by_chat(
+        open_chat(settings), settings, design, said, elements, found, allowed, world, geometry
+    )
+    return Edited(road.design, sentences(design, elements, found, road, road.design))
 
 
 __all__ = ["EditRequest", "Edited", "edit", "read_request"]

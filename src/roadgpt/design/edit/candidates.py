@@ -10,24 +10,20 @@ from dataclasses import replace
 from math import inf
 from typing import NamedTuple
 
-from roadgpt.brief.change.clashes import clash
 from roadgpt.brief.change.request import REORDERS, Change, What
 from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import Measures, way
-from roadgpt.design.edit.hills import hill_candidates, hill_sentence
 from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
 from roadgpt.design.edit.lengths import length_steps, road_length_candidates
 from roadgpt.design.edit.placing import PlacedChange
 from roadgpt.design.edit.reordering import Reverse, move_of, reordering_sentence, swap_of
 from roadgpt.design.edit.slopes import (
-    bounded_slopes,
-    climb_candidates,
-    is_too_steep_or_flat,
-    only_parts,
-    part_slope_candidates,
-    road_slope_candidates,
+    climb_step,
+    hill_candidates,
+    hill_sentence,
+    slope_candidates,
     slope_steps,
     stretch_candidates,
 )
@@ -73,17 +69,10 @@ class ChangeCandidates(NamedTuple):
 def candidates_of(
     changes: Sequence[PlacedChange], elements: RoadElements, found: Measures, world: World
 ) -> tuple[ChangeCandidates, ...]:
-    """Returns the ways to make each change of a request.
+    """Returns the ways to make each change of a request on a road with these elements and measurements.
 
     What already has the value that one of the changes asks for is left out of the others: "everything uphill,
-    the first straight level" leaves a level first straight alone. If one change gives the angle of a turn and
-    another its radius, each sets only its own value.
-
-    Args:
-        changes: the changes, each with the elements that it refers to.
-        elements: the elements of the road before the edit.
-        found: the measurements of that road.
-        world: the limits that the rules check, such as the steepest grade.
+    the first straight level" leaves a level first straight alone.
 
     Raises:
         EditError: no road can have the requested values, or a change names a stretch of the road, of which a
@@ -98,12 +87,14 @@ def candidates_of(
         else ""
         for placed in changes
     ]
-    own = _without_what_is_so(changes, ways)
-    ways = [
-        its if placed is before else _ways(placed, elements, found, world, number)
-        for number, (placed, before, its) in enumerate(zip(own, changes, ways, strict=True), 1)
-    ]
-    return tuple(map(ChangeCandidates, changes, _agreed([placed.change for placed in changes], ways), told))
+    idle = [placed for placed, its in zip(changes, ways, strict=True) if not its and placed.change.is_state]
+    for number, placed in enumerate(changes, 1):
+        own = placed.without(idle)
+        if own.elements is not placed.elements:
+            ways[number - 1] = _ways(own, elements, found, world, number)
+    if {"angle", "radius"} <= {placed.change.what for placed in changes}:
+        ways = _agreed([placed.change for placed in changes], ways)
+    return tuple(map(ChangeCandidates, changes, ways, told))
 
 
 def _ways(
@@ -137,35 +128,11 @@ def _ways(
             return _change_candidates(placed.change, placed.elements, found, world)
 
 
-def _without_what_is_so(
-    changes: Sequence[PlacedChange], ways: Sequence[Sequence[EditCandidate]]
-) -> list[PlacedChange]:
-    """Returns the changes; what already has the value that one of them asks for is left out of the others.
-
-    Raises:
-        EditError: such a change names a stretch of the road by distances, or as a half.
-    """
-    idle = [placed for placed, its in zip(changes, ways, strict=True) if not its and placed.change.is_state]
-    out = []
-    for placed in changes:
-        is_length_of_road = placed.change.what == "length" and placed.change.is_of_road
-        for other in idle if not is_length_of_road else ():
-            if other.change.what != placed.change.what or not {*other.elements} < {*placed.elements}:
-                continue
-            if placed.stretch is not None:
-                raise clash(placed.change, other.change)
-            own = tuple(each for each in placed.elements if each not in other.elements)
-            placed = placed._replace(elements=own)
-        out.append(placed)
-    return out
-
-
 def _agreed(
     changes: Sequence[Change], ways: Sequence[Sequence[EditCandidate]]
 ) -> list[tuple[EditCandidate, ...]]:
-    """Returns the candidates of all changes.
-
-    If one change gives the angle of a turn and another its radius, each sets only its own value.
+    """Returns the candidates of all changes; of the angle and the radius that two of them give a turn, each
+    sets only its own.
     """
     said: dict[What, set[str]] = {"angle": set(), "radius": set()}
     for change, its in zip(changes, ways, strict=True):
@@ -187,13 +154,7 @@ def _agreed(
 def _change_candidates(
     change: Change, elements: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[EditCandidate, ...]:
-    """Returns all candidates for a change, the preferred one first; none if the road already is as requested.
-
-    Args:
-        change: Any change except an addition, a removal, a mirror image or alternating turns.
-        elements: The elements to change.
-        found: The measurements of the whole road.
-        world: The limits that the rules check, such as the steepest grade.
+    """Returns all candidates for a change of values; ``found`` are the measurements of the whole road.
 
     Raises:
         EditError: No road can have the requested values.
@@ -203,9 +164,8 @@ def _change_candidates(
         elements = elements if change.is_outside(found.length) else []
     elif change.bound:
         elements = [element for element in elements if is_beyond(change, element)]
-        if change.what == "slope" and elements:
-            step = bounded_slopes(change, elements)
-            return ((only_parts(change, step) if _is_of_parts(change, elements) else step,),)
+    ways = {way(segment.incline) for element in elements for segment in element.segments}
+    is_of_parts = change.target is not None and change.target.way in ways and len(ways) > 1
     match change.what:
         case "angle" | "radius" | "shape":
             return _together(_bends(change, element, world) for element in elements)
@@ -213,37 +173,28 @@ def _change_candidates(
             return road_length_candidates(change, elements, world) if elements else ()
         case "length":
             return _together(length_steps(change, element, world) for element in elements)
-        case "slope" if _is_of_parts(change, elements):
-            return part_slope_candidates(change, elements, world)
-        case "slope" if is_road:
-            return road_slope_candidates(change, elements, world)
+        case "slope" if is_road or is_of_parts or (change.bound and elements):
+            return slope_candidates(change, elements, is_of_parts, world)
         case "slope":
             return _together(slope_steps(change, element, found, world) for element in elements)
         case "climb" if is_road:
-            return climb_candidates(change, elements, world)
+            return ((climb_step(change, elements, world),),)
         case "climb":  # "every straight": each of them
-            ways = [climb_candidates(change, [element], world) for element in elements]
-            return (tuple(step for ((step,),) in ways),)
+            return (tuple(climb_step(change, [element], world) for element in elements),)
         case "side" | "mirror":
-            if any(element.kind != "turn" for element in elements):
+            if any(not element.is_turn for element in elements):
                 raise EditError(f"'{change.words}' is said of a straight, which has no side; name a turn")
             wrong = [b for b in elements if change.side is None or b.side != change.side]
             return _flipped(wrong, world) if wrong else ()
-        case _:
-            return _together(_straightened(element) for element in elements)
-
-
-def _is_of_parts(change: Change, elements: Sequence[RoadElement]) -> bool:
-    """Returns whether a change concerns only those parts of elements that climb, fall or are level."""
-    named = change.target.way if change.target else None
-    ways = {way(segment.incline) for element in elements for segment in element.segments}
-    return named is not None and named in ways and len(ways) > 1
+        case _:  # a turn becomes a straight, as long as the turn if there is room for it
+            bends = [element for element in elements if element.is_turn and element.seen]
+            return _together([Become(bend, (straight(bend.length, bend.incline),))] for bend in bends)
 
 
 def is_beyond(change: Change, element: RoadElement) -> bool:
     """Returns whether an element violates the limit that a change sets."""
     if change.what == "slope":
-        return is_too_steep_or_flat(change, element)
+        return any(change.is_outside(abs(segment.incline)) for segment in element.segments)
     seen = element.seen
     return seen is not None and change.is_outside(
         getattr(seen, "degrees" if change.what == "angle" else change.what)
@@ -256,41 +207,38 @@ def _alternating_candidates(elements: Sequence[RoadElement], world: World) -> tu
     Raises:
         EditError: There are no turns.
     """
-    if not elements:
+    turns = [element for element in elements if element.is_turn]
+    if not turns:
         raise EditError("there is no turn at that place; name another one")
-    side, wrong = elements[0].side, list[RoadElement]()
-    for element in elements:
-        wrong += [element] if element.side != side else []
+    side, wrong = turns[0].side, list[RoadElement]()
+    for turn in turns:
+        wrong += [turn] if turn.side != side else []
         side = side and OTHER_SIDE[side]
     return _flipped(wrong, world) if wrong else ()
 
 
 def _together(ways: Iterable[Sequence[EditStep]]) -> tuple[EditCandidate, ...]:
-    """Returns one candidate of the first steps of all elements, one of their second steps, and so on."""
-    rows = [row for row in map(_with_milder, ways) if row]
-    if not rows:
-        return ()
-    return tuple(tuple(row[min(i, len(row) - 1)] for row in rows) for i in range(max(map(len, rows))))
-
-
-def _with_milder(steps: Sequence[EditStep]) -> list[EditStep]:
-    """Returns the alternative steps for one element.
-
-    If the only step is an Adjust, its milder version is appended as a second alternative.
+    """Returns one candidate of the first steps of all elements, one of their second steps, and so on; the
+    second alternative to a single Adjust is its milder version.
     """
-    return [*steps, *(step.milder() for step in steps[:1] if isinstance(step, Adjust) and len(steps) == 1)]
+    rows = [list(steps) for steps in ways if steps]
+    for row in rows:
+        if len(row) == 1 and isinstance(row[0], Adjust):
+            row.append(row[0].milder())
+    most = max(map(len, rows), default=0)
+    return tuple(tuple(row[min(i, len(row) - 1)] for row in rows) for i in range(most))
 
 
 def _bends(change: Change, element: RoadElement, world: World) -> list[EditStep]:
     seen = element.seen
-    if element.kind != "turn" or seen is None:
+    if not element.is_turn or seen is None:
         raise EditError(f"'{change.words}' is said of a straight, which does not bend; name a turn")
     d, r, least = seen.degrees, seen.radius, world.limits.design_radius
     if change.what == "shape":
-        return _shaped(change, element, least)
+        return _shaped(change, element, d, r, least)
     aim = change.aim(d if change.what == "angle" else r)
     if aim is not None:
-        return [_bent_to(change, element, aim, world)]
+        return [_bent_to(change, element, d, r, aim, world)]
     if change.what == "radius" and change.more < 0 and 0.93 * r < least:  # then it turns further
         return [Adjust(element, Wanted.towards(d, 1.25 * d), Wanted.near(r, 0.12 * r))]
     if change.what == "radius":
@@ -319,19 +267,15 @@ def _cannot(degrees: float, radius: float) -> EditError:
     return EditError(f"{where} cannot be made so; a turn has {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees")
 
 
-def _bent_to(change: Change, element: RoadElement, aim: float, world: World) -> EditStep:
-    """Returns the step that gives a turn the requested angle or radius."""
-    seen = element.seen
-    assert seen is not None
+def _bent_to(change: Change, element: RoadElement, d: float, r: float, aim: float, world: World) -> EditStep:
+    """Returns the step that gives a turn of ``d`` degrees and radius ``r`` the requested angle or radius."""
     if change.what == "angle":
         if not LEAST_ANGLE - 1.5 <= aim <= MOST_ANGLE:
             raise EditError(
                 f"a turn of {aim:.0f} degrees cannot be made; "
                 f"ask for {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees"
             )
-        return Adjust(
-            element, Wanted.near(aim, 1.0), Wanted(seen.radius, Range(0.5 * seen.radius, 2 * seen.radius))
-        )
+        return Adjust(element, Wanted.near(aim, 1.0), Wanted(r, Range(0.5 * r, 2 * r)))
     if aim < world.limits.min_radius:
         raise EditError(
             f"a radius of {aim:.1f} m is tighter than the {world.limits.min_radius:.1f} m that the rules "
@@ -342,24 +286,20 @@ def _bent_to(change: Change, element: RoadElement, aim: float, world: World) -> 
             f"a turn with a radius of {aim:.0f} m is hardly seen as one; ask for {WIDEST:g} or less"
         )
     aim = max(aim, world.limits.design_radius)
-    return Adjust(element, Wanted.near(seen.degrees, 4.0), Wanted.near(aim, 0.05 * aim))
+    return Adjust(element, Wanted.near(d, 4.0), Wanted.near(aim, 0.05 * aim))
 
 
-def _shaped(change: Change, element: RoadElement, least: float) -> list[EditStep]:
-    """Returns the step that makes a turn a hairpin, sharp or gentle; none if it already is."""
-    seen = element.seen
-    assert seen is not None
-    d, r = seen.degrees, seen.radius
+def _shaped(change: Change, element: RoadElement, d: float, r: float, least: float) -> list[EditStep]:
+    """Returns the step that makes a turn of ``d`` degrees and radius ``r`` a hairpin, sharp or gentle; none
+    if it already is.
+    """
     if change.kind in ("hairpin", "u_turn", "switchback"):
         angles = KINDS[change.kind].degrees or Range()
         if d in angles and r <= 34 and not (change.sharpness == "sharp" and r > 20):
             return []
+        degrees = Wanted(d if d in angles else 170.0, angles)
         tight = min(max(min(r, 22.0), least), 30.0)
-        return [
-            Adjust(
-                element, Wanted(d if d in angles else 170.0, angles), Wanted(tight, Range(0.98 * least, 34.0))
-            )
-        ]
+        return [Adjust(element, degrees, Wanted(tight, Range(0.98 * least, 34.0)))]
     if change.kind is not None:
         raise EditError(
             "one turn cannot be made several; say: remove the turn, and add the others in its place"
@@ -367,8 +307,9 @@ def _shaped(change: Change, element: RoadElement, least: float) -> list[EditStep
     if change.sharpness == "sharp":
         if r <= 29 and d >= 32:
             return []
-        radius = Wanted(max(min(0.75 * r, 22.0), least), Range(0.98 * least, 29.0))
-        return [Adjust(element, Wanted(max(d, 45.0), Range(max(d, 35.0) - 2, max(d, 60.0) + 10)), radius)]
+        degrees = Wanted(max(d, 45.0), Range(max(d, 35.0) - 2, max(d, 60.0) + 10))
+        tight = max(min(0.75 * r, 22.0), least)
+        return [Adjust(element, degrees, Wanted(tight, Range(0.98 * least, 29.0)))]
     bound = 60.0 if change.sharpness == "sweeping" else 40.0
     if r >= bound * 1.02 and 15 <= d <= 120:
         return []
@@ -388,9 +329,3 @@ def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandida
         radius = Range(max(FLIPPED.lo * r, min(world.limits.min_radius, 0.98 * r)), FLIPPED.hi * r)
         steps.append(Adjust(element, Wanted(d, degrees), Wanted(r, radius)))
     return (tuple(steps),)
-
-
-def _straightened(element: RoadElement) -> list[EditStep]:
-    """Returns the step that replaces a turn by a straight, as long as the turn if there is room for it."""
-    bends = element.kind == "turn" and element.seen is not None
-    return [Become(element, (straight(element.length, element.incline),))] if bends else []

@@ -63,21 +63,9 @@ def edited_by_chat(
 ) -> Look:
     """Returns the road as a language model changed it.
 
-    Args:
-        chat: the language model.
-        settings: the settings of the language model.
-        design: the road before the edit.
-        words: the change request.
-        elements: the elements of that road.
-        found: the measurements of that road.
-        allowed: numbers, from 1, of the segments that the model may change. None if these could not be
-            determined from the request; the model then lists them itself.
-        world: size of the map, and limits that the rules check, such as the steepest grade.
-        geometry: the kind of geometry that roads are built with.
-
-    Returns:
-        A Look: the changed Design with its road and measurements. Its elements are those measured on the
-        changed road, if they have the same names as ``elements``; otherwise the Look has no elements.
+    Only the segments with the numbers ``allowed``, from 1, may change; if that is None, those that the model
+    names. The Look has the elements measured on the changed road, or none if their names are not those of
+    ``elements``.
 
     Raises:
         EditError: no answer was a valid road that differs from the old one.
@@ -99,31 +87,22 @@ def edited_by_chat(
             if new == design:
                 wrong = "nothing about it has changed"
             if not wrong:
-                return _with_elements(road, elements, geometry)
+                seen, _ = elements_on_road(road.design, geometry)
+                is_same = [element.name for element in seen] == [element.name for element in elements]
+                return replace(road, elements=seen if is_same else ())
         except UnparsableError as error:
             wrong, said, problem = f"it could not be read: {error}", error.text, error
         except UsageError as error:
             wrong = str(error)
-        messages = [*opening, *_objection(said, wrong)]
+        messages = [
+            *opening,
+            Message(role="assistant", text=said[:MOST_SHOWN] or "(nothing)"),
+            Message(role="user", text=f"This road will not do: {wrong}\nGive the whole road again, mended."),
+        ]
     if isinstance(problem, ReplyError):
         raise problem
     raise EditError(
         f"the language model's road will not do: {wrong}; say it in other words, or without --designer"
-    )
-
-
-def _with_elements(road: Look, elements: RoadElements, geometry: Geometry) -> Look:
-    """Returns the Look with the elements measured on its road, if their names are those of ``elements``."""
-    seen, _ = elements_on_road(road.design, geometry)
-    is_same = [element.name for element in seen] == [element.name for element in elements]
-    return replace(road, elements=seen if is_same else ())
-
-
-def _objection(said: str, wrong: str) -> tuple[Message, Message]:
-    """Returns the answer of a language model, and the message that says what is wrong with its road."""
-    return (
-        Message(role="assistant", text=said[:MOST_SHOWN] or "(nothing)"),
-        Message(role="user", text=f"This road will not do: {wrong}\nGive the whole road again, mended."),
     )
 
 
@@ -146,51 +125,37 @@ def _question(design: Design, words: str, elements: RoadElements, length: float)
 
 
 def _seen(elements: Sequence[RoadElement]) -> list[str]:
-    out, first, straights = [], 1, 0
+    out, straights = [], 0
     for element in elements:
-        end = first + len(element.segments) - 1
-        seen = element.seen
+        first, end, seen = element.members.start + 1, element.members.stop, element.seen
         where = f"segments {first} to {end}" if end > first else f"segment {first}"
-        if seen and element.kind == "turn":
+        if seen and element.is_turn:
             shape = f"{seen.degrees:.0f} degrees to the {seen.side}, radius {seen.radius:.0f} m"
             out.append(f"- {element.name}, {shape}: {where}")
         elif seen:
             straights += 1
             out.append(f"- straight {straights}, {seen.length:.0f} m, {seen.grade:+.1f} %: {where}")
-        first = end + 1
     return out
 
 
 def _kept(design: Design, answer: EditedRoad, allowed: set[int] | None) -> Design:
     """Returns the changed design; the segments that must not change have their old values and order.
 
-    Args:
-        design: the road before the edit.
-        answer: the answer of the model.
-        allowed: numbers of the segments that may change if the model lists them; None if any of them may.
-
     Raises:
         UsageError: a segment that must not change is missing or misplaced; the message can be shown to the
             model.
     """
-    old = design.segments
-    touched = {number for number in answer.touched if 1 <= number <= len(old)}
-    if allowed is not None:
-        touched &= allowed
     if len(answer.segments) > MAX_SEGMENTS:
         raise UsageError(f"the road has {len(answer.segments):,} segments; {MAX_SEGMENTS} is the limit")
-    order = [s.was for s in answer.segments if 1 <= s.was <= len(old) and s.was not in touched]
-    wanted = [number for number in range(1, len(old) + 1) if number not in touched]
-    if order != wanted:
-        missing = [number for number in wanted if order.count(number) != 1]
+    old = dict(enumerate(design.segments, 1))
+    touched = set(answer.touched) if allowed is None else allowed & set(answer.touched)
+    kept = {number: segment for number, segment in old.items() if number not in touched}
+    order = [segment.was for segment in answer.segments if segment.was in kept]
+    if order != list(kept):
+        missing = [number for number in kept if order.count(number) != 1]
         what = f"segment {missing[0]}" if missing else "the order of the old segments"
         raise UsageError(f"{what} is not as it was, though the request does not speak of it")
-    segments: list[Segment] = []
-    for segment in answer.segments:
-        if 1 <= segment.was <= len(old) and segment.was not in touched:
-            segments.append(old[segment.was - 1])
-        else:
-            segments.append(_new(segment, old[segment.was - 1] if 1 <= segment.was <= len(old) else None))
+    segments = (kept.get(each.was) or _new(each, old.get(each.was)) for each in answer.segments)
     return design.model_copy(update={"theta": answer.theta % 360, "segments": tuple(segments)})
 
 
@@ -198,9 +163,7 @@ def _new(answer: EditedSegment, before: Segment | None) -> Segment:
     raw = answer.model_dump(include=set(AnswerSegment.model_fields))
     made, _ = read_design({"starting_point": [0, 0, 0], "theta": 0, "road_segment1": raw})
     (segment,) = made.segments
-    same = before is not None and all(
-        getattr(segment, n) == getattr(before, n) for n in ("distance", "turn_degrees")
-    )
-    if before is not None and same:  # only its slope differs: radius and transition stay
-        return before.model_copy(update={"incline": segment.incline})
+    plan = segment.distance, segment.turn_degrees
+    if before is not None and plan == (before.distance, before.turn_degrees):
+        return before.model_copy(update={"incline": segment.incline})  # its radius and transition stay
     return segment

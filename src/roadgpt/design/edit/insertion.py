@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate, product
 from math import radians
 
 from roadgpt.brief.change.request import Change
@@ -13,7 +14,6 @@ from roadgpt.design.edit.placing import PlacedChange
 from roadgpt.design.edit.slopes import AIMS
 from roadgpt.design.edit.steps import (
     HIDDEN,
-    MILLIMETRE,
     SEPARATE,
     Adjust,
     Become,
@@ -22,7 +22,15 @@ from roadgpt.design.edit.steps import (
     Wanted,
 )
 from roadgpt.design.elements import straight, turn_segments
-from roadgpt.design.road_elements import FREE_STRAIGHT, RoadElement, RoadElements, gap
+from roadgpt.design.road_elements import (
+    FREE_STRAIGHT,
+    MILLIMETRE,
+    RoadElement,
+    RoadElements,
+    gap,
+    joined,
+    with_stations,
+)
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -55,52 +63,36 @@ class Insert:
 
     before: str
     elements: RoadElements
-    split: str = ""
-    """Name of a gap to split in two, so that the new elements are inserted between its halves; empty to
-    split none.
+    split: int | None = None
+    """Number of segments of that element that stay in front of the new ones; 0 to split its longest segment
+    in half; None if it is not split.
     """
-    index: int = 0
-    """Number of segments in the first half of the split gap; 0 to split its longest segment in half."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements in driving order, with the new ones inserted."""
-        if self.split:
-            return tuple(
-                part for b in elements for part in (self._halves(b) if b.name == self.split else (b,))
-            )
         names = [element.name for element in elements]
         at = names.index(self.before) if self.before else len(elements)
-        return (*elements[:at], *self.elements, *elements[at:])
-
-    def _halves(self, element: RoadElement) -> RoadElements:
-        segments, at = list(element.segments), self.index
-        if not at:
-            longest = max(range(len(segments)), key=lambda i: segments[i].distance)
-            half = round(segments[longest].distance / 2 * MILLIMETRE) / MILLIMETRE
-            rest = round((segments[longest].distance - half) * MILLIMETRE) / MILLIMETRE
-            one = segments[longest]
-            segments[longest : longest + 1] = [
-                one.model_copy(update={"distance": half}),
-                one.model_copy(update={"distance": rest}),
+        if self.split is None:
+            return (*elements[:at], *self.elements, *elements[at:])
+        own, count = list(elements[at].segments), self.split
+        if not count:
+            longest = max(range(len(own)), key=lambda i: own[i].distance)
+            half = round(own[longest].distance / 2 * MILLIMETRE) / MILLIMETRE
+            rest = round((own[longest].distance - half) * MILLIMETRE) / MILLIMETRE
+            own[longest : longest + 1] = [
+                own[longest].model_copy(update={"distance": distance}) for distance in (half, rest)
             ]
-            at = longest + 1
-        first, second = (
-            element.with_segments(segments[:at]),
-            replace(element, name=f"{element.name} rest", seen=None),
-        )
-        return (first, *self.elements, second.with_segments(segments[at:]))
+            count = longest + 1
+        first = elements[at].with_segments(own[:count])
+        second = replace(first, name=f"{first.name} rest", seen=None, segments=tuple(own[count:]))
+        return (*elements[:at], first, *self.elements, second, *elements[at + 1 :])
 
 
 def insertion_candidates(
     placed: PlacedChange, elements: RoadElements, world: World, number: int
 ) -> tuple[EditCandidate, ...]:
-    """Returns all candidates that add what the change asks for.
-
-    Args:
-        placed: what to add, and the elements that say where.
-        elements: the elements of the road before the edit.
-        world: the limits that the rules check, such as the steepest grade.
-        number: number of this change within its request; it is used to name new elements.
+    """Returns all candidates that add what a change asks for; ``number`` is its number in the request, which
+    names new elements.
 
     Raises:
         EditError: the place does not exist, turns of this kind or number cannot be added, or no turn or
@@ -111,79 +103,68 @@ def insertion_candidates(
         raise EditError(f"{change.count} turns at once are too many to add; add {MOST_NEW} or fewer")
     if change.kind is not None and change.kind not in PREFERRED:
         raise EditError(f"'{change.kind}' cannot be added; add turns or straights in its place")
-    before, splits = _place(placed, elements)
+    at, splits = _place(placed, elements)
     if change.target is not None and change.target.noun == "straight":
-        return _straight_ways(change, elements, before, splits, number)
-    shape = _shape(change, world)
-    return tuple(
-        (_turns(change, elements, before, split, sides, shape, spare, number),)
-        for spare in SPARE
-        for sides in _sides(change, elements, before)
-        for split in splits
-    )
+        return _straight_ways(change, elements, at, splits, number)
+    shape, incline, name = _shape(change, world), _incline(elements, at), _name(elements, at)
+    out = []
+    for spare, sides, split in product(SPARE, _sides(change, elements[:at]), splits):
+        lead, tail = (metres + spare for metres in _missing(elements, at, split, sides))
+        new = _new_turns(change, shape, sides, lead, tail, incline, number)
+        out.append((Insert(name, new, split),))
+    return tuple(out)
 
 
-def _place(placed: PlacedChange, elements: RoadElements) -> tuple[str, list[tuple[str, int]]]:
-    """Returns the name of the element before which to insert, and the ways to split a gap for this.
-
-    The name is empty for the end of the road. Each way is the name of the gap to split, empty to split none,
-    and the number of segments before the split, as in ``Insert.index``.
+def _place(placed: PlacedChange, elements: RoadElements) -> tuple[int, list[int | None]]:
+    """Returns the index of the element before which to insert, and the ways to split it, as in
+    ``Insert.split``; at the end of the road, the index is the number of elements.
     """
     place, mark, stop = placed.change.place, placed.marks, placed.stop
     how = place.how if place else "end"
     if how == "end":
-        return "", [("", 0)]
+        return len(elements), [None]
     if how == "start":
-        return elements[0].name, [("", 0)]
+        return 0, [None]
     if how == "middle" or place is None or place.target is None:
-        gap, index = _middle(elements)
-        return gap.name, [(gap.name, index)]
-    if how == "on":
-        if mark[0].kind == "turn":
-            raise EditError("a turn cannot be added within a turn; say: after the second turn")
-        return mark[0].name, [(mark[0].name, 0)]
-    if how == "before" and mark[0].name != "":
-        return mark[0].name, [("", 0)]
+        at, count = _middle(elements)
+        return at, [count]
+    if how == "on" and mark[0].is_turn:
+        raise EditError("a turn cannot be added within a turn; say: after the second turn")
+    if how in ("on", "before"):
+        return elements.index(mark[0]), [0 if how == "on" else None]
     at = elements.index(mark[-1])
-    after = elements[at + 1].name if at + 1 < len(elements) else ""
-    if how == "between":
-        splits: list[tuple[str, int]] = []
-        if stop is not None:
-            end = elements.index(stop)
-            if end < at:
-                raise EditError(
-                    "the two places stand the other way round on the road; name the first one first"
-                )
-            if end == at:
-                raise EditError("between a turn and itself is no place; name two turns")
-            is_same = place.other is not None and place.other.words == place.target.words
-            if is_same and any(b.kind == "turn" for b in elements[at + 1 : end]):
-                raise EditError(f"between '{place.target.words}' are several places; name two turns")
-        gap = elements[at + 1] if at + 1 < len(elements) else elements[at]
-        for index in range(1, len(gap.segments)):
-            left = sum(s.distance for s in gap.segments[:index])
-            if min(left, gap.length - left) >= SEPARATE:
-                splits.append((gap.name, index))
-        return after, [*splits[:1], ("", 0)]
-    return after, [("", 0)]
+    if how != "between":
+        return at + 1, [None]
+    if stop is not None:
+        end = elements.index(stop)
+        if end < at:
+            raise EditError("the two places stand the other way round on the road; name the first one first")
+        if end == at:
+            raise EditError("between a turn and itself is no place; name two turns")
+        is_same = place.other is not None and place.other.words == place.target.words
+        if is_same and any(element.is_turn for element in elements[at + 1 : end]):
+            raise EditError(f"between '{place.target.words}' are several places; name two turns")
+    splits: list[int | None] = []
+    for between in elements[at + 1 : at + 2]:
+        for count in range(1, len(between.segments)):
+            left = sum(segment.distance for segment in between.segments[:count])
+            if min(left, between.length - left) >= SEPARATE:
+                splits.append(count)
+    return at + 1, [*splits[:1], None]
 
 
-def _middle(elements: RoadElements) -> tuple[RoadElement, int]:
-    """Returns the gap nearest to the road's middle, and where to split it, as in ``Insert.index``."""
-    whole, at = sum(element.length for element in elements), 0.0
-    best, found = float("inf"), (elements[0], 0)
-    for element in elements:
-        if element.kind == "gap" and element.segments:
-            joint = at
-            for index, segment in enumerate(element.segments):
-                if index and abs(joint - whole / 2) < best:
-                    best, found = abs(joint - whole / 2), (element, index)
-                joint += segment.distance
-            centre = at + element.length / 2
-            if abs(centre - whole / 2) < best:
-                best, found = abs(centre - whole / 2), (element, 0)
-        at += element.length
-    return found
+def _middle(elements: RoadElements) -> tuple[int, int]:
+    """Returns the index of the gap nearest to the road's middle, and where to split it, as in
+    ``Insert.split``.
+    """
+    whole, places = sum(element.length for element in elements), list[tuple[float, int, int]]()
+    for number, (element, at) in enumerate(with_stations(elements)):
+        if not element.is_turn and element.segments:
+            joints = accumulate((segment.distance for segment in element.segments[:-1]), initial=at)
+            places += [(joint, number, count) for count, joint in enumerate(joints) if count]
+            places.append((at + element.length / 2, number, 0))
+    _, number, count = min(places, key=lambda place: abs(place[0] - whole / 2), default=(0.0, 0, 0))
+    return number, count
 
 
 def _shape(change: Change, world: World) -> tuple[Wanted, Wanted]:
@@ -198,7 +179,7 @@ def _shape(change: Change, world: World) -> tuple[Wanted, Wanted]:
         raise EditError(f"a turn of {change.degrees:g} degrees cannot be added; ask for 15 to 210 degrees")
     word: str = change.sharpness or ""
     meant = SHARPNESS[change.sharpness] if change.sharpness else KINDS["turn"]
-    if change.kind and change.kind in PREFERRED:
+    if change.kind:
         word, meant = change.kind, KINDS[change.kind]
     aim, radius = PREFERRED[word]
     angles, radii = meant.degrees or Range(), meant.radius or Range(0, 35.0 if word else 45.0)
@@ -212,73 +193,61 @@ def _shape(change: Change, world: World) -> tuple[Wanted, Wanted]:
     return degrees, wanted
 
 
-def _sides(change: Change, elements: RoadElements, before: str) -> list[list[Side]]:
-    """Returns the sequences of sides to try for the new turns.
+def _sides(change: Change, before: RoadElements) -> list[list[Side]]:
+    """Returns the sequences of sides to try for the new turns behind the elements ``before``.
 
     If no side is requested, the first sequence begins opposite to the turn before, the second on its side.
     """
     count = change.count * (2 if change.kind in ("s_bend", "chicane") else 1)
     alternates = change.kind in ("s_bend", "chicane") or (count > 1 and change.side is None)
-    firsts: list[Side] = [change.side] if change.side else _away(elements, before)
-    out = []
-    for side in firsts:
-        row: list[Side] = [side]
-        while len(row) < count:
-            row.append(OTHER_SIDE[row[-1]] if alternates else side)
-        out.append(row)
-    return out
+    last: Side = next((element.side for element in reversed(before) if element.side), "right")
+    firsts: list[Side] = [change.side] if change.side else [OTHER_SIDE[last], last]
+    return [[OTHER_SIDE[side] if alternates and i % 2 else side for i in range(count)] for side in firsts]
 
 
-def _away(elements: RoadElements, before: str) -> list[Side]:
-    names = [element.name for element in elements]
-    at = names.index(before) if before else len(elements)
-    last = next((b.side for b in reversed(elements[:at]) if b.kind == "turn"), None) or "right"
-    return [OTHER_SIDE[last], "left" if last == "left" else "right"]
+def _missing(
+    elements: RoadElements, at: int, split: int | None, sides: Sequence[Side]
+) -> tuple[float, float]:
+    """Returns the metres of straight road that new turns to these sides need before and behind them."""
+    before, turn_before = _behind(elements[:at])
+    after, turn_after = _behind(elements[at:][::-1])
+    if split is not None:
+        own = elements[at]
+        first = sum(segment.distance for segment in own.segments[:split]) if split else own.length / 2
+        before, after = before + first, after - first
+    return _lead(turn_before, sides[0], before), _lead(turn_after, sides[-1], after)
 
 
-def _turns(
+def _new_turns(
     change: Change,
-    elements: RoadElements,
-    before: str,
-    split: tuple[str, int],
-    sides: Sequence[Side],
     shape: tuple[Wanted, Wanted],
-    spare: float,
+    sides: Sequence[Side],
+    lead: float,
+    tail: float,
+    incline: float,
     number: int,
-) -> EditStep:
-    names = [element.name for element in elements]
-    at = names.index(before) if before else len(elements)
-    gap_before, turn_before = _behind(elements[:at])
-    gap_after, turn_after = _behind(tuple(reversed(elements[at:])))
-    if split[0]:
-        own = elements[at].segments
-        index = split[1]
-        first = sum(s.distance for s in own[:index]) if index else elements[at].length / 2
-        gap_before, gap_after = gap_before + first, gap_after - first
-    incline = _incline(elements, at)
-    lead = _lead(turn_before, sides[0], gap_before) + spare
-    tail = _lead(turn_after, sides[-1], gap_after) + spare
+) -> RoadElements:
+    """Returns turns to these sides, with straights between, before and behind them."""
     (degrees, angles), (radius, radii) = shape
-    asked = Feature("turn", "turn", None, angles, radii, None, _grade(change))
-    slope = _incline_asked(change, incline)
+    grade = SLOPES[change.slope].grade if change.slope else None
+    if change.grade is not None:
+        grade = Range(change.grade - 0.6, change.grade + 0.6)
+    asked = Feature("turn", "turn", None, angles, radii, None, grade)
     transition = min(max(TRANSITION_SHARE * radius * radians(degrees), 3.0), 12.0)
+    slope = _incline_asked(change, incline)
     new = [gap(f"new {number} lead", lead, incline)] if lead else []
     for i, side in enumerate(sides):
         if i:
             new.append(gap(f"new {number} gap {i}", SEPARATE if side == sides[i - 1] else JOINT, incline))
-        name = f"new {number} turn {i + 1}"
         segments = turn_segments(degrees, 1 if side == "left" else -1, radius, transition, slope)
-        new.append(RoadElement(name, "turn", segments, side, asked=asked))
+        new.append(RoadElement(f"new {number} turn {i + 1}", segments, side, asked=asked))
     if tail:
         new.append(gap(f"new {number} tail", tail, incline))
-    return Insert(before, tuple(new), *split)
+    return tuple(new)
 
 
-def _grade(change: Change) -> Range | None:
-    """Returns the requested range of grades in percent; None if the request gives none."""
-    if change.grade is not None:
-        return Range(change.grade - 0.6, change.grade + 0.6)
-    return SLOPES[change.slope].grade if change.slope else None
+def _name(elements: RoadElements, at: int) -> str:
+    return elements[at].name if at < len(elements) else ""
 
 
 def _incline_asked(change: Change, incline: float) -> float:
@@ -292,7 +261,7 @@ def _behind(elements: RoadElements) -> tuple[float, RoadElement | None]:
     """Returns the metres after the last turn, and that turn; None if there is no turn."""
     metres = 0.0
     for element in reversed(elements):
-        if element.kind == "turn":
+        if element.is_turn:
             return metres, element
         metres += element.length
     return metres, None
@@ -306,33 +275,28 @@ def _lead(turn: RoadElement | None, side: Side, gap: float) -> float:
 
 def _incline(elements: RoadElements, at: int) -> float:
     """Returns the incline in percent of the segment before a place, or after it at the start of the road."""
-    before = [s for element in elements[:at] for s in element.segments]
-    after = [s for element in elements[at:] for s in element.segments]
-    return before[-1].incline if before else after[0].incline
+    before = joined(elements[:at])
+    return before[-1].incline if before else joined(elements)[0].incline
 
 
 def _straight_ways(
-    change: Change, elements: RoadElements, before: str, splits: Sequence[tuple[str, int]], number: int
+    change: Change, elements: RoadElements, at: int, splits: Sequence[int | None], number: int
 ) -> tuple[EditCandidate, ...]:
-    names = [element.name for element in elements]
-    at = names.index(before) if before else len(elements)
     lengths = [change.length] if change.length is not None else [NEW_STRAIGHT, 30.0, 60.0, 22.0]
     if lengths[0] < 10:
         raise EditError(f"a straight of {lengths[0]:g} m is not seen as one; ask for 10 m or more")
     incline = _incline_asked(change, _incline(elements, at))
-    beside = elements[at] if before and elements[at].kind == "gap" else elements[at - 1]
-    if change.is_whole and change.length is not None and beside.kind == "gap" and beside.seen is not None:
+    beside = elements[at] if at < len(elements) and not elements[at].is_turn else elements[at - 1]
+    if change.is_whole and change.length is not None and not beside.is_turn and beside.seen is not None:
         return ((Adjust(beside, length=Wanted.near(change.length, 1.0)),),)
-    stands_alone = beside.kind == "gap" and beside.seen is None
-    out = []
-    for split in splits:
-        for length in lengths:
-            new = gap(f"new {number} straight", length + 2.0, incline)
-            if stands_alone:
-                room = Range(length - 2.0, length + 2.0)
-                new = replace(new, asked=replace(FREE_STRAIGHT, length=room))
-            out.append((Insert(before, (new,), *split),))
-    return tuple(out)
+    new = [gap(f"new {number} straight", length + 2.0, incline) for length in lengths]
+    if not beside.is_turn and beside.seen is None:  # then the new straight is seen by itself
+        rooms = [Range(length - 2.0, length + 2.0) for length in lengths]
+        new = [
+            replace(each, asked=replace(FREE_STRAIGHT, length=room))
+            for each, room in zip(new, rooms, strict=True)
+        ]
+    return tuple((Insert(_name(elements, at), (each,), split),) for split in splits for each in new)
 
 
 def removal_candidates(gone: Sequence[RoadElement], elements: RoadElements) -> tuple[EditCandidate, ...]:
@@ -349,12 +313,9 @@ def removal_candidates(gone: Sequence[RoadElement], elements: RoadElements) -> t
 
 def _without(element: RoadElement, elements: RoadElements, filler: float) -> EditStep:
     at = elements.index(element)
-    if element.kind == "gap":
-        bends = tuple(s for s in element.segments if s.turn_degrees)
-        sides = [
-            b.side for b in (*elements[max(at - 1, 0) : at], *elements[at + 1 : at + 2]) if b.kind == "turn"
-        ]
+    if not element.is_turn:
+        sides = [beside.side for beside in elements[max(at - 1, 0) : at + 2] if beside.is_turn]
         if len(sides) == 2 and sides[0] == sides[1]:
             return Adjust(element, length=Wanted.near(HIDDEN, 0.6))
-        return Become(element, bends)
+        return Become(element, tuple(segment for segment in element.segments if segment.turn_degrees))
     return Become(element, (straight(filler, element.incline),) if filler else ())

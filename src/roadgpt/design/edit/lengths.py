@@ -35,7 +35,7 @@ def length_steps(change: Change, element: RoadElement, world: World) -> list[Edi
     aim = change.aim(before)
     share = 1 + ((LONGER if change.more > 0 else SHORTER) - 1) * change.dose
     wished = before * share if aim is None else aim
-    if element.kind == "turn":
+    if element.is_turn:
         assert seen is not None
         tight = world.limits.design_radius
         if seen.radius * wished / before >= tight:
@@ -71,7 +71,7 @@ def road_length_candidates(
         raise EditError(f"a road of {aim:.0f} m is too short; ask for {world.limits.min_length:g} m or more")
     slack = max(2.0, ROAD_SLACK * aim)
     whole = RoadLength(Range(aim - slack, aim + slack))
-    lengths = [(e, e.seen.length) for e in elements if e.kind == "gap" and e.seen is not None]
+    lengths = [(e, e.seen.length) for e in elements if not e.is_turn and e.seen is not None]
     spare = [length if aim > own else max(length - KEPT, 0.0) for _, length in lengths]
     share = (aim - own) / max(sum(spare), 1e-9)
     straights: list[EditStep] = [
@@ -81,7 +81,7 @@ def road_length_candidates(
     everything: list[EditStep] = [
         Adjust(element, length=Wanted(now, Range(SEEN))) for element, now in lengths
     ]
-    for seen, element in ((e.seen, e) for e in elements if e.kind == "turn"):
+    for seen, element in ((e.seen, e) for e in elements if e.is_turn):
         assert seen is not None
         radius = Range(min(world.limits.design_radius, seen.radius), max(WIDEST, seen.radius))
         everything.append(Adjust(element, Wanted.near(seen.degrees, 2.0), Wanted(seen.radius, radius)))

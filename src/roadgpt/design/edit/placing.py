@@ -1,18 +1,25 @@
 """Finds the elements of the road that each change of a request concerns. Main function: ``placed``."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 from roadgpt.brief.change.clashes import clash
-from roadgpt.brief.change.request import OF_SLOPE, Change, Place, Target
-from roadgpt.design.edit.likeness import with_value_of
+from roadgpt.brief.change.request import OF_SLOPE, Change, Place, Target, Way, What
+from roadgpt.check.measures import way
 from roadgpt.design.edit.pointing import among, around_middle, named, pointed, turns
 from roadgpt.design.edit.stretches import RoadStretch, stretch_of
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError, IdleEditError
 
 LEAST_FOR_HILL = 40.0  # m: the shortest straight for a crest or a dip
+RELATED: Mapping[What, frozenset[What]] = {
+    "angle": frozenset({"shape", "length", "straighten"}),
+    "radius": frozenset({"shape", "length", "straighten"}),
+    "length": frozenset({"angle", "radius", "shape", "straighten"}),
+    "slope": frozenset({"climb"}),
+}
+"""The changes that also change another property."""
 
 
 class PlacedChange(NamedTuple):
@@ -30,13 +37,23 @@ class PlacedChange(NamedTuple):
     stretch: RoadStretch | None = None
     """The stretch of the road if it is named by a distance or as a half, and its slope changes; else None."""
 
+    def without(self, others: Sequence["PlacedChange"]) -> "PlacedChange":
+        """Returns the change without the elements that one of the other changes leaves as they are.
+
+        Raises:
+            EditError: the change is of a stretch of the road, of which a part would be left out.
+        """
+        own = self.elements
+        for other in others if self.change.what != "length" or not self.change.is_of_road else ():
+            if other.change.what == self.change.what and {*other.elements} < {*own}:
+                if self.stretch is not None:
+                    raise clash(self.change, other.change)
+                own = tuple(element for element in own if element not in other.elements)
+        return self._replace(elements=own)
+
 
 def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedChange, ...]:
-    """Returns the changes with the elements that they refer to.
-
-    Args:
-        changes: the changes, as they were read from the request.
-        elements: the elements of the road before the edit.
+    """Returns the changes with the elements that they refer to on the road before the edit.
 
     Raises:
         EditError: no element matches, several match although the request means one, or the straight for a
@@ -44,18 +61,18 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
     """
     out = []
     for change in changes:
-        place = change.place
         if change.like is not None:
             out.append(_like_its_model(change, changes, elements))
         elif change.what in ("mirror", "reverse") and change.target is None:  # the whole road
             out.append(PlacedChange(change, elements))
         elif change.what == "count":
             out.append(_counted(change, elements))
-        elif change.what == "move":
-            assert change.target is not None
-            moved = tuple(pointed(change.target, elements, "side"))
-            out.append(PlacedChange(change, moved, *_marks(place, elements)))
-        elif change.what != "add":
+        elif change.what in ("move", "add"):
+            moved = (
+                pointed(change.target, elements, "side") if change.target and change.what == "move" else ()
+            )
+            out.append(PlacedChange(change, tuple(moved), *_marks(change.place, elements)))
+        else:
             assert change.target is not None
             own = tuple(pointed(change.target, elements, change.what))
             is_sloped = change.what in OF_SLOPE
@@ -63,8 +80,6 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
                 raise EditError(f"there is no road at '{change.target.words}', so it has no slope")
             stretch = stretch_of(change.target, elements) if is_sloped else None
             out.append(PlacedChange(change, own, stretch=stretch))
-        else:
-            out.append(PlacedChange(change, (), *_marks(place, elements)))
     return tuple(_on_straight(placed, elements) if placed.change.is_hill else placed for placed in out)
 
 
@@ -92,7 +107,7 @@ def _straight_at(placed: PlacedChange, elements: RoadElements) -> RoadElement | 
         if len(placed.marks) != 1 or placed.marks[0].is_turn:
             raise EditError(f"'{placed.change.words}' names no single straight; name one")
         return placed.marks[0]
-    gaps = [element for element in elements if element.kind == "gap" and element.segments]
+    gaps = [element for element in elements if not element.is_turn and element.segments]
     at = {element.name: index for index, element in enumerate(elements)}
     match how:
         case "start" | "end":
@@ -114,7 +129,8 @@ def _straight_at(placed: PlacedChange, elements: RoadElements) -> RoadElement | 
 
 
 def _like_its_model(asked: Change, changes: Sequence[Change], elements: RoadElements) -> PlacedChange:
-    """Returns a change that takes its value from another place, with this value.
+    """Returns a change that takes its value from another place ("as long as the first straight"), with this
+    value.
 
     Two places may exchange their values; the value of a model that itself takes one from a third place is not
     known.
@@ -139,7 +155,54 @@ def _like_its_model(asked: Change, changes: Sequence[Change], elements: RoadElem
         elif other.what == asked.what and not {*pointed(other.like, elements, other.what)} <= {*own}:
             raise clash(asked, other)
     stretch = stretch_of(asked.target, elements) if asked.what == "slope" else None
-    return PlacedChange(with_value_of(asked, models[0], others), own, stretch=stretch)
+    return PlacedChange(_with_value_of(asked, models[0], others), own, stretch=stretch)
+
+
+def _with_value_of(change: Change, model: RoadElement, others: Sequence[Change]) -> Change:
+    """Returns the change with the value of the element that it names as its model.
+
+    That is the value before the edit, or the new one if another change of the request gives the model one.
+
+    Raises:
+        EditError: the request compares with a straight where only turns have a value, or the value that
+            another change gives the model is not known beforehand.
+    """
+    if change.what in ("angle", "radius") and not model.is_turn:
+        raise EditError(f"'{change.words}' compares with a straight, which does not bend; name a turn")
+    seen = model.seen
+    assert seen is not None
+    measures = {"angle": seen.degrees, "radius": seen.radius, "length": seen.length, "slope": seen.grade}
+    value = measures[change.what] if change.bound else round(measures[change.what], 1)
+    direction = way(value) if change.what == "slope" else None
+    for other in others:
+        if other.what in RELATED[change.what]:
+            raise clash(change, other)
+        if other.what == change.what:
+            value, direction = _new_value(change, other, value, direction)
+    if change.what != "slope":
+        return replace(change, like=None, to=value)
+    if change.bound:
+        return replace(change, like=None, to=abs(value))
+    direction = change.way or direction
+    return replace(change, like=None, way=direction, to=None if direction == "flat" else abs(value))
+
+
+def _new_value(
+    change: Change, other: Change, value: float, direction: Way | None
+) -> tuple[float, Way | None]:
+    """Returns the value and the way of a model that another change has given it."""
+    if other.way == "flat":
+        return 0.0, "flat"
+    if other.to is not None:
+        if other.bound and not other.is_outside(abs(value)):
+            return value, direction
+        level = None if direction == "flat" else direction
+        return other.to, other.way or level
+    if change.what != "slope" and other.by is not None:
+        return value + other.more * other.by, None
+    if change.what != "slope" and other.times is not None:
+        return value * other.times, None
+    raise clash(change, other)
 
 
 def _marks(place: Place | None, elements: RoadElements) -> tuple[RoadElements, RoadElement | None]:

@@ -1,5 +1,6 @@
 """Finds the elements of a road that a target refers to: 'the second left turn', 'the straight after it'."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -7,7 +8,7 @@ from roadgpt.brief.change.request import OF_SLOPE, Place, Target, Way, What
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import way
 from roadgpt.design.edit.stretches import stretch_of, within
-from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.design.road_elements import RoadElement, RoadElements, with_stations
 from roadgpt.errors import EditError, UnclearPlaceError
 
 LONG, SHORT = 60.0, 30.0  # m: brief.words
@@ -20,11 +21,8 @@ KIND_NAMES = {"hairpin": "hairpin", "u_turn": "U-turn", "s_bend": "S-bend", "chi
 def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
     """Returns the elements that a target refers to, in driving order.
 
-    Args:
-        target: the places, as they were read from the request.
-        elements: the elements of the road before the edit.
-        what: the property to be changed; it decides what 'the end' and a target without a noun ('the second')
-            refer to.
+    The property to be changed (``what``) decides what 'the end' and a target without a noun ('the second')
+    refer to.
 
     Raises:
         EditError: no element matches, or several match although the request means one.
@@ -48,12 +46,12 @@ def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElem
 
 def turns(elements: RoadElements) -> list[RoadElement]:
     """Returns all turns."""
-    return [element for element in elements if element.kind == "turn"]
+    return [element for element in elements if element.is_turn]
 
 
 def straights(elements: RoadElements) -> list[RoadElement]:
     """Returns all straights that are long enough to be measured as straights."""
-    return [element for element in elements if element.kind == "gap" and element.seen is not None]
+    return [element for element in elements if not element.is_turn and element.seen is not None]
 
 
 def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
@@ -65,33 +63,35 @@ def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElemen
         found = _half(elements, target.half)
     if place and place.target and place.how != "on" and not is_by_distance:
         marks = [elements.index(b) for b in pointed(_single(place.target), elements, what)]
+        first, stop = 0, len(elements)
         if place.how == "after":
-            found = found[marks[-1] + 1 :]
+            first = marks[-1] + 1
         elif place.how == "before":
-            found = found[: marks[0]]
+            stop = marks[0]
         elif place.how == "from":
-            found = found[marks[0] :]
+            first = marks[0]
         elif place.how == "up_to":
-            found = found[: marks[-1] + 1]
+            stop = marks[-1] + 1
         elif place.other:
-            stop = elements.index(pointed(_single(place.other), elements, what)[0])
-            found = found[marks[-1] + 1 : stop]
+            first, stop = marks[-1] + 1, elements.index(pointed(_single(place.other), elements, what)[0])
+        there = {element.name for element in elements[first:stop]}
+        found = [element for element in found if element.name in there]
     if target.but:
         gone = {element.name for element in pointed(named(target.but), elements, what)}
         found = [element for element in found if element.name not in gone]
     if what in OF_TURNS:
-        found = [element for element in found if element.kind == "turn"]
+        found = [element for element in found if element.is_turn]
     return [element for element in found if element.segments]
 
 
 def _half(elements: RoadElements, half: int) -> list[RoadElement]:
     """Returns the elements whose middle lies in the first or in the second half of the road."""
-    whole, at, out = sum(element.length for element in elements), 0.0, list[RoadElement]()
-    for element in elements:
-        if (at + element.length / 2 < whole / 2) == (half == 1):
-            out.append(element)
-        at += element.length
-    return out
+    middle = sum(element.length for element in elements) / 2
+    return [
+        element
+        for element, at in with_stations(elements)
+        if (at + element.length / 2 < middle) == (half == 1)
+    ]
 
 
 def around_middle(gaps: Sequence[RoadElement], elements: RoadElements) -> RoadElement:
@@ -157,9 +157,9 @@ def _spared(target: Target, found: list[RoadElement], elements: RoadElements) ->
 
 def _ways(element: RoadElement, grade: float) -> set[Way]:
     """Returns whether an element climbs, falls or is level; a straight with several slopes does several."""
-    parts: dict[Way, float] = {}
+    parts = defaultdict[Way, float](float)
     for segment in element.segments:
-        parts[way(segment.incline)] = parts.get(way(segment.incline), 0.0) + segment.distance
+        parts[way(segment.incline)] += segment.distance
     long = {each for each, length in parts.items() if length >= LEAST_PART}
     return {way(grade)} if element.is_turn or len(long) < 2 else long
 
@@ -260,25 +260,22 @@ def _measure(element: RoadElement, measure: str) -> float:
     seen = element.seen
     assert seen is not None
     if measure == "sharp":
-        return -seen.radius + seen.degrees / 1000 if element.kind == "turn" else 0.0
+        return -seen.radius + seen.degrees / 1000 if element.is_turn else 0.0
     return seen.length if measure == "long" else abs(seen.grade)
 
 
 def _told(target: Target, noun: str) -> str:
+    place = target.place
     words = [
-        target.side or "",
-        {"up": "uphill", "down": "downhill", "flat": "level"}.get(target.way or "", ""),
+        target.side,
+        {"up": "uphill", "down": "downhill", "flat": "level"}.get(target.way or ""),
+        target.sharpness or target.size,
+        None if target.degrees is None else f"{target.degrees:g} degree",
+        None if target.length is None else f"{target.length:g} m",
+        KIND_NAMES.get(target.kind or "", noun),
+        f"{place.how} {place.target.words}" if place and place.target else None,
     ]
-    words.append(target.sharpness or target.size or "")
-    if target.degrees is not None:
-        words.append(f"{target.degrees:g} degree")
-    if target.length is not None:
-        words.append(f"{target.length:g} m")
-    words.append(KIND_NAMES.get(target.kind or "", noun))
-    where = ""
-    if target.place and target.place.target:
-        where = f" {target.place.how} {target.place.target.words}"
-    return " ".join(word for word in words if word) + where
+    return " ".join(word for word in words if word)
 
 
 NAMES = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth"]

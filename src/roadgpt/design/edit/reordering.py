@@ -1,13 +1,13 @@
 """Reorders the elements of a road: reverses the whole road, moves turns, or lets two change places."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from roadgpt.design.edit.placing import PlacedChange
-from roadgpt.design.edit.steps import EditCandidate, flipped
+from roadgpt.design.edit.steps import EditCandidate
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
-from roadgpt.road import Segment, World
+from roadgpt.road import World
 
 REVERSED = "the road leads from its former end to its former start; its parts are named as before"
 
@@ -18,7 +18,13 @@ class Reverse:
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements from the last to the first, each reversed."""
-        return tuple(map(_reversed, reversed(elements)))
+        return tuple(
+            element.with_segments(
+                segment.model_copy(update={"incline": 0.0 - segment.incline})
+                for segment in reversed(element.segments)
+            )
+            for element in map(RoadElement.mirrored, reversed(elements))
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,12 +125,3 @@ def reordering_sentence(placed: PlacedChange, elements: RoadElements) -> str:
 
 def _turn_names(elements: Sequence[RoadElement]) -> tuple[str, ...]:
     return tuple(element.name for element in elements if element.is_turn)
-
-
-def _reversed(element: RoadElement) -> RoadElement:
-    turned = flipped(element)
-    return replace(turned, segments=tuple(map(_falling, reversed(turned.segments))))
-
-
-def _falling(segment: Segment) -> Segment:
-    return segment.model_copy(update={"incline": 0.0 - segment.incline})

@@ -10,29 +10,31 @@ rotated.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import islice, product
-from typing import NamedTuple
+from itertools import islice, pairwise, product, takewhile
+from math import atan2, cos, degrees, hypot, pi, radians, sin
 
 from roadgpt.brief.change.clashes import clash
 from roadgpt.brief.change.request import NUMBERING
+from roadgpt.brief.model import Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import LEAST_STRAIGHT
 from roadgpt.design.edit.candidates import ChangeCandidates, is_beyond
 from roadgpt.design.edit.reordering import Reverse
 from roadgpt.design.edit.slopes import SlopeOfAll
-from roadgpt.design.edit.steps import (
-    EditCandidate,
-    EditStep,
-    Mirror,
-    RoadLength,
-    started,
-    with_room,
-)
+from roadgpt.design.edit.steps import SEPARATE, EditStep, Mirror, RoadLength
 from roadgpt.design.fit import Look, Requirements, fit
-from roadgpt.design.road_elements import RoadElements, elements_on_road, joined, numbered
+from roadgpt.design.fit.grades import graded
+from roadgpt.design.road_elements import (
+    RoadElement,
+    RoadElements,
+    elements_on_road,
+    gap,
+    joined,
+    numbered,
+)
 from roadgpt.errors import EditError, IdleEditError, UsageError
-from roadgpt.road import Design, Geometry, World
+from roadgpt.road import Design, Geometry, World, build
 from roadgpt.road.design import MAX_SEGMENTS
 
 MOST_TRIALS = 40
@@ -40,14 +42,8 @@ FITTED_WHOLE = 2  # trials that are fitted again with all elements free, if none
 LARGEST = 12  # candidates of one change that are combined with others
 SLACK = 0.03  # share by which a measured value may miss a limit
 SEEN_STRAIGHT = Feature("straight", "straight", length=Range(LEAST_STRAIGHT + 0.3))
-
-
-class Made(NamedTuple):
-    """The road with all changes of a request."""
-
-    road: Look
-    draft: Design
-    """The design before any change to elements that the request does not name."""
+HUNDREDTH = 100.0  # per degree
+DECIMALS = 6  # of the start of a reversed road and its direction
 
 
 def made(
@@ -56,15 +52,10 @@ def made(
     changes: Sequence[ChangeCandidates],
     world: World,
     geometry: Geometry,
-) -> Made:
-    """Returns the road with all changes.
+) -> tuple[Look, Design]:
+    """Returns the road with all changes, and its design before elements changed that no change names.
 
-    Args:
-        design: The road before the edit.
-        elements: The elements of that road.
-        changes: The changes, each with its candidates; one without candidates is not needed.
-        world: Size of the map, and limits that the rules check, such as the steepest grade.
-        geometry: The kind of geometry that roads are built with.
+    A change without candidates is not needed; ``elements`` are those of the road before the edit.
 
     Raises:
         EditError: The road already is as requested, or no valid road has the requested changes.
@@ -73,16 +64,13 @@ def made(
     idle = [each for each in changes if not each.ways]
     if not needed:
         raise IdleEditError(f"nothing is to be changed: '{idle[0].change.words}' is so already")
-    road, objection, draft = _fitted(design, elements, [each.ways for each in needed], world, geometry)
-    if road is None:
-        said = " and ".join(dict.fromkeys(f"'{each.change.words}'" for each in needed))
-        raise EditError(f"{said} cannot be done on this road: {objection}; ask for less, or elsewhere")
+    road, draft = _fitted(design, elements, needed, world, geometry)
     if idle and not any(each.change.what in NUMBERING for each in needed):
         _refuse_broken_limits(idle, needed, road, geometry)
     is_of_road = any(each.change.what in ("mirror", "reverse") for each in needed)
     if road.design.segments == design.segments and not is_of_road:
         raise IdleEditError(f"nothing is to be changed: '{needed[0].change.words}' is so already")
-    return Made(road, draft)
+    return road, draft
 
 
 def _refuse_broken_limits(
@@ -108,63 +96,63 @@ def _refuse_broken_limits(
 def _fitted(
     design: Design,
     elements: RoadElements,
-    changes: Sequence[Sequence[EditCandidate]],
+    changes: Sequence[ChangeCandidates],
     world: World,
     geometry: Geometry,
-) -> tuple[Look | None, str, Design]:
-    """Returns the road with all changes, an empty text, and the design before other elements had to change.
+) -> tuple[Look, Design]:
+    """Returns the road with all changes, and its design before other elements had to change.
 
-    If no valid road was found, the road is None, and the text says what was wrong with the first one tried.
+    Raises:
+        EditError: no valid road was found; the message says what was wrong with the first one tried.
     """
     objection, drafts = "", list[Look]()
     for steps in islice(_combined(changes), MOST_TRIALS):
         try:
-            needs = _requirements(steps, design, world, geometry)
+            length = next((step.room for step in reversed(steps) if isinstance(step, RoadLength)), None)
+            needs = Requirements(world, before=design, geometry=geometry)
+            needs = needs._replace(outline=replace(needs.outline, length=length))
             after = _applied(elements, steps, world)
-            begun = started(design, after, elements, world, Mirror() in steps, Reverse() in steps)
-            frozen = {element.name for element in after if not element.may_bend}
-            trial = fit(begun, after, needs, frozen)
+            begun = _started(design, after, elements, world, steps)
+            begun = graded(begun, after, needs.outline, world, design)
+            trial = fit(begun, after, needs, {element.name for element in after if not element.may_bend})
         except UsageError as error:
             objection = objection or str(error)
             continue
         if not trial.objection:
-            return trial, "", trial.design
+            return trial, trial.design
         objection = objection or trial.objection
         drafts.append(trial)
     for draft in drafts[:FITTED_WHOLE] if geometry == "arcs" else ():
         whole = fit(draft.design, _staying(draft.elements), draft.requirements._replace(before=None))
         if not whole.objection:
-            return whole, "", draft.design
-    return None, objection, design
+            return whole, draft.design
+    said = " and ".join(dict.fromkeys(f"'{each.change.words}'" for each in changes))
+    raise EditError(f"{said} cannot be done on this road: {objection}; ask for less, or elsewhere")
 
 
 def _staying(elements: RoadElements) -> RoadElements:
     """Returns the elements; a straight that was measured between two turns must be measured again."""
     own = [element for element in elements if element.segments]
-    kinds = ["turn", *(element.kind for element in own), "turn"]
-    beside = dict(zip((element.name for element in own), zip(kinds, kinds[2:], strict=False), strict=True))
+    turns = [True, *(element.is_turn for element in own), True]
+    between = {
+        element.name
+        for element, *beside in zip(own, turns[:-2], turns[2:], strict=True)
+        if not element.is_turn and all(beside)
+    }
     return tuple(
         replace(element, asked=element.asked or SEEN_STRAIGHT)
-        if element.seen and not element.is_turn and beside.get(element.name) == ("turn", "turn")
+        if element.seen and element.name in between
         else element
         for element in elements
     )
 
 
-def _combined(changes: Sequence[Sequence[EditCandidate]]) -> Iterator[tuple[EditStep, ...]]:
+def _combined(changes: Sequence[ChangeCandidates]) -> Iterator[tuple[EditStep, ...]]:
     """Yields combinations of one candidate of each change, the most preferred combinations first."""
-    some = [list(ways)[: LARGEST if len(changes) > 1 else None] for ways in changes]
+    some = [each.ways[: LARGEST if len(changes) > 1 else None] for each in changes]
     rows = product(*(range(len(ways)) for ways in some))
     for row in sorted(rows, key=lambda r: (sum(r), max(r, default=0), r)):
         yield tuple(step for ways, index in zip(some, row, strict=True) for step in ways[index])
-
-
-def _requirements(
-    steps: Sequence[EditStep], before: Design, world: World, geometry: Geometry
-) -> Requirements:
-    length = next((step.room for step in reversed(steps) if isinstance(step, RoadLength)), None)
-    needs = Requirements(world, before=before, geometry=geometry)
-    return needs._replace(outline=replace(needs.outline, length=length))
 
 
 def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) -> RoadElements:
@@ -176,7 +164,7 @@ def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) ->
     after = elements
     for step in sorted(steps, key=_rank):
         after = step.apply(after, world)
-    after = with_room(after, Reverse().apply(elements, world) if Reverse() in steps else elements)
+    after = _with_room(after, Reverse().apply(elements, world) if Reverse() in steps else elements)
     after = numbered(after)
     count = len(joined(after))
     if not 1 <= count <= MAX_SEGMENTS:
@@ -194,3 +182,63 @@ def _rank(step: EditStep) -> tuple[int, float]:
     if step.stretch is None:
         return 0, -len(step.names)
     return 1, step.stretch.start - step.stretch.end
+
+
+def _with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
+    """Returns the elements, with straights inserted between turns to the same side that are too close.
+
+    No straight is inserted if the two turns already followed each other, to the same sides, before the edit.
+    """
+    known = {_pair(one, other) for one, other in pairwise(b for b in before if b.is_turn)}
+    out: list[RoadElement] = []
+    last: RoadElement | None = None
+    metres = 0.0
+    for element in elements:
+        if element.is_turn:
+            is_new = last is not None and last.side == element.side and _pair(last, element) not in known
+            if is_new and metres < SEPARATE - 2:
+                out.append(gap(f"room before {element.name}", round(SEPARATE - metres, 1), element.incline))
+            last, metres = element, 0.0
+        else:
+            metres += element.length
+        out.append(element)
+    return tuple(out)
+
+
+def _pair(one: RoadElement, other: RoadElement) -> tuple[str, Side | None, str, Side | None]:
+    return one.name, one.side, other.name, other.side
+
+
+def _started(
+    design: Design, after: RoadElements, before: RoadElements, world: World, steps: Sequence[EditStep]
+) -> Design:
+    """Returns the design with the segments of the elements after the steps.
+
+    A reversed road starts where the road ended, and heads the opposite way. If elements were added at the
+    start, the start moves so that the rest of the road stays where it was.
+    """
+    segments = joined(after)
+    if Reverse() in steps:
+        road = build(design)
+        x, y, z = (round(float(value), DECIMALS) for value in road.at(road.length))
+        theta = degrees(float(road.heading(road.length)) + pi) % 360
+        return Design(starting_point=(x, y, z), theta=round(theta, DECIMALS) % 360, segments=segments)
+    x, y, z = design.starting_point
+    if Mirror() in steps:
+        start = world.site.map_size - x, y, z
+        theta = (180 - design.theta) % 360
+        return Design(starting_point=start, theta=round(theta, DECIMALS), segments=segments)
+    old = {element.name for element in before}
+    front = joined([*takewhile(lambda element: element.name not in old, after)])
+    if not front:
+        return design.model_copy(update={"segments": segments})
+    lead = build(Design(starting_point=(0.0, 0.0, 0.0), theta=0.0, segments=front))
+    end, turned = lead.at(lead.length), float(lead.heading(lead.length))
+    heading = radians(design.theta) - turned
+    far, way = hypot(end[0], end[1]), atan2(end[1], end[0]) + heading
+    start = x - far * cos(way), y - far * sin(way), z - float(end[2])
+    return Design(
+        starting_point=(round(start[0], 2), round(start[1], 2), round(start[2], 2)),
+        theta=round(degrees(heading) * HUNDREDTH) / HUNDREDTH % 360,
+        segments=segments,
+    )

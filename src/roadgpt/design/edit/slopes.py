@@ -1,4 +1,4 @@
-"""Lists ways to change grades: of one turn or straight, or of many elements at once."""
+"""Lists ways to change grades: of one turn or straight, of many elements at once, or for a crest or a dip."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -7,13 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roadgpt.brief.change.request import Change, Steepness, Way
+from roadgpt.brief.change.request import HILLS, Change, Steepness, Way
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import PERCENT_SLACK
 from roadgpt.check.measures import Measures, way
-from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Wanted
+from roadgpt.design.edit.placing import LEAST_FOR_HILL, PlacedChange
+from roadgpt.design.edit.steps import OFF_STEEPEST, Adjust, EditCandidate, EditStep, Wanted
 from roadgpt.design.edit.stretches import RoadStretch, pieces, within
-from roadgpt.design.road_elements import RoadElement, RoadElements, with_inclines
+from roadgpt.design.road_elements import RoadElement, RoadElements, with_inclines, with_stations
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -21,23 +22,25 @@ STEEPER, FLATTER = 1.5, 0.5  # shares of a grade
 STEEPER_BY = 2.0  # percentage points that 'steeper' adds at least
 LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
 STEEP_FROM = 4.0  # percent: the grade to which 'steeper' changes a level place
+LONGEST_HALF = 60.0  # m, from the beginning of a crest or a dip to its middle
+HILL_GRADES = (5.0, 3.5)  # percent of both slopes; the second value is tried if the first cannot be built
 
 
 class SlopeAim(NamedTuple):
     """The grade in percent at which a new slope aims, and the ranges in which it may lie."""
 
     grade: float
-    room: tuple[float, float]
-    wide_room: tuple[float, float]
+    room: Range
+    wide_room: Range
     least: tuple[float, float]
     """The least grade of each segment of a longer stretch, and another one if the first cannot be built."""
     most: float
 
 
 AIMS: dict[Steepness | None, SlopeAim] = {
-    None: SlopeAim(5.0, (3.0, 12.0), (1.3, 13.0), (4.0, 3.0), 12.0),
-    "gently": SlopeAim(3.0, (2.0, 5.0), (1.3, 5.5), (2.5, 2.0), 4.5),
-    "steeply": SlopeAim(9.5, (8.0, 15.0), (6.5, 15.0), (9.0, 8.0), 14.0),
+    None: SlopeAim(5.0, Range(3.0, 12.0), Range(1.3, 13.0), (4.0, 3.0), 12.0),
+    "gently": SlopeAim(3.0, Range(2.0, 5.0), Range(1.3, 5.5), (2.5, 2.0), 4.5),
+    "steeply": SlopeAim(9.5, Range(8.0, 15.0), Range(6.5, 15.0), (9.0, 8.0), 14.0),
 }
 """Aims of "uphill", "gently uphill" and "steeply uphill", inside the meanings in ``brief.words``."""
 
@@ -65,14 +68,13 @@ class SlopeOfAll:
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements with the new inclines."""
-        at, out = 0.0, list[RoadElement]()
-        for element in elements:
-            out.append(self._applied(element, at, world) if element.name in self.names else element)
-            at += element.length
-        return tuple(out)
+        return tuple(
+            self._applied(element, at, world) if element.name in self.names else element
+            for element, at in with_stations(elements)
+        )
 
     def _applied(self, element: RoadElement, at: float, world: World) -> RoadElement:
-        limit = 100 * world.limits.max_grade - 0.2
+        limit = 100 * world.limits.max_grade - OFF_STEEPEST
         segments, changes = element.segments, (True,) * len(element.segments)
         if self.stretch is not None:
             segments, changes = pieces(element, at, self.stretch)
@@ -87,12 +89,51 @@ class SlopeOfAll:
         return element.with_segments(with_inclines(segments, np.where(changes, after, before)))
 
 
-def is_too_steep_or_flat(change: Change, element: RoadElement) -> bool:
-    """Returns whether a segment of an element violates the limit that a change sets for slopes."""
-    return any(change.is_outside(abs(segment.incline)) for segment in element.segments)
+def slope_candidates(
+    change: Change, elements: Sequence[RoadElement], is_of_parts: bool, world: World
+) -> tuple[EditCandidate, ...]:
+    """Returns the candidates that change the slopes of many elements at once, or of those parts of them that
+    climb, fall or are level.
+    """
+    is_bounded = change.bound and elements
+    steps = [_bounded(change, elements)] if is_bounded else _slopes(change, elements, world)
+    if is_of_parts:
+        steps = [_only_parts(change, step) for step in steps]
+    return tuple((step,) for step in steps)
 
 
-def bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> SlopeOfAll:
+def _only_parts(change: Change, step: SlopeOfAll) -> SlopeOfAll:
+    """Returns the step for segments that climb, fall or are level, as the target says; they continue to do
+    so, unless the change names another direction.
+    """
+    assert change.target is not None
+    sign = step.sign
+    if change.way is None and change.target.way != "flat":
+        sign = 1 if change.target.way == "up" else -1
+    return replace(step, only=change.target.way, sign=sign)
+
+
+def stretch_candidates(
+    change: Change, elements: RoadElements, stretch: RoadStretch, world: World
+) -> tuple[EditCandidate, ...]:
+    """Returns the candidates that change the grades or the climb of one stretch of the road.
+
+    Raises:
+        EditError: as for ``climb_step``, or the grade is steeper than the rules allow.
+    """
+    parts = within(elements, stretch)
+    if change.what == "climb":
+        steps = [climb_step(change, parts, world)]
+    elif change.bound:
+        inclines = (segment.incline for element in parts for segment in element.segments)
+        is_beyond = any(change.is_outside(abs(incline)) for incline in inclines)
+        steps = [_bounded(change, parts)] if is_beyond else []
+    else:
+        steps = _slopes(change, parts, world)
+    return tuple((replace(step, stretch=stretch),) for step in steps)
+
+
+def _bounded(change: Change, elements: Sequence[RoadElement]) -> SlopeOfAll:
     """Returns the edit step that makes every element at most, or at least, as steep as the change asks."""
     names, bound = frozenset(element.name for element in elements), change.to or 0.0
     if change.bound < 0:
@@ -123,29 +164,26 @@ def slope_steps(change: Change, element: RoadElement, found: Measures, world: Wo
     elif change.times is not None:
         aim = now * change.times
     if aim is not None:
-        return _graded(element, 1, aim, (aim - 0.5, aim + 0.5), (aim - PERCENT_SLACK, aim + PERCENT_SLACK))
+        slacks = 0.5, PERCENT_SLACK
+        return _graded(element, 1, aim, *(Range(aim - slack, aim + slack) for slack in slacks))
     if change.way == "flat":
         if abs(now) < CLEARLY_LEVEL and all(abs(s.incline) < LEVEL for s in element.segments):
             return []
-        return _graded(element, 1, 0.0, (-0.5, 0.5), (-CLEARLY_LEVEL, CLEARLY_LEVEL))
+        return _graded(element, 1, 0.0, Range(-0.5, 0.5), Range(-CLEARLY_LEVEL, CLEARLY_LEVEL))
     if change.way and not change.more:
         aim_at = AIMS[change.steepness]
-        is_so = way(now) == change.way and (not change.steepness or _is_in(abs(now), aim_at.room))
+        is_so = way(now) == change.way and (not change.steepness or abs(now) in aim_at.room)
         return [] if is_so else _graded(element, sign, aim_at.grade, aim_at.room, aim_at.wide_room)
     if change.more > 0 and change.way and way(now) != change.way:
-        return _graded(element, sign, 6.0, (3.0, 12.0))
+        return _graded(element, sign, 6.0, Range(3.0, 12.0))
     if change.more < 0:
-        is_level = abs(now) < LEVEL
-        return [] if is_level else _graded(element, 1, FLATTER * now, (0.1 * now, 0.9 * now))
+        room = Range(min(0.1 * now, 0.9 * now), max(0.1 * now, 0.9 * now))
+        return [] if abs(now) < LEVEL else _graded(element, 1, FLATTER * now, room)
     steep = max(abs(now) * (1 + (STEEPER - 1) * change.dose), abs(now) + STEEPER_BY * change.dose)
     steep = min(steep if abs(now) >= LEVEL else STEEP_FROM, limit - 0.3)
     if steep <= abs(now) + 0.4:
         raise EditError(f"it is as steep as the rules allow there: {now:.1f} % of {limit:g} %")
-    return _graded(element, sign, steep, (min(abs(now) + 0.4, steep - 0.2), min(steep + 1.5, limit)))
-
-
-def _is_in(grade: float, room: tuple[float, float]) -> bool:
-    return room[0] <= grade <= room[1]
+    return _graded(element, sign, steep, Range(min(abs(now) + 0.4, steep - 0.2), min(steep + 1.5, limit)))
 
 
 def _refuse_too_steep(grade: float, limit: float) -> None:
@@ -155,16 +193,14 @@ def _refuse_too_steep(grade: float, limit: float) -> None:
         )
 
 
-def _graded(element: RoadElement, sign: int, aim: float, *rooms: tuple[float, float]) -> list[EditStep]:
+def _graded(element: RoadElement, sign: int, aim: float, *rooms: Range) -> list[EditStep]:
     """Returns a step per range of grades in percent, all with the same aim; downhill if ``sign`` is -1."""
-    ends = [sorted((sign * one, sign * other)) for one, other in rooms]
-    return [Adjust(element, grade=Wanted(sign * aim, Range(low, high))) for low, high in ends]
+    own = (room if sign > 0 else room.negative for room in rooms)
+    return [Adjust(element, grade=Wanted(sign * aim, room)) for room in own]
 
 
-def road_slope_candidates(
-    change: Change, elements: Sequence[RoadElement], world: World
-) -> tuple[EditCandidate, ...]:
-    """Returns the candidates that change the grades of many elements; none if the grades are as requested.
+def _slopes(change: Change, elements: Sequence[RoadElement], world: World) -> list[SlopeOfAll]:
+    """Returns alternative steps that change the grades of many elements; none if they are as requested.
 
     Raises:
         EditError: the grade is steeper than the rules allow.
@@ -175,87 +211,31 @@ def road_slope_candidates(
     _refuse_too_steep(change.to or 0.0, limit)
     inclines = [segment.incline for element in elements for segment in element.segments]
     if change.way == "flat" or change.to == 0:
-        slopes = [SlopeOfAll(names, least=0, most=0)]
-    elif change.to is not None:
+        return [SlopeOfAll(names, least=0, most=0)]
+    if change.to is not None:
         falls = sum(element.incline * element.length for element in elements) < 0
-        slopes = [SlopeOfAll(names, least=change.to, most=change.to, sign=sign or (-1 if falls else 1))]
-    elif change.by is not None:
-        slopes = [SlopeOfAll(names, more=(change.more or 1) * change.by)]
-    elif change.times is not None:
-        slopes = [SlopeOfAll(names, times=change.times)]
-    elif sign and not change.more:
+        return [SlopeOfAll(names, least=change.to, most=change.to, sign=sign or (-1 if falls else 1))]
+    if change.by is not None:
+        return [SlopeOfAll(names, more=(change.more or 1) * change.by)]
+    if change.times is not None:
+        return [SlopeOfAll(names, times=change.times)]
+    if sign and not change.more:
         aim_at = AIMS[change.steepness]
-        room = aim_at.room if change.steepness else (1.5, inf)
-        if inclines and all(_is_in(incline * sign, room) for incline in inclines):
-            return ()
-        slopes = [SlopeOfAll(names, least=low, most=aim_at.most, sign=sign) for low in aim_at.least]
-    elif change.more < 0:
-        if all(abs(incline) < LEVEL for incline in inclines):
-            return ()
-        slopes = [SlopeOfAll(names, times=times) for times in (FLATTER, 0.75)]
-    elif all(abs(incline) < LEVEL for incline in inclines):
-        slopes = [SlopeOfAll(names, least=STEEP_FROM, most=limit, sign=sign or 1)]
-    else:
-        shares = [1 + (times - 1) * change.dose for times in (STEEPER, 1.3, 1.15)]
-        slopes = [SlopeOfAll(names, times=times) for times in shares]
-    return tuple((slope,) for slope in slopes)
+        room = aim_at.room if change.steepness else Range(1.5)
+        if inclines and all(incline * sign in room for incline in inclines):
+            return []
+        return [SlopeOfAll(names, least=low, most=aim_at.most, sign=sign) for low in aim_at.least]
+    is_level = all(abs(incline) < LEVEL for incline in inclines)
+    if change.more < 0:
+        return [SlopeOfAll(names, times=times) for times in (FLATTER, 0.75) if not is_level]
+    if is_level:
+        return [SlopeOfAll(names, least=STEEP_FROM, most=limit, sign=sign or 1)]
+    shares = (1 + (times - 1) * change.dose for times in (STEEPER, 1.3, 1.15))
+    return [SlopeOfAll(names, times=times) for times in shares]
 
 
-def stretch_candidates(
-    change: Change, elements: RoadElements, stretch: RoadStretch, world: World
-) -> tuple[EditCandidate, ...]:
-    """Returns the candidates that change the grades or the climb of one stretch of the road.
-
-    Args:
-        change: the change of a slope or a climb.
-        elements: all elements of the road.
-        stretch: the stretch of the road that changes.
-        world: the limits that the rules check.
-
-    Raises:
-        EditError: as for ``road_slope_candidates`` and ``climb_candidates``.
-    """
-    parts = within(elements, stretch)
-    if change.what == "climb":
-        ways = climb_candidates(change, parts, world)
-    elif change.bound:
-        is_beyond = any(is_too_steep_or_flat(change, element) for element in parts)
-        ways = ((bounded_slopes(change, parts),),) if is_beyond else ()
-    else:
-        ways = road_slope_candidates(change, parts, world)
-    return tuple((replace(step, stretch=stretch),) for (step,) in ways if isinstance(step, SlopeOfAll))
-
-
-def part_slope_candidates(
-    change: Change, elements: Sequence[RoadElement], world: World
-) -> tuple[EditCandidate, ...]:
-    """Returns the candidates that change only segments that climb, fall or are level, as the target says.
-
-    For "the uphill part at 8 %", these are the segments that climb.
-
-    Raises:
-        EditError: the grade is steeper than the rules allow.
-    """
-    steps = (step for (step,) in road_slope_candidates(change, elements, world))
-    return tuple((only_parts(change, step),) for step in steps if isinstance(step, SlopeOfAll))
-
-
-def only_parts(change: Change, step: SlopeOfAll) -> SlopeOfAll:
-    """Returns the step, restricted to the segments that climb, fall or are level, as the target says.
-
-    Segments that climb or fall continue to do so, unless the change names another direction.
-    """
-    assert change.target is not None
-    sign = step.sign
-    if change.way is None and change.target.way != "flat":
-        sign = 1 if change.target.way == "up" else -1
-    return replace(step, only=change.target.way, sign=sign)
-
-
-def climb_candidates(
-    change: Change, elements: Sequence[RoadElement], world: World
-) -> tuple[EditCandidate, ...]:
-    """Returns the candidate that changes how many metres some elements climb in total.
+def climb_step(change: Change, elements: Sequence[RoadElement], world: World) -> SlopeOfAll:
+    """Returns the step that changes how many metres some elements climb in total.
 
     If all segments already climb (or fall) as required, their grades are scaled, unless one would become too
     steep. Otherwise the grades become equal.
@@ -267,16 +247,49 @@ def climb_candidates(
     length = sum(element.length for element in elements)
     rises = [segment.incline * segment.distance / 100 for each in elements for segment in each.segments]
     now = sum(rises)
-    if change.bound or (change.to is None and change.by is None and change.times is None):
+    aim = change.aim(now)
+    if change.bound or aim is None:
         raise EditError(f"'{change.words}' gives no climb in metres; write for example: road: climb =5")
-    times = 1.0 if change.times is None else change.times
-    aim = now + change.more * change.by if change.by is not None else now * times
-    aim = change.to if change.to is not None else aim
     grade = 100 * aim / length
-    limit = 100 * world.limits.max_grade - 0.2
+    limit = 100 * world.limits.max_grade - OFF_STEEPEST
     _refuse_too_steep(abs(grade), limit)
     names = frozenset(element.name for element in elements)
     steepest = max(abs(segment.incline) for each in elements for segment in each.segments)
     if aim and all(rise * aim > 0 for rise in rises) and steepest * aim / now <= limit:
-        return ((SlopeOfAll(names, times=aim / now),),)
-    return ((SlopeOfAll(names, least=abs(grade), most=abs(grade), sign=1 if aim >= 0 else -1),),)
+        return SlopeOfAll(names, times=aim / now)
+    return SlopeOfAll(names, least=abs(grade), most=abs(grade), sign=1 if aim >= 0 else -1)
+
+
+def hill_candidates(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate, ...]:
+    """Returns the candidates that put one crest or dip on the straight that a change refers to; the road's
+    length and its plan stay the same.
+    """
+    middle, half = _hill_of(placed, elements)
+    names, sign = frozenset(element.name for element in placed.elements), HILLS[placed.change.kind or ""]
+    sides = (RoadStretch(middle - half, middle), sign), (RoadStretch(middle, middle + half), -sign)
+    return tuple(
+        tuple(SlopeOfAll(names, least=grade, most=grade, sign=side, stretch=part) for part, side in sides)
+        for grade in HILL_GRADES
+    )
+
+
+def hill_sentence(placed: PlacedChange, elements: RoadElements, is_alone: bool) -> str:
+    """Returns a sentence on a new crest or dip; it says where, if the request has no other change."""
+    middle, half = _hill_of(placed, elements)
+    where = f", its middle at {middle:.0f} m" if is_alone else ""
+    return f"a {placed.change.kind} of {2 * half:.0f} m is new{where}"
+
+
+def _hill_of(placed: PlacedChange, elements: RoadElements) -> tuple[float, float]:
+    """Returns the station of the middle of a crest or a dip, and the metres from its beginning to there.
+
+    It lies in the middle of the straight or, if the change asks for the middle of the road, as near to that
+    as the straight allows.
+    """
+    (where,), place = placed.elements, placed.change.place
+    start = sum(element.length for element in elements[: elements.index(where)])
+    middle = start + where.length / 2
+    if place and place.how == "middle":
+        whole = sum(element.length for element in elements)
+        middle = min(max(whole / 2, start + LEAST_FOR_HILL / 2), start + where.length - LEAST_FOR_HILL / 2)
+    return middle, min(LONGEST_HALF, middle - start, start + where.length - middle)

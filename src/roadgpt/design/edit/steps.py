@@ -5,31 +5,21 @@ measured values must lie. ``design.fit`` then adjusts the elements that have a r
 violate a rule, or if measured values lie outside these ranges.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
-from math import atan2, ceil, cos, degrees, floor, hypot, pi, radians, sin
-from typing import NamedTuple, Protocol
+from typing import Literal, NamedTuple, Protocol
 
-import numpy as np
-
-from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature, both
 from roadgpt.brief.ranges import Range
-from roadgpt.design.elements import turn_segments
-from roadgpt.design.road_elements import FREE_STRAIGHT, RoadElement, RoadElements, gap, joined, with_inclines
+from roadgpt.design.road_elements import FREE_STRAIGHT, RoadElement, RoadElements
 from roadgpt.errors import UsageError
-from roadgpt.road import Design, Segment, World, build
+from roadgpt.road import Segment, World
 from roadgpt.road.design import MAX_TURN
 
-MILLIMETRE, CENTIMETRE, TENTH = 1000.0, 100.0, 10.0
-HUNDREDTH = 100.0  # per degree
-DECIMALS = 6  # of the start of a reversed road and its direction
-LEAST = 1.0  # m that a straight segment keeps
-TRANSITION_SHARE = 0.3  # of the arc, of a turn that is written anew without a transition of its own
 SEPARATE = 18.0  # m between turns to the same side, so that they are seen as two
 HIDDEN = 9.0  # m between turns to the same side at which they are measured as two, without a straight
 WIDEST = 250.0  # m: a turn of a larger radius is hardly seen as one
+OFF_STEEPEST = 0.2  # percentage points from a new incline to the steepest that the rules allow
 CLEARLY, FURTHER = 0.45, 1.6  # least and greatest accepted share of a change without a number ('sharper')
 
 
@@ -43,11 +33,6 @@ class EditStep(Protocol):
 
 EditCandidate = tuple[EditStep, ...]
 """Steps that together make one change."""
-
-
-def changed(elements: RoadElements, name: str, change: Callable[[RoadElement], RoadElement]) -> RoadElements:
-    """Returns the elements, with ``change`` applied to the element called ``name``."""
-    return tuple(change(element) if element.name == name else element for element in elements)
 
 
 class Wanted(NamedTuple):
@@ -82,7 +67,9 @@ class Wanted(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Adjust:
-    """Gives one element new values; a value stays as it is if the field for it is None."""
+    """Gives one element new values, whose ranges become its requirement; a value stays as it is if the field
+    for it is None.
+    """
 
     element: RoadElement
     degrees: Wanted | None = None
@@ -107,34 +94,27 @@ class Adjust:
         )
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements, with new values for ``self.element``; the ranges of these values become its
-        requirement.
-        """
-        return changed(elements, self.element.name, lambda now: self._applied(now, world))
+        """Returns the elements, with new values for ``self.element``."""
+        name = self.element.name
+        return tuple(self._applied(each, world) if each.name == name else each for each in elements)
 
     def _applied(self, now: RoadElement, world: World) -> RoadElement:
         if self.element.is_turn and not self.element.degrees:  # a spline bends before and behind its turns
             raise UsageError(f"{self.element.name} is made by no segment of the road, but by its spline")
-        if now.kind != self.element.kind:
+        if now.is_turn != self.element.is_turn:
             raise UsageError(f"{self.element.name} is to go and to be changed at once")
         if self.grade:
-            now = with_grade(now, self.grade.aim, world)
+            now = now.with_grade(self.grade.aim, 100 * world.limits.max_grade - OFF_STEEPEST)
         if self.element.is_turn:
             now = self._bent(now)
         elif self.length:
             seen = self.element.seen
             more = self.length.aim - (seen.length if seen else self.element.length)
-            now = stretched(now, self.element.length + more - now.length)
-        asked = self._asked()
+            now = now.lengthened(self.element.length + more - now.length)
+        rooms = (each and each.room for each in (self.degrees, self.radius, self.length, self.grade))
+        kind: Literal["turn", "straight"] = "turn" if self.element.is_turn else "straight"
+        asked = Feature(kind, kind, None, *rooms)
         return replace(now, asked=both(now.asked, asked) if now.asked else asked)
-
-    def _asked(self) -> Feature:
-        degrees, radius, length, grade = (
-            wanted and wanted.room for wanted in (self.degrees, self.radius, self.length, self.grade)
-        )
-        if not self.element.is_turn:
-            return Feature("straight", "straight", None, None, None, length, grade)
-        return Feature("turn", "turn", None, degrees, radius, length, grade)
 
     def _bent(self, now: RoadElement) -> RoadElement:
         """Returns the turn with scaled angles, lengths and radii.
@@ -153,81 +133,8 @@ class Adjust:
             return now
         most = max((abs(s.turn_degrees) for s in now.segments), default=0.0)
         if most * more > MAX_TURN >= most:
-            return rewritten(now, turn * more, seen.radius * wider)
-        return now.with_segments(scaled(s, more, wider) for s in now.segments)
-
-
-def with_grade(element: RoadElement, grade: float, world: World) -> RoadElement:
-    """Returns the element with another mean grade, in percent.
-
-    Its inclines are scaled if all of them already climb or fall as the new grade does; otherwise they become
-    equal.
-    """
-    limit = 100 * world.limits.max_grade - 0.2
-    aim = float(np.clip(grade, -limit, limit))
-    inclines = np.array([s.incline for s in element.segments])
-    mean = element.incline
-    if abs(mean) >= 1 and (inclines * np.sign(mean) > 0.5).all() and aim * mean > 0:
-        inclines = np.clip(inclines * aim / mean, -limit, limit)
-    else:
-        inclines = np.full(len(inclines), aim)
-    return element.with_segments(with_inclines(element.segments, inclines))
-
-
-def scaled(segment: Segment, more: float, wider: float) -> Segment:
-    """Returns a segment with its angle multiplied by ``more`` and its radius by ``wider``."""
-    if not segment.turn_degrees:
-        return segment
-    degrees = round(segment.turn_degrees * more * TENTH) / TENTH
-    more = degrees / segment.turn_degrees
-    radius = segment.radius and ceil(segment.radius * wider * CENTIMETRE) / CENTIMETRE
-    if radius and segment.radius:
-        wider = radius / segment.radius
-    exact = segment.distance * more * wider * MILLIMETRE
-    transition = segment.transition
-    if transition:
-        transition = max(floor(transition * more * wider * TENTH), 1) / TENTH
-    return segment.model_copy(
-        update={
-            "distance": max((ceil(exact) if radius else floor(exact)) / MILLIMETRE, 0.001),
-            "turn_degrees": degrees,
-            "radius": radius,
-            "transition": transition,
-        }
-    )
-
-
-def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElement:
-    """Returns a turn with a new angle and radius; its side and mean incline stay the same."""
-    transitions = [s.transition for s in element.segments if s.transition]
-    transition = transitions[0] if transitions else TRANSITION_SHARE * radius * radians(degrees)
-    segments = turn_segments(
-        degrees, 1 if element.side == "left" else -1, radius, transition, element.incline
-    )
-    return element.with_segments(segments)
-
-
-def stretched(element: RoadElement, more: float) -> RoadElement:
-    """Returns a gap whose straight segments are longer by ``more`` metres in total."""
-    straight = [i for i, s in enumerate(element.segments) if not s.turn_degrees]
-    if not straight:
-        new = Segment(distance=max(round(more * TENTH) / TENTH, LEAST), direction="straight")
-        return element.with_segments((*element.segments, new))
-    segments = list(element.segments)
-    longest = max(straight, key=lambda i: segments[i].distance)
-    if segments[longest].distance + more >= max(0.5 * segments[longest].distance, LEAST):
-        segments[longest] = _with_distance(segments[longest], segments[longest].distance + more)
-    else:
-        whole = sum(segments[i].distance for i in straight)
-        share = max((whole + more) / whole, 0.02)
-        for i in straight:
-            segments[i] = _with_distance(segments[i], segments[i].distance * share)
-    return element.with_segments(segments)
-
-
-def _with_distance(segment: Segment, distance: float) -> Segment:
-    distance = max(round(distance * 100) / 100, min(LEAST, segment.distance))
-    return segment.model_copy(update={"distance": distance})
+            return now.rewritten(turn * more, seen.radius * wider)
+        return now.scaled(more, wider)
 
 
 @dataclass(frozen=True, slots=True)
@@ -252,23 +159,7 @@ class Mirror:
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements, with the named ones mirrored."""
-        return tuple(flipped(e) if self.names is None or e.name in self.names else e for e in elements)
-
-
-def flipped(element: RoadElement) -> RoadElement:
-    """Returns the mirror image of an element."""
-    return replace(
-        element,
-        side=element.side and OTHER_SIDE[element.side],
-        segments=tuple(_mirrored(s) for s in element.segments),
-    )
-
-
-def _mirrored(segment: Segment) -> Segment:
-    if not segment.turn_degrees or segment.direction == "straight":
-        return segment
-    side = OTHER_SIDE[segment.direction]
-    return segment.model_copy(update={"direction": side, "turn_degrees": -segment.turn_degrees})
+        return tuple(e.mirrored() if self.names is None or e.name in self.names else e for e in elements)
 
 
 @dataclass(frozen=True, slots=True)
@@ -282,84 +173,5 @@ class Become:
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements with a gap in place of ``self.element``."""
-        gap = replace(
-            self.element, kind="gap", side=None, seen=None, segments=tuple(self.segments), asked=FREE_STRAIGHT
-        )
-        return changed(elements, self.element.name, lambda _: gap)
-
-
-def with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
-    """Returns the elements, with straights inserted between turns to the same side that are too close.
-
-    No straight is inserted if the two turns already followed each other, to the same sides, before the edit.
-    """
-    known = {_pair(one, other) for one, other in pairwise(b for b in before if b.kind == "turn")}
-    out: list[RoadElement] = []
-    last: RoadElement | None = None
-    metres = 0.0
-    for element in elements:
-        if element.kind == "turn":
-            is_new = last is not None and last.side == element.side and _pair(last, element) not in known
-            if is_new and metres < SEPARATE - 2:
-                out.append(gap(f"room before {element.name}", round(SEPARATE - metres, 1), element.incline))
-            last, metres = element, 0.0
-        else:
-            metres += element.length
-        out.append(element)
-    return tuple(out)
-
-
-def _pair(one: RoadElement, other: RoadElement) -> tuple[str, Side | None, str, Side | None]:
-    return one.name, one.side, other.name, other.side
-
-
-def started(
-    design: Design,
-    after: RoadElements,
-    before: RoadElements,
-    world: World,
-    is_mirrored: bool,
-    is_reversed: bool,
-) -> Design:
-    """Returns the design with the segments of the elements after the steps.
-
-    A reversed road starts where the road ended, and heads the opposite way. If elements were added at the
-    start, the start moves so that the rest of the road stays where it was.
-    """
-    segments = joined(after)
-    if is_reversed:
-        return _started_at_end(design, segments)
-    x, y, z = design.starting_point
-    if is_mirrored:
-        theta = (180 - design.theta) % 360
-        return Design(
-            starting_point=(world.site.map_size - x, y, z), theta=round(theta, 6), segments=segments
-        )
-    old = {element.name for element in before}
-    front: list[Segment] = []
-    for element in after:
-        if element.name in old:
-            break
-        front += element.segments
-    if not front:
-        return design.model_copy(update={"segments": segments})
-    lead = build(Design(starting_point=(0.0, 0.0, 0.0), theta=0.0, segments=tuple(front)))
-    end, turned = lead.at(lead.length), float(lead.heading(lead.length))
-    theta = radians(design.theta) - turned
-    far, way = hypot(end[0], end[1]), atan2(end[1], end[0]) + theta
-    start = (x - far * cos(way), y - far * sin(way), z - float(end[2]))
-    return Design(
-        starting_point=(round(start[0], 2), round(start[1], 2), round(start[2], 2)),
-        theta=round(degrees(theta) * HUNDREDTH) / HUNDREDTH % 360,
-        segments=segments,
-    )
-
-
-def _started_at_end(design: Design, segments: tuple[Segment, ...]) -> Design:
-    """Returns a Design with these segments that starts at the end of ``design``'s road and heads the
-    opposite way.
-    """
-    road = build(design)
-    x, y, z = (round(float(value), DECIMALS) for value in road.at(road.length))
-    theta = degrees(float(road.heading(road.length)) + pi) % 360
-    return Design(starting_point=(x, y, z), theta=round(theta, DECIMALS) % 360, segments=segments)
+        gap = replace(self.element, side=None, seen=None, segments=tuple(self.segments), asked=FREE_STRAIGHT)
+        return tuple(gap if element.name == gap.name else element for element in elements)

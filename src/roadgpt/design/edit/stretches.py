@@ -1,11 +1,11 @@
 """Stretches of a road by distance: "the last 80 m", "from station 50 to 100", "the first half"."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from itertools import compress
 from typing import NamedTuple
 
 from roadgpt.brief.change.request import Target
-from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.design.road_elements import RoadElement, RoadElements, with_stations
 from roadgpt.errors import EditError
 from roadgpt.road import Segment
 
@@ -22,7 +22,7 @@ class RoadStretch(NamedTuple):
     end: float
 
 
-def stretch_of(target: Target, elements: Sequence[RoadElement]) -> RoadStretch | None:
+def stretch_of(target: Target, elements: RoadElements) -> RoadStretch | None:
     """Returns the stretch that a target names by distances or as a half; None for any other target.
 
     A stretch that would begin or end within a bend begins or ends at the nearer end of that bend.
@@ -68,7 +68,7 @@ def _station(target: Target, whole: float) -> float:
     return whole - target.length if target.noun == "end" else target.length
 
 
-def _outside_bends(station: float, length: float, elements: Sequence[RoadElement]) -> float:
+def _outside_bends(station: float, length: float, elements: RoadElements) -> float:
     """Returns the station, or the nearer end of the turn in which it lies.
 
     Raises:
@@ -86,17 +86,15 @@ def _outside_bends(station: float, length: float, elements: Sequence[RoadElement
     return station
 
 
-def _bends(elements: Sequence[RoadElement]) -> Iterator[tuple[float, float]]:
+def _bends(elements: RoadElements) -> Iterator[tuple[float, float]]:
     """Yields the stations at which each turn, and each bend too slight for a turn, begins and ends."""
-    at = 0.0
-    for element in elements:
+    for element, at in with_stations(elements):
         if element.is_turn:
             yield at, at + element.length
         else:
-            for segment, start in _with_stations([element], at):
+            for segment, start in _segment_stations(element.segments, at):
                 if segment.turn_degrees:
                     yield start, start + segment.distance
-        at += element.length
 
 
 def within(elements: RoadElements, stretch: RoadStretch) -> RoadElements:
@@ -104,12 +102,11 @@ def within(elements: RoadElements, stretch: RoadStretch) -> RoadElements:
 
     Elements without such a segment are left out.
     """
-    at, out = 0.0, list[RoadElement]()
-    for element in elements:
-        own = [s for s, there in zip(*pieces(element, at, stretch), strict=True) if there]
-        out += [element.with_segments(own)] if own else []
-        at += element.length
-    return tuple(out)
+    parts = (
+        element.with_segments(compress(*pieces(element, at, stretch)))
+        for element, at in with_stations(elements)
+    )
+    return tuple(part for part in parts if part.segments)
 
 
 def pieces(
@@ -119,18 +116,17 @@ def pieces(
 
     A straight segment in which the stretch begins or ends is cut in two there.
     """
-    cut = [part for segment, start in _with_stations([element], at) for part in _cut(segment, start, stretch)]
-    whole = replace(element, segments=tuple(cut))
-    middles = [start + segment.distance / 2 for segment, start in _with_stations([whole], at)]
-    return whole.segments, tuple(stretch.start < middle < stretch.end for middle in middles)
+    pairs = _segment_stations(element.segments, at)
+    cut = [part for segment, start in pairs for part in _cut(segment, start, stretch)]
+    middles = (start + part.distance / 2 for part, start in _segment_stations(cut, at))
+    return tuple(cut), tuple(stretch.start < middle < stretch.end for middle in middles)
 
 
-def _with_stations(elements: Sequence[RoadElement], at: float = 0.0) -> Iterator[tuple[Segment, float]]:
-    """Yields the segments of elements, each with the station at which it begins."""
-    for element in elements:
-        for segment in element.segments:
-            yield segment, at
-            at += segment.distance
+def _segment_stations(segments: Sequence[Segment], at: float) -> Iterator[tuple[Segment, float]]:
+    """Yields segments, each with the station at which it begins; the first begins at ``at``."""
+    for segment in segments:
+        yield segment, at
+        at += segment.distance
 
 
 def _cut(segment: Segment, at: float, stretch: RoadStretch) -> list[Segment]:

@@ -38,7 +38,7 @@ def fit(
     """Finds a road that meets all requirements and differs from the design as little as possible.
 
     Args:
-        design: The road as it was proposed, or after the steps of an edit.
+        design: The road as it was proposed, or after the steps of an edit and then ``graded``.
         elements: The turns and straights of the road in driving order, each with its requirement; together
             they contain all segments of the design.
         requirements: The other requirements for the road.
@@ -53,8 +53,6 @@ def fit(
         UsageError: No road can be built from these segments.
     """
     world, outline, before = requirements.world, requirements.outline, requirements.before
-    if before:
-        design = graded(design, elements, outline, world, before)
     first = look(design, elements, requirements)
     free = np.array([element.name not in frozen for element in elements for _ in element.segments])
     if not first.objection or not 1 <= free.sum() <= MOST_SEGMENTS:
@@ -75,7 +73,7 @@ def fit(
         design = graded(design, first.elements, outline, world, before)
         last = look(design, first.elements, requirements)
         if not last.objection:
-            return last if before else restored(last, first)
+            return last if before else _restored(last, first)
         if best is None and before is None and last.keeps_all_but_slopes:
             best = last
     return best or first
@@ -106,14 +104,9 @@ def look(design: Design, elements: RoadElements, requirements: Requirements) -> 
     return Look(moved, elements, road, findings, requirements)
 
 
-def restored(mended: Look, first: Look) -> Look:
-    """Returns the repaired road, with changed values set back to the proposed ones where possible.
-
-    A value is set back if the road then still meets all rules and requirements.
-
-    Args:
-        mended: the repaired road; it must meet all rules and requirements.
-        first: the road as it was proposed.
+def _restored(mended: Look, first: Look) -> Look:
+    """Returns a repaired road, which meets all rules and requirements, with changed values set back to the
+    proposed ones where it then still meets them.
     """
     trials: list[tuple[float, int, str]] = []
     pairs = zip(first.design.segments, mended.design.segments, strict=True)
@@ -129,8 +122,7 @@ def restored(mended: Look, first: Look) -> Look:
         if name == "radius" and (was.distance, was.turn_degrees) != (now.distance, now.turn_degrees):
             continue  # the radius belongs to the proposed distance and angle
         rows[index] = now.model_copy(update={name: getattr(was, name)})
-        segments = tuple(rows)
-        tried = first.design.model_copy(update={"segments": segments})
+        tried = first.design.model_copy(update={"segments": tuple(rows)})
         seen = look(tried, first.elements, first.requirements)
         if not seen.objection:
             mended = seen

@@ -98,14 +98,8 @@ def graded(
     """Returns the design with inclines and parabolas for which the measured grades are as required.
 
     If no such design obeys the rule ``too_abrupt``, the last one with the required grades is returned; if
-    there is none, the first that was tried. The plan and the start stay the same.
-
-    Args:
-        design: the design as it was proposed, or after the steps of an edit.
-        elements: the elements of the design, each with its requirement.
-        outline: requirements for the whole road.
-        world: the limits that the rules check, such as the steepest grade.
-        before: the road before an edit; None for a proposal.
+    there is none, the first that was tried. The plan and the start stay the same. ``before`` is the road
+    before an edit, and None for a proposal.
     """
     slopes = _slopes_of_edit(elements, world) if before else _slopes_of_proposal(elements, outline, world)
     lengths, inclines = [s.distance for s in design.segments], [s.incline for s in design.segments]
@@ -147,7 +141,7 @@ def graded(
 
 def _slopes_of_edit(elements: RoadElements, world: World) -> _Slopes:
     """Returns the grades of an edited road: elements without a required grade keep their inclines."""
-    limit = _limit_of(world)
+    limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
     asked = [element.asked.grade if element.asked else None for element in elements]
     aims = (grade.drawn_in(INSIDE, 1 / 3) if grade else limit for grade in asked)
     bounds = (
@@ -158,13 +152,9 @@ def _slopes_of_edit(elements: RoadElements, world: World) -> _Slopes:
     return _Slopes(elements, tuple(asked), tuple(aims), tuple(bounds))
 
 
-def _limit_of(world: World) -> Range:
-    return Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
-
-
 def _slopes_of_proposal(elements: RoadElements, outline: Outline, world: World) -> _Slopes:
     """Returns the grades of a proposal: turns go up, down or level as proposed, or as required."""
-    limit = _limit_of(world)
+    limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
     accepted, aims, bounds = list[Range | None](), list[Range](), list[Range]()
     for element in elements:
         class_, *ways = map(way, (element.incline, *(s.incline for s in element.segments)))

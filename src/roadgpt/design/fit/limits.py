@@ -82,12 +82,7 @@ class PlanPolyline(NamedTuple):
 
     def walk(self, lengths: Array, turns: Array, heading: float) -> tuple[Complex, Complex]:
         """Returns the points ``(k + 1,)`` of the polyline as x + iy, starting at the origin, and its steps
-        ``(k,)``.
-
-        Args:
-            lengths: lengths of the segments in metres.
-            turns: turning angles of the segments in radians, left positive.
-            heading: heading at the start in radians.
+        ``(k,)``, for these lengths and turns of the segments, in metres and radians.
         """
         count = np.bincount(self.owner, minlength=len(lengths))
         before = np.concatenate([[0.0], np.cumsum(turns)[:-1]])
@@ -234,16 +229,14 @@ class _Rows:
         self.most.append(most)
 
     def within(self, members: Sequence[int], span: Range | None) -> None:
-        """Adds the constraint that the total length of the given segments lies within a range, in metres."""
+        """Adds the limits of the total length of some segments, in metres."""
         if span and span.lo > 0:
             self.add(dict.fromkeys(members, -1.0), {}, -span.lo)
         if span and span.hi < inf:
             self.add(dict.fromkeys(members, 1.0), {}, span.hi)
 
     def turned(self, members: Sequence[int], span: Range | None) -> None:
-        """Adds the constraint that the total turning angle of the given segments lies within a range, in
-        degrees.
-        """
+        """Adds the limits of the total turning angle of some segments, in degrees."""
         if span and span.lo > 0:
             self.add({}, dict.fromkeys(members, -METRES_PER_RADIAN), -METRES_PER_RADIAN * radians(span.lo))
         if span and span.hi < inf:
@@ -262,15 +255,8 @@ def _limits_of(
     world: World,
     margins: Margins,
 ) -> tuple[Array, Array]:
-    """Returns all limits of lengths and turns as a matrix ``(m, 2 n)`` and a right-hand side ``(m,)``.
-
-    Args:
-        segments: The ``n`` segments as proposed.
-        elements: The turns and straights that the segments form, some with requirements of their own.
-        peak: Ratio of maximum to mean curvature of each segment, ``(n,)``.
-        outline: The requirements of the whole road.
-        world: The limits that the rules check, such as the steepest grade.
-        margins: The distances to keep from the limits.
+    """Returns all limits of lengths and turns as a matrix ``(m, 2 n)`` and a right-hand side ``(m,)``;
+    ``peak`` is the ratio of maximum to mean curvature of each of the ``n`` segments.
     """
     rows = _Rows(len(segments))
     radius = world.limits.min_radius * margins.radius

@@ -15,8 +15,6 @@ from roadgpt.check.rules.promises import complaints
 from roadgpt.design.road_elements import RoadElements, features_of, shows_slopes, shows_turns
 from roadgpt.road import Design, Geometry, Road, World
 
-CENTIMETRE = 100.0  # per metre: heights are written in centimetres
-
 
 class Requirements(NamedTuple):
     """The requirements for a road, in addition to those for each of its elements."""

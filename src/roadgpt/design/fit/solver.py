@@ -86,7 +86,7 @@ def _descended(aim: Aim, share: float) -> Solution:
         change = np.abs(units * (v[: 2 * n] - _proposed(aim)))
         weights = np.sqrt(FEW / (change + FEW))
     change = units * (v[: 2 * n] - _proposed(aim))
-    broken = _misses(aim, hands, v)
+    broken, _ = _misses(aim, hands, v, with_slopes=False)
     return Solution(
         v[:n], hands * v[n : 2 * n], float(change @ change), float(broken.max(initial=0.0)), steps
     )
@@ -132,12 +132,12 @@ def _settled(
 
     def total(at: Array) -> float:
         change = weights * units * (at[: 2 * n] - _proposed(aim))
-        missed = _misses(aim, hands, at)
+        missed, _ = _misses(aim, hands, at, with_slopes=False)
         return float(change @ change + penalty * (missed @ missed))
 
     now = total(v)
     for taken in range(STEPS):
-        missed, slopes = _misses_and_slopes(aim, hands, v)
+        missed, slopes = _misses(aim, hands, v)
         slopes = slopes[:, free] * scale
         change = np.concatenate([weights**2 * units * (v[: 2 * n] - _proposed(aim)), np.zeros(3)])[free]
         matrix = own + penalty * (slopes.T @ slopes)
@@ -161,12 +161,7 @@ def _settled(
     return v, taken
 
 
-def _misses(aim: Aim, hands: Array, v: Array) -> Array:
-    """Returns the metres by which limits are exceeded, ``(m,)``."""
-    return _misses_and_slopes(aim, hands, v, with_slopes=False)[0]
-
-
-def _misses_and_slopes(aim: Aim, hands: Array, v: Array, with_slopes: bool = True) -> tuple[Array, Array]:
+def _misses(aim: Aim, hands: Array, v: Array, with_slopes: bool = True) -> tuple[Array, Array]:
     """Returns the metres by which limits are exceeded, ``(m,)``, and their derivatives by every unknown."""
     n = len(aim.lengths)
     by_rows = aim.rows @ v[: 2 * n] - aim.most
@@ -220,34 +215,26 @@ def _written(aim: Aim, lengths: Array, turns: Array) -> tuple[Segment, ...]:
     Radii are scaled accordingly. A radius that becomes too small is removed together with its transition, and
     a transition that becomes too long is shortened.
     """
-    radius = aim.world.limits.min_radius * aim.margins.radius
+    tightest = aim.world.limits.min_radius * aim.margins.radius
     out = []
     for segment, length, turn, may_change in zip(aim.proposed, lengths, turns, aim.free, strict=True):
         if not may_change:
             out.append(segment)
             continue
-        distance, degrees = (
-            _rounded(float(length), segment.distance),
-            _rounded(float(np.degrees(turn)), segment.turn_degrees),
-        )
-        update: dict[str, float | None] = {"distance": distance, "turn_degrees": degrees}
-        if segment.radius and degrees:
-            grown = segment.radius * (distance / segment.distance) * (segment.turn_degrees / degrees)
-            fits_in = grown >= radius
-            update["radius"] = (
-                ceil(grown * CENTIMETRE) / CENTIMETRE
-                if fits_in and grown != segment.radius
-                else segment.radius
-                if fits_in
-                else None
-            )
-            if not fits_in:
-                update["transition"] = None
-        transition = update.get("transition", segment.transition)
-        if degrees and not update.get("radius"):
-            most = max(distance - radius * abs(np.radians(degrees)), SHORTEST_TRANSITION)
+        distance = _rounded(float(length), segment.distance)
+        degrees = _rounded(float(np.degrees(turn)), segment.turn_degrees)
+        radius, transition = segment.radius, segment.transition
+        if radius and degrees:
+            grown = radius * (distance / segment.distance) * (segment.turn_degrees / degrees)
+            if grown < tightest:
+                radius = transition = None
+            elif grown != radius:
+                radius = ceil(grown * CENTIMETRE) / CENTIMETRE
+        if degrees and not radius:
+            most = max(distance - tightest * abs(np.radians(degrees)), SHORTEST_TRANSITION)
             if (transition or min(distance / 4, 12.0)) > most:
-                update["transition"] = floor(most * TENTH) / TENTH
+                transition = floor(most * TENTH) / TENTH
+        update = {"distance": distance, "turn_degrees": degrees, "radius": radius, "transition": transition}
         out.append(segment.model_copy(update=update))
     return tuple(out)
 

@@ -1,7 +1,7 @@
 """The default driver under test: cuts corners and brakes late, as BeamNG's AI did in recordings."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +24,7 @@ PURSUIT_CUTS = 8.5  # m^2: the car runs inside its line by this times its curvat
 TIGHTEST = 0.2  # lower bound of 1 + 2k, for centre lines that turn more tightly than the lane can
 
 
+@dataclass(eq=False)
 class BeamngLike:
     """Cuts the inside of every bend, as BeamNG's AI did in recordings.
 
@@ -71,28 +72,20 @@ class BeamngLike:
 
     name = "beamng_like"
 
-    def __init__(
-        self,
-        cut: float = 3.85,
-        sharpness: float = 0.104,
-        aside: float = 0.1,
-        joining: float = 35.0,
-        eagerness: float = 0.5,
-        risk: float = 0.64,
-        headway: float = 0.65,
-        nearest: float = 7.75,
-        compensation: float = 0.003,
-        throttle: float = 0.2,
-        brake: float = 0.4,
-        edge_room: float | None = 0.3,
-        assumed_friction: float | None = 1.0,
-        wheelbase: float = 2.83,
-    ) -> None:
-        self.cut, self.sharpness, self.eagerness, self.risk = cut, sharpness, eagerness, risk
-        self.aside, self.joining = aside, joining
-        self.headway, self.nearest = headway, nearest
-        self.compensation, self.throttle, self.brake = compensation, throttle, brake
-        self.edge_room, self.assumed_friction, self.wheelbase = edge_room, assumed_friction, wheelbase
+    cut: float = 3.85
+    sharpness: float = 0.104
+    aside: float = 0.1
+    joining: float = 35.0
+    eagerness: float = 0.5
+    risk: float = 0.64
+    headway: float = 0.65
+    nearest: float = 7.75
+    compensation: float = 0.003
+    throttle: float = 0.2
+    brake: float = 0.4
+    edge_room: float | None = 0.3
+    assumed_friction: float | None = 1.0
+    wheelbase: float = 2.83
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Plans the line and the speed for a road."""

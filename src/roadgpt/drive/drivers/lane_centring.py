@@ -4,6 +4,7 @@ camera sees.
 
 import math
 from collections import deque
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from roadgpt.drive.drivers.reference import Reference
@@ -24,6 +25,7 @@ STRAIGHT = 1e-6  # 1/m; a smaller curvature limits no speed
 TURN = 2 * math.pi
 
 
+@dataclass(eq=False)
 class LaneCentring:
     """Keeps to the middle of its lane with limited lateral acceleration; knows only what its camera sees.
 
@@ -61,28 +63,21 @@ class LaneCentring:
 
     name = "lane_centring"
 
-    def __init__(
-        self,
-        strength: float = 2.86,
-        jerk: float = 5.0,
-        aim: float = 1.9,
-        slowest: float = 20 / 3.6,
-        braking: float = 2.5,
-        hardest: float = 3.5,
-        acceleration: float = 2.0,
-        lag: float = 0.2,
-        sight: float = 40.0,
-        aside: float = 5.0,
-        eye_height: float = 1.3,
-        headway: float = 1.0,
-        nearest: float = 6.0,
-        drift: float = 5.0,
-        wheelbase: float = 2.83,
-    ) -> None:
-        self.strength, self.jerk, self.aim, self.slowest = strength, jerk, aim, slowest
-        self.braking, self.hardest, self.acceleration, self.lag = braking, hardest, acceleration, lag
-        self.sight, self.aside, self.eye_height = sight, aside, eye_height
-        self.headway, self.nearest, self.drift, self.wheelbase = headway, nearest, drift, wheelbase
+    strength: float = 2.86
+    jerk: float = 5.0
+    aim: float = 1.9
+    slowest: float = 20 / 3.6
+    braking: float = 2.5
+    hardest: float = 3.5
+    acceleration: float = 2.0
+    lag: float = 0.2
+    sight: float = 40.0
+    aside: float = 5.0
+    eye_height: float = 1.3
+    headway: float = 1.0
+    nearest: float = 6.0
+    drift: float = 5.0
+    wheelbase: float = 2.83
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Computes the middle of the lane, and forgets the last road."""

@@ -1,6 +1,7 @@
 """The pure-pursuit driver: a simple, weak baseline."""
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from roadgpt.drive.driving_line import line_along, pedals, pursuit_curvature, stations
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 
+@dataclass(eq=False)
 class PurePursuit:
     """Steers along a circle to a point ahead in the middle of the lane; ignores tyre slip.
 
@@ -27,10 +29,10 @@ class PurePursuit:
 
     name = "pure_pursuit"
 
-    def __init__(
-        self, risk: float = 0.7, headway: float = 0.65, nearest: float = 4.5, wheelbase: float = 2.83
-    ) -> None:
-        self.risk, self.headway, self.nearest, self.wheelbase = risk, headway, nearest, wheelbase
+    risk: float = 0.7
+    headway: float = 0.65
+    nearest: float = 4.5
+    wheelbase: float = 2.83
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Plans the speed along the middle of the lane."""

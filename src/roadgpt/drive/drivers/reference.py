@@ -2,6 +2,7 @@
 feedback."""
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from roadgpt.drive.driving_line import line_along, pedals, stations
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 TURN = 2 * math.pi
 
 
+@dataclass(eq=False)
 class Reference:
     """Keeps to the middle of its lane; a road on which it fails is probably not drivable.
 
@@ -43,22 +45,15 @@ class Reference:
 
     name = "reference"
 
-    def __init__(
-        self,
-        risk: float = 0.6,
-        wheelbase: float = 2.83,
-        to_rear: float = 1.47,
-        understeer: float = 0.0020,
-        slip: float = 0.0055,
-        gain: float = 0.10,
-        ahead: float = 5.0,
-        headway: float = 0.25,
-        lag: float = 0.10,
-    ) -> None:
-        self.risk = risk
-        self.wheelbase, self.to_rear = wheelbase, to_rear
-        self.understeer, self.slip = understeer, slip
-        self.gain, self.ahead, self.headway, self.lag = gain, ahead, headway, lag
+    risk: float = 0.6
+    wheelbase: float = 2.83
+    to_rear: float = 1.47
+    understeer: float = 0.0020
+    slip: float = 0.0055
+    gain: float = 0.10
+    ahead: float = 5.0
+    headway: float = 0.25
+    lag: float = 0.10
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Plans the line and the speed for a road."""

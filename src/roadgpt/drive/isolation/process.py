@@ -53,16 +53,11 @@ class DriverProcess:
         threading.Thread(target=self._watch, name="roadgpt-driver", daemon=True).start()
 
     def ask(self, seconds: float, what: str, *given: Any) -> dict[str, Any]:
-        """Sends a request to the driver's process, and waits for the answer.
+        """Calls the method ``what`` of the object that holds the driver in its process, and returns the
+        answer.
 
-        Args:
-            seconds: time limit for the answer.
-            what: name of a method of the object that holds the driver in that process.
-            given: arguments for this method.
-
-        Returns:
-            The answer, as a dictionary. After an error in that process, its keys are ``said`` (the message),
-            ``is_users`` (whether to raise a UsageError) and ``trace`` (the traceback).
+        After an error in that process, the keys of the answer are ``said`` (the message), ``is_users``
+        (whether to raise a UsageError) and ``trace`` (the traceback).
 
         Raises:
             GoneError: the process ended, or was ended because it did not answer within ``seconds``, took too

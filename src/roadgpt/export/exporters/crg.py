@@ -6,7 +6,6 @@ the heights of the road and no roughness.
 
 import math
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -54,18 +53,11 @@ def document(road: Road, world: World) -> str:
     step = road.length / count
     points = finite(road.at(np.linspace(0.0, road.length, count + 1)))
     headings = np.array(_headings(points[:, :2].tolist(), step))
-    across = _across(headings, step, world.profile_of(road), road.length)
+    right, left = _across(headings, step, world.profile_of(road), road.length)
     phi = [NOTHING, *map(_field, headings.tolist())]
-    edges = [map(_field, _heights(road, points, t).tolist()) for t in (across.right, across.left)]
+    edges = [map(_field, _heights(road, points, t).tolist()) for t in (right, left)]
     rows = [f"{turned}{right}{left}" for turned, right, left in zip(phi, *edges, strict=True)]
-    return "\n".join([*_header(road.length, step, points, headings, across), *rows, ""])
-
-
-class _Across(NamedTuple):
-    """How far the surface reaches to both sides of the centre line in plan, in metres to the left."""
-
-    right: float
-    left: float
+    return "\n".join([*_header(road.length, step, points, headings, right, left), *rows, ""])
 
 
 def _heights(road: Road, points: Array, t: float) -> Array:
@@ -81,7 +73,9 @@ def _heights(road: Road, points: Array, t: float) -> Array:
     return finite(road.at(at, t / np.cos(road.profile.superelevation(at)))[:, 2])
 
 
-def _header(length: float, step: float, points: Array, headings: Array, across: _Across) -> list[str]:
+def _header(
+    length: float, step: float, points: Array, headings: Array, right: float, left: float
+) -> list[str]:
     """Returns the header: lines of text that define the reference line, the surface's width, and the columns
     of a cross-section."""
     end = points[0, :2] + step * np.array([np.cos(headings).sum(), np.sin(headings).sum()])
@@ -96,7 +90,7 @@ def _header(length: float, step: float, points: Array, headings: Array, across: 
         "end_y": end[1],
         "end_phi": headings[-1],
     }
-    sides = {"v_right": across.right, "v_left": across.left, "v_increment": across.left - across.right}
+    sides = {"v_right": right, "v_left": left, "v_increment": left - right}
     return [
         "$CT",
         "RoadGPT: smooth road, heights along the centre line",
@@ -134,8 +128,9 @@ def _headings(points: list[list[float]], step: float) -> list[float]:
     return out
 
 
-def _across(headings: Array, step: float, profile: Profile, length: float) -> _Across:
-    """Returns the extent of lanes and shoulders, reduced to what the tightest bend allows.
+def _across(headings: Array, step: float, profile: Profile, length: float) -> tuple[float, float]:
+    """Returns how far lanes and shoulders reach to the right and left, reduced to what the tightest bend
+    allows, as offsets in metres to the left of the centre line.
 
     Raises:
         ExportError: In the tightest bend, not even the lanes have room.
@@ -148,7 +143,7 @@ def _across(headings: Array, step: float, profile: Profile, length: float) -> _A
             "use wider bends or a narrower lane"
         )
     rims = profile.rims(np.linspace(0.0, length, len(headings) + 1))
-    return _Across(max(float(rims.right.min()), -room), min(float(rims.left.max()), room))
+    return max(float(rims.right.min()), -room), min(float(rims.left.max()), room)
 
 
 def _field(value: float) -> str:

@@ -32,15 +32,15 @@ class Csv:
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the road to ``path``, and the drive to NAME.drive.csv unless ``poses`` is None."""
-        of = road.sample(STEP)
-        wide, shoulder = world.profile_of(road).width(of.s), world.profile_of(road).shoulder(of.s)
-        columns = [of.s, of.x, of.y, of.z, of.heading, of.curvature, of.grade, wide, shoulder]
-        profile, names = world.profile_of(road), ROAD
+        of, profile, names = road.sample(STEP), world.profile_of(road), ROAD
+        columns = [of.s, of.x, of.y, of.z, of.heading, of.curvature, of.grade]
+        columns += [profile.width(of.s), profile.shoulder(of.s)]
         if profile != Profile.of(1, 1, world.section.lane_width, world.section.shoulder):
             left, right = profile.lane_edges(of.s)
             edges = dict(enumerate(left, 1)) | {-n: t for n, t in enumerate(right, 1)}
-            names = ",".join([ROAD, "superelevation_rad", *(f"lane_{n}_edge_m" for n in sorted(edges)[::-1])])
-            columns += [profile.superelevation(of.s), *(edges[n] for n in sorted(edges)[::-1])]
+            numbers = sorted(edges, reverse=True)
+            names = ",".join([ROAD, "superelevation_rad", *(f"lane_{n}_edge_m" for n in numbers)])
+            columns += [profile.superelevation(of.s), *(edges[n] for n in numbers)]
         _write(path, names, columns)
         if poses is not None:
             p = poses

@@ -54,9 +54,9 @@ def _lanes(road: Road, world: World, s: Array) -> Iterator[dict[str, Any]]:
     If there are several lanes on a side, their names contain numbers, from 1 at the centre line.
     """
     profile = world.profile_of(road)
-    left, right = profile.lane_edges(s)
+    edges = profile.lane_edges(s)
     counts = profile.count[::-1] if profile.left_hand else profile.count
-    for side, outer, count in zip(("right", "left"), (right, left), counts, strict=True):
+    for side, outer, count in zip(("right", "left"), edges[::-1], counts, strict=True):
         for n in range(count):
             inner = outer[n - 1] if n else np.zeros(len(s))
             width = np.abs(outer[n] - inner)
@@ -65,7 +65,10 @@ def _lanes(road: Road, world: World, s: Array) -> Iterator[dict[str, Any]]:
             properties = {**(several if np.ptp(width) > SAME else one), "friction": world.site.friction}
             low, high = (outer[n], inner) if side == "right" else (inner, outer[n])
             name = f"{side} lane" if count == 1 else f"{side} lane {n + 1}"
-            yield _area(name, road.at(s, low), road.at(s, high), properties)
+            # counter-clockwise, as the standard requires
+            right, left = road.at(s, low), road.at(s, high)
+            ring = _on_globe(np.concatenate([right, left[::-1], right[:1]]))
+            yield _feature(name, {"type": "Polygon", "coordinates": [ring]}, properties)
 
 
 def _paved(route: Route, world: World) -> Iterator[dict[str, Any]]:
@@ -84,12 +87,6 @@ def _paved(route: Route, world: World) -> Iterator[dict[str, Any]]:
 
 def _line(name: str, points: Array, properties: dict[str, Any]) -> dict[str, Any]:
     return _feature(name, {"type": "LineString", "coordinates": _on_globe(points)}, properties)
-
-
-def _area(name: str, right: Array, left: Array, properties: dict[str, Any]) -> dict[str, Any]:
-    """Returns the polygon between two edges, counter-clockwise as the standard requires."""
-    ring = _on_globe(np.concatenate([right, left[::-1], right[:1]]))
-    return _feature(name, {"type": "Polygon", "coordinates": [ring]}, properties)
 
 
 def _feature(name: str, geometry: dict[str, Any], properties: dict[str, Any]) -> dict[str, Any]:

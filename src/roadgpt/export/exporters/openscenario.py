@@ -6,7 +6,7 @@ on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855
 """
 
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
 from statistics import mean
@@ -57,40 +57,41 @@ class OpenScenario:
 def scenario(road: Road, world: World, map_: str) -> XmlElement:
     """Returns a scenario in which the car starts from rest, slows down for bends, and drives to the end of
     the road or of the route. ``map_`` is the path of the OpenDRIVE file, relative to the scenario.
+
+    The waypoints of a route are its start, the middle of each lane between the first and the last, and its
+    end. The scenario also ends if the car drives for too long.
     """
-    if isinstance(road, Route):
-        return _along_route(road, world, map_)
-    profile = calm_profile(road, world, start_of(road))
+    plan = calm_profile(road, world)
     # stations are those of the rear axle
-    start, end = max(start_of(road) + CAR.rear_axle, 0.0), goal_of(road) + CAR.rear_axle
-    root, actions, story = _frame(
-        world, map_, "A car drives the right lane from the start of the road to its end."
-    )
-    lane = -1 - world.profile_of(road).driven
-    _start(actions, [_in_lane(lane, s) for s in (start, road.length)])
-    _act(story, "drive").extended(_profile(profile))
-    along = {"coordinateSystem": "road", "relativeDistanceType": "longitudinal"}
-    _stop_at(root, _in_lane(lane, road.length), road.length - end, along, profile)
-    return root
-
-
-def _along_route(route: Route, world: World, map_: str) -> XmlElement:
-    """Returns a scenario in which the car drives a route through a network. Its waypoints are the start, the
-    middle of each lane between the first and the last, and the end.
-    """
-    profile = calm_profile(route, world, start_of(route))
-    root, actions, story = _frame(world, map_, "A car drives a route through a network of roads.")
-    middles = [mean(both) for both in pairwise(route.starts)]
-    places = (max(start_of(route) + CAR.rear_axle, 0.0), *middles[1:-1], route.length)
-    waypoints = [_on_route(route, s) for s in places]
-    _start(actions, waypoints)
-    _act(story, "drive").extended(_profile(profile))
-    straight = {"coordinateSystem": "entity", "relativeDistanceType": "euclidianDistance"}
-    left = route.length - goal_of(route) - CAR.rear_axle
-    # a route that turns back ends beside its start
-    driven = XmlElement("EntityCondition")
-    driven.add("TraveledDistanceCondition", {"value": round(route.length / 2, DECIMALS)})
-    _stop_at(root, waypoints[-1], left, straight, profile, {"half of it is driven": _of_ego(driven)})
+    start, near = max(start_of(road) + CAR.rear_axle, 0.0), road.length - (goal_of(road) + CAR.rear_axle)
+    also: dict[str, XmlElement] = {}
+    if isinstance(road, Route):
+        told = "A car drives a route through a network of roads."
+        middles = [mean(both) for both in pairwise(road.starts)]
+        waypoints = [_on_route(road, s) for s in (start, *middles[1:-1], road.length)]
+        measured = {"coordinateSystem": "entity", "relativeDistanceType": "euclidianDistance"}
+        # a route that turns back ends beside its start
+        driven = XmlElement("EntityCondition")
+        driven.add("TraveledDistanceCondition", {"value": round(road.length / 2, DECIMALS)})
+        also["half of it is driven"] = _of_ego(driven)
+    else:
+        told = "A car drives the right lane from the start of the road to its end."
+        lane = -1 - world.profile_of(road).driven
+        waypoints = [_in_lane(lane, s) for s in (start, road.length)]
+        measured = {"coordinateSystem": "road", "relativeDistanceType": "longitudinal"}
+    root, actions, story = _frame(world, map_, told)
+    actions.add("PrivateAction").add("TeleportAction").extended(waypoints[0])
+    actions.add("PrivateAction").extended(_speed(0.0))
+    assigned = actions.add("PrivateAction").add("RoutingAction").add("AssignRouteAction")
+    points = assigned.add("Route", {"name": "to the end", "closed": "false"})
+    for waypoint in waypoints:
+        points.add("Waypoint", {"routeStrategy": "shortest"}).extended(waypoint)
+    _act(story, "drive").extended(_profile(plan))
+    reached = XmlElement("EntityCondition")
+    distance: dict[str, Value] = {"value": round(near, DECIMALS), "freespace": "false", "rule": "lessThan"}
+    reached.add("DistanceCondition", {**distance, **measured}).extended(waypoints[-1])
+    most = round(float(plan.time[-1]) + PATIENCE, DECIMALS)
+    _stop(root, {"the end is near": _of_ego(reached), **also}, {"too long": _after(most)})
     return root
 
 
@@ -103,41 +104,6 @@ def _on_route(route: Route, s: float) -> XmlElement:
     along = min(s - route.starts[first], member.road.length)
     is_along = member.profile.leads_along(leg.lane)
     return _in_lane(leg.lane, along if is_along else member.road.length - along, leg.road)
-
-
-def _start(actions: XmlElement, waypoints: Sequence[XmlElement]) -> None:
-    """Puts the car at the first of some positions, at rest, and gives it a route along all of them."""
-    actions.add("PrivateAction").add("TeleportAction").extended(waypoints[0])
-    actions.add("PrivateAction").extended(_speed(0.0))
-    route = actions.add("PrivateAction").add("RoutingAction").add("AssignRouteAction")
-    points = route.add("Route", {"name": "to the end", "closed": "false"})
-    for waypoint in waypoints:
-        points.add("Waypoint", {"routeStrategy": "shortest"}).extended(waypoint)
-
-
-def _stop_at(
-    root: XmlElement,
-    end: XmlElement,
-    near: float,
-    measured: dict[str, str],
-    profile: SpeedProfile,
-    also: Mapping[str, XmlElement] | None = None,
-) -> None:
-    """Ends the scenario when the car drives for too long, or when it is less than ``near`` metres from the
-    position ``end`` and the conditions ``also`` hold.
-
-    ``measured`` holds the attributes that say how the distance is measured.
-    """
-    reached = XmlElement("EntityCondition")
-    told: dict[str, Value] = {
-        "value": round(near, DECIMALS),
-        "freespace": "false",
-        "rule": "lessThan",
-        **measured,
-    }
-    reached.add("DistanceCondition", told).extended(end)
-    most = round(float(profile.time[-1]) + PATIENCE, DECIMALS)
-    _stop(root, {"the end is near": _of_ego(reached), **(also or {})}, {"too long": _after(most)})
 
 
 def _of_ego(condition: XmlElement) -> XmlElement:
@@ -160,7 +126,11 @@ def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
     actions.add("PrivateAction").extended(_speed(round(float(poses.speed[0]), DECIMALS)))
     begin = _drives_off(ground)
     follow = _act(story, "repeat", float(time[begin])).add("RoutingAction").add("FollowTrajectoryAction")
-    follow.extended(_trajectory(time[begin:], np.vstack([rows[:1], rows[begin + 1 :]])))
+    trajectory = follow.add("TrajectoryRef").add("Trajectory", {"name": "drive", "closed": "false"})
+    line = trajectory.add("Shape").add("Polyline")
+    vertices = np.vstack([rows[:1], rows[begin + 1 :]])
+    for moment, row in zip(time[begin:].tolist(), vertices, strict=True):
+        line.add("Vertex", {"time": moment}).extended(_in_world(row))
     timing: dict[str, Value] = {"domainAbsoluteRelative": "absolute", "scale": 1, "offset": 0}
     follow.add("TimeReference").add("Timing", timing)
     follow.add("TrajectoryFollowingMode", {"followingMode": "position"})
@@ -176,14 +146,6 @@ def _drives_off(ground: Array) -> int:
     """
     away = np.linalg.norm(ground - ground[0], axis=1) > STANDS
     return max(int(np.argmax(away)) - 1, 0)
-
-
-def _trajectory(time: Array, rows: Array) -> XmlElement:
-    out = XmlElement("TrajectoryRef")
-    line = out.add("Trajectory", {"name": "drive", "closed": "false"}).add("Shape").add("Polyline")
-    for moment, row in zip(time.tolist(), rows, strict=True):
-        line.add("Vertex", {"time": moment}).extended(_in_world(row))
-    return out
 
 
 def _frame(world: World, map_: str, description: str) -> tuple[XmlElement, XmlElement, XmlElement]:

@@ -7,7 +7,7 @@ import os
 import re
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
@@ -54,9 +54,19 @@ class Sumo:
         files = {
             self.suffix: _nodes(shape),
             ".edg.xml": _edges(shape, road, world, limits),
-            ".netccfg": _conversion(stem),
-            ".rou.xml": _trip(limits, _from_the_right(world.profile_of(road))),
-            ".sumocfg": _settings(stem),
+            ".netccfg": _configuration(
+                {
+                    "input": {"node-files": f"{stem}.nod.xml", "edge-files": f"{stem}.edg.xml"},
+                    "output": {"output-file": f"{stem}.net.xml"},
+                    "formatting": {"precision": PRECISION},
+                    "processing": {"offset.disable-normalization": "true"},
+                    "junctions": {"no-turnarounds": "true"},
+                }
+            ),
+            ".rou.xml": _trip(limits, world.profile_of(road)),
+            ".sumocfg": _configuration(
+                {"input": {"net-file": f"{stem}.net.xml", "route-files": f"{stem}.rou.xml"}}
+            ),
         }
         for suffix, document in files.items():
             path.with_name(stem + suffix).write_bytes(document.to_text().encode())
@@ -117,7 +127,8 @@ def speed_zones(road: Road, world: World) -> list[SpeedZone]:
 def _edges(shape: Array, road: Road, world: World, limits: Sequence[SpeedZone]) -> XmlElement:
     """Returns one edge for each direction of driving along the centre line, split where limits change."""
     along = float(np.hypot(*np.diff(shape[:, :2], axis=0).T).sum())
-    back = [SpeedZone(along - end, speed) for end, speed in _ends(limits, along)]
+    ends = [*(limit.start for limit in limits[1:]), along]
+    back = [SpeedZone(along - end, limit.speed) for end, limit in zip(ends, limits, strict=True)][::-1]
     out = XmlElement("edges")
     on_right, on_left = _widths(road, world.profile_of(road))
     ways = [
@@ -127,13 +138,12 @@ def _edges(shape: Array, road: Road, world: World, limits: Sequence[SpeedZone]) 
     for name, start, end, points, pieces, widths in ways if on_left else ways[:1]:
         lanes: dict[str, Value] = {
             "numLanes": len(widths),
-            "speed": 0,
+            "speed": round(pieces[0].speed, 6),
             "width": widths[0],
             "friction": world.site.friction,
             "spreadType": "right",
         }
         told = " ".join(",".join(map(number, point)) for point in points.tolist())
-        lanes["speed"] = round(pieces[0].speed, 6)
         edge = out.add("edge", {"id": name, "from": start, "to": end, **lanes, "shape": told})
         if len({*widths}) > 1:
             for n, width in enumerate(reversed(widths)):  # SUMO counts from the right
@@ -162,21 +172,11 @@ def _mean(width: Width, s: Array) -> float:
     return round(float(width.height(np.maximum(s, width.stations[0])).mean()), DECIMALS)
 
 
-def _from_the_right(profile: Profile) -> int:
-    """Returns the number of the driven lane as SUMO counts: 0 for the rightmost lane."""
-    return profile.count[0] - 1 - profile.driven
-
-
-def _ends(limits: Sequence[SpeedZone], length: float) -> list[tuple[float, float]]:
-    """Returns the end in metres and the speed limit in m/s of each zone, from the last zone to the first."""
-    ends = [*(limit.start for limit in limits[1:]), length]
-    return [(end, limit.speed) for end, limit in zip(ends, limits, strict=True)][::-1]
-
-
-def _trip(limits: Sequence[SpeedZone], lane: int) -> XmlElement:
+def _trip(limits: Sequence[SpeedZone], profile: Profile) -> XmlElement:
     out = XmlElement("routes")
     car = {"length": CAR.length, "width": CAR.width, "accel": PULL, "decel": PULL}
     out.add("vType", {"id": "saloon", "vClass": "passenger", **car, "sigma": 0, "speedDev": 0})
+    lane = profile.count[0] - 1 - profile.driven  # SUMO counts from the right
     begin: dict[str, Value] = {"depart": 0, "departPos": "base", "departSpeed": 0}
     ego = out.add(
         "vehicle", {"id": "ego", "type": "saloon", **({"departLane": lane} if lane else {}), **begin}
@@ -185,24 +185,13 @@ def _trip(limits: Sequence[SpeedZone], lane: int) -> XmlElement:
     return out
 
 
-def _conversion(stem: str) -> XmlElement:
-    """Returns the settings of netconvert: ``netconvert -c NAME.netccfg``."""
+def _configuration(sections: Mapping[str, Mapping[str, Value]]) -> XmlElement:
+    """Returns the settings of one of SUMO's programs: the values of options, by section."""
     out = XmlElement("configuration")
-    files = out.add("input")
-    files.add("node-files", {"value": f"{stem}.nod.xml"})
-    files.add("edge-files", {"value": f"{stem}.edg.xml"})
-    out.add("output").add("output-file", {"value": f"{stem}.net.xml"})
-    out.add("formatting").add("precision", {"value": PRECISION})
-    out.add("processing").add("offset.disable-normalization", {"value": "true"})
-    out.add("junctions").add("no-turnarounds", {"value": "true"})
-    return out
-
-
-def _settings(stem: str) -> XmlElement:
-    out = XmlElement("configuration")
-    files = out.add("input")
-    files.add("net-file", {"value": f"{stem}.net.xml"})
-    files.add("route-files", {"value": f"{stem}.rou.xml"})
+    for name, options in sections.items():
+        section = out.add(name)
+        for option, value in options.items():
+            section.add(option, {"value": value})
     return out
 
 

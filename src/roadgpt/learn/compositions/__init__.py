@@ -7,6 +7,7 @@ so the reader of the sentence has to count. Such descriptions teach a network to
 """
 
 from collections.abc import Callable
+from itertools import accumulate
 
 import numpy as np
 
@@ -15,18 +16,21 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.errors import BriefError
-from roadgpt.learn.compositions.by_parts import by_parts
-from roadgpt.learn.compositions.endings import corrected, nothing_more
+from roadgpt.learn.compositions.counted import by_parts, numbered_kinds, numbered_sides, ranged, sided_sum
+from roadgpt.learn.compositions.in_a_row import (
+    corrected,
+    lettered,
+    nothing_more,
+    out_of_order,
+    repeated,
+    spaced_turns,
+)
 from roadgpt.learn.compositions.limits import limited, with_limits
 from roadgpt.learn.compositions.listed import listed
-from roadgpt.learn.compositions.numbered import numbered_kinds, numbered_sides
-from roadgpt.learn.compositions.out_of_order import out_of_order
-from roadgpt.learn.compositions.repeated import lettered, repeated
-from roadgpt.learn.compositions.spaced_turns import spaced_turns
-from roadgpt.learn.compositions.sums import ranged, sided_sum
 from roadgpt.learn.compositions.voice import Composition, Voice
 from roadgpt.learn.noise import noisy, tidy
-from roadgpt.learn.standard import standard
+from roadgpt.learn.pair import Pair, is_held_out, standard
+from roadgpt.learn.phrasebook import weighted
 
 MAP_SIZE = 750.0  # metres: eight turns and their straights need not fit on the usual map
 WAYS: tuple[tuple[Callable[[Voice], Composition], float], ...] = (
@@ -47,14 +51,14 @@ WAYS: tuple[tuple[Callable[[Voice], Composition], float], ...] = (
 SEVERAL = 2
 WITH_LIMITS = 0.4
 """The share of descriptions, from 0 to 1, to which limits for the whole road are added."""
-SHARES = np.cumsum([share for _, share in WAYS])
+SHARES = tuple(accumulate(share for _, share in WAYS))
 
 
-def composed(rng: np.random.Generator, language: str = "en") -> Composition | None:
-    """Returns a random description and its plan in standard form; None if the described road is
-    impossible. In languages other than English ("en"), it is a list of turns.
+def composed(rng: np.random.Generator, language: str = "en") -> Pair | None:
+    """Returns a random description and its plan in standard form; None if the described road is impossible,
+    or the description is held out. In languages other than English ("en"), it is a list of turns.
     """
-    way = WAYS[int(np.searchsorted(SHARES, rng.random() * SHARES[-1], side="right"))][0]
+    way = WAYS[weighted(SHARES, rng)][0]
     way = way if language == "en" else listed
     voice = Voice(rng, language)
     said = way(voice)
@@ -65,7 +69,8 @@ def composed(rng: np.random.Generator, language: str = "en") -> Composition | No
         check(brief, MAP_SIZE)
     except BriefError:
         return None
-    return Composition(noisy(tidy(said.text, language), language, rng), _written(brief))
+    text = noisy(tidy(said.text, language), language, rng)
+    return None if is_held_out(text) else Pair(text, _written(brief), f"composed-{language}", language)
 
 
 def _written(brief: Brief) -> str:

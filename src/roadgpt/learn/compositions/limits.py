@@ -1,31 +1,64 @@
 """Descriptions with limits for the whole road, such as 'no steeper than 6 %', in any order."""
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from roadgpt.learn.compositions.voice import NOUNS, SIDES, Composition, Voice
 
 
-class _Wish(NamedTuple):
-    """The words of a requirement, and what it adds to the plan."""
+class _Limit(NamedTuple):
+    """A kind of requirement: its two wordings, and what each of them adds to the plan for the number."""
 
-    said: str
-    of_turns: str = ""
-    of_road: str = ""
+    measure: Callable[[Voice, int, int], tuple[str, int]]
+    low: int
+    high: int
+    one: tuple[str, str]
+    other: tuple[str, str] | None
+    share: float
+    """How often it is the first wording, 0 to 1."""
+
+
+def _height(voice: Voice, low: int, high: int) -> tuple[str, int]:
+    value = voice.whole(low, high)
+    return f"{voice.number(value)} {'metres' if voice.spells else voice.pick(('m', 'metres'))}", value
+
+
+RADIUS = _Limit(Voice.metres, 20, 60, ("least radius", "r={}.."), ("largest radius", "r=..{}"), 0.7)
+RADIUS_OF_HAIRPINS = _Limit(Voice.metres, 15, 25, ("least radius", "r={}.."), None, 1.0)
+GRADE = _Limit(Voice.percent, 4, 12, ("steepest", "steepest=..{}"), ("at steepest", "steepest={}.."), 0.75)
+LENGTH = _Limit(Voice.metres, 250, 600, ("lengths", "len={}"), ("shorter", "len=..{}"), 0.7)
+HEIGHT = _Limit(_height, 5, 15, ("gains", "climb={}"), ("falls", "climb=-{}"), 0.5)
+ANGLE = _Limit(Voice.angle, 35, 90, ("angles below", "deg=..{}"), ("angles above", "deg={}.."), 0.65)
+OF_TURNS = (RADIUS, RADIUS_OF_HAIRPINS, ANGLE)
 
 
 def with_limits(voice: Voice, said: Composition) -> Composition:
     """Returns the composition with one to three limits for the whole road added before or after its text."""
-    ways = [_grade, _length, _height]
+    ways = [GRADE, LENGTH, HEIGHT]
     if not any(word in said.plan for word in ("sharp", "gentle", "sweeping")):
-        ways.append(_radius_of_hairpins if "hairpin" in said.plan else _radius)
+        ways.append(RADIUS_OF_HAIRPINS if "hairpin" in said.plan else RADIUS)
     if "deg=" not in said.plan and "hairpin" not in said.plan:
-        ways.append(_angle)
-    wishes = [ways[int(at)](voice) for at in voice.rng.permutation(len(ways))[: voice.whole(1, 3)]]
-    parts = [wish.said for wish in wishes]
+        ways.append(ANGLE)
+    parts, of_turns, of_road = _wishes(voice, ways, 1, 3)
     parts.insert(0 if voice.chance(0.7) else voice.whole(0, len(parts)), said.text.rstrip(". "))
-    text = _joined(voice, parts)
-    road = " ".join(f"{wish.of_turns} {wish.of_road}" for wish in wishes)
-    return Composition(text, f"{said.plan}{' ' if '|' in said.plan else ' | '}{road}")
+    wishes = " ".join([*of_turns, *of_road])
+    return Composition(_joined(voice, parts), f"{said.plan}{' ' if '|' in said.plan else ' | '}{wishes}")
+
+
+def _wishes(
+    voice: Voice, ways: Sequence[_Limit], least: int, most: int
+) -> tuple[list[str], list[str], list[str]]:
+    """Returns the words of a random number of limits, and what they ask of the turns and of the road."""
+    said: list[str] = []
+    of_turns: list[str] = []
+    of_road: list[str] = []
+    for at in voice.rng.permutation(len(ways))[: voice.whole(least, most)]:
+        limit = ways[int(at)]
+        words, value = limit.measure(voice, limit.low, limit.high)
+        way = limit.one if limit.other is None or voice.chance(limit.share) else limit.other
+        said.append(voice.say(way[0], words))
+        (of_turns if limit in OF_TURNS else of_road).append(way[1].format(value))
+    return said, of_turns, of_road
 
 
 def _joined(voice: Voice, parts: list[str]) -> str:
@@ -51,52 +84,8 @@ def limited(voice: Voice) -> Composition:
     if voice.chance(0.2):
         side = voice.pick(SIDES)
         count += voice.pick((f", all {side}", f" to the {side}"))
-    ways = (_radius, _grade, _length, _height, _angle)
-    wishes = [ways[int(at)](voice) for at in voice.rng.permutation(len(ways))[: voice.whole(2, 4)]]
-    parts = [wish.said for wish in wishes]
+    parts, of_turns, of_road = _wishes(voice, (RADIUS, GRADE, LENGTH, HEIGHT, ANGLE), 2, 4)
     parts.insert(voice.whole(0, len(parts)), count)
     text = _joined(voice, parts)
-    clause = " ".join([f"turn x{number}", side, *(wish.of_turns for wish in wishes)])
-    road = " ".join(wish.of_road for wish in wishes)
-    return voice.framed(text, f"{clause} | {road}" if road.strip() else clause, may_slope=False)
-
-
-def _radius(voice: Voice) -> _Wish:
-    said, value = voice.metres(20, 60)
-    if voice.chance(0.7):
-        return _Wish(voice.say("least radius", said), f"r={value}..")
-    return _Wish(voice.say("largest radius", said), f"r=..{value}")
-
-
-def _radius_of_hairpins(voice: Voice) -> _Wish:
-    said, value = voice.metres(15, 25)
-    return _Wish(voice.say("least radius", said), f"r={value}..")
-
-
-def _grade(voice: Voice) -> _Wish:
-    said, value = voice.percent(4, 12)
-    if voice.chance(0.75):
-        return _Wish(voice.say("steepest", said), of_road=f"steepest=..{value}")
-    return _Wish(voice.say("at steepest", said), of_road=f"steepest={value}..")
-
-
-def _length(voice: Voice) -> _Wish:
-    said, value = voice.metres(250, 600)
-    if voice.chance(0.7):
-        return _Wish(voice.say("lengths", said), of_road=f"len={value}")
-    return _Wish(voice.say("shorter", said), of_road=f"len=..{value}")
-
-
-def _height(voice: Voice) -> _Wish:
-    value = voice.whole(5, 15)
-    said = f"{voice.number(value)} {'metres' if voice.spells else voice.pick(('m', 'metres'))}"
-    if voice.chance(0.5):
-        return _Wish(voice.say("gains", said), of_road=f"climb={value}")
-    return _Wish(voice.say("falls", said), of_road=f"climb=-{value}")
-
-
-def _angle(voice: Voice) -> _Wish:
-    said, value = voice.angle(35, 90)
-    if voice.chance(0.65):
-        return _Wish(voice.say("angles below", said), f"deg=..{value}")
-    return _Wish(voice.say("angles above", said), f"deg={value}..")
+    clause = " ".join([f"turn x{number}", side, *of_turns])
+    return voice.framed(text, f"{clause} | {' '.join(of_road)}" if of_road else clause, may_slope=False)

@@ -11,6 +11,14 @@ from roadgpt.learn.compositions.voice import OTHER, SIDES, Composition, Voice
 
 SLOPES = ("up", "down", "flat")
 SHARPNESS = ("sharp", "gentle")
+CLASHES = {
+    "deg": {"deg", "sharpness", "hairpin"},
+    "r": {"r", "sharpness", "hairpin"},
+    "hairpin": {"deg", "r", "sharpness", "hairpin"},
+    "sharpness": {"deg", "r", "sharpness", "hairpin"},
+    "slope": {"slope"},
+}
+"""What may not have been told if another property is told."""
 LOOSE = r"[:,(] ?\{sides|^\{sides"
 """What the phrases have in which any words can stand for the sides, as in "4 turns: {sides}"."""
 
@@ -134,7 +142,7 @@ def _with_figures(road: TurnList, names: list[str], keys: tuple[str, ...], are_l
     form = ways[0] if are_letters else voice.pick(ways)
     if are_letters and voice.chance(0.5):
         form = form.replace("{s} {a}", "{s}{a}")
-    number = str if are_letters or "{b}" in form else road.bare
+    number = str if are_letters or "{b}" in form else road.voice.number
     items = []
     for at, name in enumerate(names):
         figures: dict[str, str] = {}
@@ -169,23 +177,15 @@ def _with_straights(road: TurnList, items: Sequence[str]) -> list[str]:
 def _properties(road: TurnList) -> list[str]:
     """Gives the turns one to three properties; returns the phrases for them."""
     voice = road.voice
-    taken = {key for turn in road.turns for key in turn.mods}
-    has_hairpins = any(turn.kind == "hairpin" for turn in road.turns)
+    taken = {key for turn in road.turns for key in (*turn.mods, turn.kind)}
     keys = ["deg", "deg", "deg", "r", "r", "hairpin", "sharpness", "slope"]
     said: list[str] = []
-    if voice.chance(0.08) and not has_hairpins and not taken & {*UNITS}:
+    if voice.chance(0.08) and not taken & {"hairpin", *UNITS}:
         said.append(figures_of_both(road))
         taken |= {*UNITS}
     for _ in range(voice.pick((1, 1, 2, 2, 2, 3))):
         key = voice.pick(keys)
-        is_refused = {
-            "deg": bool(taken & {"deg", "sharpness"}) or has_hairpins,
-            "r": bool(taken & {"r", "sharpness"}) or has_hairpins,
-            "hairpin": bool(taken & {"deg", "r", "sharpness"}) or has_hairpins,
-            "sharpness": bool(taken & {"r", "sharpness", "deg"}) or has_hairpins,
-            "slope": "slope" in taken or any(road.straights),
-        }[key]
-        if is_refused:
+        if taken & CLASHES[key] or (key == "slope" and any(road.straights)):
             continue
         if key in UNITS:
             if road.room < 4:
@@ -193,7 +193,6 @@ def _properties(road: TurnList) -> list[str]:
             said.append(figures(road, key))
         else:
             said.append(_words(road, key))
-        has_hairpins |= key == "hairpin"
         taken.add(key)
     return said
 

@@ -2,7 +2,7 @@
 one.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 
 from roadgpt.learn.compositions.turn_list import UNITS, PlaceInList, TurnList
@@ -50,18 +50,20 @@ def figures_of_both(road: TurnList) -> str:
 def _is(road: TurnList, key: str, place: PlaceInList, value: int, is_first: bool = True) -> str:
     """Gives a place one value; returns the phrase, shorter if it follows another of its kind."""
     road.give(key, value, place.at)
-    figures = {"a": road.bare(value), "d": str(value), "A": road.measure(value, UNITS[key])}
+    figures = {"a": road.voice.number(value), "d": str(value), "A": road.measure(value, UNITS[key])}
     return road.say(f"{'is' if is_first else 'more'} {key}", place.is_one, x=place.name, **figures)
+
+
+def _each(road: TurnList, key: str, places: Iterable[PlaceInList], values: Sequence[int]) -> list[str]:
+    """Gives each place its value; returns the phrases."""
+    both = zip(places, values, strict=True)
+    return [_is(road, key, place, value, not at) for at, (place, value) in enumerate(both)]
 
 
 def _by_groups(road: TurnList, key: str) -> str:
     places = road.groups(are_short=True)
-    values = road.draw(key, len(places))
-    names = [
-        _is(road, key, place, value, not at)
-        for at, (place, value) in enumerate(zip(places, values, strict=True))
-    ]
-    return ", ".join(names) if road.voice.chance(0.6) else road.joined(names)
+    said = _each(road, key, places, road.draw(key, len(places)))
+    return ", ".join(said) if road.voice.chance(0.6) else road.joined(said)
 
 
 def _by_side(road: TurnList, key: str) -> str:
@@ -74,9 +76,7 @@ def _odd_and_even(road: TurnList, key: str) -> str:
 
 
 def _two_places(road: TurnList, key: str, places: Sequence[PlaceInList]) -> str:
-    said: list[str] = []
-    for value, place in zip(road.draw(key, 2), places, strict=True):
-        said.append(_is(road, key, place, value, not said))
+    said = _each(road, key, places, road.draw(key, 2))
     return road.joined(said) if road.voice.chance(0.5) else ", ".join(said)
 
 
@@ -86,10 +86,7 @@ def _by_ordinals(road: TurnList, key: str) -> str:
     number = min(voice.whole(1, 3), road.number - 1, road.room - 1)
     chosen = sorted(int(at) for at in voice.rng.permutation(road.number)[:number])
     values = road.draw(key, number)
-    said = [
-        _is(road, key, road.one(at), value, not n)
-        for n, (at, value) in enumerate(zip(chosen, values, strict=True))
-    ]
+    said = _each(road, key, (road.one(at) for at in chosen), values)
     if voice.chance(0.4):
         said.append(_is(road, key, road.others(chosen), road.draw(key)[0], is_first=False))
     return ", ".join(said) if voice.chance(0.6) else road.joined(said)
@@ -132,9 +129,7 @@ def _row(road: TurnList, key: str) -> str:
     pool = road.pool(key)
     values = [road.voice.pick(pool) for _ in road.turns]
     road.room -= road.number
-    for at, value in enumerate(values):
-        road.give(key, value, [at])
-    return road.say(f"row {key}", row=road.row(values, key))
+    return _row_of(road, key, values, road.row(values, key), like="")
 
 
 def _patterned(road: TurnList, key: str) -> str:
@@ -144,7 +139,7 @@ def _patterned(road: TurnList, key: str) -> str:
     if way == "turns about":
         one, other = road.draw(key, 2)
         values = [one, other] * half
-        said = {"one": road.bare(one), "other": road.measure(other, UNITS[key])}
+        said = {"one": road.voice.number(one), "other": road.measure(other, UNITS[key])}
     else:
         row = road.draw(key, half)
         back = row[::-1] if way == "mirrored" else row
@@ -162,7 +157,9 @@ def _in_runs(road: TurnList, key: str) -> str:
     runs = road.draw(key, len(sizes))
     way = road.voice.pick(road.phrases["several times"])
     names = [
-        way.format(k=road.voice.number(size), a=road.bare(value)) if size > 1 else road.bare(value)
+        way.format(k=road.voice.number(size), a=road.voice.number(value))
+        if size > 1
+        else road.voice.number(value)
         for size, value in zip(sizes, runs, strict=True)
     ]
     values = [value for size, value in zip(sizes, runs, strict=True) for _ in range(size)]

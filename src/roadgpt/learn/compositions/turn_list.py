@@ -2,17 +2,14 @@
 first two", "turns 2 and 5", "the lefts".
 """
 
-import json
 import re
 from collections.abc import Sequence
-from importlib.resources import files
 from typing import Any, NamedTuple
 
 from roadgpt.learn.compositions.voice import SIDES, DescribedTurn, Voice, clauses
+from roadgpt.learn.phrasebook import phrases_of
 
-PHRASES: dict[str, dict[str, Any]] = json.loads(
-    (files("roadgpt.learn") / "words" / "lists.json").read_text(encoding="utf-8")
-)
+PHRASES: dict[str, dict[str, Any]] = phrases_of("lists")
 """The phrases by language. "[is|are]" stands for "is" behind one turn and for "are" behind several. {ox} is
 {x} in the dative in German, and with "di" in Italian.
 """
@@ -85,13 +82,9 @@ class TurnList:
         phrase = ONE_OR_MANY.sub(lambda ways: ways[1] if is_one else ways[2], phrase)
         return str(phrase.format(n=self.voice.number(self.number), noun=self.nouns, noun1=self.noun, **named))
 
-    def bare(self, value: int) -> str:
-        """Returns a number without its unit."""
-        return self.voice.number(value)
-
     def measure(self, value: int, what: str) -> str:
         """Returns a number with its unit, "metres" or "degrees"."""
-        return f"{self.bare(value)}{self.units[what]}"
+        return f"{self.voice.number(value)}{self.units[what]}"
 
     def draw(self, key: str, number: int = 1) -> list[int]:
         """Returns different random angles ("deg"), radii ("r") or lengths ("len") and counts them."""
@@ -217,7 +210,7 @@ class TurnList:
         """Returns numbers in a row, with their unit once, after each of them, or not at all."""
         voice, unit = self.voice, self.units[UNITS[key]]
         if voice.spells:
-            return self.joined([self.bare(value) for value in values]) + unit
+            return self.joined([self.voice.number(value) for value in values]) + unit
         way = voice.rng.random()
         if way < 0.45:
             return self.joined([str(value) for value in values]) + unit

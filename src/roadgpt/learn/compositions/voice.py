@@ -2,21 +2,17 @@
 a plan.
 """
 
-import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from importlib.resources import files
 from itertools import groupby
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt.brief.readers.model.numerals import spell
+from roadgpt.learn.phrasebook import Thing, one_of, phrases_of
 
-Thing = TypeVar("Thing")
-PHRASES: dict[str, list[str]] = json.loads(
-    (files("roadgpt.learn") / "words" / "compositions.json").read_text(encoding="utf-8")
-)
+PHRASES: dict[str, list[str]] = phrases_of("compositions")
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 NOUNS = ("turns", "bends", "curves", "corners")
 SIDES = ("left", "right")
@@ -53,6 +49,12 @@ class DescribedTurn:
         return " ".join([self.kind, *(self.mods[key] for key in order if key in self.mods)])
 
 
+def give(turns: Iterable[DescribedTurn], key: str, word: str) -> None:
+    """Gives turns a word of the plan; ``key`` is one of the keys of ``DescribedTurn.mods``."""
+    for turn in turns:
+        turn.mods[key] = word
+
+
 def clauses(turns: Sequence[DescribedTurn]) -> str:
     """Returns the clauses of consecutive turns as part of a plan; equal turns in a row become one clause with
     a count.
@@ -75,7 +77,7 @@ class Voice:
 
     def pick(self, ways: Sequence[Thing]) -> Thing:
         """Returns one of the alternatives, chosen at random."""
-        return ways[int(self.rng.integers(len(ways)))]
+        return one_of(ways, self.rng)
 
     def say(self, way: str, *parts: str, **named: str) -> str:
         """Returns a random phrase from ``PHRASES[way]``, with its placeholders filled in."""
@@ -128,10 +130,9 @@ class Voice:
         return f"{', '.join(names[:-1])}{self.pick((' and ', ' and ', ', and ', ' & '))}{names[-1]}"
 
     def framed(self, text: str, plan: str, may_slope: bool = True) -> Composition:
-        """Returns text and plan as a composition, often with an opening such as 'give me' before the text.
-
-        Sometimes a purpose or a requirement for the whole road is added; a requirement about slope is added
-        only if ``may_slope`` is True.
+        """Returns text and plan as a composition, often with an opening such as 'give me' before the text,
+        and sometimes with a purpose or a requirement for the whole road: about slope only if it
+        ``may_slope``.
         """
         if text.split()[0].strip(":;,").lower() not in BEGIN:
             text = self.say("openings") + text

@@ -73,18 +73,10 @@ class Settings:
 class Pane:
     """Renders what one camera sees at any time of a drive; several threads may call ``draw`` at once."""
 
+    run: Run
     scene: Scene
     trip: Trip
     camera: Camera
-    overlay: Overlay
-    has_car: bool
-
-    @classmethod
-    def of(cls, run: Run, scene: Scene, trip: Trip, mount: Mount, width: int, height: int) -> "Pane":
-        """Returns the Pane of a Run for a camera at ``mount``; the mount also determines the field of
-        view."""
-        camera = Camera(width, height, FIELDS[mount], mount)
-        return cls(scene, trip, camera, Overlay(run, width, height), run.drive is not None)
 
     def draw(self, time: float) -> Frame:
         """Returns the picture at ``time`` seconds, ``(height, width, 3)``; times after the end of the drive
@@ -92,8 +84,9 @@ class Pane:
         now = min(time, self.trip.duration)
         car = self.trip.car(now)
         pose = self.trip.follower(now) if self.camera.mount == "chase" else car
-        frame = self.scene.render(self.camera, pose, car=car if self.has_car else None)
-        self.overlay.lay(frame, self.trip.readout(now), time >= self.trip.duration)
+        frame = self.scene.render(self.camera, pose, car=None if self.run.drive is None else car)
+        overlay = Overlay(self.run, self.camera.width, self.camera.height)
+        overlay.lay(frame, self.trip.readout(now), time >= self.trip.duration)
         return frame
 
 
@@ -123,7 +116,7 @@ class Film:
         mounts: tuple[Mount, ...] = ("chase", "bonnet") if view == "both" else (view,)
         panes = [
             tuple(
-                Pane.of(run, scene, trip, mount, settings.width, settings.height)
+                Pane(run, scene, trip, Camera(settings.width, settings.height, FIELDS[mount], mount))
                 for run, scene, trip in zip(runs, scenes, trips, strict=True)
             )
             for mount in mounts

@@ -32,13 +32,8 @@ def encoder() -> Any:
 
 
 def write_film(frames: Iterable[Frame], path: Path, fps: int, about: str = "") -> None:
-    """Writes frames into a file; the file appears only when it is complete.
-
-    Args:
-        frames: frames of the same size; width and height must be even numbers of pixels.
-        path: the file, which is replaced if it exists.
-        fps: frames per second.
-        about: the title in the file's metadata.
+    """Writes frames, whose width and height are even numbers of pixels, into a file with a title; the file
+    appears only when it is complete.
 
     Raises:
         UsageError: as for ``encoder``.

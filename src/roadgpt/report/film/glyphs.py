@@ -49,9 +49,7 @@ def write(
     frame: Frame, x: float, y: float, text: str, size: int, colour: tuple[int, int, int] = (255, 255, 255),
     weight: Weight = "normal",
 ) -> None:  # fmt: skip
-    """Writes one line of text into a frame, with its baseline beginning at (x, y); text beyond the frame
-    is cut off.
-    """
+    """Writes one line of text into a frame from (x, y) on the baseline; text beyond the frame is cut off."""
     for letter in text:
         shape = glyph(letter, size, weight)
         _blend(frame, round(x) + shape.left, round(y) - shape.top, shape.cover, colour)

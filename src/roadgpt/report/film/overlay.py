@@ -34,9 +34,7 @@ class Overlay:
 
     @property
     def scale(self) -> float:
-        """Factor for the sizes of text and its distances from the edges; it is 1 for a picture of 640 by
-        360 pixels.
-        """
+        """Factor for the sizes of text and its distances from the edges; 1 in a picture of 640 by 360."""
         return max(LEAST, min(self.height / 360, self.width / 440))
 
     def _size(self, pixels: int) -> int:
@@ -49,14 +47,10 @@ class Overlay:
         if is_over:
             self._outcome(frame)
 
-    def _rows(self, text: str, size: int, room: float, lines: int, bold: bool = False) -> list[str]:
-        return fitted(text, room / POINTS, size, bold, lines).split("\n")
-
     def _title(self, frame: Frame) -> None:
         """Writes the description at the top."""
         u, size = self.scale, self._size(TITLE)
-        text = self.run.title
-        rows = self._rows(text, size, self.width - 2 * EDGE * u, 2, bold=True)
+        rows = fitted(self.run.title, (self.width - 2 * EDGE * u) / POINTS, size, True, 2).split("\n")
         shade(frame, 0, 0, self.width, (9 + LINE * len(rows)) * u)
         for k, row in enumerate(rows):
             write(frame, EDGE * u, (LINE * (k + 1)) * u, row, size, WHITE, "bold")
@@ -90,7 +84,7 @@ class Overlay:
         """Writes the outcome and its sentence in the middle."""
         u, text, bold = self.scale, self._size(TEXT), self._size(LARGE)
         room = min(self.width - 2 * EDGE * u, 420 * u)
-        rows = self._rows(self.run.description, text, room - 28 * u, 3)
+        rows = fitted(self.run.description, (room - 28 * u) / POINTS, text, lines=3).split("\n")
         outcome = outcome_of(self.run)
         if width_of(outcome, bold, "bold") > room - 28 * u:
             bold = text

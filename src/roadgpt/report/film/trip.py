@@ -1,6 +1,6 @@
 """Computes the poses of car and camera, and the numbers that a film displays, for any time of a drive."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -47,7 +47,7 @@ class Trip:
     """``heading`` and ``pitch`` of the camera behind the car, rad."""
     s: Array
     margin: Array | None
-    outside: Array | None = None
+    outside: Array | None
     """Share of the car that is outside its lane."""
 
     @classmethod
@@ -62,18 +62,20 @@ class Trip:
         if run.road is None:
             raise UsageError(f"there is no road to film: {run.description}")
         if run.drive is None:
-            return cls._made(*_ride(run.road, run.world), None)
+            return cls._made(*_ride(run.road, run.world), None, None)
         drive = run.drive
         if len(drive) < 2 or not all(np.isfinite(column).all() for column in drive.columns.values()):
             raise UsageError("the drive has no motion that could be filmed; drive the road again")
         columns = {name: np.asarray(drive[name]) for name in COLUMNS}
         rolled = np.r_[0.0, np.cumsum(drive["vx"][1:] * np.diff(drive["time"]))]
         columns["wheel"] = rolled / (CAR.wheel / 2)
-        made = cls._made(drive["time"], columns, drive["s"], margins(run.road, drive, run.world))
-        return replace(made, outside=drive["outside"])
+        margin = margins(run.road, drive, run.world)
+        return cls._made(drive["time"], columns, drive["s"], margin, drive["outside"])
 
     @classmethod
-    def _made(cls, time: Array, columns: dict[str, Array], s: Array, margin: Array | None) -> "Trip":
+    def _made(
+        cls, time: Array, columns: dict[str, Array], s: Array, margin: Array | None, outside: Array | None
+    ) -> "Trip":
         columns["heading"] = np.unwrap(columns["heading"])
         step = float(np.median(np.diff(time)))
         pitch = np.clip(columns["pitch"], -STEEPEST, STEEPEST)
@@ -81,7 +83,7 @@ class Trip:
             "heading": _lagging(columns["heading"], step / TURN_LAG),
             "pitch": _lagging(pitch, step / TILT_LAG),
         }
-        return cls(time, columns, followed, s, margin)
+        return cls(time, columns, followed, s, margin, outside)
 
     @property
     def duration(self) -> float:

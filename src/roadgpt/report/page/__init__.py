@@ -16,44 +16,9 @@ from pathlib import Path
 
 from roadgpt.errors import RoadGPTError, explained
 from roadgpt.report.page.html import html_of
-from roadgpt.report.page.model import (
-    Block,
-    Cards,
-    Details,
-    Figure,
-    FigureCard,
-    Line,
-    Page,
-    Section,
-    ShellCommand,
-    Table,
-    TableCell,
-    cell,
-    linked,
-)
+from roadgpt.report.page.model import Page
 from roadgpt.report.page.text import csv_of, latex_of, markdown_of
 from roadgpt.run.atomic import refuse_links, write_whole
-
-__all__ = [
-    "Block",
-    "Cards",
-    "Details",
-    "Figure",
-    "FigureCard",
-    "Line",
-    "Page",
-    "Section",
-    "ShellCommand",
-    "Table",
-    "TableCell",
-    "cell",
-    "csv_of",
-    "html_of",
-    "latex_of",
-    "linked",
-    "markdown_of",
-    "write",
-]
 
 PAGE, TABLES = "report", "tables"
 

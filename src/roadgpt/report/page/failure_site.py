@@ -10,7 +10,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
 from roadgpt.network.arrows import arrows
 from roadgpt.network.markings import strokes
-from roadgpt.report.page.svg import chart, line, number, tag, words
+from roadgpt.report.page.svg import chart, number, tag, words
 from roadgpt.road import Road, World
 
 SIDE = 240.0  # px
@@ -49,33 +49,25 @@ class FailureSite:
 
 def site_of(road: Road, world: World, drive: Drive | None, station: float) -> FailureSite:
     """Returns the lines to draw for a failure that occurred ``station`` metres along a road."""
-    at, path, car, heading = _moved(road, world, drive, station)
-    if isinstance(road, Route):
-        none = np.empty((0, 2))
-        rings, lines = _network_around(road, at)
-        painted = tuple(arrow.points[:, :2] for arrow in arrows(road.network))
-        return FailureSite(none, lines, none, path, car, at, heading, rings, _near(painted, at))
-    s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
-    profile = world.profile_of(road)
-    (_, left), *inner, (_, right) = [(mark, road.at(s, t)[:, :2]) for mark, t in profile.boundaries(s)]
-    lines = tuple((line, mark == "broken") for mark, line in inner if mark != "none")
-    return FailureSite(left, lines, right, path, car, at, heading)
-
-
-def _moved(
-    road: Road, world: World, drive: Drive | None, station: float
-) -> tuple[Array, Array, Array | None, float]:
-    """Returns the middle of the lane at a failure, the driven path, the car's corners there, and the heading
-    of the road before it."""
     path, car = np.empty((0, 2)), None
     if drive is not None:
-        last = _step(drive, station)
+        reached = np.flatnonzero(drive["s"] >= station)
+        last = int(reached[0]) if len(reached) else len(drive) - 1
         near = np.flatnonzero(drive["s"][:last] >= station - REACH)[::5]
         path = np.stack([drive["x"], drive["y"]], axis=1)[[*near, last]]
         car = drive.corners(last)
     heading = float(road.heading(max(0.0, station - 2 * BEHIND)))
-    middle = world.profile_of(road).middle(station)
-    return road.at(station, middle)[:2], path, car, heading
+    profile = world.profile_of(road)
+    at = road.at(station, profile.middle(station))[:2]
+    if isinstance(road, Route):
+        none = np.empty((0, 2))
+        rings, lines = _network_around(road, at)
+        painted = _near([arrow.points[:, :2] for arrow in arrows(road.network)], at)
+        return FailureSite(none, lines, none, path, car, at, heading, rings, painted)
+    s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
+    (_, left), *inner, (_, right) = [(mark, road.at(s, t)[:, :2]) for mark, t in profile.boundaries(s)]
+    lines = tuple((line, mark == "broken") for mark, line in inner if mark != "none")
+    return FailureSite(left, lines, right, path, car, at, heading)
 
 
 def _network_around(route: Route, at: Array) -> tuple[tuple[Array, ...], tuple[tuple[Array, bool], ...]]:
@@ -85,21 +77,14 @@ def _network_around(route: Route, at: Array) -> tuple[tuple[Array, ...], tuple[t
     box = shapely.box(*(at - ACROSS), *(at + ACROSS))
     parts = shapely.get_parts(shapely.intersection(route.network.paved, box))
     rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
-    lines = [stroke.points[:, :2] for stroke in strokes(route.network)]
-    return tuple(np.asarray(ring.coords, float)[:, :2] for ring in rings), tuple(
-        (line, False) for line in _near(lines, at)
-    )
+    lines = _near([stroke.points[:, :2] for stroke in strokes(route.network)], at)
+    outlines = tuple(np.asarray(ring.coords, float)[:, :2] for ring in rings)
+    return outlines, tuple((line, False) for line in lines)
 
 
 def _near(lines: Sequence[Array], at: Array) -> tuple[Array, ...]:
     """Returns the lines ``(n, 2)`` that come near a place."""
     return tuple(line for line in lines if np.abs(line - at).max(axis=1).min() < ACROSS)
-
-
-def _step(drive: Drive, station: float) -> int:
-    """Returns the index of the step at which the car first reached a station."""
-    reached = np.flatnonzero(drive["s"] >= station)
-    return int(reached[0]) if len(reached) else len(drive) - 1
 
 
 def draw_site(of: FailureSite, label: str) -> str:
@@ -138,7 +123,7 @@ def draw_site(of: FailureSite, label: str) -> str:
         tag(
             "rect", x=7, y=below - 16, width=bar + 10, height=21, rx=2, fill="var(--wash)", fill_opacity=0.85
         ),
-        line(12, below, 12 + bar, below),
+        tag("line", x1=12, y1=below, x2=12 + bar, y2=below, class_="axis"),
         words(12, below - 5, f"{SCALE:.0f} m", 10.5),
     ]
     return chart(SIDE, SIDE, "".join(out), label)

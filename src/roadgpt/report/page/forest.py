@@ -31,12 +31,9 @@ class Share(NamedTuple):
 
 @in_page_style
 def forest(groups: Sequence[tuple[str, Sequence[Share]]], series: Sequence[str], label: str) -> str:
-    """Returns a chart of shares from 0 to 100 % as SVG: a dot for each share, and a line for its interval.
-
-    Args:
-        groups: the name and the shares of each group, from top to bottom.
-        series: names of the series.
-        label: what the chart shows, for screen readers.
+    """Returns a chart of shares from 0 to 100 % as SVG, with a dot for each share and a line for its
+    interval. ``groups`` are names and shares from top to bottom, ``series`` the names of the series, and
+    ``label`` says what the chart shows, for screen readers.
     """
     columns = columns_of(list(series), WIDTH - 2 * LEFT)
     top = TOP + ROW * -(-len(series) // columns)

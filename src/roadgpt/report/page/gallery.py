@@ -1,40 +1,23 @@
 """Draws galleries of roads: small maps in the colours of the outcomes, with links to the runs."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from roadgpt.geometry.curve import Array
+from roadgpt.report.overview import Thumbnail
 from roadgpt.report.page.svg import chart, number, tag, words
-from roadgpt.verdict import graded, percent, severity
+from roadgpt.verdict import percent, severity
 
 CELL, GAP, TITLE, COLUMNS = 48.0, 8.0, 14.0, 10
 POINTS = 36  # of the line of a road
 STYLES = {"INVALID": "4 2", "ERROR": "1.5 2"}
 
 
-@dataclass(frozen=True)
-class Thumbnail:
-    """One road of a gallery; ``points`` is its centre line, shape ``(n, 2)``, in metres."""
-
-    number: int
-    outcome: str
-    points: Array
-    failed_at: tuple[float, float] | None = None
-    href: str = ""
-    share: float | None = None
-    """Largest share of the car that was outside its lane; None if there is no drive."""
-
-
 def gallery(roads: Sequence[Thumbnail], size: float, label: str, columns: int = COLUMNS) -> str:
-    """Returns maps of roads as SVG, row by row; a dot marks the start, a cross the place of a failure.
-
-    Args:
-        roads: the roads to show.
-        size: side of the map, metres.
-        label: what the picture shows, for screen readers.
-        columns: the largest number of maps in a row.
+    """Returns maps of roads as SVG, at most ``columns`` in a row; a dot marks the start, a cross the place of
+    a failure. ``size`` is the side of the map in metres, and ``label`` says what the picture shows, for
+    screen readers.
     """
     columns = min(columns, max(len(roads), 1))
     rows = -(-len(roads) // columns)
@@ -50,19 +33,18 @@ def gallery(roads: Sequence[Thumbnail], size: float, label: str, columns: int = 
 
 def _cell(road: Thumbnail, x: float, y: float, size: float) -> str:
     top = y + TITLE
-    outcome = graded(road.outcome, road.share)
     hue, mark = f"var(--{road.outcome.lower()})", road.outcome.lower()
-    if outcome != road.outcome and road.share is not None:
+    if road.graded != road.outcome and road.share is not None:
         hue, mark = f"var(--{severity(road.share).split()[0]})", percent(road.share)
     out = [
-        tag("title", f"road {road.number}: {outcome}"),
+        tag("title", f"road {road.number}: {road.graded}"),
         words(x + 1, top - 3.5, f"{road.number}", 10, is_soft=True),
         tag(
             "rect", x=x, y=top, width=CELL, height=CELL, rx=2, fill="var(--wash)", stroke="var(--line)",
             class_="frame",
         ),
     ]  # fmt: skip
-    if outcome not in ("PASS", "VALID"):
+    if road.graded not in ("PASS", "VALID"):
         shown = tag("tspan", mark, fill=hue)
         text = f'<text x="{number(x + CELL - 1)}" y="{number(top - 3.5)}" font-size="9.5" text-anchor="end">'
         out.append(f"{text}{shown}</text>")

@@ -47,15 +47,9 @@ def heat(
     label: str,
     downwards: bool = False,
 ) -> str:
-    """Returns a picture of a matrix ``(rows, columns)`` as SVG; cells that are NaN or 0 are left empty.
-
-    Args:
-        values: the matrix; row 0 is at the bottom, or at the top if ``downwards`` is True.
-        across: name and limits of the horizontal axis.
-        upwards: name and limits of the vertical axis.
-        meaning: title of the colour scale, which says what the numbers are.
-        label: what the picture shows, for screen readers.
-        downwards: whether row 0 is at the top, as in a distance matrix.
+    """Returns a picture of a matrix ``(rows, columns)`` as SVG; cells that are NaN or 0 are left empty. Row 0
+    is at the bottom, or, with ``downwards``, at the top, as in a distance matrix. ``meaning`` is the title of
+    the colour scale, and ``label`` says what the picture shows, for screen readers.
     """
     figure, axes = new_chart(LEFT + SIDE + BAR, TOP + SIDE + BOTTOM, LEFT, BAR, BOTTOM, TOP)
     axes.set_facecolor(palette()["wash"])

@@ -11,10 +11,9 @@ from roadgpt.report.page.model import (
     Line,
     Page,
     Section,
-    ShellCommand,
     Table,
     TableCell,
-    pieces_of,
+    spelled,
 )
 
 STYLE = Path(__file__).parent / "style.css"
@@ -70,13 +69,7 @@ def _block(block: Block) -> str:
 
 
 def _line(line: Line) -> str:
-    return "".join(map(_piece, pieces_of(line)))
-
-
-def _piece(piece: str | TableCell) -> str:
-    if isinstance(piece, ShellCommand):
-        return f"<code>{escape(piece)}</code>"
-    return escape(piece) if isinstance(piece, str) else _anchored(piece)
+    return spelled(line, escape, lambda command: f"<code>{escape(command)}</code>", _anchored)
 
 
 def _anchored(cell: TableCell) -> str:
@@ -85,18 +78,15 @@ def _anchored(cell: TableCell) -> str:
 
 
 def _table(table: Table) -> str:
-    numeric = [
-        any(isinstance(row[n].value, (int, float)) for row in table.rows) for n in range(len(table.heads))
-    ]
     heads = "".join(
         f'<th scope="col"{_class(is_number)}>{escape(head)}</th>'
-        for head, is_number in zip(table.heads, numeric, strict=True)
+        for head, is_number in zip(table.heads, table.has_numbers, strict=True)
     )
     rows = []
     for number, row in enumerate(table.rows, 1):
         cells = "".join(
             f"<td{_class(is_number, len(each.text) <= SHORT)}>{_anchored(each)}</td>"
-            for each, is_number in zip(row, numeric, strict=True)
+            for each, is_number in zip(row, table.has_numbers, strict=True)
         )
         is_total = table.has_total and number == len(table.rows)
         rows.append(f"<tr{TOTAL if is_total else ''}>{cells}</tr>")
@@ -116,11 +106,5 @@ def _class(is_number: bool, is_short: bool = False) -> str:
 def _card(page: Page) -> str:
     if not page.card:
         return ""
-    rows = "".join(
-        f"<dt>{escape(name)}</dt><dd>{_value(name, value)}</dd>" for name, value in page.card.items()
-    )
+    rows = "".join(f"<dt>{escape(name)}</dt><dd>{_line(value)}</dd>" for name, value in page.facts())
     return f'<section class="card"><h2>How this was made</h2><dl>{rows}</dl></section>\n'
-
-
-def _value(name: str, value: str) -> str:
-    return f"<code>{escape(value)}</code>" if name.startswith("command") else escape(value)

@@ -43,15 +43,8 @@ def lines(curves: Sequence[tuple[str, ArrayLike, ArrayLike]], across: str, upwar
 def bars(
     edges: ArrayLike, counts: ArrayLike, across: str, upwards: str, label: str, mark: float | None = None
 ) -> str:
-    """Returns a histogram as SVG.
-
-    Args:
-        edges: limits of the bars in ascending order, ``(n + 1,)``.
-        counts: number of values between consecutive edges, ``(n,)``.
-        across: name of the horizontal axis.
-        upwards: name of the vertical axis, which shows counts.
-        label: what the chart shows, for screen readers.
-        mark: a value at which a line is drawn; None draws none.
+    """Returns a histogram as SVG, of ``counts`` (n,) between ascending ``edges`` (n + 1,). A line is drawn at
+    the value ``mark``; ``label`` says what the chart shows, for screen readers.
     """
     at, many = np.asarray(edges, float), np.asarray(counts, float)
     figure, axes = _axes(across, upwards)

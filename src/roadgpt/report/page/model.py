@@ -1,6 +1,6 @@
 """Defines the Page and its parts."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -43,6 +43,13 @@ class Table:
     """Small text below the table."""
     has_total: bool = False
     """Whether the last row holds totals."""
+
+    @property
+    def has_numbers(self) -> list[bool]:
+        """Whether each column has numbers."""
+        return [
+            any(isinstance(row[n].value, (int, float)) for row in self.rows) for n in range(len(self.heads))
+        ]
 
 
 @dataclass(frozen=True)
@@ -111,6 +118,13 @@ class Page:
     lead: str = ""
     """One line under the title."""
 
+    def facts(self) -> list[tuple[str, str]]:
+        """Returns the entries of ``card``; what is called a command is a ShellCommand."""
+        return [
+            (name, ShellCommand(value) if name.startswith("command") else value)
+            for name, value in self.card.items()
+        ]
+
     def tables(self) -> list[Table]:
         """Returns all tables in order, including the tables in Details."""
         return _tables([block for section in self.sections for block in section.blocks])
@@ -126,6 +140,17 @@ def _tables(blocks: Sequence[Block]) -> list[Table]:
     return found
 
 
-def pieces_of(line: Line) -> Sequence[str | TableCell]:
-    """Returns the strings and links that make up a line of text; for a plain string, only this string."""
-    return (line,) if isinstance(line, str) else line
+def spelled(
+    line: Line,
+    words: Callable[[str], str],
+    command: Callable[[str], str],
+    link: Callable[[TableCell], str],
+) -> str:
+    """Returns a line of text in a markup language, in which each kind of piece is written by a function."""
+    pieces = (line,) if isinstance(line, str) else line
+    return "".join(
+        command(piece) if isinstance(piece, ShellCommand)
+        else words(piece) if isinstance(piece, str)
+        else link(piece)
+        for piece in pieces
+    )  # fmt: skip

@@ -30,11 +30,6 @@ def words(x: float, y: float, text: str, size: float, is_soft: bool = False) -> 
     return tag("text", escape(text), x=x, y=y, font_size=size, **style)
 
 
-def line(x0: float, y0: float, x1: float, y1: float) -> str:
-    """Returns a line from (x0, y0) to (x1, y1), with the CSS class ``axis``."""
-    return tag("line", x1=x0, y1=y0, x2=x1, y2=y1, class_="axis")
-
-
 def chart(width: float, height: float, content: str, label: str) -> str:
     """Returns an ``svg`` element of ``width`` by ``height`` px; ``label`` is for screen readers."""
     return tag(

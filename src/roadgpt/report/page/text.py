@@ -10,10 +10,9 @@ from roadgpt.report.page.model import (
     Line,
     Page,
     Raw,
-    ShellCommand,
     Table,
     TableCell,
-    pieces_of,
+    spelled,
 )
 from roadgpt.run.atomic import csv_text
 
@@ -49,12 +48,8 @@ def markdown_of(page: Page) -> str:
     for section in page.sections:
         parts += [f"## {_escaped(section.title)}", *_blocks(section.blocks)]
     if page.card:
-        parts += ["## How this was made", "\n".join(f"- {k}: {_code(k, v)}" for k, v in page.card.items())]
+        parts += ["## How this was made", "\n".join(f"- {k}: {_line(v)}" for k, v in page.facts())]
     return "\n\n".join(parts) + "\n"
-
-
-def _code(name: str, value: str) -> str:
-    return f"`{value}`" if name.startswith("command") else _escaped(value)
 
 
 def _escaped(words: str) -> str:
@@ -79,13 +74,7 @@ def _blocks(blocks: Sequence[Block]) -> list[str]:
 
 
 def _line(line: Line) -> str:
-    return "".join(map(_piece, pieces_of(line)))
-
-
-def _piece(piece: str | TableCell) -> str:
-    if isinstance(piece, ShellCommand):
-        return f"`{piece}`"
-    return _escaped(piece) if isinstance(piece, str) else _linked(piece)
+    return spelled(line, _escaped, lambda command: f"`{command}`", _linked)
 
 
 def _linked(cell: TableCell) -> str:
@@ -122,10 +111,7 @@ def unformulated(value: Raw) -> Raw:
 
 def latex_of(table: Table) -> str:
     """Returns a table as a LaTeX float that uses booktabs; columns with numbers are right-aligned."""
-    places = "".join(
-        "r" if any(isinstance(row[n].value, (int, float)) for row in table.rows) else "l"
-        for n in range(len(table.heads))
-    )
+    places = "".join("r" if is_number else "l" for is_number in table.has_numbers)
     body = [" & ".join(_latex(each.text) for each in row) + r" \\" for row in table.rows]
     if table.has_total and body:
         body.insert(-1, r"\midrule")

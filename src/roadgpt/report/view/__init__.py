@@ -53,10 +53,8 @@ def page(runs: Sequence[Run]) -> str:
 
 
 def page_of(scenes: Sequence[Mapping[str, Any]]) -> str:
-    """Returns the page for one or two scenes made by ``scene``; empty parts of a scene are not shown.
-
-    Raises:
-        UsageError: a number in a scene is not finite.
+    """Returns the page for one or two scenes made by ``scene``; empty parts of a scene are not shown. Raises
+    UsageError as ``embedded`` does.
     """
     title = " and ".join(dict.fromkeys(each["title"] for each in scenes))
     parts = {

@@ -19,12 +19,8 @@ def road_columns(
     """Returns a road's cross-section, and its geometry at stations close enough to draw the road. Values are
     in metres and radians, the curvature is in 1/m, and the grade is a ratio.
 
-    Args:
-        road: The road.
-        profile: The cross-section of the road.
-        reach: The largest offset, in metres, of any line that is drawn along the road; None: the profile's
-            ``reach``.
-        median: The stations between which grass grows on the profile's median; None: on the whole road.
+    ``reach`` is the largest offset of any line that is drawn along the road; None: the profile's ``reach``.
+    ``median`` is the stations between which grass grows on the profile's median; None: on the whole road.
 
     Raises:
         UsageError: A number of the road is not finite.
@@ -48,8 +44,8 @@ def road_columns(
 
 
 def _median(profile: Profile, span: tuple[float, float]) -> dict[str, float] | None:
-    """Returns which of the strips between two boundaries, counted from the left, is the median, and where it
-    is green; None if there is none.
+    """Returns which of the strips between two boundaries, from the left, is the median, and where it is
+    green.
     """
     if not profile.median:
         return None

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from roadgpt.brief.junctions import NAMES
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
 from roadgpt.network.arrows import arrows
 from roadgpt.network.ground import ground_of
 from roadgpt.network.markings import PaintedStroke, between_crosswalks, signs, strokes
-from roadgpt.network.polygon import Area
+from roadgpt.network.paved import Area
 from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
-from roadgpt.report.junctions import junction_stretches
 from roadgpt.report.view.columns import MILLIMETRES, road_columns, rounded
 from roadgpt.road.land import LONGEST_STEP
 from roadgpt.scene.junction_signs import faces_of
@@ -73,8 +73,12 @@ def network_values(route: Route) -> dict[str, Any]:
             else [],
         },
         "stretches": [
-            {"from": round(each.start, MILLIMETRES), "to": round(each.end, MILLIMETRES), "name": each.name}
-            for each in junction_stretches(route)
+            {
+                "from": round(each.start, MILLIMETRES),
+                "to": round(each.end, MILLIMETRES),
+                "name": NAMES[each.entered.kind][0],
+            }
+            for each in route.passages
         ],
         "hasRoute": bool(route.legs),
         "shoulder": round(parts.shoulder, MILLIMETRES),

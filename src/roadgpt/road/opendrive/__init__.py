@@ -3,26 +3,26 @@
 tree        reads the XML with limits on its size and without entities; selects one road of the file
 geometries  evaluates lines, arcs, spirals, poly3 and paramPoly3
 lanes       reads the lane sections; the inner edge of the driving lanes becomes the centre line of the Road
-profile     joins the lanes of all sections, and selects the driven lane
-marks       reads the road marks
+profile     joins the lanes of all sections, reads their road marks, and selects the driven lane
 line        computes the plan curve: unchanged where possible, otherwise clothoids through poses 1 m apart
 joins       finds places where elements do not meet exactly, and bridges them
 heights     reads the elevation, and converts it to the stations of the Road
 cubic_rows  sums and clips piecewise cubic functions of the station, such as lane widths
-reversal    reverses a road whose driving lanes are on the left
 left_out    lists the contents of the file that a Road cannot represent
 """
 
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
+from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, SplineCurve
 from roadgpt.geometry.curve import Array
-from roadgpt.road.opendrive.cubic_rows import closed, rows_of
+from roadgpt.road.moving import reversed_cubics, reversed_road
+from roadgpt.road.opendrive.cubic_rows import closed
 from roadgpt.road.opendrive.geometries import GeometryElement, reference_line
 from roadgpt.road.opendrive.heights import carried_over, edge_heights, elevation, jumps, plain
 from roadgpt.road.opendrive.joins import KINK, SampledLine, misses, turns_back
@@ -30,9 +30,8 @@ from roadgpt.road.opendrive.lanes import NEAR, Lanes, friction, read_lanes, spee
 from roadgpt.road.opendrive.left_out import left_out
 from roadgpt.road.opendrive.line import exact, fitted, lies_on_the_line, walk
 from roadgpt.road.opendrive.profile import Carry, FileProfile, checked, read_profile
-from roadgpt.road.opendrive.tree import Choice, Node, read_tree
+from roadgpt.road.opendrive.tree import Choice, read_tree
 from roadgpt.road.profile import Profile
-from roadgpt.road.reversal import reversed_cubics, reversed_road
 from roadgpt.road.road import Road, check_length
 from roadgpt.road.world import World
 
@@ -103,7 +102,7 @@ def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
         choice = read_tree(Path(path), road)
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from error
-    number_ = choice.road.attributes.get("id", "?")[:40]
+    number_ = choice.road.get("id", "?")[:40]
     try:
         return _imported(choice, number_, road is None)
     except UsageError as error:
@@ -140,7 +139,7 @@ def _imported(choice: Choice, id_: str, is_our_choice: bool) -> ImportedRoad:
     return ImportedRoad(
         grown if is_usual else grown.with_profile(profile),
         id_,
-        node.attributes.get("name", "")[:80],
+        node.get("name", "")[:80],
         width,
         shoulder,
         None if limit is None or limit <= 0 else float(np.clip(limit, *SPEEDS)),
@@ -154,7 +153,7 @@ def _carried(own: FileProfile, carry: Carry, length: float, is_reversed: bool) -
 
     def width(cubics: CubicProfile) -> CubicProfile:
         moved = carry(cubics)
-        return checked(closed(rows_of(reversed_cubics(moved, length) if is_reversed else moved), length))
+        return checked(closed((reversed_cubics(moved, length) if is_reversed else moved).rows, length))
 
     def angle(cubics: CubicProfile) -> CubicProfile:
         if not is_reversed:
@@ -165,7 +164,7 @@ def _carried(own: FileProfile, carry: Carry, length: float, is_reversed: bool) -
     return own.carried(width, angle)
 
 
-def _grown(node: Node, line: list[GeometryElement], lanes: Lanes) -> tuple[Road, Carry, list[str]]:
+def _grown(node: Element, line: list[GeometryElement], lanes: Lanes) -> tuple[Road, Carry, list[str]]:
     """Returns the road, the ``Carry`` that converts cubics over stations of the file to cubics over stations
     of the road, and a remark for each thing changed.
     """
@@ -213,9 +212,8 @@ def _away(found: SampledLine, road: Road) -> float:
 
 
 def _rounded(found: SampledLine, heights: Array) -> tuple[Road, Array]:
-    """Returns a spline through a line whose joins are too close to each other for any other method.
-
-    Also returns the stations of its nodes in the file.
+    """Returns a spline through a line whose joins are too close for any other method, and the stations of its
+    nodes in the file.
     """
     kept = [0]
     for i in range(1, len(found.s) - 1):
@@ -227,7 +225,7 @@ def _rounded(found: SampledLine, heights: Array) -> tuple[Road, Array]:
     return Road.through(np.column_stack([found.poses[:, :2], heights])[kept]), found.s[kept]
 
 
-def _driven_otherwise(node: Node, lanes: Lanes) -> list[str]:
+def _driven_otherwise(node: Element, lanes: Lanes) -> list[str]:
     """Returns a sentence for each way in which traffic in the file differs from traffic on the Road."""
     remarks = []
     spans = lanes.stretches()
@@ -235,6 +233,6 @@ def _driven_otherwise(node: Node, lanes: Lanes) -> list[str]:
         where = " and ".join(f"{start:.0f} to {end:.0f}" for start, end in spans[:MOST_SPANS])
         more = " and so on" if len(spans) > MOST_SPANS else ""
         remarks.append(f"in its file cars drive only from s = {where}{more} m, here along the whole road")
-    if node.attributes.get("rule") == "LHT":
+    if node.get("rule") == "LHT":
         remarks.append("it is made for left-hand traffic, and is driven on the right here")
     return remarks

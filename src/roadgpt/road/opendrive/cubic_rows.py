@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from roadgpt.geometry import CubicProfile, shifted
-from roadgpt.road.opendrive.numbers import Cubic
+from roadgpt.geometry.elevation import Cubic
 
 Row = tuple[float, Cubic]
 """A station in metres, and the cubic that begins there."""
@@ -19,16 +19,13 @@ SHORTEST = 1e-6  # m between two stations
 
 
 def combined(parts: Sequence[tuple[float, CubicProfile]], start: float, end: float) -> list[Row]:
-    """Returns the weighted sum of piecewise cubics between two stations in metres, as rows.
-
-    Each entry of ``parts`` is a factor and the cubics that it multiplies.
-    """
+    """Returns the sum of piecewise cubics, each after its factor, between two stations in metres, as rows."""
     inner = {s for _, each in parts for s in each.stations if start < s < end}
-    stations = np.array([start, *sorted(inner)])
+    stations = [start, *sorted(inner)]
     table = np.zeros((len(stations), 4))
     for factor, each in parts:
-        table += factor * each.cubics(stations)
-    return [(s, (a, b, c, d)) for s, (a, b, c, d) in zip(stations.tolist(), table.tolist(), strict=True)]
+        table += factor * each.cubics(np.array(stations))
+    return CubicProfile.of_table(stations, table).rows
 
 
 def value_at(row: Row, s: float) -> float:
@@ -43,15 +40,8 @@ def constant(s: float, value: float) -> Row:
 
 
 def limited(rows: Sequence[Row], end: float, low: float, high: float) -> list[Row]:
-    """Returns the rows with their values clamped to the range from ``low`` to ``high``.
-
-    The result is exact: a row is cut where its cubic crosses a limit.
-
-    Args:
-        rows: The rows, in the order of their stations.
-        end: Station in metres at which the last row ends.
-        low: The smallest value.
-        high: The largest value.
+    """Returns the rows, of which the last ends at station ``end`` in metres, with their values clamped to the
+    range from ``low`` to ``high``. The result is exact: a row is cut where its cubic crosses a limit.
     """
     out: list[Row] = []
     ends = [*(s for s, _ in rows[1:]), end]
@@ -82,10 +72,8 @@ def _cuts(row: Row, end: float, low: float, high: float) -> list[tuple[float, fl
 
 
 def closed(rows: Sequence[Row], length: float) -> CubicProfile:
-    """Converts the rows to a CubicProfile of a road that is ``length`` metres long.
-
-    Beyond the end of the road, the profile keeps its last value.
-    A constant row that repeats the value of the previous constant row is left out.
+    """Converts the rows to a CubicProfile of a road of ``length`` metres, beyond whose end it keeps its last
+    value. A constant row that repeats the one before is left out.
     """
     kept: list[Row] = []
     for row in rows:
@@ -93,21 +81,12 @@ def closed(rows: Sequence[Row], length: float) -> CubicProfile:
             break
         if kept and row[0] - kept[-1][0] < SHORTEST:
             kept.pop()
-        if not (kept and _continues(kept[-1], row)):
+        repeats = kept and _is_constant(kept[-1]) and _is_constant(row)
+        if not (repeats and abs(kept[-1][1][0] - row[1][0]) < SAME):
             kept.append(row)
     if not _is_constant(kept[-1]):
         kept.append(constant(length, value_at(kept[-1], length)))
-    return CubicProfile(tuple(s for s, _ in kept), tuple(cubic for _, cubic in kept))
-
-
-def rows_of(cubics: CubicProfile) -> list[Row]:
-    """Converts a CubicProfile to rows, each with a station and the cubic that begins there."""
-    return [*zip(cubics.stations, cubics.coefficients, strict=True)]
-
-
-def _continues(row: Row, following: Row) -> bool:
-    """Returns whether both rows are constant and equal."""
-    return _is_constant(row) and _is_constant(following) and abs(row[1][0] - following[1][0]) < SAME
+    return CubicProfile.of_rows(kept)
 
 
 def _is_constant(row: Row) -> bool:

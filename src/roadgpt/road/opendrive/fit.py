@@ -18,12 +18,9 @@ BLOCK = 20_000  # pieces at a time, to spare memory
 
 
 def clothoids(poses: Array) -> list[Piece] | None:
-    """Returns the clothoids that join consecutive poses; None if two poses cannot be joined by a clothoid.
-
-    Every clothoid ends at the next pose, except for rounding, so errors do not add up.
-
-    Args:
-        poses: One row (x, y, heading) per pose, ``(n + 1, 3)``, in metres and radians.
+    """Returns the clothoids that join consecutive poses, rows (x, y, heading) in metres and radians, ``(n +
+    1, 3)``; None if two poses cannot be joined. Every clothoid ends at the next pose, except for rounding, so
+    errors do not add up.
     """
     found: list[Piece] = []
     for first in range(0, len(poses) - 1, BLOCK):

@@ -6,14 +6,15 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Protocol
+from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.geometry.curve import Array
-from roadgpt.road.opendrive.numbers import Cubic, number
-from roadgpt.road.opendrive.tree import Node
+from roadgpt.geometry.elevation import Cubic
+from roadgpt.road.opendrive.numbers import number
 from roadgpt.road.road import LONGEST, check_length
 
 KNOWN = ("line", "arc", "spiral", "poly3", "paramPoly3")
@@ -113,13 +114,11 @@ class Polynomial:
         return np.stack([x, y, np.unwrap(heading) if len(heading) else heading], -1)
 
 
-def reference_line(road: Node) -> list[GeometryElement]:
-    """Returns the geometry elements of a road's reference line in order.
-
-    Raises:
-        UsageError: There are no elements, or an element is unknown or invalid.
+def reference_line(road: Element) -> list[GeometryElement]:
+    """Returns the geometry elements of a road's reference line in order. Raises UsageError if there are none,
+    or if one is unknown or invalid.
     """
-    nodes = road.all("planView", "geometry")
+    nodes = road.findall("planView/geometry")
     if len(nodes) > MOST:
         raise UsageError(f"its line has more than {MOST:,} elements; cut out the part that you need")
     check_length(sum(abs(number(node, "length")) for node in nodes) or 1.0)
@@ -141,7 +140,7 @@ def reference_line(road: Node) -> list[GeometryElement]:
     return [*out, kept[-1]]
 
 
-def _long_enough(nodes: list[Node]) -> Iterator[Node]:
+def _long_enough(nodes: list[Element]) -> Iterator[Element]:
     """Yields the elements, except those that are shorter than their own rounding errors."""
     passed = 0.0
     for node in nodes:
@@ -153,19 +152,19 @@ def _long_enough(nodes: list[Node]) -> Iterator[Node]:
             yield node
 
 
-def _element(node: Node) -> GeometryElement:
+def _element(node: Element) -> GeometryElement:
     s, x, y = (number(node, name) for name in ("s", "x", "y"))
     heading, length = number(node, "hdg"), number(node, "length")
     if length < 0:
         raise UsageError(f"the geometry at s = {s:g} is {length:g} m long; correct it")
-    shapes = [child for child in node.children if child.tag in KNOWN]
+    shapes = [child for child in node if child.tag in KNOWN]
     if not shapes:
-        what = f"is a <{node.children[0].tag[:40]}>" if node.children else "has no shape"
+        what = f"is a <{node[0].tag[:40]}>" if len(node) else "has no shape"
         raise UsageError(f"the geometry at s = {s:g} {what}; known are {', '.join(KNOWN)}")
     return GeometryElement(s, x, y, heading, length, _shape(shapes[0], s, max(length, SMALLEST)))
 
 
-def _shape(node: Node, s: float, length: float) -> Shape:
+def _shape(node: Element, s: float, length: float) -> Shape:
     if node.tag == "line":
         return PieceShape(Piece(length))
     if node.tag in ("arc", "spiral"):
@@ -179,7 +178,7 @@ def _shape(node: Node, s: float, length: float) -> Shape:
     if node.tag == "poly3":
         v = (number(node, "a"), number(node, "b"), number(node, "c"), number(node, "d"))
         return Polynomial((0.0, 1.0, 0.0, 0.0), v, length).up_to(length)
-    kind = node.attributes.get("pRange", "normalized")
+    kind = node.get("pRange", "normalized")
     if kind not in ("normalized", "arcLength"):
         raise UsageError(
             f"the paramPoly3 at s = {s:g} has a pRange '{kind[:20]}'; give arcLength or normalized"
@@ -193,6 +192,6 @@ def _shape(node: Node, s: float, length: float) -> Shape:
     return shape
 
 
-def _cubic(node: Node, axis: str) -> Cubic:
+def _cubic(node: Element, axis: str) -> Cubic:
     a, b, c, d = (number(node, f"{letter}{axis}") for letter in "abcd")
     return a, b, c, d

@@ -1,6 +1,7 @@
 """Reads the elevation of an OpenDRIVE file, and converts it to the Road's stations."""
 
 from itertools import pairwise
+from xml.etree.ElementTree import Element
 
 import numpy as np
 
@@ -8,7 +9,6 @@ from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile, shift
 from roadgpt.geometry.curve import Array
 from roadgpt.road.opendrive.lanes import Lanes
 from roadgpt.road.opendrive.numbers import cubics
-from roadgpt.road.opendrive.tree import Node
 
 SAME = 1e-9  # m, and as a ratio: heights and grades closer than this are treated as equal
 CLOSE = 1e-6  # m between the starts of two cubics
@@ -16,17 +16,13 @@ STEP = 0.05  # m; a remark is made about a larger step
 APART = 1.0  # m between the stations of the heights of a centre line beside the reference line
 
 
-def elevation(road: Node) -> CubicProfile:
+def elevation(road: Element) -> CubicProfile:
     """Returns the height of a road as a function of its station; 0 if the file states no elevation."""
-    found = cubics(road.all("elevationProfile", "elevation"), "s")
-    return found or CubicProfile((0.0,), ((0.0, 0.0, 0.0, 0.0),))
+    return cubics(road.findall("elevationProfile/elevation"), "s") or CubicProfile.constant(0.0)
 
 
 def plain(profile: CubicProfile, length: float) -> ElevationProfile:
-    """Returns the profile as a GradeProfile if it consists of constant grades and parabolas.
-
-    A profile with steps, kinks or cubic terms is returned unchanged.
-    """
+    """Returns a profile of constant grades and parabolas as a GradeProfile, and any other one unchanged."""
     stations = [s for s in profile.stations if s < length - SAME]
     stations = [0.0, *(s for s in stations if s > SAME)]
     table = profile.cubics(np.array(stations))
@@ -53,14 +49,9 @@ def jumps(profile: CubicProfile, length: float) -> str | None:
 
 
 def edge_heights(heights: CubicProfile, lanes: Lanes) -> CubicProfile:
-    """Returns the heights of the inner edge of the driving lanes as a function of the station in the file.
-
-    They differ from the heights of the reference line only where the road has superelevation and the edge
-    does not coincide with this line.
-
-    Args:
-        heights: The heights of the reference line.
-        lanes: The lanes of the road.
+    """Returns the heights of the inner edge of the driving lanes, from those of the reference line, as
+    functions of the station in the file. They differ only where the road has superelevation and the edge is
+    not this line.
     """
     if lanes.angle is None or not any(any(cubic) for cubic in lanes.angle.coefficients):
         return heights
@@ -77,8 +68,7 @@ def edge_heights(heights: CubicProfile, lanes: Lanes) -> CubicProfile:
     z0, z1 = z0 - inside * g0, z1 + inside * g1
     rise = (z1 - z0) / length
     c, d = (3 * rise - 2 * g0 - g1) / length, (g0 + g1 - 2 * rise) / length**2
-    rows = [(a, b, c, d) for a, b, c, d in np.column_stack([z0, g0, c, d]).tolist()]
-    return CubicProfile(tuple(s[:-1].tolist()), tuple(rows))
+    return CubicProfile.of_table(s[:-1].tolist(), np.column_stack([z0, g0, c, d]))
 
 
 def _edge_height(heights: CubicProfile, lanes: Lanes, s: Array) -> tuple[Array, Array]:
@@ -99,15 +89,11 @@ def _edge_height(heights: CubicProfile, lanes: Lanes, s: Array) -> tuple[Array, 
 
 
 def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfile:
-    """Converts cubic functions of the station in the file to functions of the station on the Road.
+    """Converts cubic functions of the station in the file to functions of the station on the Road, which
+    differ where the centre line is longer or shorter than the reference line.
 
-    The two stations differ where the centre line is longer or shorter than the reference line. Between the
-    given pairs of corresponding stations, the conversion is linear.
-
-    Args:
-        profile: The functions of the station in the file.
-        s: Increasing stations of the file in metres, ``(n,)``.
-        stations: Stations of the Road in metres that correspond to ``s``, ``(n,)``.
+    ``s`` are increasing stations of the file in metres, ``stations`` those of the Road that correspond to
+    them; in between, the conversion is linear.
     """
     cuts = np.array(profile.stations)
     behind = np.clip(np.searchsorted(s, cuts), 1, len(s) - 1)
@@ -118,5 +104,4 @@ def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfi
     half = np.diff(s) / 2
     table = shifted(profile.cubics(s[:-1] + half), -half)
     scale = (np.diff(s) / np.diff(stations))[:, None] ** np.arange(4)
-    rows = [(a, b, c, d) for a, b, c, d in (table * scale).tolist()]
-    return CubicProfile(tuple(stations[:-1].tolist()), tuple(rows))
+    return CubicProfile.of_table(stations[:-1].tolist(), table * scale)

@@ -53,9 +53,8 @@ class SampledLine:
 
 
 def bridged(line: SampledLine) -> SampledLine | None:
-    """Returns the line without the poses close to places where elements do not meet exactly.
-
-    Returns None if the remaining poses are too far apart to be joined by clothoids.
+    """Returns the line without the poses close to places where elements do not meet exactly; None if the
+    others are too far apart to be joined by clothoids.
     """
     kept = _thinned(line.s, _away_from_joins(line))
     if np.diff(line.s[kept]).max() > WIDEST:
@@ -68,9 +67,8 @@ def bridged(line: SampledLine) -> SampledLine | None:
 
 
 def turns_back(line: SampledLine) -> tuple[float, float] | None:
-    """Returns the station (m) and the angle (rad) of a kink after which the line runs backwards.
-
-    Returns None if there is no such kink.
+    """Returns the station (m) and angle (rad) of a kink after which the line runs backwards; None without
+    one.
     """
     kept = bridged(line)
     for i in np.flatnonzero(np.abs(line.kinks) > BACK):
@@ -115,9 +113,7 @@ def _thinned(s: Array, kept: Array) -> Array:
 
 def misses(line: SampledLine) -> str:
     """Returns a text that states how many noticeable kinks and gaps the line has, and the largest kink and
-    gap.
-
-    The text is empty if there are none.
+    gap; an empty text if there are none.
     """
     kinks, gaps = np.abs(line.kinks), line.gaps
     parts = []

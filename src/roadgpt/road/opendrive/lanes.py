@@ -9,6 +9,7 @@ Road.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
+from xml.etree.ElementTree import Element
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.road.opendrive.numbers import cubics, number
-from roadgpt.road.opendrive.tree import DRIVING, Node
+from roadgpt.road.opendrive.tree import DRIVING
 
 BESIDE = ("shoulder", "border")
 UNITS = {"m/s": 1.0, "km/h": 3.6, "mph": 3600 / 1609.344}  # per m/s
@@ -31,7 +32,7 @@ class LaneElement:
     outer edge.
     """
 
-    node: Node
+    node: Element
     kind: str
     width: CubicProfile | None
     border: CubicProfile | None
@@ -46,7 +47,7 @@ class LaneSection:
     """The lanes on the driven side."""
     others: tuple[LaneElement, ...]
     """The lanes on the side opposite to the driven side."""
-    centre: tuple[Node, ...]
+    centre: tuple[Element, ...]
     """Lane 0, if there is one."""
     first: int
     """Index in ``lanes`` of the innermost driving lane; ``len(lanes)`` if there is none."""
@@ -105,14 +106,14 @@ class Lanes:
         return t, slope
 
     def _outer(self, section: LaneSection, last: int, s: Array) -> tuple[Array, Array]:
-        """Returns the distance in metres of a lane's outer edge from lane 0, and the slope of this edge.
-
-        ``last`` is the index of the lane in ``section.lanes``; for -1 both values are 0.
+        """Returns the distance in metres of the outer edge of ``section.lanes[last]`` from lane 0, and its
+        slope; for -1 both are 0.
         """
         across, lean = np.zeros(len(s)), np.zeros(len(s))
         for lane in section.lanes[: last + 1]:
             if lane.width is None and lane.border is not None:
-                across, lean = (np.abs(each) for each in _both(lane.border, s))
+                across, lean = _both(lane.border, s)
+                across, lean = np.abs(across), np.where(across < 0, -lean, lean)
             else:
                 more, leaning = _both(lane.width, s)
                 across, lean = across + more, lean + leaning
@@ -150,22 +151,20 @@ class Lanes:
         return found
 
 
-def read_lanes(road: Node, length: float) -> Lanes:
-    """Returns the lane sections of a road that is ``length`` metres long.
-
-    Raises:
-        UsageError: The road has no lanes, or no driving lane.
+def read_lanes(road: Element, length: float) -> Lanes:
+    """Returns the lane sections of a road that is ``length`` metres long. Raises UsageError if it has no
+    driving lane.
     """
-    nodes = road.all("lanes", "laneSection")
+    nodes = road.findall("lanes/laneSection")
     if not nodes:
         raise UsageError("it has no lane section; add <lanes>")
     if len(nodes) > MOST_SECTIONS:
         raise UsageError(f"it has more than {MOST_SECTIONS:,} lane sections; cut out the part that you need")
     nodes.sort(key=lambda node: number(node, "s"))
-    offset = cubics(road.all("lanes", "laneOffset"), "s")
-    angle = cubics(road.all("lateralProfile", "superelevation"), "s")
+    offset = cubics(road.findall("lanes/laneOffset"), "s")
+    angle = cubics(road.findall("lateralProfile/superelevation"), "s")
     starts = [number(node, "s") for node in nodes]
-    centres = [tuple(node.all("center", "lane")) for node in nodes]
+    centres = [tuple(node.findall("center/lane")) for node in nodes]
     on_right, on_left = (
         [_elements(node, side, s) for node, s in zip(nodes, starts, strict=True)]
         for side in ("right", "left")
@@ -177,29 +176,29 @@ def read_lanes(road: Node, length: float) -> Lanes:
     along, against = (sum(end - start for start, end in lanes.stretches()) for lanes in (right, left))
     if along or against:
         return right if along >= against / 2 else left
-    kinds = {lane.attributes.get("type", "?") for node in nodes for lane in node.all("left", "lane")}
-    kinds |= {lane.attributes.get("type", "?") for node in nodes for lane in node.all("right", "lane")}
+    kinds = {lane.get("type", "?") for node in nodes for lane in node.findall("left/lane")}
+    kinds |= {lane.get("type", "?") for node in nodes for lane in node.findall("right/lane")}
     told = ", ".join(sorted(kinds)[:6]) or "none"
     raise UsageError(f"it has no lane of type driving (its lanes are: {told}); take another road")
 
 
 def _section(
-    s: float, lanes: tuple[LaneElement, ...], others: tuple[LaneElement, ...], centre: tuple[Node, ...]
+    s: float, lanes: tuple[LaneElement, ...], others: tuple[LaneElement, ...], centre: tuple[Element, ...]
 ) -> LaneSection:
     first = next((i for i, lane in enumerate(lanes) if lane.kind in DRIVING), len(lanes))
     return LaneSection(s, lanes, others, centre, first)
 
 
-def _elements(section: Node, side: str, s: float) -> tuple[LaneElement, ...]:
-    nodes = sorted(section.all(side, "lane"), key=lambda lane: abs(number(lane, "id")))
+def _elements(section: Element, side: str, s: float) -> tuple[LaneElement, ...]:
+    nodes = sorted(section.findall(f"{side}/lane"), key=lambda lane: abs(number(lane, "id")))
     if len(nodes) > MOST_ACROSS:
         raise UsageError(f"its lane section at s = {s:g} has more than {MOST_ACROSS} lanes on one side")
     return tuple(
         LaneElement(
             lane,
-            lane.attributes.get("type", ""),
-            cubics(lane.all("width"), "sOffset", s),
-            cubics(lane.all("border"), "sOffset", s),
+            lane.get("type", ""),
+            cubics(lane.findall("width"), "sOffset", s),
+            cubics(lane.findall("border"), "sOffset", s),
         )
         for lane in nodes
     )
@@ -211,28 +210,23 @@ def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:
     return profile.height(s), profile.grade(s)
 
 
-def speed_limits(road: Node, driven: Sequence[Node]) -> list[float]:
-    """Returns all speed limits of the driven lane in m/s, in driving order.
-
-    If the lane has no speed limits, those of the road are returned.
-
-    Args:
-        road: The road.
-        driven: The driven lane in each lane section.
+def speed_limits(road: Element, driven: Sequence[Element]) -> list[float]:
+    """Returns all speed limits in m/s, in driving order, of the driven lane, which is given for each lane
+    section; those of the road if the lane has none.
     """
-    of_lane = [node for lane in driven for node in lane.all("speed")]
-    return _speeds(of_lane) or _speeds(road.all("type", "speed"))
+    of_lane = [node for lane in driven for node in lane.findall("speed")]
+    return _speeds(of_lane) or _speeds(road.findall("type/speed"))
 
 
-def _speeds(nodes: Sequence[Node]) -> list[float]:
+def _speeds(nodes: Sequence[Element]) -> list[float]:
     return [
-        number(node, "max") / UNITS.get(node.attributes.get("unit", "m/s"), 1.0)
+        number(node, "max") / UNITS.get(node.get("unit", "m/s"), 1.0)
         for node in nodes
-        if node.attributes.get("max") not in (None, "no limit", "undefined")
+        if node.get("max") not in (None, "no limit", "undefined")
     ]
 
 
-def friction(driven: Sequence[Node]) -> float | None:
+def friction(driven: Sequence[Element]) -> float | None:
     """Returns the friction coefficient that the file states for the driven lane; None if it states none."""
-    said = [node for lane in driven for node in lane.all("material") if "friction" in node.attributes]
+    said = [node for lane in driven for node in lane.findall("material") if "friction" in node.attrib]
     return number(said[0], "friction") if said else None

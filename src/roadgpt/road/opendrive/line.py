@@ -56,17 +56,12 @@ def lies_on_the_line(lanes: Lanes, length: float) -> bool:
 
 
 def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
-    """Returns poses along the inner edge of the driving lanes.
+    """Returns poses along the inner edge of the driving lanes, or along the reference line if ``lanes`` is
+    None.
 
     The poses are at most about one metre apart. There is also a pose wherever an element begins, and wherever
-    the inner edge may have a kink (``Lanes.joints``).
-
-    Args:
-        line: The reference line.
-        lanes: The lanes of the road; None to return poses along the reference line.
-
-    Raises:
-        UsageError: The line has a gap, the edge jumps, or the edge comes too close to the centre of a bend.
+    the inner edge may have a kink (``Lanes.joints``). Raises UsageError if the line has a gap, the edge
+    jumps, or the edge comes too close to the centre of a bend.
     """
     joints = np.unique(lanes.joints()) if lanes else np.empty(0)
     parts = [part for each in line for part in _parts(each, joints, lanes)]
@@ -113,10 +108,7 @@ def _parts(element: GeometryElement, joints: Array, lanes: Lanes | None) -> Iter
 
 
 def _moved_aside(s: Array, poses: Array, lanes: Lanes) -> Array:
-    """Returns the poses moved onto the edge of the lane.
-
-    At both ends of the poses, the lanes just inside are used.
-    """
+    """Returns the poses moved onto the edge of the lane; at both ends, the lanes just inside are used."""
     inside = min(TOGETHER, float(s[-1] - s[0]) / 4)
     at = np.clip(s, s[0] + inside, s[-1] - inside)
     t, slope = lanes.edge(at)
@@ -147,10 +139,9 @@ def _strays(element: GeometryElement, count: int) -> bool:
 
 
 def fitted(line: SampledLine) -> tuple[PieceCurve, Array, Array] | None:
-    """Returns a curve of clothoids through the poses; poses near gaps between elements are skipped.
-
-    Also returns the stations of the remaining poses in the file and on the curve, in metres. Returns None if
-    clothoids cannot follow the line.
+    """Returns a curve of clothoids through the poses except those near gaps between elements, and the
+    stations of the remaining poses in the file and on the curve, in metres; None if clothoids cannot follow
+    the line.
     """
     kept = bridged(line)
     pieces = clothoids(kept.poses) if kept is not None else None

@@ -1,4 +1,5 @@
-"""Reads the cross-section of a road: lanes and shoulders beside the centre line, and the superelevation.
+"""Reads the cross-section of a road: lanes, shoulders and road marks beside the centre line, and the
+superelevation.
 
 The centre line is the inner edge of the innermost driving lane. Lanes of successive lane sections are joined
 in order, beginning with the innermost. A lane narrower than 0.25 m where two sections meet is not joined
@@ -6,17 +7,18 @@ there. In sections where a joined lane does not exist, its width is 0.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import takewhile
+from itertools import chain, pairwise, repeat, takewhile
 from typing import NamedTuple
+from xml.etree.ElementTree import Element
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
-from roadgpt.road.opendrive.cubic_rows import Row, closed, combined, constant, limited, rows_of, value_at
+from roadgpt.road.opendrive.cubic_rows import Row, closed, combined, constant, limited, value_at
 from roadgpt.road.opendrive.lanes import BESIDE, LaneElement, Lanes, Span
-from roadgpt.road.opendrive.marks import MarkedLane, has_marks, marking
-from roadgpt.road.opendrive.tree import DRIVING, Node
+from roadgpt.road.opendrive.numbers import number
+from roadgpt.road.opendrive.tree import DRIVING
 from roadgpt.road.profile import Kind, Lane, Marking, Profile, Width
 from roadgpt.road.profile_json import MOST_LANES, MOST_ROWS, STEEPEST, WIDEST
 
@@ -25,8 +27,28 @@ ADJOINS = 1e-3  # m; lanes for oncoming cars that are farther from the centre li
 ROUNDING = 1e-6  # m
 THIN = 0.25  # m; a lane that is narrower at the end of a section ends or begins there
 
+UNMARKED: Marking = "none"
+MARKS: dict[str, Marking] = {
+    "solid": "solid",
+    "broken": "broken",
+    "solid solid": "solid",
+    "solid broken": "solid",
+    "broken solid": "solid",
+    "broken broken": "broken",
+    "botts dots": "broken",
+    "custom": "solid",
+}
+"""The marking for each type of road mark that is a line."""
+
 Carry = Callable[[CubicProfile], CubicProfile]
 """A function that converts cubics over the stations of the file to cubics over those of the Road."""
+
+
+class MarkedLane(NamedTuple):
+    """A lane in one lane section. Its XML element, ``node``, contains the road marks at the outer edge."""
+
+    span: Span
+    node: Element
 
 
 class JoinedLane(NamedTuple):
@@ -35,16 +57,8 @@ class JoinedLane(NamedTuple):
     kind: Kind
     width: CubicProfile
     parts: list[MarkedLane]
-
-
-@dataclass(frozen=True)
-class LaneMarkings:
-    """The markings of a cross-section."""
-
-    right: tuple[Marking, ...]
-    """The markings at the outer edges of the lanes on the right."""
-    centre: Marking
-    left: tuple[Marking, ...]
+    marking: Marking = UNMARKED
+    """The marking at the outer edge."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +69,8 @@ class FileProfile:
 
     right: tuple[JoinedLane, ...]
     left: tuple[JoinedLane, ...]
-    markings: LaneMarkings
+    centre: Marking
+    """The marking of the centre line."""
     driven: int
     """Index of the driven lane in ``right``."""
     angle: CubicProfile | None
@@ -66,26 +81,20 @@ class FileProfile:
         """Returns ``id(node)`` for the XML elements ``node`` of all lanes in the cross-section."""
         return {id(part.node) for slot in (*self.right, *self.left) for part in slot.parts}
 
-    def driven_nodes(self) -> list[Node]:
+    def driven_nodes(self) -> list[Element]:
         """Returns the XML element of the driven lane from each lane section in which it exists."""
         return [part.node for part in self.right[self.driven].parts]
 
     def carried(self, carry: Carry, turned: Carry) -> Profile:
-        """Returns the cross-section as a function of the station on the Road.
-
-        Args:
-            carry: Function that converts lane widths from stations of the file to stations of the Road.
-            turned: Function that does the same for the superelevation.
+        """Returns the cross-section as a function of the station on the Road, to which ``carry`` converts the
+        widths, and ``turned`` the superelevation.
         """
         right, left = (
-            tuple(
-                Lane(slot.kind, _plain(carry(slot.width)), mark)
-                for slot, mark in zip(slots, marks, strict=True)
-            )
-            for slots, marks in ((self.right, self.markings.right), (self.left, self.markings.left))
+            tuple(Lane(slot.kind, _plain(carry(slot.width)), slot.marking) for slot in slots)
+            for slots in (self.right, self.left)
         )
         angle = None if self.angle is None else turned(self.angle)
-        return Profile(left, right, self.driven, self.markings.centre, angle)
+        return Profile(left, right, self.driven, self.centre, angle)
 
 
 def _plain(width: CubicProfile) -> Width:
@@ -112,18 +121,15 @@ class _SectionSide(NamedTuple):
     shoulders: list[WideLane]
 
 
-def read_profile(road: Node, lanes: Lanes) -> FileProfile:
-    """Returns the cross-section of a road. Beyond the road's end, widths and superelevation keep their last
-    values.
-
-    Raises:
-        UsageError: A width or the superelevation consists of too many cubics.
+def read_profile(road: Element, lanes: Lanes) -> FileProfile:
+    """Returns the cross-section of a road. Beyond its end, widths and superelevation keep their last values.
+    Raises UsageError if one of them consists of too many cubics.
     """
     spans = lanes.spans()
     left_sides, remarks = _oncoming(spans)
     right = _joined([_beside(span, _outward(span)) for span in spans], lanes.length)
     left = _joined(left_sides, lanes.length)
-    markings, repainted = _markings(road, spans, right, left)
+    right, left, centre, repainted = _painted(road, spans, right, left)
     driven = _rightmost(right)
     if driven:
         remarks.append(
@@ -134,7 +140,7 @@ def read_profile(road: Node, lanes: Lanes) -> FileProfile:
     right[driven] = right[driven]._replace(width=width)
     angle, flattened = _superelevation(lanes)
     told = (*remarks, *narrowed, *repainted, *flattened)
-    return FileProfile(tuple(right), tuple(left), markings, driven, angle, told)
+    return FileProfile(tuple(right), tuple(left), centre, driven, angle, told)
 
 
 def _outward(span: Span) -> Iterator[WideLane]:
@@ -212,14 +218,9 @@ def _joined(sides: Sequence[_SectionSide], length: float) -> list[JoinedLane]:
 
 
 def _aligned(spans: Sequence[Span], sections: Sequence[Sequence[WideLane]]) -> list[dict[int, WideLane]]:
-    """Returns the lanes of successive sections, joined where they continue each other, from the inside out.
-
-    A lane that is narrower than ``THIN`` where two sections meet is not joined there. The other lanes are
-    joined in order, from the inside out. Each result maps the index of a section to the lane in it.
-
-    Args:
-        spans: The sections.
-        sections: The lanes of each section from the inside out.
+    """Returns the lanes of successive sections, given from the inside out, joined in this order where they
+    continue each other. A lane narrower than ``THIN`` where two sections meet is not joined there. Each
+    result maps the index of a section to the lane in it.
     """
     out: list[dict[int, WideLane]] = []
     for n, (span, lanes) in enumerate(zip(spans, sections, strict=True)):
@@ -258,11 +259,7 @@ def _joined_lane(
 
 
 def checked(cubics: CubicProfile) -> CubicProfile:
-    """Returns the cubics unchanged if a RoadGPT road file can hold as many.
-
-    Raises:
-        UsageError: There are more than ``MOST_ROWS`` cubics.
-    """
+    """Returns the cubics unchanged. Raises UsageError if they are more than a RoadGPT road file can hold."""
     if len(cubics.stations) > MOST_ROWS:
         raise UsageError(
             f"one of its lanes has more than {MOST_ROWS:,} widths; cut out the part that you need"
@@ -285,7 +282,7 @@ def _driven_width(width: CubicProfile, length: float) -> tuple[CubicProfile, lis
     low, high = width.extremes()
     if low > LEAST - ROUNDING and high < MOST + ROUNDING:
         return width, []
-    kept = closed(limited(rows_of(width), length, LEAST, MOST), length)
+    kept = closed(limited(width.rows, length, LEAST, MOST), length)
     least, most = kept.extremes()
     is_constant = most - least < ROUNDING
     taken = f"{least:.2f} m everywhere" if is_constant else f"{least:.2f} to {most:.2f} m"
@@ -296,7 +293,7 @@ def _superelevation(lanes: Lanes) -> tuple[CubicProfile | None, list[str]]:
     """Returns the superelevation (None for a level road), and a remark if it had to be limited."""
     if lanes.angle is None:
         return None, []
-    rows = rows_of(lanes.angle)
+    rows = lanes.angle.rows
     angle = checked(closed(limited(rows, lanes.length, -STEEPEST, STEEPEST), lanes.length))
     if not any(any(cubic) for cubic in angle.coefficients):
         return None, []
@@ -307,32 +304,35 @@ def _superelevation(lanes: Lanes) -> tuple[CubicProfile | None, list[str]]:
     return angle, [f"its superelevation is up to {told:.1f} degrees, and is taken as {most:.1f} at most"]
 
 
-def _markings(
-    road: Node, spans: Sequence[Span], right: Sequence[JoinedLane], left: Sequence[JoinedLane]
-) -> tuple[LaneMarkings, list[str]]:
-    """Returns the markings, and a remark if they differ from those in the file."""
-    if not has_marks(road):
-        along, against = (sum(slot.kind == "driving" for slot in side) for side in (right, left))
-        usual = Profile.of(along, against, shoulder=0.0)
-        sides = (_padded(usual.right, len(right)), _padded(usual.left, len(left)))
-        said = "it has no road marks in its file; the usual ones are painted here"
-        return LaneMarkings(sides[0], usual.centre_marking, sides[1]), [said]
-    on_right, on_left = ([marking(slot.parts) for slot in side] for side in (right, left))
-    centre = marking([MarkedLane(span, _inner(span)) for span in spans if span.section.centre])
-    changes = any(changed for _, changed in (*on_right, *on_left, centre))
-    said = "its road marks change along the road; the most frequent ones are painted here"
-    marks = LaneMarkings(tuple(m for m, _ in on_right), centre[0], tuple(m for m, _ in on_left))
-    return marks, [said] if changes else []
+def _painted(
+    road: Element, spans: Sequence[Span], right: Sequence[JoinedLane], left: Sequence[JoinedLane]
+) -> tuple[list[JoinedLane], list[JoinedLane], Marking, list[str]]:
+    """Returns the lanes with their markings and the marking of the centre line, and a remark if they differ
+    from those in the file.
+    """
+    if has_marks(road):
+        found = [[marking(slot.parts) for slot in side] for side in (right, left)]
+        centre, centre_changes = marking([MarkedLane(s, _inner(s)) for s in spans if s.section.centre])
+        changes = centre_changes or any(changed for side in found for _, changed in side)
+        said = "its road marks change along the road; the most frequent ones are painted here"
+        marks = [[mark for mark, _ in side] for side in found]
+    else:
+        usual = Profile.of(
+            *(sum(slot.kind == "driving" for slot in side) for side in (right, left)), shoulder=0.0
+        )
+        said, changes = "it has no road marks in its file; the usual ones are painted here", True
+        centre, marks = (
+            usual.centre_marking,
+            [[lane.marking for lane in side] for side in (usual.right, usual.left)],
+        )
+    on_right, on_left = (
+        [slot._replace(marking=mark) for slot, mark in zip(side, chain(own, repeat(UNMARKED)), strict=False)]
+        for side, own in zip((right, left), marks, strict=True)
+    )
+    return on_right, on_left, centre, [said] if changes else []
 
 
-def _padded(lanes: Sequence[Lane], count: int) -> tuple[Marking, ...]:
-    """Returns the markings of driving lanes, and none for the shoulders beside them."""
-    marks: list[Marking] = [lane.marking for lane in lanes]
-    missing: list[Marking] = ["none"] * (count - len(lanes))
-    return (*marks, *missing)
-
-
-def _inner(span: Span) -> Node:
+def _inner(span: Span) -> Element:
     """Returns the XML element of the lane whose outer edge is the centre line.
 
     Lanes without a width and without road marks are skipped, as far as lane 0.
@@ -340,6 +340,31 @@ def _inner(span: Span) -> Node:
     section = span.section
     for place in reversed(range(section.first)):
         lane = section.lanes[place]
-        if lane.node.all("roadMark") or _is_wide(_width(section.lanes, place, span), span.end):
+        if lane.node.findall("roadMark") or _is_wide(_width(section.lanes, place, span), span.end):
             return lane.node
     return section.centre[0]
+
+
+def has_marks(road: Element) -> bool:
+    """Returns whether the file contains a road mark for this road."""
+    return any(
+        road.findall(f"lanes/laneSection/{side}/lane/roadMark") for side in ("left", "center", "right")
+    )
+
+
+def marking(lanes: Iterable[MarkedLane]) -> tuple[Marking, bool]:
+    """Returns the marking at the outer edge of a lane, which is given for each lane section, and whether it
+    changes along the road. If it does, the one with the largest total length is returned.
+    """
+    lengths: dict[Marking, float] = {}
+    for span, lane in lanes:
+        marks = sorted(lane.findall("roadMark"), key=lambda mark: number(mark, "sOffset", 0.0))
+        starts = [span.section.s + number(mark, "sOffset", 0.0) for mark in marks]
+        starts = [min(max(start, span.start), span.end) for start in starts]
+        before = (starts[0] if starts else span.end) - span.start
+        kinds = [MARKS.get(mark.get("type", "none"), "none") for mark in marks]
+        reaches = [end - start for start, end in pairwise([*starts, span.end])]
+        for kind, reach in zip(["none", *kinds], [before, *reaches], strict=True):
+            lengths[kind] = lengths.get(kind, 0.0) + reach
+    found = sorted((kind for kind, reach in lengths.items() if reach > 0), key=lambda kind: -lengths[kind])
+    return (found[0] if found else "none"), len(found) > 1

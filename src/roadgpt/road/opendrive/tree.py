@@ -7,8 +7,9 @@ size, number of elements, depth and tag length bound the time and memory that re
 import math
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
+from xml.etree.ElementTree import Element
 from xml.parsers import expat
 
 from roadgpt.errors import UsageError
@@ -40,29 +41,11 @@ OURS = "RoadGPT"  # vendor of files that RoadGPT wrote: their georeference has n
 DRIVING = ("driving", "bidirectional", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "slipLane")
 
 
-@dataclass(slots=True)
-class Node:
-    """One XML element."""
-
-    tag: str
-    attributes: dict[str, str]
-    children: list["Node"] = field(default_factory=list)
-
-    def all(self, *path: str) -> list["Node"]:
-        """Returns all descendants that are reached by a path of tags, such as ``all("lanes",
-        "laneSection")``.
-        """
-        found = [self]
-        for tag in path:
-            found = [child for node in found for child in node.children if child.tag == tag]
-        return found
-
-
 @dataclass(frozen=True)
 class Choice:
     """The road that was selected from a file, and information about the other contents of the file."""
 
-    road: Node
+    road: Element
     others: tuple[str, ...]
     """Ids of all roads in the file."""
     passed: Mapping[str, int]
@@ -73,20 +56,15 @@ class Choice:
     """
 
 
-def is_driven(lane: Node) -> bool:
+def is_driven(lane: Element) -> bool:
     """Returns whether a lane is of a type on which cars drive."""
-    return lane.attributes.get("type", "") in DRIVING
+    return lane.get("type", "") in DRIVING
 
 
 def read_tree(path: Path, wanted: str | None) -> Choice:
-    """Returns the road with the id ``wanted``, and information about the other contents of the file.
-
-    If ``wanted`` is None, the longest road that has a driving lane and is not part of a junction is selected.
-    If there is no such road, roads with a driving lane are preferred, then roads outside junctions, then
-    longer roads.
-
-    Raises:
-        UsageError: The file cannot be read, is not OpenDRIVE, is too large, or has no such road.
+    """Returns the road with the id ``wanted``, and information about the other contents of the file. If it is
+    None, roads with a driving lane are preferred, then roads outside junctions, then longer roads. Raises
+    UsageError if the file cannot be read, is not OpenDRIVE, is too large, or has no such road.
     """
     reader = _RoadSelector(wanted)
     parser = expat.ParserCreate()
@@ -123,11 +101,11 @@ class _RoadSelector:
     def __init__(self, wanted: str | None) -> None:
         self.wanted = wanted
         self.ids: list[str] = []
-        self.best: tuple[tuple[bool, bool, float], Node, Counter[str]] | None = None
+        self.best: tuple[tuple[bool, bool, float], Element, Counter[str]] | None = None
         self.header: set[str] = set()
         self.passed: Counter[str] = Counter()
         self.elements = self.kept = self.depth = self.hidden = 0
-        self.stack: list[Node] = []
+        self.stack: list[Element] = []
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         """Handles the start tag of an XML element."""
@@ -144,18 +122,18 @@ class _RoadSelector:
             if tag in COUNTED:
                 self.passed[COUNTED[tag]] += 1
         elif self.stack:
-            node = Node(tag, attributes)
+            node = Element(tag, attributes)
             self.kept += 1
             if self.kept > MOST_KEPT:
                 raise UsageError(
                     f"one of its roads has more than {MOST_KEPT:,} elements; cut out what you need"
                 )
-            self.stack[-1].children.append(node)
+            self.stack[-1].append(node)
             self.stack.append(node)
         elif self.depth == 2 and tag == "road":
             self.ids.append(attributes.get("id", ""))
             if self.wanted is None or attributes.get("id") == self.wanted:
-                self.stack.append(Node(tag, attributes))
+                self.stack.append(Element(tag, attributes))
                 self.kept = 0
                 self.passed = Counter()
         elif tag in IN_HEADER and not self.ids:
@@ -173,13 +151,13 @@ class _RoadSelector:
             if not self.stack:
                 self._compare(node)
 
-    def _compare(self, road: Node) -> None:
+    def _compare(self, road: Element) -> None:
         lanes = [
-            lane for side in ("left", "right") for lane in road.all("lanes", "laneSection", side, "lane")
+            lane for side in ("left", "right") for lane in road.findall(f"lanes/laneSection/{side}/lane")
         ]
-        is_free = road.attributes.get("junction", "-1") == "-1"
+        is_free = road.get("junction", "-1") == "-1"
         try:
-            length = float(road.attributes.get("length", "0"))
+            length = float(road.get("length", "0"))
         except ValueError:
             length = 0.0
         length = length if math.isfinite(length) else 0.0

@@ -32,7 +32,7 @@ import sys
 import threading
 from importlib import import_module
 from importlib.util import find_spec
-from typing import IO, Any, Dict, Iterator, List, Optional, Tuple
+from typing import IO, Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 log = logging.getLogger(__name__)
 
@@ -192,15 +192,32 @@ class ClientTestGenerator:
             self.tell(outcome, records)
 
     def tell(self, outcome: str, records: Any) -> None:
-        """Reports the outcome of the last road and its execution data, so that the search learns from it."""
+        """Reports the outcome of the last road and its execution data, so that the search learns from it.
+        Each record has ``steering`` and ``oob_distance``, and should have ``pos``."""
         steering = [float(record.steering) for record in records or ()]
         distances = [float(record.oob_distance) for record in records or ()]
         outside = min(records, key=lambda record: float(record.oob_distance)) if records else None
         place = getattr(outside, "pos", None)
-        told = {"outcome": outcome, "steering": steering, "distances": distances}
-        if place is not None:
-            told["outside"] = [float(value) for value in place[:2]]
+        where = None if place is None else [float(value) for value in place[:2]]
+        self.tell_columns(outcome, steering, distances, where)
+
+    def tell_columns(
+        self,
+        outcome: str,
+        steering: Sequence[float],
+        distances: Sequence[float],
+        outside: Optional[Sequence[float]] = None,
+    ) -> None:
+        """Reports the outcome of the last road as ``tell`` does, with the records as two columns.
+
+        Args:
+            outcome: "PASS", "FAIL" or another outcome of the competition.
+            steering: angle of the steering wheel in each record, degrees.
+            distances: ``oob_distance`` of each record, metres.
+            outside: position ``[x, y]`` of the record with the smallest ``oob_distance``, if known.
+        """
         if self._roadgpt is not None:
+            told = {"outcome": outcome, "steering": steering, "distances": distances, "outside": outside}
             self._roadgpt.ask("tell", **told)
 
     def roads(self) -> Iterator[Points]:

@@ -11,6 +11,11 @@ from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from roadgpt.errors import UsageError
 from roadgpt.sbft.sdc.risk import LINE_ONLY, RiskFeatures, fit_model, order, risk_features
 
+log = logging.getLogger(__name__)
+
+NAME = "RoadGPT"
+MOST_OUTCOMES = 5000  # known outcomes that are used; they take about 6 s of processor time
+WORKERS = 4
 FILE = "competition.proto"
 SERVICE = "CompetitionTool"
 Kind = descriptor_pb2.FieldDescriptorProto
@@ -39,6 +44,11 @@ METHODS = {
     "Prioritize": ("SDCTestCase", True, "PrioritizationReply", True),
 }
 """For each RPC: (request, whether the request is a stream, reply, whether the reply is a stream)."""
+HANDLERS = {
+    (False, False): grpc.unary_unary_rpc_method_handler,
+    (True, False): grpc.stream_unary_rpc_method_handler,
+    (True, True): grpc.stream_stream_rpc_method_handler,
+}
 
 
 def description() -> Any:
@@ -70,13 +80,6 @@ _POOL.AddSerializedFile(description().SerializeToString())
 def message(name: str) -> Any:
     """Returns the class of the message with this name."""
     return message_factory.GetMessageClass(_POOL.FindMessageTypeByName(name))
-
-
-log = logging.getLogger(__name__)
-
-NAME = "RoadGPT"
-MOST_OUTCOMES = 5000  # known outcomes that are used; they take about 6 s of processor time
-WORKERS = 4
 
 
 class Service:
@@ -131,7 +134,14 @@ def serve(host: str, port: int) -> tuple[Any, int]:
     """
     service = Service()
     server = grpc.server(ThreadPoolExecutor(WORKERS))
-    handlers = {name: _handler(service, name) for name in METHODS}
+    handlers = {
+        name: HANDLERS[takes_many, gives_many](
+            getattr(service, name.lower()),
+            request_deserializer=message(request).FromString,
+            response_serializer=message(reply).SerializeToString,
+        )
+        for name, (request, takes_many, reply, gives_many) in METHODS.items()
+    }
     server.add_generic_rpc_handlers((grpc.method_handlers_generic_handler(SERVICE, handlers),))
     try:
         got = server.add_insecure_port(f"{host}:{port}")
@@ -141,17 +151,3 @@ def serve(host: str, port: int) -> tuple[Any, int]:
         raise UsageError(f"cannot listen on {host}:{port}; if another program uses it, choose another --port")
     server.start()
     return server, got
-
-
-def _handler(service: Service, name: str) -> Any:
-    request, takes_many, reply, gives_many = METHODS[name]
-    kinds = {
-        (False, False): grpc.unary_unary_rpc_method_handler,
-        (True, False): grpc.stream_unary_rpc_method_handler,
-        (True, True): grpc.stream_stream_rpc_method_handler,
-    }
-    return kinds[takes_many, gives_many](
-        getattr(service, name.lower()),
-        request_deserializer=message(request).FromString,
-        response_serializer=message(reply).SerializeToString,
-    )

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 
-from roadgpt.report.page import Block, Figure, Section, Table, TableCell, cell, linked
 from roadgpt.report.page.forest import forest
+from roadgpt.report.page.model import Block, Figure, Section, Table, TableCell, cell
+from roadgpt.study.chapters.roads import named_roads
 from roadgpt.study.chapters.wording import drawn_share, folded, interval_cell, row, share_cell
 from roadgpt.study.criteria import ASKED, CRITERIA
-from roadgpt.study.road_record import StudyPartRecord
+from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 from roadgpt.study.statistics import bootstrap, wilson
 
 Parts = Sequence[StudyPartRecord]
@@ -33,7 +34,8 @@ def alignment(parts: Parts, designers: Sequence[str]) -> Section:
     if some:
         blocks += [_by_criterion(parts, some), _pooled(parts, some)]
     blocks += [_by_prompt(_of(parts, designer), designer) for designer in some]
-    return Section("Alignment with the words", [*blocks, *_broken(parts)])
+    broken = folded("Roads that break a requirement", named_roads(parts, _broken))
+    return Section("Alignment with the words", [*blocks, *broken])
 
 
 def _of(parts: Parts, designer: str) -> list[StudyPartRecord]:
@@ -91,13 +93,8 @@ def _by_prompt(parts: Parts, designer: str) -> Table:
     return Table(f"alignment-{designer}", caption, ["id", "prompt", *CRITERIA, "remark"], rows)
 
 
-def _broken(parts: Parts) -> list[Block]:
-    lines: list[Block] = []
-    for part in parts:
-        for road in part.roads:
-            wrong = [criterion for criterion, good in road.kept.items() if not good]
-            if wrong:
-                names = [ASKED[criterion] for criterion in wrong if criterion != "general"]
-                where = linked(f"{part.part.name}, road {road.index}", part.href(road))
-                lines.append([where, f": {', '.join(names) or 'general'}"])
-    return folded("Roads that break a requirement", lines)
+def _broken(road: RoadRecord) -> str:
+    """Returns the criteria that a road does not meet; "general" only if there is no other."""
+    wrong = [criterion for criterion, good in road.kept.items() if not good]
+    names = [ASKED[criterion] for criterion in wrong if criterion != "general"]
+    return ", ".join(names or wrong)

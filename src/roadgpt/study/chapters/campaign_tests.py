@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from roadgpt.campaign.behaviour import BOUNDS
 from roadgpt.campaign.boundary_pairs import BoundaryPair, pairs_of, weightiest
-from roadgpt.campaign.cell_status import CellStatus
 from roadgpt.campaign.model import Result
 from roadgpt.campaign.record import Record
+from roadgpt.campaign.status import CellStatus
 from roadgpt.design.elements import elements_of
-from roadgpt.report.page import Block, Figure, Table, TableCell, cell
 from roadgpt.report.page.lines import bars, lines
+from roadgpt.report.page.model import Block, Figure, Table, TableCell, cell
 from roadgpt.study.chapters.roads import CELLS, MAPS, feature_map
 from roadgpt.study.chapters.wording import decimal, percent, row
 
@@ -41,17 +41,11 @@ EXPLAINED = (
 def failures(
     folder: Path, record: Record, cells: Sequence[CellStatus], drives_on: bool = False
 ) -> list[Block]:
-    """Returns a chart of failures over the number of tests, a table of causes, and a table of individual
-    failures.
+    """Returns a chart of failures over the number of tests, one line for each of ``cells``, a table of
+    causes, and a table of individual failures.
 
-    The last table lists the worst failures. If a drive ends as soon as the car leaves its lane, no failure is
-    worse than another, and the table lists the first failures.
-
-    Args:
-        folder: the campaign's folder.
-        record: the campaign's tests.
-        cells: the campaign cells that the chart shows, one line per cell.
-        drives_on: True if cars drive on after they have left their lane.
+    The last table lists the worst failures if cars drive on after they have left their lane. Otherwise, no
+    failure is worse than another, and the table lists the first failures.
     """
     blocks: list[Block] = [_curves(record, cells), _causes(record, drives_on)]
     order = "margin IS NULL, margin, cell, number" if drives_on else "cell, number"

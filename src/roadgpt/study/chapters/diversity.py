@@ -2,16 +2,16 @@
 descriptions."""
 
 from collections.abc import Sequence
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
 from roadgpt.plural import plural
-from roadgpt.report.page import Block, Details, Figure, Section, Table, TableCell, cell, linked
 from roadgpt.report.page.heat import AxisRange, heat, is_map
+from roadgpt.report.page.model import Block, Details, Figure, Section, Table, TableCell, cell, linked
 from roadgpt.study.chapters.wording import decimal, row
 from roadgpt.study.road_record import StudyPartRecord
-from roadgpt.study.similarity import between
+from roadgpt.study.similarity import similarity
 
 MOST_BETWEEN = 40  # roads of a study part that are compared with those of another part
 MOST_NAMED = 50
@@ -80,9 +80,12 @@ def _between(parts: Sequence[StudyPartRecord]) -> Table:
     for designer in dict.fromkeys(part.designer for part in parts):
         own = [part for part in parts if part.designer == designer and part.roads][:6]
         for one, other in combinations(own, 2):
-            found = between(one.likenesses(MOST_BETWEEN), other.likenesses(MOST_BETWEEN))
-            numbers = row(decimal(found.general), decimal(found.metres, 1), found.duplicates)
-            rows.append(row(one.words, other.words, designer, *numbers))
+            compared = product(one.likenesses[:MOST_BETWEEN], other.likenesses[:MOST_BETWEEN])
+            found = [similarity(*pair, mirror=True) for pair in compared]
+            general = decimal(float(np.mean([each.general for each in found])) if found else None)
+            nearest = decimal(min((each.metres for each in found), default=None), 1)
+            duplicates = sum(each.is_duplicate for each in found)
+            rows.append(row(one.words, other.words, designer, general, nearest, duplicates))
     heads = ["prompt", "and", "made by", "mean similarity", "nearest pair, m", "near duplicates"]
     note = f"The first {MOST_BETWEEN} roads of either, each with each."
     return Table("diversity-between", "Roads of different descriptions", heads, rows, note)

@@ -9,13 +9,14 @@ from typing import NamedTuple
 from roadgpt.campaign.faults.fault import DEFINED, GROUPED, Fault, Faults
 from roadgpt.campaign.faults.fault_log import TABLE, FailureAnalysis, kept_analysis
 from roadgpt.campaign.faults.reason import FailureReason, reason_of
-from roadgpt.campaign.faults.remedy_log import FOLDER
-from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.faults.remedy import FOLDER
+from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
 from roadgpt.report.canvas import FORMATS
-from roadgpt.report.page import (
+from roadgpt.report.page.failure_site import draw_site, site_of
+from roadgpt.report.page.model import (
     Block,
     Cards,
     Details,
@@ -28,9 +29,8 @@ from roadgpt.report.page import (
     cell,
     linked,
 )
-from roadgpt.report.page.failure_site import draw_site, site_of
 from roadgpt.run import Run
-from roadgpt.study.chapters.wording import percent, row
+from roadgpt.study.chapters.wording import as_sentence, percent, row
 
 SHOWN = 24  # faults with a picture
 LISTED = 300  # faults of the table
@@ -45,14 +45,14 @@ Steps = Sequence[tuple[str, str]]
 
 
 class FaultSummary(NamedTuple):
-    """One fault with the run of a typical failure. ``looked`` is the analysis that ``roadgpt faults``
-    stored for this fault; None if there is none."""
+    """One fault with a typical failure."""
 
     fault: Fault
     run: Run
-    """The run of a typical failure."""
+    """The run of the typical failure."""
     name: NumberedTest
     looked: FailureAnalysis | None
+    """The analysis that ``roadgpt faults`` stored for this fault; None if there is none."""
     why: FailureReason | None
     """Why the car failed; None if the drive cannot be read."""
 
@@ -68,23 +68,17 @@ def fault_summaries(folder: Path, found: Faults) -> list[FaultSummary]:
     Raises:
         UsageError: a run, or a file that ``roadgpt faults`` has written, cannot be read.
     """
-    return [_summary(folder, fault) for fault in found.them[:LISTED]]
-
-
-def _summary(folder: Path, fault: Fault) -> FaultSummary:
-    looked = kept_analysis(folder, fault)
-    name = looked.name if looked else fault.names[0]
-    run = _run_of(folder, name)
-    reason = looked.reason if looked else reason_of(run) if run.drive is not None else None
-    return FaultSummary(fault, run, name, looked, reason)
-
-
-def _run_of(folder: Path, name: NumberedTest) -> Run:
-    """Returns the run with its drive, or without if the drive's file cannot be read."""
-    try:
-        return kept_run(folder, *name)
-    except UsageError:
-        return kept_run(folder, *name, has_drive=False)
+    summaries = []
+    for fault in found.them[:LISTED]:
+        looked = kept_analysis(folder, fault)
+        name = looked.name if looked else fault.names[0]
+        try:
+            run = kept_run(folder, *name)
+        except UsageError:  # its drive cannot be read
+            run = kept_run(folder, *name, has_drive=False)
+        reason = looked.reason if looked else reason_of(run) if run.drive is not None else None
+        summaries.append(FaultSummary(fault, run, name, looked, reason))
+    return summaries
 
 
 def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
@@ -95,8 +89,8 @@ def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
     measured = [each.looked.stability.is_stable for each in summaries if each.looked]
     sure = f"{sum(measured)} of {len(measured)} that were driven again" if measured else ""
     what = "faults" if found.distinct == len(found.them) else "faults and groups"
-    first = f"{found.headline[:1].upper()}{found.headline[1:]}."
-    return [first, *([f"Of the {what}, {sure} fail every second time or oftener."] if sure else [])]
+    again = [f"Of the {what}, {sure} fail every second time or oftener."] if sure else []
+    return [as_sentence(found.headline), *again]
 
 
 def faults(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Section | None:
@@ -123,47 +117,31 @@ def faults(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Se
 
 
 def _card(folder: Path, summary: FaultSummary, found: Faults) -> FigureCard:
-    count = len(summary.fault.members)
+    fault, looked, count = summary.fault, summary.looked, len(summary.fault.members)
     share = f" ({percent(count / found.compared, 0)} of failures)" if found.compared else ""
     title: Line = [
-        f"{summary.fault.number} · ",
+        f"{fault.number} · ",
         TableCell(count, plural(count, "test"), _picture(folder, summary)),
         share,
     ]
-    reason = f"{summary.reason[:1].upper()}{summary.reason[1:]}."
-    lines: list[Line] = [reason, *_removed(summary.fault, found), _stable(summary)]
-    lines += _farthest(summary.fault)
-    if summary.looked and summary.looked.simplest:
-        lines.append(f"Simplest road that fails in the same way: {summary.looked.simplest}.")
+    reason = as_sentence(summary.reason)
+    lines: list[Line] = [reason]
+    if found.is_tested:
+        gone = f"Disappears with {fault.removed_by}." if fault.remedy else ""
+        lines.append(gone or "A group that belongs to no fault.")
+    lines.append(as_sentence(looked.stability.sentence) if looked else "Nobody has driven it again.")
+    outside = max((each.outside or 0.0 for each in fault.members), default=0.0)
+    metres = max((each.beyond or 0.0 for each in fault.members), default=0.0)
+    if outside:
+        beyond = f", {metres:.2f} m beyond the marking" if metres else ""
+        lines.append(f"Outside its lane at most: {percent(outside, 0)} of the car{beyond}.")
+    if looked and looked.simplest:
+        lines.append(f"Simplest road that fails in the same way: {looked.simplest}.")
     lines.append([ShellCommand(shlex.join(["roadgpt", "view", f"{folder}/{summary.name}"]))])
     assert summary.run.road is not None
-    station = summary.why.station if summary.why else summary.fault.typical[0].station
+    station = summary.why.station if summary.why else fault.typical[0].station
     picture = draw_site(site_of(summary.run.road, summary.run.world, summary.run.drive, station), reason)
     return FigureCard(title, picture, lines)
-
-
-def _removed(fault: Fault, found: Faults) -> list[Line]:
-    """Returns the small change with which a fault's failures disappear; nothing if no group was tested."""
-    if not found.is_tested:
-        return []
-    return [f"Disappears with {fault.removed_by}." if fault.remedy else "A group that belongs to no fault."]
-
-
-def _farthest(fault: Fault) -> list[Line]:
-    """Returns how far the car was outside its lane at most, over all failures of a fault."""
-    share = max((each.outside or 0.0 for each in fault.members), default=0.0)
-    metres = max((each.beyond or 0.0 for each in fault.members), default=0.0)
-    if not share:
-        return []
-    beyond = f", {metres:.2f} m beyond the marking" if metres else ""
-    return [f"Outside its lane at most: {percent(share, 0)} of the car{beyond}."]
-
-
-def _stable(summary: FaultSummary) -> str:
-    if summary.looked is None:
-        return "Nobody has driven it again."
-    said = summary.looked.stability.sentence
-    return f"{said[:1].upper()}{said[1:]}."
 
 
 def _picture(folder: Path, summary: FaultSummary) -> str:

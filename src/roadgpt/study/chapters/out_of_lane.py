@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from roadgpt.campaign.record import Record
-from roadgpt.report.page import Table
+from roadgpt.report.page.model import Table
 from roadgpt.road import World
 from roadgpt.study.chapters.wording import decimal, row, share_cell, share_of
 from roadgpt.study.road_record import RoadRecord
-from roadgpt.verdict import SEVERITIES, Severity, percent, severity
+from roadgpt.verdict import SEVERITIES, Severity, percent
 from roadgpt.verdict.severity import MOSTLY
 
 OLD = "An older version wrote this store without distances; the shares are there."
@@ -29,12 +29,12 @@ class Passed(NamedTuple):
 def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
     """Groups the passed roads of a study by how far outside its lane the car was: inside, partly outside, or
     mostly outside. Returns one ``Passed`` per group."""
-    kept = [road for road in roads if road.outcome == "PASS" and road.max_oob is not None]
+    kept = [road.verdict for road in roads if road.outcome == "PASS" and road.verdict is not None]
     found = []
     for name in SEVERITIES:
-        own = [road for road in kept if severity(road.max_oob or 0.0) == name]
-        far = [road.beyond for road in own if road.beyond is not None]
-        share = max((road.max_oob or 0.0 for road in own), default=0.0)
+        own = [verdict for verdict in kept if verdict.severity == name]
+        far = [verdict.beyond for verdict in own if verdict.beyond is not None]
+        share = max((verdict.max_oob for verdict in own), default=0.0)
         found.append(Passed(name, len(own), share, max(far, default=None)))
     return found
 

@@ -1,15 +1,26 @@
 """Makes the sections that show roads: the overview at the start of a report, thumbnails of roads, and
 feature maps."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.plural import plural
-from roadgpt.report.page import Block, Cards, Figure, FigureCard, Section, Table, TableCell, cell
-from roadgpt.report.page.gallery import Thumbnail, gallery
+from roadgpt.report.overview import Thumbnail
+from roadgpt.report.page.gallery import gallery
 from roadgpt.report.page.heat import AxisRange, heat, is_map
+from roadgpt.report.page.model import (
+    Block,
+    Cards,
+    Figure,
+    FigureCard,
+    Section,
+    Table,
+    TableCell,
+    cell,
+    linked,
+)
 from roadgpt.study.chapters.wording import decimal, row
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 
@@ -32,12 +43,8 @@ BOUNDS = {"MAX_CURV": (0.0, 0.07), "DIR_COV": (0.0, 1.0), "STD_SA": (0.0, 200.0)
 
 def overview(parts: Sequence[StudyPartRecord], size: float) -> Section | None:
     """Returns the section at the start of a report; None if there are no roads. It contains a table of all
-    study parts that have roads, and one picture with some roads for each of the first three parts.
-
-    Args:
-        parts: the parts of the study; a part is the roads by one designer from one description.
-        size: side length of the square map, metres.
-    """
+    study parts that have roads, and one picture with some roads for each of the first three parts; ``size``
+    is the side length of the square map, metres."""
     made = [part for part in parts if part.roads]
     if not made:
         return None
@@ -80,8 +87,10 @@ def _row(part: StudyPartRecord) -> list[TableCell]:
 
 
 def _thumbnail(part: StudyPartRecord, road: RoadRecord) -> Thumbnail:
-    failed_at = road.failed_at if road.has_left else None
-    return Thumbnail(road.index, road.outcome, road.points, failed_at, part.href(road), road.max_oob)
+    verdict = road.verdict
+    left_at = verdict.at_xy if verdict is not None and road.has_left else None
+    max_oob = verdict.max_oob if verdict is not None else None
+    return Thumbnail(road.index, road.outcome, road.points, left_at, part.href(road), max_oob)
 
 
 def every_road(parts: Sequence[StudyPartRecord], size: float) -> Section:
@@ -100,6 +109,16 @@ def every_road(parts: Sequence[StudyPartRecord], size: float) -> Section:
         caption = f"{part.designer}, “{part.words}”.{more}"
         blocks.append(Figure(f"roads-{part.part.number}", caption, gallery(shown, size, caption)))
     return Section("Roads", blocks)
+
+
+def named_roads(parts: Sequence[StudyPartRecord], says: Callable[[RoadRecord], str]) -> list[Block]:
+    """Returns a line with a link for each road for which ``says`` returns a sentence."""
+    return [
+        [linked(f"{part.part.name}, road {road.index}", part.href(road)), f": {sentence}"]
+        for part in parts
+        for road in part.roads
+        if (sentence := says(road))
+    ]
 
 
 def coverage(parts: Sequence[StudyPartRecord]) -> Section | None:

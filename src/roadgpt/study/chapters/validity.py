@@ -3,12 +3,13 @@ lane, for each prompt.
 """
 
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from roadgpt.report.page import Block, Details, Figure, Section, Table, TableCell, cell, linked
 from roadgpt.report.page.forest import forest
+from roadgpt.report.page.model import Block, Details, Figure, Section, Table, TableCell, cell
 from roadgpt.study.chapters.out_of_lane import outside_table, passed_roads
+from roadgpt.study.chapters.roads import named_roads
 from roadgpt.study.chapters.wording import (
     SHARE_HEADS,
     decimal,
@@ -21,6 +22,12 @@ from roadgpt.study.chapters.wording import (
 )
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 from roadgpt.study.statistics import LEVEL, ChiSquared, chi_squared, exact, trend
+
+MOST_DRAWN = 12  # prompts in a figure; if there are more, they are shown as one
+ALL = "all prompts"
+LONGEST = 66  # letters of a prompt in a figure
+
+Parts = Sequence[StudyPartRecord]
 
 
 class Count(NamedTuple):
@@ -53,22 +60,53 @@ class Source(NamedTuple):
         """Number of all roads, summed over all prompts."""
         return sum(count.total for count in self.counts)
 
+    @property
+    def share(self) -> str:
+        """The number of roads that have the property and their share, as text."""
+        return share_of(self.hits, self.total)
+
     def table(self) -> list[list[int]]:
         """Returns the contingency table ``(prompts, 2)``: the number of roads with the property, and the
         number without it."""
         return [[count.hits, count.total - count.hits] for count in self.counts]
 
 
-def chi_squared_blocks(source: Source, hit: str, miss: str, name: str) -> list[Block]:
-    """Returns the contingency table with expected counts and the chi-squared terms of its cells, and a
-    paragraph with the test results.
+class Kind(NamedTuple):
+    """What is counted: a property of RoadRecord, such as "is_valid", and its name in files and in reports."""
 
-    Args:
-        source: the counts of one designer or of the thesis.
-        hit: column heading for roads that have the property.
-        miss: column heading for roads that do not have the property.
-        name: name of the table's files.
-    """
+    which: str
+    slug: str = ""
+    name: str = ""
+    """Name of the rule set; empty for drives."""
+    of: str = ""
+    """Property of the roads of the total; empty for all roads."""
+
+
+STRICT = Kind("is_valid", "strict", "strict rules")
+SOUND = Kind("is_sound", "sound", "strict rules but for the words")
+SBFT = Kind("is_sbft", "sbft", "SBFT rules")
+KINDS = (STRICT, SOUND, SBFT)
+LEFT = Kind("has_left", of="is_driven")
+
+NAME = "RoadGPT's thesis"
+ROADS = 100  # of every prompt
+LONG = "a road going uphill for 2 turns, followed by a straight downhill segment, ending in a left turn"
+THESIS = {"a road": (88, 1), "an uphill road with 3 turns": (57, 2), LONG: (37, 5)}
+"""For each prompt, in the order of the thesis' table 6.1: the number of valid roads among 100, and the number
+of these valid roads on which the car left its lane."""
+THESIS_VALID = Source(
+    f"{NAME}, its own checks",
+    tuple(Count(prompt, valid, ROADS) for prompt, (valid, _) in THESIS.items()),
+    "thesis",
+)
+THESIS_LEFT = Source(
+    NAME, tuple(Count(prompt, left, valid) for prompt, (valid, left) in THESIS.items()), "thesis"
+)
+
+
+def chi_squared_blocks(source: Source, hit: str, miss: str, name: str) -> list[Block]:
+    """Returns the contingency table, with the column heads ``hit`` and ``miss``, expected counts and the
+    chi-squared terms of its cells, and a paragraph with the test results."""
     found = chi_squared(source.table())
     return [_table(source, found, hit, miss, name), _verdict(source, found, hit, miss)]
 
@@ -119,89 +157,20 @@ def _verdict(source: Source, found: ChiSquared, hit: str, miss: str) -> str:
     ).replace("z = -", "z = −")
 
 
-NAME = "RoadGPT's thesis"
-ROADS = 100  # of every prompt
-
-
-class Counted(NamedTuple):
-    """The results of the thesis for one prompt, from which it made 100 roads.
-
-    ``valid`` is the number of valid roads, and ``left`` the number of valid roads on which the car left its
-    lane.
-    """
-
-    valid: int
-    left: int
-
-
-LONG = "a road going uphill for 2 turns, followed by a straight downhill segment, ending in a left turn"
-THESIS = {
-    "a road": Counted(88, 1),
-    "an uphill road with 3 turns": Counted(57, 2),
-    LONG: Counted(37, 5),
-}
-"""The counts of each prompt, in the order of the thesis' table."""
-
-
-MOST_DRAWN = 12  # prompts in a figure; if there are more, they are shown as one
-ALL = "all prompts"
-LONGEST = 66  # letters of a prompt in a figure
-
-Parts = Sequence[StudyPartRecord]
-
-
-class Kind(NamedTuple):
-    """A rule set for valid roads: its name in files, its name in reports, and the RoadRecord property that is
-    True for valid roads."""
-
-    slug: str
-    name: str
-    which: str
-    """Name of the RoadRecord property, such as "is_valid"."""
-
-
-STRICT = Kind("strict", "strict rules", "is_valid")
-SOUND = Kind("sound", "strict rules but for the words", "is_sound")
-SBFT = Kind("sbft", "SBFT rules", "is_sbft")
-KINDS = (STRICT, SOUND, SBFT)
-
-
 def of_thesis(parts: Parts) -> list[StudyPartRecord]:
-    """Returns the study parts with prompts for which the thesis gives results (``baseline.THESIS``)."""
+    """Returns the study parts with prompts for which the thesis gives results."""
     return [part for part in parts if part.words in THESIS]
 
 
-def _source(parts: Parts, designer: str, which: str, of: str, name: str, slug: str) -> Source:
-    """Counts, for each prompt, a designer's roads with the property ``which``, and in total those with the
-    property ``of`` (all roads if ``of`` is empty)."""
-    counts = (
-        Count(part.words, part.count(which), part.count(of) if of else len(part.roads), part.overview)
-        for part in parts
-        if part.designer == designer and part.roads
-    )
+def source_of(designer: str, parts: Parts, kind: Kind) -> Source:
+    """Returns, for each prompt, how many roads of one designer have the property of a Kind."""
+    counts = []
+    for part in parts:
+        if part.designer == designer and part.roads:
+            total = part.count(kind.of) if kind.of else len(part.roads)
+            counts.append(Count(part.words, part.count(kind.which), total, part.overview))
+    name, slug = ", ".join(filter(None, (designer, kind.name))), "-".join(filter(None, (designer, kind.slug)))
     return Source(name, tuple(counts), slug)
-
-
-def valid_source(designer: str, parts: Parts, kind: Kind) -> Source:
-    """Returns, for each prompt, how many roads of one designer are valid by one rule set."""
-    return _source(parts, designer, kind.which, "", f"{designer}, {kind.name}", f"{designer}-{kind.slug}")
-
-
-def left_source(designer: str, parts: Parts) -> Source:
-    """Returns, for each prompt, on how many driven roads of one designer the car left its lane."""
-    return _source(parts, designer, "has_left", "is_driven", designer, designer)
-
-
-THESIS_VALID = Source(
-    f"{NAME}, its own checks",
-    tuple(Count(prompt, own.valid, ROADS) for prompt, own in THESIS.items()),
-    "thesis",
-)
-"""The counts of valid roads from the thesis' table 6.1."""
-THESIS_LEFT = Source(
-    NAME, tuple(Count(prompt, own.left, own.valid) for prompt, own in THESIS.items()), "thesis"
-)
-"""The counts of valid roads on which the car left its lane, from the thesis."""
 
 
 def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
@@ -210,7 +179,7 @@ def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False)
     If ``has_baseline`` is True, only prompts of the thesis are counted, and the thesis' numbers are added.
     """
     told = of_thesis(parts) if has_baseline else list(parts)
-    every = [valid_source(designer, told, kind) for designer in designers for kind in KINDS]
+    every = [source_of(designer, told, kind) for designer in designers for kind in KINDS]
     every = [source for source in every if source.counts] + ([THESIS_VALID] if has_baseline else [])
     blocks: list[Block] = [
         "Strict rules: inside the map, no overlap, radius and slope within limits, and every requirement of "
@@ -218,29 +187,25 @@ def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False)
         "check. SBFT rules: what the validator of the SBFT tool competition says, quirks included."
     ]
     blocks += [_forest("validity", "valid", every), _shares("validity", "valid", every)]
-    blocks += _silent(parts)
+    missing = dict.fromkeys(f"{part.designer}: {part.problem}" for part in parts if part.problem)
+    blocks += [f"Roads are missing: {sentence}." for sentence in missing]
     if has_baseline:
-        blocks += [_beside(source, every[-1]) for source in every if source.slug.endswith("-strict")]
+        blocks += [_beside(source) for source in every if source.slug.endswith("-strict")]
+    others: list[Block] = []
     for source in every:
-        if (source.slug.endswith("-strict") or source.slug == "thesis") and len(source.counts) > 1:
-            blocks += chi_squared_blocks(source, "valid", "invalid", f"validity-{source.slug}")
-    others = [s for s in every if s.slug.endswith(("-sound", "-sbft")) and len(s.counts) > 1]
-    if others:
-        inside: list[Block] = []
-        for source in others:
-            inside += chi_squared_blocks(source, "valid", "invalid", f"validity-{source.slug}")
-        blocks.append(Details("The same by the other rules", inside))
-    return Section("Validity", [*blocks, *folded("Invalid roads", _named(parts, _why))])
+        if len(source.counts) > 1:
+            into = others if source.slug.endswith(("-sound", "-sbft")) else blocks
+            into += chi_squared_blocks(source, "valid", "invalid", f"validity-{source.slug}")
+    blocks += [Details("The same by the other rules", others)] if others else []
+    return Section("Validity", [*blocks, *folded("Invalid roads", named_roads(parts, _why))])
 
 
 def departures(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
     """Returns the section on lane departures on valid roads; ``has_baseline`` is as in ``validity``."""
     told = of_thesis(parts) if has_baseline else list(parts)
-    every = [left_source(designer, told) for designer in designers]
+    every = [source_of(designer, told, LEFT) for designer in designers]
     every = [source for source in every if source.total]
-    blocks: list[Block] = []
-    if not every:
-        blocks.append("These roads were not driven.")
+    blocks: list[Block] = [] if every else ["These roads were not driven."]
     every += [THESIS_LEFT] if has_baseline else []
     if every:
         blocks += [
@@ -253,7 +218,7 @@ def departures(parts: Parts, designers: Sequence[str], has_baseline: bool = Fals
         if len(source.counts) > 1:
             blocks += chi_squared_blocks(source, "left", "kept", f"departures-{source.slug}")
     blocks += outside_table(passed_roads([road for part in parts for road in part.roads]))
-    left = _named(parts, lambda road: road.says if road.has_left else "")
+    left = named_roads(parts, lambda road: road.says if road.has_left else "")
     return Section("Leaving the lane", [*blocks, *folded("Drives that left", left)])
 
 
@@ -263,12 +228,12 @@ def _why(road: RoadRecord) -> str:
     return "" if road.is_valid else road.says + sbft
 
 
-def _beside(source: Source, thesis: Source) -> str:
-    """Compares our counts with the thesis', all prompts together."""
-    table = [[each.hits, each.total - each.hits] for each in (source, thesis)]
+def _beside(source: Source) -> str:
+    """Compares our counts of valid roads with the thesis', all prompts together."""
+    table = [[each.hits, each.total - each.hits] for each in (source, THESIS_VALID)]
     return (
-        f"{source.name}: {share_of(source.hits, source.total)} against {share_of(thesis.hits, thesis.total)} "
-        f"of {NAME}; Fisher's exact test {p_value(exact(table).p)}. The rules differ, and ours are stricter."
+        f"{source.name}: {source.share} against {THESIS_VALID.share} of {NAME}; Fisher's exact test "
+        f"{p_value(exact(table).p)}. The rules differ, and ours are stricter."
     )
 
 
@@ -303,19 +268,3 @@ def _shares(name: str, hit: str, every: Sequence[Source]) -> Table:
             rows.append(row("all of these", source.name, *share_cells(source.hits, source.total)))
     heads = ["prompt", "made by", hit, *SHARE_HEADS]
     return Table(f"{name}-shares", f"Shares: {hit}, with intervals", heads, rows)
-
-
-def _silent(parts: Parts) -> list[Block]:
-    """Lists designers that could not be run and roads that could not be made."""
-    sentences = dict.fromkeys(f"{part.designer}: {part.problem}" for part in parts if part.problem)
-    return [f"Roads are missing: {sentence}." for sentence in sentences]
-
-
-def _named(parts: Parts, says: Callable[[RoadRecord], str]) -> list[Block]:
-    """Returns a line with a link for each road for which ``says`` returns a sentence."""
-    return [
-        [linked(f"{part.part.name}, road {road.index}", part.href(road)), f": {sentence}"]
-        for part in parts
-        for road in part.roads
-        if (sentence := says(road))
-    ]

@@ -4,9 +4,8 @@ import math
 from collections.abc import Sequence
 
 from roadgpt.plural import plural
-from roadgpt.report.page import Block, Details, TableCell, cell
 from roadgpt.report.page.forest import Share
-from roadgpt.report.page.model import Raw
+from roadgpt.report.page.model import Block, Details, Raw, TableCell, cell
 from roadgpt.study.statistics import Interval, clopper_pearson, wilson
 
 MOST_NAMED = 100  # lines of a list
@@ -19,6 +18,11 @@ def p_value(p: float) -> str:
     if p < 1e-15:
         return "p < 1e-15"
     return f"p = {p:.1e}" if p < 0.001 else f"p = {p:.3f}"
+
+
+def as_sentence(text: str) -> str:
+    """Returns text with a capital at its start and a full stop at its end."""
+    return f"{text[:1].upper()}{text[1:]}."
 
 
 def percent(share: float, digits: int = 1) -> str:
@@ -44,8 +48,7 @@ def decimal(value: float | None, digits: int = 2, href: str = "") -> TableCell:
 
 
 def share_cell(share: float, text: str = "") -> TableCell:
-    """Returns a share (0 to 1) as a table cell: a number in CSV files; on the page the given text, or a
-    percentage if there is no text."""
+    """Returns a share (0 to 1) as a table cell: a number in CSV files; a text or a percentage on the page."""
     return cell(round(share, 6), text or percent(share))
 
 
@@ -72,12 +75,8 @@ def drawn_share(series: int, k: int, n: int, text: str = "") -> Share:
 
 
 def folded(title: str, lines: Sequence[Block]) -> list[Block]:
-    """Returns a collapsible block with one line per road, at most 100 lines; empty if there are no lines.
-
-    Args:
-        title: title of the block; the number of lines is appended to it.
-        lines: the lines, one for each road.
-    """
+    """Returns a collapsible block with one line per road, at most 100 lines, and their number in its title;
+    empty if there are no lines."""
     if not lines:
         return []
     more = [f"… and {len(lines) - MOST_NAMED} more."] if len(lines) > MOST_NAMED else []
@@ -86,14 +85,8 @@ def folded(title: str, lines: Sequence[Block]) -> list[Block]:
 
 def near_and_far(near: tuple[float, str] | None, far: tuple[float, str] | None) -> list[str]:
     """Returns a sentence on the passed drive that came closest to failing, and one on the failed drive in
-    which the car went farthest out of its lane.
-
-    Args:
-        near: smallest margin of the drives that kept their lane, metres, and the drive's name; None if there
-            is no such drive.
-        far: smallest (negative) margin of the drives that left their lane and drove on, metres, and the
-            drive's name; None if there is no such drive or if drives end where the car leaves its lane.
-    """
+    which the car went farthest out of its lane. Each is given by its margin in metres (negative if it failed)
+    and its name; None if there is none, or if drives end where the car leaves its lane."""
     out = []
     if near is not None:
         out.append(

@@ -1,23 +1,29 @@
-"""Converts the answers to a survey into table rows, one row per answer, for export and analysis."""
+"""Converts the answers to a survey into table rows, one row per answer, and counts the ratings."""
 
 import hashlib
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roadgpt.errors import UsageError
 from roadgpt.report.page.text import unformulated
 from roadgpt.run.atomic import csv_text
-from roadgpt.study.survey.questions import CHECK, MATCHES, Part, Question
-from roadgpt.study.survey.store import AnswerStore, code_of
-from roadgpt.study.survey.survey import Survey
+from roadgpt.study.statistics import Interval, krippendorff, wilson
+from roadgpt.study.survey.store import code_of
+from roadgpt.study.survey.survey import CHECK, MATCHES, OVERALL, Item, Part, Question, Rated, Survey
 
+Array = NDArray[np.float64]
 Source = Literal["people", "synthetic"]
+Counts = Sequence[tuple[str, Sequence[tuple[str, int]]]]
+"""The text of each question about the raters, and each answer with the number of raters who gave it."""
 Attention = Literal["passed", "failed", "not asked", "not answered"]
 MOST = 10_000
 FAILING = 0.05  # share that fails the attention check
+FAVOURABLE = 4  # lowest score that is in favour of the road, or of the two roads being similar
 REMARK = "synthetic remark of a made-up rater"
 
 
@@ -69,6 +75,11 @@ class Answers:
         return tuple(row for row in self.rows if row.attention != "failed")
 
     @property
+    def analysed(self) -> frozenset[str]:
+        """The raters whose answers are analysed."""
+        return frozenset(row.rater for row in self.used)
+
+    @property
     def finished(self) -> int:
         """Number of raters who rated every road and whose answers are analysed."""
         asked = {
@@ -80,26 +91,11 @@ class Answers:
         return sum(asked <= given for given in by_rater.values())
 
 
-def answers_in(store: AnswerStore, survey: Survey) -> Answers:
-    """Returns the answers of all people who agreed to take part and did not withdraw."""
-    raters = store.raters()
-    given = {rater.digest: store.answers_of(rater) for rater in raters if rater.state == "agreed"}
-    states = [rater.state for rater in raters]
-    return answers_of_raters(survey, given, "people", len(raters), states.count("withdrawn"))
-
-
 def answers_of_raters(
     survey: Survey, given: Mapping[str, Mapping[str, str]], source: Source, invited: int, withdrawn: int = 0
 ) -> Answers:
-    """Returns the answers of several raters as table rows.
-
-    Args:
-        survey: the survey.
-        given: the answers of each rater by question; the keys are the digests that identify the raters.
-        source: whether the raters are people or simulated.
-        invited: number of invited raters.
-        withdrawn: number of raters who withdrew.
-    """
+    """Returns the answers of several raters as table rows; ``given`` holds their answers by question, under
+    the digests that identify the raters."""
     rows = [row for digest in sorted(given) for row in _rows(survey, digest, given[digest], source)]
     return Answers(survey, source, tuple(rows), invited, len(given), withdrawn)
 
@@ -140,6 +136,113 @@ def csv_of(rows: Sequence[AnswerRow]) -> str:
     return csv_text(AnswerRow._fields, ([unformulated(value) for value in row] for row in rows))
 
 
+@dataclass(frozen=True, eq=False)
+class Unit:
+    """The ratings that all raters gave to one item (a road or a pair of roads) for one criterion."""
+
+    item: Item
+    question: Question
+    scores: Array
+    """Scores of all raters, 1 to 5; NaN if a rater did not answer."""
+
+    @property
+    def criterion(self) -> str:
+        """The criterion that was rated, or "overall"."""
+        return self.question.criterion
+
+    @property
+    def given(self) -> Array:
+        """The scores of the raters who answered."""
+        return self.scores[np.isfinite(self.scores)]
+
+    @property
+    def number(self) -> int:
+        """Number of raters who rated the item."""
+        return len(self.given)
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Number of raters who gave each answer of the scale."""
+        return tuple(int((self.given == score).sum()) for score in range(1, len(self.question.answers) + 1))
+
+    @property
+    def quartiles(self) -> list[float]:
+        """Lower quartile, median and upper quartile of the scores of one rater or more."""
+        return [float(value) for value in np.quantile(self.given, [0.25, 0.5, 0.75])]
+
+    @property
+    def favourable(self) -> tuple[int, Interval]:
+        """Number of scores 4 and 5, and Wilson's interval of their proportion among all scores."""
+        count = int((self.given >= FAVOURABLE).sum())
+        return count, wilson(count, self.number)
+
+    @property
+    def measured(self) -> float | None:
+        """The measured score (0 to 1) of the item for this criterion; None if it was not measured."""
+        return self.item.machine.get(self.criterion)
+
+
+@dataclass(frozen=True, eq=False)
+class RatingTally:
+    """All ratings in one part of the survey: "alignment" or "similarity"."""
+
+    part: Rated
+    raters: tuple[str, ...]
+    units: tuple[Unit, ...]
+
+    @property
+    def overall(self) -> tuple[Unit, ...]:
+        """The ratings for the overall question, one Unit per item."""
+        return self.of(OVERALL)
+
+    @property
+    def criteria(self) -> tuple[str, ...]:
+        """All rated criteria, "overall" first."""
+        return tuple(dict.fromkeys(unit.criterion for unit in self.units))
+
+    def of(self, criterion: str) -> tuple[Unit, ...]:
+        """Returns the ratings for one criterion, one Unit per item."""
+        return tuple(unit for unit in self.units if unit.criterion == criterion)
+
+
+def about_counts(answers: Answers) -> Counts:
+    """Returns, for each question about the raters, its text and how many raters gave each answer."""
+    given = Counter((row.question, row.answer) for row in answers.used if row.part == "about")
+    return [
+        (question.text, [(answer, given[question.id, answer]) for answer in question.answers])
+        for question in answers.survey.about
+        if question.answers
+    ]
+
+
+def tally(answers: Answers, part: Rated) -> RatingTally:
+    """Returns the ratings in one part of the survey by all raters whose answers are analysed."""
+    scores = {
+        (row.rater, row.question): row.score
+        for row in answers.used
+        if row.part == part and row.score is not None
+    }
+    raters = tuple(sorted({rater for rater, _ in scores}))
+    units = [
+        Unit(item, question, np.array([scores.get((rater, question.id), np.nan) for rater in raters], float))
+        for item in answers.survey.of_part(part)
+        for question in item.questions
+        if question.is_rating
+    ]
+    return RatingTally(part, raters, tuple(units))
+
+
+def score_matrix(units: Sequence[Unit]) -> Array:
+    """Returns the scores of several units as an array ``(raters, units)``; NaN if a rater did not answer."""
+    return np.stack([unit.scores for unit in units], axis=1)
+
+
+def alpha_of(units: Sequence[Unit]) -> float:
+    """Returns Krippendorff's alpha of the ratings as ordinal data; NaN if it is undefined, as for a
+    single unit."""
+    return krippendorff(score_matrix(units)) if len(units) > 1 else float("nan")
+
+
 def synthetic(
     survey: Survey, number: int, seed: int = 0, agreement: float = 0.8, failing: float = FAILING
 ) -> Answers:
@@ -147,14 +250,8 @@ def synthetic(
 
     Every rating question has a hidden true answer, which differs from road to road. A rater gives the true
     answer with the probability ``agreement`` and otherwise a random answer. Krippendorff's alpha is therefore
-    1 if ``agreement`` is 1, and near 0 if ``agreement`` is 0.
-
-    Args:
-        survey: the survey.
-        number: number of simulated raters.
-        seed: seed of the answers.
-        agreement: probability of the true answer, 0 to 1.
-        failing: fraction of raters who fail the attention check and answer at random, 0 to 1.
+    1 if ``agreement`` is 1, and near 0 if ``agreement`` is 0. The fraction ``failing`` of the raters fails
+    the attention check and answers at random.
 
     Raises:
         UsageError: ``number``, ``agreement`` or ``failing`` is out of range.

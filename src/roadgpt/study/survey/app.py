@@ -15,12 +15,12 @@ import hmac
 import json
 import sqlite3
 import sys
-from collections.abc import Awaitable, Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Mapping
+from functools import partial
 from pathlib import Path
 from urllib.parse import parse_qsl
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
@@ -28,12 +28,10 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, RedirectResponse, Response
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
-from starlette.types import Receive, Scope, Send
 
 from roadgpt.study.survey.limits import FRAMES, RequestGuard, refusal
-from roadgpt.study.survey.questions import MOST_LETTERS, clean
 from roadgpt.study.survey.store import MOST_RATERS, AnswerStore, Rater
-from roadgpt.study.survey.survey import MEDIA, QuestionPage, Survey
+from roadgpt.study.survey.survey import MEDIA, MOST_LETTERS, QuestionPage, Survey, clean
 
 HEADINGS = {
     "about": "About you",
@@ -51,28 +49,7 @@ ENVIRONMENT = Environment(
     lstrip_blocks=True,
 )
 """The templates; all of them can use ``headings`` and ``most_letters``."""
-
-
-def _paragraphs(text: str) -> Markup:
-    """Returns text as paragraphs; empty lines separate them."""
-    parts = [part.strip() for part in text.replace("\r\n", "\n").split("\n\n") if part.strip()]
-    return Markup("\n").join(Markup("<p>{}</p>").format(part) for part in parts)  # it escapes each part
-
-
-ENVIRONMENT.filters["paragraphs"] = _paragraphs
 ENVIRONMENT.globals.update(headings=HEADINGS, most_letters=MOST_LETTERS)
-
-
-def render(template: str, survey: Survey, **values: object) -> str:
-    """Returns a page as HTML; every value is escaped.
-
-    Args:
-        template: name of a file in ``templates``.
-        survey: the survey, for its title, texts and pages.
-        **values: other values that the template uses.
-    """
-    return ENVIRONMENT.get_template(template).render(survey=survey, **values)
-
 
 STATIC = Path(__file__).parent / "static"
 MEDIA_TYPES = {"picture": "image/png", "film": "video/mp4", "view": "text/html"}
@@ -102,14 +79,8 @@ def _in_thread(answer: Answer) -> Callable[[Request], Awaitable[Response]]:
 
 
 class SurveyApp:
-    """An ASGI application that serves one survey. Several threads may handle requests at the same time.
-
-    Args:
-        folder: the survey's folder.
-        survey: the survey.
-        store: the file of answers.
-        shared: token of the link with which anyone may join; empty if there is no such link.
-    """
+    """Serves one survey; ``asgi`` is its ASGI application. Several threads may handle requests at the same
+    time. ``shared`` is the token of the link with which anyone may join, or empty."""
 
     def __init__(self, folder: Path, survey: Survey, store: AnswerStore, shared: str = "") -> None:
         self.folder, self.survey, self.store, self.shared = folder, survey, store, shared
@@ -135,11 +106,7 @@ class SurveyApp:
             exception_handlers={HTTPException: self._notice, sqlite3.Error: self._not_saved},  # type: ignore[dict-item]
         )
         app.router.redirect_slashes = False  # it would redirect to whatever host the request names
-        self._app = RequestGuard(app)
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answers one request."""
-        await self._app(scope, receive, send)
+        self.asgi = RequestGuard(app)
 
     def _join(self, request: Request, body: bytes) -> Response:
         token = request.path_params["token"].encode("utf-8", "replace")
@@ -227,25 +194,14 @@ class SurveyApp:
             raise HTTPException(404)
         page, total = own[number - 1], len(own)
 
-        def questionnaire(given: Mapping[str, str], missing: Sequence[str] = ()) -> Response:
-            return self._page(
-                "questionnaire.html",
-                page=page,
-                number=number,
-                total=total,
-                base=base,
-                given=given,
-                missing=missing,
-            )
-
+        show = partial(self._page, "questionnaire.html", page=page, number=number, total=total, base=base)
         if request.method != "POST":
-            return questionnaire(self.store.answers_of(rater))
+            return show(given=self.store.answers_of(rater), missing=())
         if _kind(request) != FORM:
             raise HTTPException(415)
         fields = _fields(request, body)
         answers = {q.id: clean(fields[q.id]) for q in page.questions if q.id in fields}
-        by_id = self.survey.questions
-        if any(not by_id[id_].takes(value) for id_, value in answers.items()):
+        if not all(q.takes(answers.get(q.id, "")) for q in page.questions):
             raise HTTPException(422)
         if not self.store.save(rater, answers):
             raise HTTPException(410, CLOSED)
@@ -254,7 +210,7 @@ class SurveyApp:
         if go == "back":
             return RedirectResponse(f"{base}/{max(1, number - 1)}", 303)
         if missing and go != "skip":
-            return questionnaire(given, missing)
+            return show(given=given, missing=missing)
         return RedirectResponse(f"{base}/{number + 1}" if number < total else f"{base}/done", 303)
 
     def _done(self, request: Request, _: bytes) -> Response:
@@ -276,7 +232,8 @@ class SurveyApp:
         return self._page("deleted.html")
 
     def _page(self, template: str, status: int = 200, **values: object) -> Response:
-        return HTMLResponse(render(template, self.survey, **values), status)
+        """Returns a page from a template, which escapes every value."""
+        return HTMLResponse(ENVIRONMENT.get_template(template).render(survey=self.survey, **values), status)
 
     def _notice(self, request: Request, error: HTTPException) -> Response:
         """Returns a page, or JSON for the script, that says why a request was refused."""

@@ -14,27 +14,27 @@ from pathlib import Path
 from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.run import Run, read_run
 from roadgpt.run.atomic import json_text, sweep, write_whole
-from roadgpt.study.survey.item_criteria import criteria_of, match_scores, similarity_scores
+from roadgpt.study.road_record import kept_of
+from roadgpt.study.similarity import likeness, similarity
 from roadgpt.study.survey.media import WHY_NONE, Axes, can_film, draw_plots, make_film, write_view
-from roadgpt.study.survey.plan import PairPlan, RoadPlan, SurveyPlan
-from roadgpt.study.survey.questions import CRITERIA
+from roadgpt.study.survey.plan import PairPlan, RoadPlan, SurveyPlan, criteria_of
 from roadgpt.study.survey.store import ANSWERS
-from roadgpt.study.survey.survey import CARD, MEDIA, Item, Medium, Survey
+from roadgpt.study.survey.survey import CARD, CRITERIA, MEDIA, OVERALL, Item, Medium, Survey
 
 Tell = Callable[[str], None]
 PLACES = ("top", "bottom")
 CAMERAS = {"chase": "film from behind the car", "bonnet": "film from the hood camera"}
+MATCH = {OVERALL: "general"} | {CRITERIA[name]: name for name in ("turns", "incline", "order")}
+"""For each criterion of a road and its description, the measured criterion of ``study.criteria``."""
+ALIKE = MATCH | {CRITERIA["order"]: "sequence", CRITERIA["length"]: "length"}
+"""For each criterion of two roads, the measured criterion of ``study.similarity``."""
 
 
 def make_survey(plan: SurveyPlan, base: Path, out: Path | str, tell: Tell = lambda _: None) -> Survey:
-    """Makes the folder of a survey. Existing films are kept, so that an interrupted call can be repeated
-    without filming again.
+    """Makes the folder ``out`` of a survey; a survey in it is replaced if nobody has been invited to it yet.
 
-    Args:
-        plan: the contents of SURVEY.toml.
-        base: the folder to which the paths of runs in the plan are relative.
-        out: the survey's folder; a survey in it is replaced if nobody has been invited to it yet.
-        tell: called with a sentence before every step.
+    Existing films are kept, so that an interrupted call can be repeated without filming again. Paths of runs
+    in the plan are relative to ``base``; ``tell`` is called with a sentence before every step.
 
     Raises:
         UsageError: a run cannot be used, or the folder contains answers or other files.
@@ -176,4 +176,22 @@ def _mark(runs: list[Run]) -> str:
     return hashlib.sha256(drives).hexdigest()[:10]
 
 
-__all__ = ["Tell", "make_survey"]
+def match_scores(run: Run, prompt: str) -> dict[str, float]:
+    """Returns, for each criterion of the thesis, 1 if a road meets it and 0 if not; empty if the road was not
+    made from the description ``prompt``."""
+    if run.road is None or run.brief is None or prompt != run.words.strip():
+        return {}
+    kept = {str(name): good for name, good in kept_of(run).items()}
+    return {ours: float(kept[measured]) for ours, measured in MATCH.items() if measured in kept}
+
+
+def similarity_scores(one: Run, other: Run) -> dict[str, float]:
+    """Returns, for each criterion, how similar two roads are (0 to 1); empty if one of them cannot be
+    compared."""
+    if one.road is None or other.road is None:
+        return {}
+    try:
+        found = similarity(likeness(one.road), likeness(other.road))
+    except UsageError:
+        return {}
+    return {ours: float(getattr(found, measured)) for ours, measured in ALIKE.items()}

@@ -77,15 +77,9 @@ def _refused_with(scope: Scope) -> int:
 
 
 def refusal(path: str, status: int, sentence: str = "") -> Response:
-    """Returns a response that consists of one sentence and closes the connection.
-
-    Args:
-        path: path of the request. Requests to ``/answer`` come from the pages' script and are answered in
-            JSON.
-        status: HTTP status.
-        sentence: what is wrong with the request; if empty, the standard phrase of the HTTP status is sent. It
-            must not quote the request.
-    """
+    """Returns a response that consists of one sentence, by default the standard phrase of the HTTP status,
+    and closes the connection. The sentence must not quote the request. Requests to ``/answer`` come from the
+    pages' script and are answered in JSON."""
     sentence = sentence or f"{HTTPStatus(status).phrase}."
     if path.endswith("/answer"):
         content, kind = json.dumps({"error": sentence}), "application/json"

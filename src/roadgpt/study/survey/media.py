@@ -126,14 +126,8 @@ def can_film() -> bool:
 
 
 def make_film(runs: Sequence[Run], path: Path, view: str) -> None:
-    """Writes a film of one drive, or of two drives in a split screen. The film ends before the outcome is
-    visible.
-
-    Args:
-        runs: one run or two, with their drives.
-        path: the MP4 file to write.
-        view: the camera, "chase" or "bonnet" (the hood camera).
-    """
+    """Writes an MP4 film of one run's drive, or of two drives in a split screen, which ends before the
+    outcome is visible; ``view`` is the camera, "chase" or "bonnet" (the hood camera)."""
     longest = max(run.drive.duration for run in runs if run.drive is not None)
     settings = Settings(seconds=max(longest - BEFORE_THE_END, BEFORE_THE_END))
     if len(runs) == 1:
@@ -143,14 +137,6 @@ def make_film(runs: Sequence[Run], path: Path, view: str) -> None:
 
 
 def write_view(runs: Sequence[Run], titles: Sequence[str], path: Path) -> None:
-    """Writes the 3-D view of one road or of two as an HTML page.
-
-    Args:
-        runs: one run or two.
-        titles: the title of each road.
-        path: the file to write.
-    """
-    write_whole(
-        path,
-        page_of([scene(run) | {"title": title} | HIDDEN for run, title in zip(runs, titles, strict=True)]),
-    )
+    """Writes the 3-D view of one road or of two, each with its title, as an HTML page."""
+    scenes = [scene(run) | {"title": title} | HIDDEN for run, title in zip(runs, titles, strict=True)]
+    write_whole(path, page_of(scenes))

@@ -8,15 +8,15 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, ValidationError
 
-from roadgpt.brief.model import Frozen
+from roadgpt.brief.model import Brief, Clause, Frozen
+from roadgpt.brief.normal import BUMPS, STRAIGHT
+from roadgpt.brief.sentence import WAVY
 from roadgpt.errors import UsageError
 from roadgpt.reading import read_text
-from roadgpt.run import Run, read_run
+from roadgpt.run import Run, read_run, seed_of
 from roadgpt.run.card import CARD
 from roadgpt.run.folder import finished, run_folder
-from roadgpt.run.seeds import seed_of
-from roadgpt.study.survey.item_criteria import criteria_of
-from roadgpt.study.survey.questions import ABOUT, PAIR_CRITERIA, Question
+from roadgpt.study.survey.survey import ABOUT, PAIR_CRITERIA, Question
 
 Words = Annotated[str, Field(min_length=1, max_length=4000)]
 PURPOSE = (
@@ -147,23 +147,54 @@ def _toml(value: Any) -> str:
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
+def criteria_of(brief: Brief | None) -> tuple[str, ...]:
+    """Returns the criteria that a description mentions: "turns", "incline", "order".
+
+    A general description such as "a road" mentions no criterion: its roads are rated only as a whole, as in
+    the thesis.
+    """
+    if brief is None:
+        return ()
+    clauses = [*brief.clauses, *filter(None, (brief.starts, brief.ends))]
+    # "at least one turn" says nothing, since every road has one
+    amounts = [(each.lo, each.hi) for each in (brief.turns, brief.left, brief.right) if each]
+    slopes = (brief.slope, brief.incline, brief.steepest, brief.climb, brief.hills)
+    rises = [each for each in clauses if each.slope or each.incline or each.kind in BUMPS]
+    mentioned = {
+        "turns": any(amount != (1, None) for amount in amounts) or any(map(_has_a_number, clauses)),
+        "incline": any(slopes) or rises,
+        "order": len(clauses) > 1,
+    }
+    return tuple(name for name, is_mentioned in mentioned.items() if is_mentioned)
+
+
+def _has_a_number(clause: Clause) -> bool:
+    """Returns whether a clause says how many turns there are."""
+    if clause.kind in STRAIGHT:
+        return False
+    return clause.kind not in WAVY or clause.count.lo != 1 or clause.count.hi != 1
+
+
 def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pairs: int = 2) -> SurveyPlan:
     """Returns the plan of a survey, with valid roads selected at random from each folder of runs.
+
+    For up to ``pairs`` descriptions, raters also compare two roads with each other. If a description has only
+    two valid roads, one of these roads is also compared with the description.
 
     Args:
         study: a folder of runs, or a folder that contains several folders of runs.
         asks: who conducts the survey.
         contact: where raters can send questions.
         seed: seed of the random selection; the same seed selects the same roads.
-        pairs: greatest number of descriptions for which raters also compare two roads with each other. If a
-            description has only two valid roads, one of these roads is also compared with the description.
+        pairs: greatest number of descriptions with two roads.
 
     Raises:
         UsageError: there is no folder of runs with a valid road.
     """
     study = Path(study).resolve()
     alignment, similarity = list[RoadPlan](), list[PairPlan]()
-    for number, campaign in enumerate(_campaigns(study), 1):
+    campaigns = {card.parent for depth in range(DEEPEST) for card in study.glob(f"{'*/' * depth}{CARD}")}
+    for number, campaign in enumerate(sorted(campaigns), 1):
         drawn = _drawn(campaign, seed_of(seed, number), 3 if len(similarity) < pairs else 1)
         if not drawn:
             continue
@@ -177,12 +208,6 @@ def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pa
             f"{study} holds no runs with a valid road; make some: roadgpt run DESCRIPTION --out DIR"
         )
     return SurveyPlan(asks=asks, contact=contact, alignment=tuple(alignment), similarity=tuple(similarity))
-
-
-def _campaigns(study: Path) -> list[Path]:
-    """Returns the folders of runs, in the order of their names."""
-    found = {card.parent for depth in range(DEEPEST) for card in study.glob(f"{'*/' * depth}{CARD}")}
-    return sorted(found)
 
 
 def _drawn(campaign: Path, seed: int, most: int) -> list[tuple[str, Run]]:

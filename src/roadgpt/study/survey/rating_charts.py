@@ -16,10 +16,10 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.patches import Patch
 
 from roadgpt.report.canvas import BLUE, VERMILLION, add_axes, in_our_style, new_figure, save, save_all
-from roadgpt.report.page import Figure
 from roadgpt.report.page.chart import embedded, palette
+from roadgpt.report.page.model import Figure
 from roadgpt.report.text_width import fitted
-from roadgpt.study.survey.tally import RatingTally, Unit
+from roadgpt.study.survey.answers import Counts, RatingTally, Unit
 
 # from orange to blue, which colour-blind people can distinguish; every piece contains its number
 SHADES = ("#c2510a", "#efb184", "#c9ccd1", "#8fc1e3", "#0a69a8")
@@ -37,13 +37,8 @@ MADE_UP = "SYNTHETIC: made-up raters, no data of people"
 @in_our_style
 def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> Figure:
     """Draws all ratings in one part of the survey, one bar for each criterion of each item (a road or a pair
-    of roads).
-
-    Args:
-        found: the ratings in one part of the survey.
-        folder: the folder into which the figure is written as PNG, PDF and SVG.
-        is_synthetic: True if the raters are simulated; the figure then says so.
-    """
+    of roads), and writes the figure into a folder as PNG, PDF and SVG. If the raters are simulated, the
+    figure says so."""
     items = list(dict.fromkeys(unit.item.id for unit in found.units))
     high = TOP + BOTTOM + len(items) * (HEAD + GAP) + len(found.units) * ROW
     figure = new_figure(WIDE, high)
@@ -109,16 +104,9 @@ def _legend(figure: Drawing, answers: Sequence[str], high: float) -> None:
 
 
 @in_our_style
-def about_bars(
-    counts: Sequence[tuple[str, Sequence[tuple[str, int]]]], folder: Path, is_synthetic: bool
-) -> Figure:
-    """Draws how often each answer was given to each question about the raters.
-
-    Args:
-        counts: for each question, its text and how many raters gave each answer.
-        folder: the folder into which the figure is written as PNG, PDF and SVG.
-        is_synthetic: True if the raters are simulated; the figure then says so.
-    """
+def about_bars(counts: Counts, folder: Path, is_synthetic: bool) -> Figure:
+    """Draws how often each answer was given to each question about the raters; ``folder`` and
+    ``is_synthetic`` are as for ``rating_bars``."""
     rows = -(-len(counts) // 2)
     heights = [
         max(len(each[1]) for each in counts[2 * row : 2 * row + 2]) * 0.25 + 0.62 for row in range(rows)

@@ -108,7 +108,7 @@ class Server:
             ) from error
         self.port = int(self._socket.getsockname()[1])
         config = uvicorn.Config(
-            app,
+            app.asgi,
             loop="asyncio",  # the same whatever else is installed
             http=LimitedConnection,
             ws="none",

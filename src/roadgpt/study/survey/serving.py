@@ -25,14 +25,8 @@ Tell = Callable[[str], None]
 
 
 def open_server(folder: Path | str, host: str, port: int, is_open: bool = False) -> "Server":
-    """Returns a server for the survey in a folder. It already listens; call ``serve_forever`` to answer
-    requests.
-
-    Args:
-        folder: the survey's folder.
-        host: address to listen on.
-        port: port to listen on; 0: a free port.
-        is_open: True if anyone may join by a shared link.
+    """Returns a server for the survey in a folder. It already listens, on a free port if ``port`` is 0; call
+    ``serve_forever`` to answer requests. If ``is_open``, anyone may join by a shared link.
 
     Raises:
         UsageError: there is no survey, the server cannot listen on this host and port, or the extra
@@ -63,15 +57,16 @@ def serve(
     is_open: bool = False,
     url: str = "",
 ) -> None:
-    """Serves a survey until Ctrl-C. The raters' links are reported first, and written into ``links.txt``.
+    """Serves a survey as ``open_server`` does, until Ctrl-C. The raters' links are reported first, and
+    written into ``links.txt``.
 
     Args:
         folder: the survey's folder.
         tell: called with each line of output.
         host: address to listen on.
-        port: port to listen on; 0: a free port.
+        port: port to listen on.
         raters: number of raters with a personal link, including raters who were invited earlier.
-        is_open: True if anyone may join by a shared link.
+        is_open: True if anyone may join.
         url: address at which raters reach the server; empty: host and port.
 
     Raises:
@@ -109,10 +104,10 @@ def _invited(folder: Path, store: AnswerStore, wanted: int, base: str) -> list[s
         raise UsageError(f"{wanted} raters are too many; a survey takes at most {MOST_RATERS:,}")
     new = [new_token() for _ in range(wanted - there)]
     tokens += new
+    if not tokens and not there:
+        return []
     if not tokens:
-        return (
-            [f"{there} links were made earlier, but {path}, which listed them, is missing"] if there else []
-        )
+        return [f"{there} links were made earlier, but {path}, which listed them, is missing"]
     links = [f"{base}/r/{token}" for token in tokens]
     with explained(RoadGPTError, f"cannot write {path}", "make room there"):
         write_whole(path, "\n".join(links) + "\n", is_private=True)

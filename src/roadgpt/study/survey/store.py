@@ -47,11 +47,6 @@ class Rater:
     agreed_on: str | None = None
     """The day on which the rater agreed, such as 2026-01-31; None if the rater has not agreed."""
 
-    @property
-    def code(self) -> str:
-        """The rater's name in tables."""
-        return code_of(self.digest)
-
 
 NOBODY = Rater("0" * 64, "invited")
 
@@ -87,12 +82,8 @@ class AnswerStore:
             self._file.close()
 
     def add_rater(self, joined: bool = False, token: str = "") -> str:
-        """Adds a rater and returns the rater's token, which is not stored.
-
-        Args:
-            joined: True if the rater joined by the shared link.
-            token: the token; empty: a new one.
-        """
+        """Adds a rater and returns the rater's token, which is not stored; ``joined`` is True if the rater
+        joined by the shared link."""
         token = token or new_token()
         with self._writing() as file:
             file.execute("INSERT INTO raters (digest, joined) VALUES (?, ?)", (digest_of(token), joined))
@@ -134,15 +125,8 @@ class AnswerStore:
             )
 
     def save(self, rater: Rater, answers: Mapping[str, str]) -> bool:
-        """Saves either all answers or none; saved answers are on disk when the method returns.
-
-        Args:
-            rater: the rater.
-            answers: the answers by question; an empty answer deletes the earlier answer to the same question.
-
-        Returns:
-            True if the answers were saved; False if the rater has not agreed or has withdrawn.
-        """
+        """Saves either all answers by question or none; an empty answer deletes the earlier one. Returns
+        True if they are on the disk, False if the rater has not agreed or has withdrawn."""
         with self._writing() as file:
             state = file.execute("SELECT state FROM raters WHERE digest = ?", (rater.digest,)).fetchone()
             if state != ("agreed",):
@@ -172,15 +156,9 @@ class AnswerStore:
 
     @contextmanager
     def _writing(self) -> Iterator[sqlite3.Connection]:
-        with self._lock:
+        with self._lock, self._file:  # which commits, or rolls back after an error
             self._file.execute("BEGIN IMMEDIATE")
-            try:
-                yield self._file
-                self._file.execute("COMMIT")
-            except BaseException:
-                if self._file.in_transaction:
-                    self._file.execute("ROLLBACK")
-                raise
+            yield self._file
 
 
 def new_token() -> str:

@@ -28,12 +28,17 @@ from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
-from roadgpt.brief.readers.model.plan_choice import brief_of, can_be_kept, most_plausible
+from roadgpt.brief.readers.model.plan_choice import (
+    agrees_with_numbers,
+    brief_of,
+    can_be_kept,
+    most_plausible,
+)
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
+from roadgpt.brief.readers.model.used_words import read_meanings
 from roadgpt.brief.readers.model.vocabulary import plan_of
-from roadgpt.brief.readers.model.word_meanings import read_meanings
 from roadgpt.brief.refusal import MOST_CHARACTERS, ContradictionError, TooMuchError, refused
 from roadgpt.brief.words import SURE
 from roadgpt.errors import BriefError, PartError
@@ -48,6 +53,7 @@ MEANINGS = "meanings.txt"
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
 NEVER = 2.0  # a probability that no refusal reaches
+CERTAIN = 0.8  # the probability of a refusal from which no other reading is taken
 SECOND = "_2"
 """What follows 'encoder' and 'decoder' in the names of the second network's files."""
 ROUTES = "_routes"
@@ -103,7 +109,11 @@ class ModelReader:
             raise refused("!impossible loop")
         brief = self._brief(words, text, draft, ensemble)
         is_unclear = is_of_junctions(draft.line) and not can_be_kept(found[0].line)
-        if is_unclear or _has_unlimited_signs(brief, text):
+        if brief.map is not None:
+            from roadgpt.brief.readers.model.map_signs import has_unlimited_signs  # only for maps
+
+            is_unclear = is_unclear or has_unlimited_signs(brief, text)
+        if is_unclear:
             brief = brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
         return brief if brief.confidence >= SURE else brief.model_copy(update={"other": _other(found, brief)})
 
@@ -143,10 +153,7 @@ class ModelReader:
         """Returns the likeliest plan of a change request, in normal form, as an UncalibratedReading; None if
         no plan could be read.
 
-        Args:
-            words: the change request.
-            key: function that returns the normal form of a plan of changes, or raises an error for an invalid
-                plan.
+        For ``key`` see ``read_change``.
         """
         found = scored_plans(self.roads.networks, words, NEVER, key=key)
         if not found:
@@ -172,11 +179,12 @@ class ModelReader:
         first = self.read(words)
         text = _text(words)
         ensemble, _ = self.scored(words)
-        across = ensemble.first.encode(text)
+        network = ensemble.networks[0]
+        across = network.encode(text)
         rng = np.random.default_rng(seed)
         found: dict[str, Brief] = {}
         for _ in range(4 * number):
-            written = ensemble.first.drawn(across, text, rng, temperature)
+            written = network.drawn(across, text, rng, temperature)
             line = plan_of(written.tokens, text.slots)
             draft = ScoredPlan(written.tokens, line, written.score, written.log_chances, agreement=0.0)
             found.setdefault(line, self._brief(words, text, draft, ensemble))
@@ -203,22 +211,25 @@ class ModelReader:
         raise TooMuchError(TOO_MUCH, brief) if brief else refused(why)
 
     def _brief_in_spite_of(self, why: str, words: str, text: SlottedText, ensemble: Ensemble) -> Brief:
-        """Returns the Brief of the likeliest plan that is no refusal, if only a denial that fits this plan
-        was taken for a contradiction.
+        """Returns the Brief of the likeliest plan that is no refusal, with a low confidence, if the plan
+        agrees with every number in the words and the networks are not certain of the contradiction, or if
+        only a denial that fits this plan was taken for one.
 
         Raises:
             ContradictionError: the description contradicts itself; the error has the Brief.
             BriefError: the same, but no plan without a contradiction is likely.
         """
         found = ensemble.scored(words, NEVER)
-        if not found or not can_be_kept(found[0].line):
+        best = most_plausible(found, text) if found else None
+        if best is None or not can_be_kept(best.line):
             raise refused(why)
         try:
-            brief = self._as_brief(words, text, found[0], ensemble)
+            brief = self._as_brief(words, text, best, ensemble)
         except BriefError:
             raise refused(why) from None
-        rest = without_denials(text, why, found[0].tokens, self._meanings)
-        if rest is None or ensemble.refuses(rest):
+        is_likely = ensemble.refusal(text) < CERTAIN and agrees_with_numbers(best, text)
+        rest = None if is_likely else without_denials(text, why, best.tokens, self._meanings)
+        if not is_likely and (rest is None or ensemble.refusal(rest) >= ensemble.refuse_from):
             raise ContradictionError(f"{refused(why)}; or is this meant", plan(brief), brief)
         return brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
 
@@ -228,16 +239,16 @@ class ModelReader:
         The Brief has the original numbers. None if the numbers are ordinary already, or if the description is
         refused with ordinary numbers too.
         """
-        as_usual = with_ordinary_numbers(text)
-        if as_usual.text == text:
+        usual, counts = with_ordinary_numbers(text)
+        if usual == text:
             return None
-        found = ensemble.scored(words, shown=lambda seen: with_ordinary_numbers(seen).text)
+        found = ensemble.scored(words, shown=lambda seen: with_ordinary_numbers(seen)[0])
         if not found or found[0].is_refusal:
             return None
-        tokens = as_usual.restored(found[0].tokens)
+        tokens = tuple(counts.get(token, token) for token in found[0].tokens)
         draft = replace(found[0], tokens=tokens, line=plan_of(tokens, text.slots))
         try:
-            return self._as_brief(words, text, draft, ensemble, seen=(as_usual.text, found[0].tokens))
+            return self._as_brief(words, text, draft, ensemble, seen=(usual, found[0].tokens))
         except BriefError:
             return None
 
@@ -258,12 +269,14 @@ class ModelReader:
             raise BriefError(NOT_ONE_ROAD) from error
         unused = ensemble.unused(*(seen or (text, draft.tokens)))
         sure = ensemble.confidence(draft, text, unused, seen)
-        found = {"words": words, "unused": unused, "confidence": sure}
-        # brief.read decides by the words whether a road without junctions is a motorway
-        found["motorway"] = False
-        # the roads of a map may be closed loops
         kept = (name for name in brief.beside if name != "loop" or brief.map is None)
-        found["beside"] = tuple(dict.fromkeys(kept))
+        found = {
+            "words": words,
+            "unused": unused,
+            "confidence": sure,
+            "motorway": False,  # brief.read decides by the words whether a road without junctions is one
+            "beside": tuple(dict.fromkeys(kept)),  # the roads of a map may be closed loops
+        }
         return _with_diameters(brief, draft.tokens, text).model_copy(update=found)
 
     @cached_property
@@ -320,14 +333,6 @@ def _with_diameters(brief: Brief, tokens: Sequence[str], text: SlottedText) -> B
     from roadgpt.brief.readers.model.ring_sizes import with_diameters  # only for networks
 
     return with_diameters(brief, tokens, text)
-
-
-def _has_unlimited_signs(brief: Brief, text: SlottedText) -> bool:
-    if brief.map is None:
-        return False
-    from roadgpt.brief.readers.model.map_signs import has_unlimited_signs  # only for maps
-
-    return has_unlimited_signs(brief, text)
 
 
 def _text(words: str) -> SlottedText:

@@ -1,13 +1,17 @@
-"""Reads a change request with the networks that read descriptions of single roads."""
+"""Reads a change request with the networks that read descriptions of single roads.
 
+To reverse the road and to swap two turns, the networks have no words: rules read such requests.
+"""
+
+import re
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
+from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features
 from roadgpt.brief.readers.model.ensemble import Ensemble
-from roadgpt.brief.readers.model.reverse_words import asks_to_reverse
+from roadgpt.brief.readers.model.numerals import plain
+from roadgpt.brief.readers.model.ordinals import PLACE, place_of
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
-from roadgpt.brief.readers.model.swap_words import turns_to_swap
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.errors import BriefError
 
@@ -15,6 +19,92 @@ REVERSED = "road: reverse"
 CERTAIN = 0.97
 """The confidence in a request that is read by its words: to reverse the road, or to swap two turns."""
 ALMOST = 2.0  # difference of score
+DENIAL = re.compile(
+    r"(?:please )?(?:do not|don'?t|never) [^,;:.]*[.!]*"
+    r"|(?:bitte )?mach\w* [^,;:.]*\bnicht \w+er[.!]*"
+    r"|ne (?:fais|rends|mets|change)[^,;:.]* pas [^,;:.]*[.!]*"
+    r"|no (?:hagas|pongas|cambies) [^,;:.]*[.!]*"
+    r"|non (?:fare|rendere|cambiare|mettere) [^,;:.]*[.!]*",
+    re.IGNORECASE,
+)
+POLITE = (
+    r"please|now|can you|could you|would you|just|simply|bitte|jetzt|einfach|mal|s'il (?:te|vous) plait|"
+    r"maintenant|por favor|ahora|per favore|adesso|ora"
+)
+WHOLE = r"(?:whole |entire |ganze |gesamte |toute |tout |entera |intera )?"
+ENGLISH = (
+    rf"(?:reverse|turn around|flip around) (?:the )?{WHOLE}(?:road|route|course|track|direction)"
+    r"(?: of (?:the )?(?:road|route|travel|driving))?|"
+    r"reverse the (?:driving|travel) direction|"
+    r"(?:swap|exchange|switch) (?:the )?(?:start|beginning) and (?:the )?(?:end|finish)|"
+    r"(?:let )?(?:the )?start and (?:the )?(?:end|finish) (?:should |shall )?(?:change|trade|swap) places|"
+    r"(?:drive|run|take|make|do)(?: it| this| the (?:same )?(?:road|route))?"
+    r" (?:backwards|in reverse|the other way(?: a?round)?|in the (?:other|opposite|reverse) direction|"
+    r"from (?:the )?(?:end|finish) to (?:the )?(?:start|beginning))"
+)
+GERMAN = (
+    rf"(?:(?:dreh|kehr)e? )?(?:die )?{WHOLE}(?:stra(?:ss|ß)e|strecke|fahrtrichtung|richtung)"
+    r" (?:um|umdrehen|umkehren|andersherum|rueckwaerts|ruckwarts)|"
+    r"(?:(?:tausche?|vertausche?) )?start und (?:ziel|ende)(?: (?:ver)?tauschen)?|"
+    r"(?:fahre? |das ganze )?(?:sie |es |die(?:selbe| gleiche)? (?:strecke|route) )?"
+    r"(?:in (?:der |die )?(?:gegenrichtung|umgekehrte[rn]? richtung|"
+    r"andere[rn]? richtung)|andersherum|ruckwarts)(?: fahren)?"
+)
+FRENCH = (
+    rf"(?:invers|renvers|retourn)e[rz]? (?:la |le |l')?{WHOLE}(?:route|parcours|trace|sens)"
+    r"(?: de (?:la )?(?:route|marche|parcours|circulation))?|"
+    r"(?:parcour\w+|prend\w*|roule[rz]?) ?-? ?(?:l[ae] )?(?:meme )?(?:route |parcours )?(?:en sens inverse|"
+    r"dans l'autre sens|a l'envers)|echange[rz]? (?:le )?depart et (?:l')?arrivee"
+)
+SPANISH = (
+    rf"(?:invierte|invertir|dale la vuelta a|da la vuelta a) (?:la |el )?{WHOLE}"
+    r"(?:carretera|ruta|recorrido|sentido)(?: de (?:la )?(?:marcha|carretera|circulacion))?|"
+    r"(?:recorre\w*|conduce\w*|haz\w*) (?:la |el )?(?:misma )?(?:carretera |ruta )?"
+    r"(?:al reves|en sentido contrario|en sentido inverso)|"
+    r"intercambia (?:la )?salida y (?:la )?(?:meta|llegada)"
+)
+ITALIAN = (
+    rf"(?:inverti|invertire|capovolgi) (?:la |il )?{WHOLE}(?:strada|percorso|senso|direzione|tracciato)"
+    r"(?: di (?:marcia|percorrenza))?|"
+    r"(?:percorri|guida|fai)(?:la|lo)? (?:la (?:stessa )?strada )?(?:al contrario|"
+    r"in senso (?:inverso|opposto|contrario))|"
+    r"scambia (?:la )?partenza e (?:l')?arrivo"
+)
+REVERSE = re.compile("|".join((ENGLISH, GERMAN, FRENCH, SPANISH, ITALIAN)))
+TURNS = (
+    r"(?:turns?|bends?|curves?|corners?|kurven?|kehren?|bogen|virages?|courbes?|curvas?|curve?|tornanti|"
+    r"giros?)"
+)
+NUMBER = rf"(?:(?:the|die|der|le|la|les|las|el|il) )?(\d|{PLACE})(?:st|nd|rd|th| \.|e|eme|a)?"
+AND = r"(?:and|with|und|mit|et|avec|y|con|e)"
+TWO = re.compile(
+    rf"\b{TURNS} (?:no |nr |number )?{NUMBER} {AND} (?:{TURNS} )?{NUMBER}\b|"
+    rf"\b{NUMBER} (?:{TURNS} )?{AND} {NUMBER} {TURNS}\b|"
+    rf"\b{NUMBER} {TURNS} {AND} {NUMBER}(?= |$)"
+)
+"""Two turns that are named by their numbers, such as "turn 1 and the third"."""
+BOTH = re.compile(
+    rf"\b(?:the (?:two|2|both)|both|die (?:2|zwei|beiden)|les (?:2|deux)|las (?:2|dos)|le (?:2|due)) "
+    rf"{TURNS}\b"
+)
+SWAP = re.compile(
+    r"\b(?:swap|exchange|switch|interchange|trade places|change places|(?:ver)?tausch\w*|echang\w*|"
+    r"intervert\w*|permut\w*|intercambi\w*|scambi\w*|invertendo di posto)\b"
+)
+MORE = re.compile(
+    r"\b(?:left|right|links|rechts|gauche|droite|izquierda|derecha|sinistra|destra|start|end|finish|anfang|ziel|"
+    r"lengths?|sharpness|steepness|width|height|straights?|to|then|remove|make|from|back|aus|off|gentle|"
+    r"sharp|hairpins?|second last|vorletzt\w*|for|directions?|sides?|richtung\w*|sens|sentido\w*|"
+    r"radi\w+|raggi\w*|rayon\w*|angle\w*|winkel\w*|angul\w*|angol\w*|slope\w*|grade\w*|not|nicht|pas|no|non)\b"
+)
+"""Words with which something other than the places of two turns is exchanged, or nothing."""
+STAYS = re.compile(
+    r" [,;.] (?:and |but |und |aber |et |mais |y |pero |e |ma )?[^,;.]*\b(?:stays?|keep|kept|remains?|"
+    r"unchanged|untouched|bleib\w*|unverandert|reste(?:nt)?|inchange\w*|qued\w+|igual|sin cambi\w+|"
+    r"rest(?:a|ano)|invariat\w)\b[^,;.]*(?: , wie [^,;.]*)?(?: \.)?$"
+)
+"""What stays as it is, said at the end."""
+MOST_WORDS = 12  # words of a request at most
 
 
 class ChangeReading(NamedTuple):
@@ -32,11 +122,7 @@ class ChangeReading(NamedTuple):
 def read_change(
     roads: Ensemble, weights: Mapping[str, float], words: str, key: Callable[[str], str]
 ) -> ChangeReading:
-    """Returns what a change request asks for, as a plan; for the other arguments see ``ModelReader``.
-
-    Args:
-        roads: the networks that read the request.
-        weights: the weights of the confidence model for change requests, and its bias.
+    """Returns what a change request asks for, as a plan; for ``key`` see ``ModelReader.read_change``.
 
     Raises:
         BriefError: the network wrote no plan that can be read.
@@ -44,7 +130,7 @@ def read_change(
     if asks_to_reverse(words):
         return ChangeReading(REVERSED, CERTAIN, ())
     text = slotted(words, is_change=True)
-    swapped = turns_to_swap(text)
+    swapped = _turns_to_swap(text)
     if swapped:
         return ChangeReading(f"{swapped}: swap", CERTAIN, ())
     found = scored_plans(roads.networks, words, roads.refuse_from, key=key)
@@ -75,3 +161,29 @@ def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
         for word in text.words
         if word.written and word.text.isdecimal() and word.text not in (*draft.tokens, "1")
     )
+
+
+def is_denial(words: str) -> bool:
+    """Returns whether a change request says only what must not change, such as "don't make it longer"."""
+    return DENIAL.fullmatch(words.strip().replace("’", "'")) is not None
+
+
+def asks_to_reverse(words: str) -> bool:
+    """Returns whether a change request asks to reverse the whole road, and for nothing else."""
+    said = re.sub(rf"\b(?:{POLITE})\b|[.,!?]", " ", plain(words))
+    return REVERSE.fullmatch(" ".join(said.split())) is not None
+
+
+def _turns_to_swap(text: SlottedText) -> str | None:
+    """Returns the two turns that a change request asks to swap; None if it asks for anything else.
+
+    The turns are named as in plans of changes: "turn 1,3", or "turn all" for "the two turns".
+    """
+    said = STAYS.sub("", " ".join(word.text for word in text.words if word.written))
+    if not SWAP.search(said) or MORE.search(said) or len(said.split()) > MOST_WORDS:
+        return None
+    found = TWO.findall(said)
+    if len(found) == 1:
+        one, other = (place_of(word) or int(word) for word in found[0] if word)
+        return f"turn {one},{other}"
+    return "turn all" if BOTH.search(said) else None

@@ -16,8 +16,6 @@ CLOSED = re.compile(
     r"(?! (?:a la|al|alla|to|for|fur den) (?:circ|tr|verkehr))"
 )
 """Phrases for a road that ends where it starts, in a text without accents."""
-
-
 NOT_ASKED = re.compile(
     r"\b(?:instead|almost|nearly|like|sections?|parts?|portion|out of|next to|near|beside|on|old"
     r"|unlike|rather|statt|anstatt|anstelle|fast|beinahe|wie|ausschnitt|abschnitt|teil|neben|auf|alte[rn]?"
@@ -30,9 +28,7 @@ NOT_ASKED = re.compile(
 def asks_for_a_closed_loop(words: str, line: str) -> bool:
     """Returns whether the words ask for a road that ends where it starts, and do not deny it.
 
-    Args:
-        words: the description.
-        line: the plan that was read from it. The roads of a map may be closed loops.
+    The roads of a map, which the plan ``line`` tells, may be closed loops.
     """
     if is_map(line):
         return False

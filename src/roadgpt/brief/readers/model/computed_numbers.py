@@ -77,11 +77,8 @@ def computed(
 ) -> list[str] | None:
     """Returns the tokens for a value that is computed from numbers of the text; None if there is no way.
 
-    Args:
-        value: the value, in the unit of its key.
-        said: the tokens of the numbers from which it may be computed, the likelier ones first.
-        slots: the slots of the text.
-        compared: what the words allow. Multiples are preferred to sums.
+    ``said`` has the tokens of the numbers from which it may be computed, the likelier ones first. Multiples
+    are preferred to sums.
     """
     ways: list[Iterator[tuple[float, list[str]]]] = []
     if compared.by_factor:
@@ -94,16 +91,16 @@ def computed(
 def _multiples(said: Sequence[str], slots: Sequence[NumberSlot]) -> Iterator[tuple[float, list[str]]]:
     for factor in FACTORS:
         for base in said:
-            yield round(_value(base, slots) * _exact(factor), 1), [base, "x", factor]
+            yield round(value_of(base, slots) * _exact(factor), 1), [base, "x", factor]
 
 
 def _sums(said: Sequence[str], slots: Sequence[NumberSlot]) -> Iterator[tuple[float, list[str]]]:
     for times in ("", *STEPS):
         for base, step in permutations(said, 2):
             for sign in SIGNS:
-                change = _value(step, slots) * float(times or 1) * (1 if sign == "+" else -1)
+                change = value_of(step, slots) * float(times or 1) * (1 if sign == "+" else -1)
                 more = ["x", times] if times else []
-                yield _value(base, slots) + change, [base, sign, step, *more]
+                yield value_of(base, slots) + change, [base, sign, step, *more]
 
 
 def with_values(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> list[str]:
@@ -125,21 +122,22 @@ def _value_at(tokens: Sequence[str], at: int, slots: Sequence[NumberSlot]) -> tu
     behind = tokens[at + 1 : at + 3]
     if len(behind) < 2 or not _is_number(tokens[at], slots):
         return None
-    base, (sign, other) = _value(tokens[at], slots), behind
+    base, (sign, other) = value_of(tokens[at], slots), behind
     if sign == "x":
         return base * _exact(other), at + 3
     if sign not in SIGNS or not _is_number(other, slots):
         return None
     is_repeated = tokens[at + 3 : at + 4] == ["x"] and at + 4 < len(tokens)
     times = float(tokens[at + 4]) if is_repeated else 1.0
-    return base + times * _value(other, slots) * (1 if sign == "+" else -1), at + (5 if is_repeated else 3)
+    return base + times * value_of(other, slots) * (1 if sign == "+" else -1), at + (5 if is_repeated else 3)
 
 
 def _is_number(token: str, slots: Sequence[NumberSlot]) -> bool:
     return token.isdecimal() or (token[:1] == "[" and int(token[1:-1]) <= len(slots))
 
 
-def _value(token: str, slots: Sequence[NumberSlot]) -> float:
+def value_of(token: str, slots: Sequence[NumberSlot]) -> float:
+    """Returns the value of a number or a slot, such as "[1]", in a plan."""
     return float(token) if token.isdecimal() else slots[int(token[1:-1]) - 1].value
 
 

@@ -2,7 +2,6 @@
 of the text that the plan lacks.
 """
 
-import re
 from collections.abc import Mapping, Sequence
 from math import exp, log, log1p
 
@@ -16,21 +15,6 @@ DOUBT = 0.5
 change request that says only what must not change."""
 LEAST_UNLIKELY = 0.03
 """Added before a logarithm is taken, so that it is finite for a plan with probability 1."""
-
-DENIAL = re.compile(
-    r"(?:please )?(?:do not|don'?t|never) [^,;:.]*[.!]*"
-    r"|(?:bitte )?mach\w* [^,;:.]*\bnicht \w+er[.!]*"
-    r"|ne (?:fais|rends|mets|change)[^,;:.]* pas [^,;:.]*[.!]*"
-    r"|no (?:hagas|pongas|cambies) [^,;:.]*[.!]*"
-    r"|non (?:fare|rendere|cambiare|mettere) [^,;:.]*[.!]*",
-    re.IGNORECASE,
-)
-"""Matches a change request that says only what must not change."""
-
-
-def is_denial(words: str) -> bool:
-    """Returns whether a change request says only what must not change, such as "don't make it longer"."""
-    return DENIAL.fullmatch(words.strip().replace("’", "'")) is not None
 
 
 def features(
@@ -73,17 +57,11 @@ def _unlikely(lost: float) -> float:
 def confidence(
     weights: Mapping[str, float], found: Mapping[str, float], unused: Sequence[str], text: SlottedText
 ) -> float:
-    """Returns the estimated probability (0 to 1) that a reading is right.
+    """Returns the estimated probability (0 to 1) that a reading with the features ``found`` is right.
 
     The confidence model was fitted on held-out texts. The result for a reading that ignores a measured
     number is at most ``DOUBT``. Other unused words do not lower it: on held-out texts, readings with and
     without such words were right equally often.
-
-    Args:
-        weights: the weights of the confidence model by the names of the features, and its "bias".
-        found: the features of the reading, as ``features`` returns them.
-        unused: the words that the plan does not depend on.
-        text: the description or change request.
     """
     score = weights["bias"] + sum(weight * found[name] for name, weight in weights.items() if name != "bias")
     sure = round(1 / (1 + exp(-score)), 3)

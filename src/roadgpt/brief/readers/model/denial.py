@@ -36,25 +36,16 @@ CORRECTED = re.compile(
 
 
 def places_reached(words: Sequence[str], at: int, most: int) -> range:
-    """Returns the places of the words that a negation can deny: those up to the end of its part of the
-    sentence, and at most ``most`` of them.
-
-    Args:
-        words: the words of a text, in lower case and without accents.
-        at: the place of the negation.
-        most: the largest number of words that it can deny.
+    """Returns the places of the words that a negation at the place ``at`` can deny: those up to the end of
+    its part of the sentence, and at most ``most`` of them.
     """
     last = min(at + 1 + most, len(words))
     return range(at + 1, next((n for n in range(at + 1, last) if words[n] in ENDS), last))
 
 
 def is_denied(before: str) -> bool:
-    """Returns whether a negation, such as "no" or "without", stands before a phrase.
-
-    The negation counts only if there is no punctuation mark between it and the phrase.
-
-    Args:
-        before: the text before the phrase, in lower case without accents.
+    """Returns whether the text before a phrase, in lower case without accents, has a negation, such as "no"
+    or "without", with no punctuation mark between it and the phrase.
     """
     return DENIED.search(before) is not None
 

@@ -24,11 +24,8 @@ def without_denials(
     """Returns the text of a refused description without its denials, if the plan that is offered has nothing
     of what they deny; None if it has, if nothing is denied, or if something else is the cause of the refusal.
 
-    Args:
-        text: the description.
-        why: the refusal with its causes, such as "!contradiction sides".
-        offered: the tokens of the likeliest plan that is no refusal.
-        meanings: the tokens that words usually ask for, the most usual one first.
+    ``why`` is the refusal with its causes, such as "!contradiction sides"; ``offered`` has the tokens of the
+    likeliest plan that is no refusal.
     """
     causes = why.split()[1:]
     words = [word.text for word in text.words]

@@ -30,11 +30,6 @@ class Ensemble:
     meanings: Mapping[str, Sequence[str]]
     """The tokens that words usually ask for, the most usual one first."""
 
-    @property
-    def first(self) -> NeuralNetwork:
-        """The network from which alternative readings are sampled."""
-        return self.networks[0]
-
     def scored(
         self,
         words: str,
@@ -49,10 +44,11 @@ class Ensemble:
         """Returns whether all networks were trained with all these tokens."""
         return all(network.knows(tokens) for network in self.networks)
 
-    def refuses(self, text: SlottedText) -> bool:
-        """Returns whether the networks take a text for no description of a road that can be built."""
-        chances = [network.refusal(text) for network in self.networks]
-        return sum(chances) / len(chances) >= self.refuse_from
+    def refusal(self, text: SlottedText) -> float:
+        """Returns the mean of the networks' probabilities (0 to 1) that a text describes no road that can be
+        built.
+        """
+        return sum(network.refusal(text) for network in self.networks) / len(self.networks)
 
     def unused(self, text: SlottedText, tokens: Sequence[str]) -> tuple[str, ...]:
         """Returns the words that a plan does not depend on, each once, in the order of the text."""
@@ -72,7 +68,7 @@ class Ensemble:
 
 
 def scored_by(
-    roads: Ensemble, routes: Ensemble | None, words: str, refuse_from: float | None = None
+    roads: Ensemble, routes: Ensemble | None, words: str, refuse_from: float | None
 ) -> tuple[Ensemble, tuple[ScoredPlan, ...]]:
     """Returns the networks chosen for a description, and the plans that they wrote, the likeliest first.
 
@@ -90,12 +86,8 @@ def scored_by(
 
     Otherwise ``roads`` is chosen.
 
-    Args:
-        roads: the networks for single roads.
-        routes: the network for routes; None if there is none.
-        words: the description.
-        refuse_from: smallest probability of a refusal at which a refusal is allowed as a plan; None takes
-            what was fitted to the networks.
+    ``refuse_from`` is the smallest probability of a refusal at which a refusal is allowed as a plan; None
+    takes what was fitted to the networks.
     """
     text = slotted(words)
     read = routes.scored(words, refuse_from) if routes and may_tell_a_route(words) else ()
@@ -116,7 +108,9 @@ def scored_by(
 
 def _is_route(draft: ScoredPlan, roads: Ensemble) -> bool:
     """Returns whether a plan is one of a route or a map, or has words that ``roads`` does not know."""
-    return is_of_junctions(draft.line) or not roads.knows(_without_motorway(draft.tokens))
+    # brief.read takes from the words whether a single road is a motorway
+    tokens = [each for each in draft.tokens if each != "motorway"]
+    return is_of_junctions(draft.line) or not roads.knows(tokens)
 
 
 def _says_network(text: SlottedText) -> bool:
@@ -130,10 +124,3 @@ def _confidence(ensemble: Ensemble, found: Sequence[ScoredPlan], text: SlottedTe
     """Returns the confidence in the likeliest plan; 0 if there is none, or if it is a refusal."""
     is_plan = bool(found) and not found[0].is_refusal
     return ensemble.confidence(found[0], text, ()) if is_plan else 0.0
-
-
-def _without_motorway(tokens: Sequence[str]) -> list[str]:
-    """Returns the tokens of a plan without "motorway", which ``brief.read`` takes from the words if the plan
-    is one of a single road.
-    """
-    return [each for each in tokens if each != "motorway"]

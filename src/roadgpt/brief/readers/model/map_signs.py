@@ -9,8 +9,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from roadgpt.brief.amount import Amount, exactly
-from roadgpt.brief.junctions import Control, MapJunctionKind
-from roadgpt.brief.map_clause import JunctionCount, MapClause
+from roadgpt.brief.junctions import Control, JunctionCount, MapClause, MapJunctionKind
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.denial import TAKEN_BACK
 from roadgpt.brief.readers.model.junction_nouns import ANY_KIND, KINDS_IN_PLURAL, KINDS_IN_SINGULAR
@@ -25,7 +24,7 @@ from roadgpt.brief.readers.model.sign_words import (
     SINGULARS,
     CountedSigns,
     SignsInWords,
-    limited_signs,
+    limits_signs,
     signs_in_words,
 )
 from roadgpt.brief.readers.model.slots import SlottedText
@@ -47,11 +46,11 @@ def with_counted_signs(brief: Brief, text: SlottedText) -> Brief:
     the words do not say which junctions have which sign.
     """
     asked = brief.map
-    if asked is not None and (inside := _inside_grid(asked, said_of(text))) is not None:
-        return brief.model_copy(update={"map": asked.model_copy(update=inside)})
     if asked is None:
         return brief
     said = said_of(text)
+    if (inside := _inside_grid(asked, said)) is not None:
+        return brief.model_copy(update={"map": asked.model_copy(update=inside)})
     signs = signs_in_words(said)
     if asked.signed and {each.control for each in signs.counted} <= {each.control for each in asked.signed}:
         return brief
@@ -59,7 +58,7 @@ def with_counted_signs(brief: Brief, text: SlottedText) -> Brief:
         if signs.counted and all(_is_placed(each, asked) for each in signs.counted):
             return brief
         asked = _without_signs(asked)
-        asked = asked.model_copy(update={"junctions": counted_kinds(asked, said)})
+        asked = asked.model_copy(update={"junctions": counted_kinds(asked.junctions, said)})
         named = [*(each.nouns for each in signs.counted), *(noun for _, noun in signs.of_kinds)]
         is_of_kinds = bool(named) and all(_kinds_of(noun) for noun in named)
         if not is_of_kinds and (len(asked.junctions) > 1 or len(signs.counted) != 1):
@@ -76,7 +75,7 @@ def has_unlimited_signs(brief: Brief, text: SlottedText) -> bool:
     if asked is None:
         return False
     placed = {each.control for each in (*asked.junctions, *asked.signed)} - {None}
-    return not placed and bool(limited_signs(said_of(text)))
+    return not placed and limits_signs(said_of(text))
 
 
 def _others(asked: MapClause, said: str, signs: SignsInWords) -> Control | None:
@@ -92,7 +91,10 @@ def _others(asked: MapClause, said: str, signs: SignsInWords) -> Control | None:
 
 def _in_grid(asked: MapClause, said: str, signs: SignsInWords) -> dict[str, object] | None:
     """Returns the signs of a grid; None if they are not clear."""
-    kinds = [_of(_kind_in_grid(each), each.amount, each.control) for each in signs.counted]
+    kinds = [  # the crossings of a grid may be of any kind
+        _of("t_junction" if SIDE_ROAD.search(each.nouns) else "junction", each.amount, each.control)
+        for each in signs.counted
+    ]
     if signs.all_but is None:
         return {"signed": tuple(kinds), "control": _others(asked, said, signs)}
     left = signs.all_but.number - sum(each.number for each in signs.counted)
@@ -120,11 +122,6 @@ def _inside_grid(asked: MapClause, said: str) -> dict[str, object] | None:
         return None
     within = _of("crossroads", exactly(number), named[0])
     return {"signed": (within,), "control": signs_in_words(said).others}
-
-
-def _kind_in_grid(signs: CountedSigns) -> MapJunctionKind:
-    """Returns the kind of the counted junctions: the crossings of a grid may be of any kind."""
-    return "t_junction" if SIDE_ROAD.search(signs.nouns) else "junction"
 
 
 def _in_village(asked: MapClause, said: str, signs: SignsInWords) -> dict[str, object] | None:

@@ -8,7 +8,7 @@ from math import isqrt
 
 from roadgpt.brief.amount import Amount, exactly, span
 from roadgpt.brief.junction_check import has_fixed_arms, least_ends, most_ends
-from roadgpt.brief.map_clause import JunctionCount, MapClause
+from roadgpt.brief.junctions import JunctionCount, MapClause
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.denial import DENIAL, TAKEN_BACK, WITHOUT, says
 from roadgpt.brief.readers.model.junction_nouns import (
@@ -128,8 +128,8 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
     if off_street is not None and (asked.dead_ends is None or asked.dead_ends.exact):
         return brief.model_copy(update={"map": asked.model_copy(update=off_street)})
     update: dict[str, object] = {} if asked.junctions else {**_blocks(asked, said), **_side(asked, text)}
-    asked = asked.model_copy(update={"junctions": counted_kinds(asked, said)})
-    asked = asked.model_copy(update=_other_junctions(asked, said))
+    junctions = _with_others(counted_kinds(asked.junctions, said), said)
+    asked = asked.model_copy(update={"junctions": junctions})
     found = found or ROADS_OUT.findall(said) or ["0"] * (NO_ENDS.search(said) is not None)
     bounded = _bounded_ends(said)
     if bounded is not None and len(found) == 1:
@@ -179,13 +179,13 @@ def _off_main_street(said: str, dead_ends: Sequence[str]) -> dict[str, object] |
     }
 
 
-def counted_kinds(asked: MapClause, said: str) -> tuple[JunctionCount, ...]:
+def counted_kinds(junctions: tuple[JunctionCount, ...], said: str) -> tuple[JunctionCount, ...]:
     """Returns the junctions of a map, with the number before the only plural noun of each kind."""
     if OTHERS.search(said) or TAKEN_BACK.search(said):
-        return asked.junctions
-    out, junctions = [], _without_repeated(asked.junctions, said)
-    kinds = [each.kind for each in junctions]
-    for each in junctions:
+        return junctions
+    out, once = [], _without_repeated(junctions, said)
+    kinds = [each.kind for each in once]
+    for each in once:
         noun, single = KINDS_IN_PLURAL.get(each.kind), KINDS_IN_SINGULAR.get(each.kind)
         number = one_number(noun.findall(said)) if noun else None
         if single and each.count.exact and f"{each.count.lo:g}" in ARMED.findall(said):
@@ -209,35 +209,31 @@ def _without_repeated(junctions: Sequence[JunctionCount], said: str) -> list[Jun
     return out
 
 
-def _other_junctions(asked: MapClause, said: str) -> dict[str, object]:
+def _with_others(junctions: tuple[JunctionCount, ...], said: str) -> tuple[JunctionCount, ...]:
     """Returns the junctions of a map with those that the words count and no kind accounts for: of "14
     junctions, two of them roundabouts" twelve are of any kind.
+
+    Of "six crossings in all, two of them roundabouts", the network may also count crossroads: if it counts
+    more junctions than there are in all, those stay whose kind the words count.
     """
     number = one_number(ALL_KINDS.findall(said))
-    kinds = [each.kind for each in asked.junctions]
-    counts = [each.count for each in asked.junctions]
-    if not number or not kinds or TAKEN_BACK.search(said) or not all(count.exact for count in counts):
-        return {}
-    others = number - int(sum(count.lo or 0 for count in counts))
-    if others < 0:
-        return _named_and_others(asked, number, said) if IS_TOTAL.search(said) else {}
-    if "junction" in kinds:
-        return {}
-    more = JunctionCount(kind="junction", count=exactly(others))
-    return {"junctions": (*asked.junctions, more)} if others > 0 else {}
+    if not number or not junctions or TAKEN_BACK.search(said) or not all(j.count.exact for j in junctions):
+        return junctions
+    kept = junctions
+    if number < _number_of(junctions):
+        kept = tuple(each for each in junctions if is_counted(each, said))
+        unnamed = {each.kind for each in junctions if each not in kept}
+        if not kept or not IS_TOTAL.search(said) or unnamed - {"crossroads", "junction"}:
+            return junctions
+    elif any(each.kind == "junction" for each in junctions):
+        return junctions
+    others = number - _number_of(kept)
+    return (*kept, JunctionCount(kind="junction", count=exactly(others))) if others > 0 else junctions
 
 
-def _named_and_others(asked: MapClause, number: int, said: str) -> dict[str, object]:
-    """Returns the junctions of the kinds that the words count, and junctions of any kind up to ``number``.
-
-    Of "six crossings in all, two of them roundabouts", the network may also count crossroads.
-    """
-    named = tuple(each for each in asked.junctions if is_counted(each, said))
-    others = number - int(sum(each.count.lo or 0 for each in named))
-    unnamed = {each.kind for each in asked.junctions if each not in named}
-    if not named or others <= 0 or unnamed - {"crossroads", "junction"}:
-        return {}
-    return {"junctions": (*named, JunctionCount(kind="junction", count=exactly(others)))}
+def _number_of(junctions: Sequence[JunctionCount]) -> int:
+    """Returns how many junctions there are in all, if the number of each kind is exact."""
+    return int(sum(each.count.lo or 0 for each in junctions))
 
 
 def is_counted(junctions: JunctionCount, said: str) -> bool:
@@ -262,11 +258,12 @@ def _blocks(asked: MapClause, said: str) -> dict[str, Amount]:
     number = (
         None if ACROSS.search(said) else one_number([each for each in BLOCKS.findall(said) if each != "solo"])
     )
+    is_other = is_exact and number != span(asked.columns).lo * span(asked.rows).lo
     if len(found) == 1:
         columns, rows = map(int, found[0])
     elif number and not found and (number == 1 or IN_A_ROW.search(said)):
         columns, rows = number, 1
-    elif number and is_exact and number != _product(asked) and _is_total(number, said):
+    elif number and is_other and _is_total(number, said):
         rows = max(n for n in range(1, isqrt(number) + 1) if number % n == 0)
         columns = number // rows
     else:
@@ -281,11 +278,6 @@ def _is_total(blocks: int, said: str) -> bool:
     """
     rest = OF_JUNCTIONS.sub("", DEAD_ENDS.sub("", said))
     return re.findall(r"\b\d+\b", rest) == [str(blocks)] and WIDE.search(said) is None
-
-
-def _product(asked: MapClause) -> float:
-    """Returns the number of blocks of a grid with exact columns and rows."""
-    return span(asked.columns).lo * span(asked.rows).lo
 
 
 def _side(asked: MapClause, text: SlottedText) -> dict[str, Amount]:

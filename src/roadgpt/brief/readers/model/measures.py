@@ -1,17 +1,21 @@
-"""Finds the unit of each number in a description, even if the unit does not directly follow the number."""
+"""Finds the unit of each number in a description, even if the unit does not directly follow the number.
+
+A slope in degrees becomes one in percent: "a slope of 4 degrees" is 7 percent, not a turn.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import radians, tan
 
-from roadgpt.brief.readers.model.nouns import LEFT, ONE_TURN, RIGHT
+from roadgpt.brief.readers.model.nouns import COUNTED, LEFT, ONE_TURN, RIGHT
 from roadgpt.brief.readers.model.units import JOINTS, TIMES, UNITS, Unit
 from roadgpt.brief.readers.model.word_set import word_set
 
 LARGEST_SEEN = 20
-LAST_TURN = 9  # a number up to this one behind "turn" says which turn
 """The largest number without a unit that remains as digits in the text for the model. Larger ones become
 slots."""
+LAST_TURN = 9  # a number up to this one behind "turn" says which turn
 SIDES = LEFT | RIGHT | {"g", "d", "i", "der", "sn", "ds"}
 """Words for left and right, and their abbreviations that occur only before numbers, as in "G90"."""
 RADIUS = frozenset(
@@ -23,6 +27,23 @@ LEADING_TO = word_set(
     "aproximadamente di",
 )
 """What can stand between a word for a radius and its number."""
+STEEPEST = 45.0  # degrees: anything steeper is a turn, or nonsense that the network refuses itself
+SLOPES = word_set(
+    "slope slopes grade grades gradient gradients incline inclines inclination climb ascent ascents",
+    "descent descents rise decline steigung gefalle anstieg neigung pente pentes montee descente",
+    "pendiente pendientes subida bajada inclinacion pendenza pendenze salita discesa inclinazione",
+)
+SLOPING = word_set(
+    "climbs climbing rises rising ascends ascending descends descending drops dropping falls falling",
+    "uphill downhill steigt steigend fallt fallend bergauf bergab monte descend sube baja sale scende",
+)
+BETWEEN = word_set(
+    "of at is are : = by with an angle angled about around roughly von mit um de d ' di con del der"
+)
+TURNING = COUNTED | ONE_TURN | LEFT | RIGHT | {"heading"}
+SKIPPED = frozenset(["-", "of", "to", "the", "nach", "a", "la", "vers"])
+MOST_BETWEEN = 4
+"""How many of the words in BETWEEN may separate the slope from its number."""
 
 
 @dataclass(slots=True)
@@ -133,3 +154,27 @@ def is_radius(tokens: Sequence[str], number: Number) -> bool:
     while at >= 0 and tokens[at] in LEADING_TO:
         at -= 1
     return number.value >= 10 and at >= 0 and (tokens[at] == "r" or tokens[at] in RADIUS)
+
+
+def as_grade(number: Number, tokens: Sequence[str]) -> None:
+    """Converts degrees to percent if the words next to the number show that it is a slope.
+
+    Only a number close to a word for a slope is one; "climbs 30 degrees to the left" remains a turn.
+    """
+    if number.unit == "degrees" and number.value <= STEEPEST and _is_tilt(number, tokens):
+        number.value, number.unit = round(100 * tan(radians(number.value)), 1), "percent"
+
+
+def _is_tilt(number: Number, tokens: Sequence[str]) -> bool:
+    after = [token for token in tokens[number.last + 1 : number.last + 5] if token not in SKIPPED]
+    if after and after[0] in SLOPES:
+        return not TURNING.intersection(after[1:2])
+    if TURNING.intersection(after[:2]):
+        return False
+    at = number.first - 1
+    while at >= 0 and tokens[at] in BETWEEN and number.first - 1 - at < MOST_BETWEEN:
+        at -= 1
+    if at < 0:
+        return False
+    # "climb 40 degrees" says too little: it may climb and turn
+    return at < number.first - 1 and tokens[at] in SLOPES | SLOPING

@@ -50,17 +50,13 @@ SIDED = re.compile(r"left|right|link|recht|gauch|droit|izq|derech|destr|sinist",
 NO_SIDE = re.compile(r"(?:tout|todo) (?:droit|recto)|links?\b(?= (?:two|the|it|both))", re.I)
 IN_PLAN = re.compile(r"\b(?:left|right)(?:\+(?:left|right|straight))+|[a-z_]+")
 MIRRORED_WORDS = {
-    "left": "right", "right": "left", "lefts": "rights", "rights": "lefts",
+    "left": "right", "right": "left", "lefts": "rights", "rights": "lefts", "lefts=": "rights=",
+    "rights=": "lefts=",
     "sharp_left": "sharp_right", "sharp_right": "sharp_left",
     "slight_left": "slight_right", "slight_right": "slight_left",
     "left+straight": "right+straight", "right+straight": "left+straight",
 }  # fmt: skip
 """Words and tokens of plans that name one side, each with the word or token for the other side."""
-TOKENS = {
-    **{word: other for word, other in MIRRORED_WORDS.items() if word not in ("lefts", "rights")},
-    "lefts=": "rights=",
-    "rights=": "lefts=",
-}
 BEGINS = re.compile(
     r" *(?:t_junction|y_junction|crossroads|star|roundabout|junction|merge|diverge|lane_\w+|map)\b"
 )
@@ -116,7 +112,7 @@ def in_mirror_plan(plan: str) -> str:
 
 def in_mirror_tokens(tokens: Sequence[str]) -> tuple[str, ...]:
     """Returns the tokens of a plan with left and right swapped."""
-    return tuple(TOKENS.get(token, token) for token in tokens)
+    return tuple(MIRRORED_WORDS.get(token, token) for token in tokens)
 
 
 def _other(word: str) -> str:

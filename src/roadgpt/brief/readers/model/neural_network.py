@@ -1,16 +1,18 @@
 """The network behind the model reader: two ONNX graphs, run by onnxruntime on one core."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
 import onnxruntime
 
-from roadgpt.brief.readers.model.evidence import Evidence
 from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
+from roadgpt.brief.readers.model.plan_numbers import Evidence
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, REFUSALS, TOKENS
 from roadgpt.brief.readers.model.wordpiece import WordPieces
@@ -33,20 +35,36 @@ REFUSED = [NUMBER_OF[word] for word in REFUSALS]
 
 @dataclass(frozen=True, slots=True)
 class WrittenPlan:
-    """A plan as the network wrote it: its tokens and their probabilities."""
+    """A plan that the network writes or has written: its tokens and their probabilities."""
 
-    tokens: tuple[str, ...]
-    log_chances: tuple[float, ...]
+    writer: PlanAutomaton
+    """The state of the plan, which determines which tokens may come next."""
+    tokens: tuple[str, ...] = ()
+    log_chances: tuple[float, ...] = ()
     """The log-probability of each token, including the end token, relative to all tokens allowed at its
     position.
     """
-    refusal: float
-    """The probability that the network writes a refusal as the first token."""
+    is_done: bool = False
+
+    @classmethod
+    def of(cls, text: SlottedText) -> Self:
+        """Returns an empty plan for a description."""
+        said = frozenset(word.text for word in text.words)
+        return cls(PlanAutomaton(text.slots, said, Evidence.of(text.text), text.is_change))
 
     @property
     def score(self) -> float:
         """The log-probability, normalised for length, because otherwise long plans would score lower."""
         return sum(self.log_chances) / float(max(1, len(self.log_chances)) ** FAVOUR)
+
+    def longer(self, token: int, log_chance: float) -> Self:
+        """Returns the plan with one more token."""
+        log_chances = (*self.log_chances, log_chance)
+        if TOKENS[token] == END:
+            return replace(self, log_chances=log_chances, is_done=True)
+        writer = copy(self.writer)
+        writer.push(TOKENS[token])
+        return replace(self, writer=writer, tokens=(*self.tokens, TOKENS[token]), log_chances=log_chances)
 
 
 class NeuralNetwork:
@@ -89,12 +107,9 @@ class NeuralNetwork:
     def chances_of(
         self, texts: Sequence[SlottedText], tokens: Sequence[str], allowed: SlottedText
     ) -> tuple[Array, Array]:
-        """Returns how likely one plan is for several texts.
+        """Returns how likely one plan is for several variants of a text.
 
-        Args:
-            texts: variants of one text.
-            tokens: the plan.
-            allowed: the text whose words and numbers determine which tokens are allowed.
+        The words and numbers of ``allowed`` determine which tokens are allowed.
 
         Returns:
             Two arrays of shape (texts, tokens + 1), for each token of the plan and its end: the
@@ -107,7 +122,7 @@ class NeuralNetwork:
         across = self._encoder.run(None, {"pieces": pieces})[0]
         seen = np.where(pieces == 0, np.float32(-1e4), np.float32(0))[:, None, None, :]
         own = np.repeat(_nothing(across[:, :, :1]), len(rows), axis=2)
-        writer: PlanAutomaton | None = Draft.of(allowed).writer
+        writer: PlanAutomaton | None = WrittenPlan.of(allowed).writer
         last = START
         logs, leads = list[Array](), list[Array]()
         for place, word in enumerate((*tokens, END)):
@@ -130,21 +145,15 @@ class NeuralNetwork:
         self,
         across: Array,
         text: SlottedText,
-        refuse_from: float = 0.5,
-        width: int = WIDTH,
-        barred: Sequence[str] = (),
-    ) -> tuple[WrittenPlan, ...]:
-        """Returns the likeliest plans for a description, best first, from a beam search.
+        refuse_from: float,
+        barred: Sequence[str],
+    ) -> tuple[tuple[WrittenPlan, ...], float]:
+        """Returns the likeliest plans for a description, best first, from a beam search, and the probability
+        of a refusal as the first token.
 
-        Args:
-            across: the keys and values of the description, as ``encode`` returns them.
-            text: the description.
-            refuse_from: smallest probability of a refusal, from 0 to 1, at which a refusal is allowed as a
-                plan; with a value above 1, refusals are never allowed.
-            width: number of plans that the beam search keeps at each step.
-            barred: tokens with which no plan shall begin.
+        No plan begins with a token of ``barred``; for ``refuse_from`` see ``scored_plans``.
         """
-        drafts, done = [Draft.of(text)], list[Draft]()
+        drafts, done = [WrittenPlan.of(text)], list[WrittenPlan]()
         own, refusal = _nothing(across), 0.0
         for place in range(MOST_TOKENS):
             scores, own = self._step(drafts, place, own, across)
@@ -154,13 +163,13 @@ class NeuralNetwork:
             if place == 0:
                 refusal = float(np.exp(logs[0, REFUSED]).sum())
                 if refusal < refuse_from:
-                    logs[0] = _without(logs[0], REFUSED)
+                    logs[0] = _without_refusals(logs[0])
                 logs[0, [NUMBER_OF[word] for word in barred]] = -np.inf
-            total = logs + np.array([[sum(draft.chances)] for draft in drafts], dtype=np.float32)
-            likeliest = np.argsort(total, axis=None)[::-1][: 2 * width]
-            longer, rows = list[Draft](), list[int]()
+            total = logs + np.array([[sum(draft.log_chances)] for draft in drafts], dtype=np.float32)
+            likeliest = np.argsort(total, axis=None)[::-1][: 2 * WIDTH]
+            longer, rows = list[WrittenPlan](), list[int]()
             for row, token in zip(*np.unravel_index(likeliest, total.shape), strict=True):
-                if total[row, token] > UNKNOWN / 2 and len(longer) < width:
+                if total[row, token] > UNKNOWN / 2 and len(longer) < WIDTH:
                     draft = drafts[row].longer(int(token), float(logs[row, token]))
                     if draft.is_done:
                         done.append(draft)
@@ -168,16 +177,15 @@ class NeuralNetwork:
                         longer.append(draft)
                         rows.append(int(row))
             if not longer or (
-                len(done) >= width and max(d.score for d in done) >= max(d.score for d in longer)
+                len(done) >= WIDTH and max(d.score for d in done) >= max(d.score for d in longer)
             ):
                 break
             drafts, own = longer, own[:, :, rows]
-        best_first = sorted(done or drafts, key=lambda draft: -draft.score)
-        return tuple(draft.written(refusal) for draft in best_first)
+        return tuple(sorted(done or drafts, key=lambda draft: -draft.score)), refusal
 
     def refusal(self, text: SlottedText) -> float:
         """Returns the probability that the network writes a refusal as the first token."""
-        across, draft = self.encode(text), Draft.of(text)
+        across, draft = self.encode(text), WrittenPlan.of(text)
         scores, _ = self._step([draft], 0, _nothing(across), across)
         return float(np.exp(_log_chances(scores[0], draft.writer.allowed())[REFUSED]).sum())
 
@@ -188,20 +196,22 @@ class NeuralNetwork:
 
         A higher temperature gives more varied plans.
         """
-        draft, own = Draft.of(text), _nothing(across)
+        draft, own = WrittenPlan.of(text), _nothing(across)
         for place in range(MOST_TOKENS):
             scores, own = self._step([draft], place, own, across)
             logs = _log_chances(scores[0], draft.writer.allowed())
-            logs = _without(logs, REFUSED) if place == 0 else logs
+            logs = _without_refusals(logs) if place == 0 else logs
             chances = np.exp((logs - logs.max()) / temperature)
             token = int(rng.choice(len(logs), p=chances / chances.sum()))
             draft = draft.longer(token, float(logs[token]))
             if draft.is_done:
                 break
-        return draft.written(0.0)
+        return draft
 
-    def _step(self, drafts: "Sequence[Draft]", place: int, own: Array, across: Array) -> tuple[Array, Array]:
-        token = np.array([[draft.last] for draft in drafts])
+    def _step(
+        self, drafts: Sequence[WrittenPlan], place: int, own: Array, across: Array
+    ) -> tuple[Array, Array]:
+        token = np.array([[NUMBER_OF[draft.tokens[-1]] if draft.tokens else START] for draft in drafts])
         seen = np.zeros((len(drafts), 1, 1, across.shape[4]), dtype=np.float32)
         return self._scored(token, place, own, np.repeat(across, len(drafts), axis=2), seen)
 
@@ -218,53 +228,16 @@ class NeuralNetwork:
         return np.pad(scores, newer, constant_values=UNKNOWN), kept
 
 
-@dataclass(frozen=True, slots=True)
-class Draft:
-    """A plan that is being written."""
-
-    writer: PlanAutomaton
-    tokens: tuple[str, ...] = ()
-    chances: tuple[float, ...] = ()
-    last: int = START
-    is_done: bool = False
-
-    @classmethod
-    def of(cls, text: SlottedText) -> "Draft":
-        """Returns an empty plan for a description."""
-        said = frozenset(word.text for word in text.words)
-        return cls(PlanAutomaton(text.slots, said, Evidence.of(text.text), text.is_change))
-
-    @property
-    def score(self) -> float:
-        """The log-probability, normalised for length, because otherwise long plans would score lower."""
-        return sum(self.chances) / float(max(1, len(self.chances)) ** FAVOUR)
-
-    def longer(self, token: int, chance: float) -> "Draft":
-        """Returns the plan with one more token."""
-        if TOKENS[token] == END:
-            return Draft(self.writer, self.tokens, (*self.chances, chance), token, True)
-        writer = self.writer.copy()
-        writer.push(TOKENS[token])
-        return Draft(writer, (*self.tokens, TOKENS[token]), (*self.chances, chance), token)
-
-    def written(self, refusal: float) -> "WrittenPlan":
-        """Returns the draft as a WrittenPlan.
-
-        ``refusal`` is the probability that the description should be refused.
-        """
-        return WrittenPlan(self.tokens, self.chances, refusal)
-
-
 def _nothing(across: Array) -> Array:
     """Returns the keys and values of a plan without tokens; ``across`` gives the sizes of the network."""
     layers, _, _, heads, _, size = across.shape
     return np.zeros((layers, 2, 1, heads, 0, size), dtype=np.float32)
 
 
-def _without(logs: Array, tokens: Sequence[int]) -> Array:
-    """Returns the log-probabilities, normalised again, after some further tokens are excluded."""
+def _without_refusals(logs: Array) -> Array:
+    """Returns the log-probabilities of the first token, normalised again after refusals are excluded."""
     out = logs.copy()
-    out[list(tokens)] = -np.inf
+    out[REFUSED] = -np.inf
     top: Array = out - np.log(np.exp(out[np.isfinite(out)]).sum())
     return top
 

@@ -6,9 +6,6 @@ numbers, and the original numbers are then restored in its plan. Later checks co
 map and its limits. The network still refuses what is impossible on any map ("with a roundabout").
 """
 
-from collections.abc import Sequence
-from typing import NamedTuple
-
 from roadgpt.brief.readers.model.nouns import COUNTED
 from roadgpt.brief.readers.model.slots import SlottedText, Word, slot_name
 
@@ -22,22 +19,10 @@ BEFORE_NOUN = 3
 """The largest number of words between a number and the noun it counts: "40 very sharp turns"."""
 
 
-class OrdinaryNumbers(NamedTuple):
-    """A description in which unusually large counts of turns are replaced by small ones.
-
-    ``counts`` maps each small count to the original one.
+def with_ordinary_numbers(text: SlottedText) -> tuple[SlottedText, dict[str, str]]:
+    """Returns the description with small counts of turns in place of unusually large ones, and the original
+    of each small count. The description is unchanged if all its numbers are ordinary.
     """
-
-    text: SlottedText
-    counts: dict[str, str]
-
-    def restored(self, tokens: Sequence[str]) -> tuple[str, ...]:
-        """Returns a plan in which the replaced counts have their original values again."""
-        return tuple(self.counts.get(token, token) for token in tokens)
-
-
-def with_ordinary_numbers(text: SlottedText) -> OrdinaryNumbers:
-    """Returns the description with ordinary numbers; unchanged if all its numbers are ordinary."""
     free = [number for number in STAND_INS if all(word.text != number for word in text.words)]
     counts: dict[str, str] = {}
     out: list[Word] = []
@@ -50,7 +35,7 @@ def with_ordinary_numbers(text: SlottedText) -> OrdinaryNumbers:
             out.append(Word(free.pop(0), word.written))
         else:
             out.append(word)
-    return OrdinaryNumbers(SlottedText(tuple(out), text.slots), counts)
+    return SlottedText(tuple(out), text.slots), counts
 
 
 def _large_count(text: SlottedText, at: int) -> str:

@@ -8,23 +8,21 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from roadgpt.brief.beside import BESIDE
-from roadgpt.brief.halfway import HALFWAY
-from roadgpt.brief.map_clause import LONGEST_ROUTE, ROUTE
-from roadgpt.brief.plan import ONE_WAY, ROAD_KEYS
-from roadgpt.brief.readers.model.evidence import Evidence
-from roadgpt.brief.readers.model.plan_numbers import Keyed, Numbers
+from roadgpt.brief.junctions import LONGEST_ROUTE, ROUTE
+from roadgpt.brief.plan import HALFWAY, ONE_WAY, ROAD_KEYS
+from roadgpt.brief.readers.model.plan_numbers import Evidence, Numbers
 from roadgpt.brief.readers.model.slots import NumberSlot
 from roadgpt.brief.readers.model.token_grammar import (
-    AnyOf,
-    InOrder,
-    Later,
-    ListTail,
-    OneOf,
-    Sequel,
     Stack,
     Symbol,
     allowed,
+    any_of,
+    in_order,
+    later,
+    list_tail,
+    one_of,
     pushed,
+    sequel,
 )
 from roadgpt.brief.readers.model.vocabulary import (
     CENTRES,
@@ -40,6 +38,7 @@ from roadgpt.brief.readers.model.vocabulary import (
     PLACES,
     RAMPS,
     RING_SIZES,
+    ROUNDABOUT,
     SHARPNESS,
     SIDES,
     SIZES,
@@ -76,14 +75,13 @@ class PlanAutomaton:
         is_change: bool = False,
     ) -> None:
         numbers = Numbers(slots, said, evidence or Evidence())
-        whole = _change(numbers) if is_change else _description(numbers)
-        self._stack: Stack = (AnyOf((*_refusals(), whole)), OneOf((END,)))
+        if is_change:
+            from roadgpt.brief.readers.model.change_grammar import change_request  # only for changes
 
-    def copy(self) -> "PlanAutomaton":
-        """Returns an independent copy in the same state."""
-        other = object.__new__(PlanAutomaton)
-        other._stack = self._stack
-        return other
+            whole = change_request(numbers)
+        else:
+            whole = _description(numbers)
+        self._stack: Stack = (any_of(*_refusals(), whole), one_of(END))
 
     def allowed(self) -> list[int]:
         """Returns the indices of all tokens that may come next."""
@@ -95,131 +93,111 @@ class PlanAutomaton:
 
 
 def _refusals() -> tuple[Symbol, ...]:
-    clashing, beyond = OneOf(tuple(CLASHING), True), OneOf(tuple(OF_CAUSES["!impossible"]), True)
+    clashing, beyond = (one_of(*causes, may_be_empty=True) for causes in (CLASHING, OF_CAUSES["!impossible"]))
     return (
-        OneOf(("!nonsense", "!unclear")),
-        Sequel(OneOf(("!contradiction",)), (clashing, clashing)),
-        Sequel(OneOf(("!impossible",)), (beyond, beyond)),
+        one_of("!nonsense", "!unclear"),
+        sequel(one_of("!contradiction"), clashing, clashing),
+        sequel(one_of("!impossible"), beyond, beyond),
     )
-
-
-def _change(numbers: Numbers) -> Symbol:
-    from roadgpt.brief.readers.model.change_grammar import change_request  # only for changes
-
-    return change_request(numbers)
 
 
 def _description(numbers: Numbers) -> Symbol:
     clause = _clause(numbers)
-    placed = [Sequel(OneOf((place,)), (clause, OneOf((")",)))) for place in PLACES]
-    flags = (["alternating"], ["alike"], ["hard"], ["motorway"], ["divided"], ["left_hand"])
-    wishes = InOrder(
-        (
-            *(OneOf(words) for words in (SHARPNESS, SLOPES, *flags)),
-            *(_road_key(key, numbers) for key in ROAD_KEYS),
-            *placed,
-            _beside(),
-            Sequel(OneOf(("centre=",)), (OneOf(CENTRES),)),
-        ),
+    wishes = in_order(
+        one_of(*SHARPNESS),
+        one_of(*SLOPES),
+        *map(one_of, ("alternating", "alike", "hard", "motorway", "divided", "left_hand")),
+        *(_road_key(key, numbers) for key in ROAD_KEYS),
+        *(sequel(one_of(place), clause, one_of(")")) for place in PLACES),
+        _beside(),
+        sequel(one_of("centre="), one_of(*CENTRES)),
         least=1,
     )
-    whole = Sequel(OneOf(("|",)), (wishes,))
-    clauses = (ListTail(";", clause, MOST_CLAUSES - 1), replace(whole, is_open=True))
-    road = AnyOf((whole, Sequel(clause, clauses)))
-    return AnyOf((*_route(road, numbers), _map(numbers)))
+    whole = sequel(one_of("|"), wishes)
+    clauses = sequel(clause, list_tail(";", clause, MOST_CLAUSES - 1), replace(whole, may_be_empty=True))
+    return any_of(_route(any_of(whole, clauses), numbers), _map(numbers))
 
 
 def _beside() -> Symbol:
-    names = OneOf(sorted(BESIDE))
-    return Sequel(OneOf(("beside(",)), (names, ListTail(",", names, MOST_NAMES - 1), OneOf((")",))))
+    names = one_of(*sorted(BESIDE))
+    return sequel(one_of("beside("), names, list_tail(",", names, MOST_NAMES - 1), one_of(")"))
 
 
 def _road_key(key: str, numbers: Numbers) -> Symbol:
     """Returns a key and its amount, or the word that stands for an amount."""
-    keyed, word = Keyed(f"{key}=", numbers, is_signed=key == "climb"), IN_WORDS.get(key)
-    return AnyOf((OneOf((word,)), keyed)) if word else keyed
+    keyed = numbers.keyed(f"{key}=", is_signed=key == "climb")
+    return any_of(one_of(IN_WORDS[key]), keyed) if key in IN_WORDS else keyed
 
 
-def _route(road: Symbol, numbers: Numbers) -> tuple[Symbol, ...]:
+def _route(road: Symbol, numbers: Numbers) -> Symbol:
     """Returns the two forms of a road or a route: it begins with a road, or with a junction."""
-    whole = Sequel(
-        OneOf(("||",)),
-        (InOrder((OneOf(("left_hand",)), Keyed("len=", numbers), _beside()), least=1),),
-        is_open=True,
-    )
-    junction = junction_tokens(numbers)
+    junction = _junction(numbers)
 
     def behind_junction(left: int) -> Symbol:
-        after = [
-            Sequel(road, (behind_road(left),)),
-            Sequel(junction, (Later(lambda: behind_junction(left - 1), True),)),
-        ]
-        return Sequel(OneOf(("//",) if left else ()), (AnyOf(tuple(after)),), is_open=True)
+        after = any_of(sequel(road, behind_road(left)), sequel(junction, later_behind(left - 1)))
+        return sequel(one_of("//") if left else one_of(), after, is_open=True)
 
     def behind_road(left: int) -> Symbol:
-        rest = (junction, Later(lambda: behind_junction(left - 1), True))
-        return Sequel(OneOf(("//",) if left else ()), rest, is_open=True)
+        return sequel(one_of("//") if left else one_of(), junction, later_behind(left - 1), is_open=True)
 
-    first = Sequel(
-        OneOf(("//",)), (junction, Later(lambda: behind_junction(MOST_JUNCTIONS - 1), True), whole), True
+    def later_behind(left: int) -> Symbol:
+        return later(lambda: behind_junction(left), may_be_empty=True)
+
+    return any_of(
+        sequel(road, sequel(behind_road(MOST_JUNCTIONS), _whole(numbers), is_open=True)),
+        sequel(junction, behind_junction(MOST_JUNCTIONS - 1), _whole(numbers)),
     )
-    return (
-        Sequel(road, (first,)),
-        Sequel(junction, (behind_junction(MOST_JUNCTIONS - 1), whole)),
-    )
 
 
-def junction_tokens(numbers: Numbers) -> Symbol:
+def _whole(numbers: Numbers) -> Symbol:
+    """Returns what a plan may say of a whole route or map."""
+    wishes = in_order(one_of("left_hand"), numbers.keyed("len="), _beside(), least=1)
+    return sequel(one_of("||"), wishes, is_open=True)
+
+
+def _junction(numbers: Numbers) -> Symbol:
     """Returns the grammar of a junction, a merge, an exit or a lane change in a plan."""
-    side, length = Sequel(OneOf(("side=",)), (OneOf(SIDES),)), Keyed("len=", numbers)
-    takes, controls = OneOf((*SIDES, *TAKES)), OneOf(CONTROLS)
-    flags = tuple(OneOf((flag,)) for flag in (*FLAGS, *NEWER_FLAGS))
-    listed = OneOf((*LISTED_WAYS, *SIDES, "straight"))
-    ways, only_in, only_out = (Sequel(OneOf((key,)), (listed,)) for key in ("ways=", "in=", "out="))
-    degrees, angle, taper = (Keyed(key, numbers) for key in ("deg=", "angle=", "taper="))
-    exit_, arms, lanes = (Keyed(key, numbers) for key in ("exit=", "arms=", "lanes="))
-    radius = AnyOf((Keyed("r=", numbers), Keyed("d=", numbers)))
+    side, length = sequel(one_of("side="), one_of(*SIDES)), numbers.keyed("len=")
+    takes, controls = one_of(*SIDES, *TAKES), one_of(*CONTROLS)
+    flags = [one_of(flag) for flag in (*FLAGS, *NEWER_FLAGS)]
+    listed = one_of(*LISTED_WAYS, *SIDES, "straight")
+    ways, only_in, only_out = (sequel(one_of(key), listed) for key in ("ways=", "in=", "out="))
+    degrees, angle, taper = map(numbers.keyed, ("deg=", "angle=", "taper="))
+    exit_, arms, lanes = map(numbers.keyed, ("exit=", "arms=", "lanes="))
+    radius = any_of(numbers.keyed("r="), numbers.keyed("d="))
     forms: tuple[tuple[Sequence[str], tuple[Symbol, ...]], ...] = (
         (JUNCTIONS, (takes, controls, *flags, ways, only_in, only_out, degrees, angle, arms)),
-        (("roundabout",), (takes, OneOf(RING_SIZES), controls, *flags[1:], ways, exit_, arms, radius, lanes)),
-        (RAMPS, (OneOf(("ramp", "main")), side, length, taper)),
+        ([ROUNDABOUT], (takes, one_of(*RING_SIZES), controls, *flags[1:], ways, exit_, arms, radius, lanes)),
+        (RAMPS, (one_of("ramp", "main"), side, length, taper)),
         (LANE_KINDS, (side, length)),
-        (("lane_change",), (OneOf(SIDES),)),
+        (["lane_change"], (one_of(*SIDES),)),
     )
-    return AnyOf(tuple(Sequel(OneOf(kinds), (InOrder(parts),)) for kinds, parts in forms))
+    return any_of(*(sequel(one_of(*kinds), in_order(*parts)) for kinds, parts in forms))
 
 
 def _map(numbers: Numbers) -> Symbol:
-    kinds, count = OneOf((*JUNCTIONS, "roundabout")), Keyed("x", numbers)
-    keys = tuple(Keyed(key, numbers) for key in ("len=", "blocks=", "dead_ends="))
-    tail = InOrder((*keys, OneOf(CONTROLS), Sequel(OneOf((f"{ROUTE}=",)), (_ways(LONGEST_ROUTE),))))
-    kind = Sequel(kinds, (InOrder((count, OneOf(CONTROLS))),))
-    listed = Sequel(kind, (ListTail(";", kind, MOST_KINDS - 1), tail))
-    signed = Sequel(kinds, (InOrder((count,)), OneOf(CONTROLS)))
-    grid = Sequel(
-        Keyed("columns=", numbers), (Keyed("rows=", numbers), tail, ListTail(";", signed, MOST_KINDS))
-    )
-    length = Keyed("len=", numbers)
-    whole = Sequel(
-        OneOf(("||",)), (InOrder((OneOf(("left_hand",)), length, _beside()), least=1),), is_open=True
-    )
-    return Sequel(OneOf(("map",)), (AnyOf((listed, grid)), whole))
+    kinds, count, controls = one_of(*JUNCTIONS, ROUNDABOUT), numbers.keyed("x"), one_of(*CONTROLS)
+    route = sequel(one_of(f"{ROUTE}="), _ways(LONGEST_ROUTE))
+    tail = in_order(*map(numbers.keyed, ("len=", "blocks=", "dead_ends=")), controls, route)
+    kind = sequel(kinds, in_order(count, controls))
+    listed = sequel(kind, list_tail(";", kind, MOST_KINDS - 1), tail)
+    signed = sequel(kinds, in_order(count), controls)
+    grid = sequel(numbers.keyed("columns="), numbers.keyed("rows="), tail, list_tail(";", signed, MOST_KINDS))
+    return sequel(one_of("map"), any_of(listed, grid), _whole(numbers))
 
 
 def _ways(most: int) -> Symbol:
     """Returns one to ``most`` ways of a route through a map."""
-    more = Later(lambda: _ways(most - 1), may_be_empty=True)
-    return Sequel(OneOf((*SIDES, "straight")) if most else OneOf(()), (more,))
+    more = later(lambda: _ways(most - 1), may_be_empty=True)
+    return sequel(one_of(*SIDES, "straight") if most else one_of(), more)
 
 
 def _clause(numbers: Numbers) -> Symbol:
-    turning = tuple(kind for kind in KINDS if kind not in STRAIGHT_KINDS)
-    count, keys = Keyed("x", numbers), {key: Keyed(key, numbers) for key in (*CLAUSE_KEYS, "climb=")}
-    straight = (count, OneOf(SIZES), OneOf(SLOPES), keys["len="], keys["pct="], keys["climb="])
-    words = tuple(OneOf(words) for words in (SIDES, SHARPNESS, SLOPES, ["alternating"]))
-    return AnyOf(
-        (
-            Sequel(OneOf(STRAIGHT_KINDS), (InOrder(straight),)),
-            Sequel(OneOf(turning), (InOrder((count, *words, *keys.values())),)),
-        )
+    turning = (kind for kind in KINDS if kind not in STRAIGHT_KINDS)
+    count, keys = numbers.keyed("x"), {key: numbers.keyed(key) for key in (*CLAUSE_KEYS, "climb=")}
+    straight = (count, one_of(*SIZES), one_of(*SLOPES), keys["len="], keys["pct="], keys["climb="])
+    words = (one_of(*SIDES), one_of(*SHARPNESS), one_of(*SLOPES), one_of("alternating"))
+    return any_of(
+        sequel(one_of(*STRAIGHT_KINDS), in_order(*straight)),
+        sequel(one_of(*turning), in_order(count, *words, *keys.values())),
     )

@@ -1,5 +1,6 @@
 """Chooses among the plans that the networks wrote, and makes a Brief of one."""
 
+import re
 from collections.abc import Sequence
 from math import inf
 from typing import TypeVar
@@ -9,9 +10,9 @@ from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.mirror import is_of_junctions
+from roadgpt.brief.readers.model.nouns import COUNTED, ONE_TURN
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
-from roadgpt.brief.readers.model.told_turns import told_turns
 from roadgpt.brief.readers.model.used_words import lost
 from roadgpt.errors import BriefError
 
@@ -20,6 +21,13 @@ NEARLY = 0.7  # difference of score
 ALMOST = 2.0  # difference of score
 CLOSE = 1.0  # difference of score
 FAIRLY = 1.5  # difference of score
+NOUN = rf"(?:{'|'.join(sorted({*COUNTED, *ONE_TURN}, key=len, reverse=True))})"
+COUNT = re.compile(
+    rf"(?<!\w )\b(\d+) (?:\w+ )?(?:{NOUN})\b|\b(?:with|mit|avec|con|of|has|have) (\d+) {NOUN}\b"
+)
+OF_PART = ("first", "last", "other", "ersten", "letzten", "anderen", "les", "las", "los", "le")
+ANY_COUNT = re.compile(rf"{''.join(f'(?<!{word} )' for word in OF_PART)}\b(\d+) (?:\w+ )?{NOUN}\b")
+"""A number of turns that are not a part of others."""
 
 
 def most_plausible(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan:
@@ -57,10 +65,22 @@ def _with_told_turns(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPl
     """Returns the likeliest plan of a single road with as many turns as the words count, if it is nearly as
     likely as the first plan; else None.
     """
-    told = told_turns(text.text)
+    told = _told_turns(text.text)
     near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - FAIRLY)
     kept = (draft for draft in near if not is_of_junctions(draft.line) and can_be_kept(draft.line))
     return next((draft for draft in kept if told is not None and _turns(draft.line) == exactly(told)), None)
+
+
+def _told_turns(said: str) -> int | None:
+    """Returns the number of turns in words, as networks read them; None if there is none, or several."""
+    found = {int(first or second) for first, second in COUNT.findall(said)}
+    return found.pop() if len(found) == 1 and len({*ANY_COUNT.findall(said)}) <= 1 else None
+
+
+def agrees_with_numbers(draft: ScoredPlan, text: SlottedText) -> bool:
+    """Returns whether a plan leaves out no number of the text, and has as many turns as the words count."""
+    told = _told_turns(text.text)
+    return not lost(draft.tokens, text) and (told is None or _turns(draft.line) == exactly(told))
 
 
 def _turns(line: str) -> Amount:
@@ -72,10 +92,20 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, corrected by rules where the words of the description are clear."""
     brief = _level_at_zero(read_plan(line))
     if brief.junctions or brief.map is not None:
-        from roadgpt.brief.readers.model.route_rules import with_words_of_network  # only for networks
-
-        brief = with_words_of_network(brief, text, words)
+        brief = _with_words_of_network(brief, text, words)
     return brief
+
+
+def _with_words_of_network(brief: Brief, text: SlottedText, words: str) -> Brief:
+    """Returns the Brief of a route or a map, corrected by rules that single roads do not need."""
+    from roadgpt.brief.readers.model.from_start import with_distances_from_start
+    from roadgpt.brief.readers.model.map_signs import with_counted_signs
+    from roadgpt.brief.readers.model.map_words import with_counted_map
+    from roadgpt.brief.readers.model.side_roads import with_end_of_side_street, with_sides_of_side_roads
+
+    brief = with_counted_signs(with_counted_map(brief, text), text)
+    brief = with_end_of_side_street(with_distances_from_start(brief, words), words)
+    return with_sides_of_side_roads(brief, text, words)
 
 
 def _level_at_zero(brief: Brief) -> Brief:

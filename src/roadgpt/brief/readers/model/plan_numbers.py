@@ -1,26 +1,67 @@
 """The part of the grammar of plans that concerns numbers: which numbers may follow which key.
 
 A measured number is either a slot of the text with a suitable unit, or a number that a word implies
-("right angle": 90).
+("right angle": 90). Apart from those in ``ALWAYS``, a number that the text does not state is allowed only if
+some word, in any of the five languages, can imply it.
 """
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf
 
-from roadgpt.brief.readers.model.computed_numbers import FACTORS, KEYS, ONE, SIGNS, STEPS
-from roadgpt.brief.readers.model.evidence import Evidence
+from roadgpt.brief.readers.model.computed_numbers import FACTORS, KEYS, ONE, SIGNS, STEPS, Compared, value_of
 from roadgpt.brief.readers.model.measures import LARGEST_SEEN
 from roadgpt.brief.readers.model.slots import NumberSlot
-from roadgpt.brief.readers.model.token_grammar import AnyOf, OneOf, Sequel, Symbol
+from roadgpt.brief.readers.model.token_grammar import Stack, Symbol, any_of, one_of, sequel
 from roadgpt.brief.readers.model.vocabulary import FIXED, SLOT_TOKENS, UNIT_OF
 
-UNSAID = {"deg=": FIXED, "angle=": FIXED, "turning=": ("180",), "steepest=": ("4", "5"), "climb=": ("0",)}
+UNSAID = {"deg=": FIXED, "angle=": FIXED, "turning=": ("180",), "steepest=": ("4", "5")}
 """Numbers that a plan may contain although they are not in the text, by plan key, if words imply them."""
 ALWAYS = {"angle": FIXED, "slope": ("1",), "climb=": ("0",)}
 """Numbers that a plan may contain whatever the text says, by plan key: a right angle, one percent."""
 COUNTS = tuple(str(number) for number in range(LARGEST_SEEN + 1))
 BOUND, MINUS = "..", "-"
 LEAST = {"arms=": 3}  # "a two-lane roundabout" has no two arms
+ANGLE = re.compile(
+    r"kink|dog|leg|square|right.angle|angle|wink|knick|orthog|perpend|angolo|angulo|equerre|coude|quiebr|codo|gomito"
+    r"|piega|quarter|decroch|recod|baionn|ninety|neunzig|quatre|noventa|novanta|forty|\d|unused"
+    r"|hairpin|switchback|haarnadel|kehre|epingle|lacet|horquilla|tornant"
+    r"|half|halb|semi|demi|medi[oa]|mezz|round|back|opposite|turned|facing|headed|way we came"
+    r"|gegen|zuruck|retour|contrari|vuelta|inver|empez|comin|stair|trepp|escal|scal"
+    r"|letter|buchstab|lettre|letra|lettera|outline|form|shape|\b[zluvn]\b"
+)
+MOUNTAIN = re.compile(
+    r"mount|mont|berg|alp|pass|\bcol\b|puerto|gebirg|sierra|valico|dolomit|andes|pyren|serra|vette|cordill|himal"
+    r"|steep|steil|raide|pente|pentu|empinad|pendiente|pendenz|ripid|erto|erta|brusc"
+    r"|grade|gradient|slope|inclin|neig|roll|wav|well|ond|hill|hugel|colin|coll|lom|vallon|bosse|up.{1,6}down|auf.{1,6}ab"
+)
+HILLY = re.compile(
+    r"hill|roll|undul|wave|wavy|up.{1,20}down|wellig|welle|hugel|auf.{1,6}ab|vallon|colin|coll|ond|saliscend|russ|coaster"
+    r"|rise|climb|bosse|lomas|subid|dune|hump|crest|heav|hoch.*runter|vagues|vaux"
+    r"|flat|level|eben|flach|platt?|llan|plan|pian|lomer|inver|fall|gefall|steig|rasant|pendenz|pendient|pente"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """The numbers that a description can imply: angles ("right angle"), a grade ("mountain road"), a number
+    of hills ("rolling"), and figures that it tells by others ("twice as long").
+    """
+
+    angles: bool = True
+    mountains: bool = True
+    hills: bool = True
+    compared: Compared | None = None
+
+    @classmethod
+    def of(cls, text: str) -> "Evidence":
+        """Returns which numbers a description can imply; the text must be in lower case and without
+        accents.
+        """
+        patterns = (ANGLE, MOUNTAIN, HILLY)
+        angles, mountains, hills = (pattern.search(text) is not None for pattern in patterns)
+        return cls(angles, mountains, hills, Compared.of(text))
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,109 +79,59 @@ class Numbers:
         if key == "hills=" and not self.evidence.hills:
             return [number for number in COUNTS if number in self.said]
         if key not in UNIT_OF:
-            return [each for each in (*COUNTS, *fitting) if self.value(each) >= LEAST.get(key, 0)]
+            return [each for each in (*COUNTS, *fitting) if value_of(each, self.slots) >= LEAST.get(key, 0)]
         unsaid = UNSAID.get(key, ())
-        is_meant = {
-            "deg=": self.evidence.angles,
-            "angle=": self.evidence.angles,
-            "turning=": self.evidence.angles,
-            "steepest=": self.evidence.mountains,
-        }.get(key, True)
+        is_meant = self.evidence.mountains if key == "steepest=" else self.evidence.angles
         plain = [number for number in (*COUNTS, *unsaid) if number in self.said]
-        if key in ALWAYS:
-            unsaid = ALWAYS[key]
-        return [*dict.fromkeys([*fitting, *plain, *(unsaid if is_meant else ())])]
+        implied = ALWAYS.get(key, unsaid if is_meant else ())
+        return [*dict.fromkeys([*fitting, *plain, *implied])]
 
-    def _fitting(self, unit: str) -> list[str]:
-        return [SLOT_TOKENS[index] for index, slot in enumerate(self.slots) if slot.unit in ("", unit)]
+    def keyed(self, key: str, is_signed: bool = False) -> Symbol:
+        """Returns a key and its amount, such as "len=60"; never written if no number suits the key.
 
-    def computed(self, key: str, base: str) -> tuple[Symbol, ...]:
-        """Returns what may follow a number if the words compare figures: a factor, or a sum with another
-        number."""
-        compared = self.evidence.compared
-        if key not in KEYS or compared is None:
-            return ()
-        ways: list[Symbol] = [Sequel(OneOf(("x",)), (OneOf(FACTORS),))] if compared.by_factor else []
-        small = [each for each in COUNTS if each in self.said or (each == "1" and key in ONE)]
-        others = [number for number in (*self._fitting(UNIT_OF[key]), *small) if number != base]
-        if others and compared.by_difference:
-            often = Sequel(OneOf(("x",)), (OneOf(STEPS),), is_open=True)
-            ways.append(Sequel(OneOf(SIGNS), (OneOf(others), often)))
-        return (Sequel(AnyOf(tuple(ways)), (), is_open=True),) if ways else ()
+        The amount is a number, a bound or a range, and with ``is_signed`` also a negative number.
+        """
+        amount = Symbol(
+            lambda: [BOUND, *self.of(key), *([MINUS] if is_signed else [])],
+            lambda token: self._after_begin_of_amount(key, token),
+        )
+        return Symbol(lambda: [key] if self.of(key) else [], lambda token: (amount,))
 
     def percents(self) -> list[str]:
         """Returns the numbers of the text that can be percentages."""
         return self._fitting("percent")
 
-    def value(self, word: str) -> float:
-        """Returns the value of a number token."""
-        return self.slots[SLOT_TOKENS.index(word)].value if word in SLOT_TOKENS else float(word)
+    def _fitting(self, unit: str) -> list[str]:
+        return [SLOT_TOKENS[index] for index, slot in enumerate(self.slots) if slot.unit in ("", unit)]
 
-
-@dataclass(frozen=True, slots=True)
-class OneNumber:
-    """A number that may follow a key, or a sum or a multiple of numbers."""
-
-    key: str
-    numbers: Numbers
-    may_be_empty: bool = False
-
-    def first(self) -> Iterable[str]:
-        """Returns the numbers."""
-        return self.numbers.of(self.key)
-
-    def after(self, token: str) -> tuple[Symbol, ...]:
-        """Returns the rest of a sum or a multiple."""
-        return self.numbers.computed(self.key, token)
-
-
-@dataclass(frozen=True, slots=True)
-class Keyed:
-    """A key and its amount, such as "len=60" or "len=60..80"; never written if no number suits the key."""
-
-    key: str
-    numbers: Numbers
-    may_be_empty: bool = False
-    is_signed: bool = False
-    """Whether the number may be negative."""
-
-    def first(self) -> Iterable[str]:
-        """Returns the key if there are numbers for it."""
-        return [self.key] if self.numbers.of(self.key) else []
-
-    def after(self, token: str) -> tuple[Symbol, ...]:
-        """Returns the amount, which must follow the key."""
-        return (AmountTokens(self.key, self.numbers, is_signed=self.is_signed),)
-
-
-@dataclass(frozen=True, slots=True)
-class AmountTokens:
-    """The number, bound or range that follows a key; if ``low`` is set, only the upper end of the range that
-    begins at ``low``."""
-
-    key: str
-    numbers: Numbers
-    low: str = ""
-    may_be_empty: bool = False
-    is_signed: bool = False
-
-    def first(self) -> Iterable[str]:
-        """Returns the numbers and signs with which the amount can begin."""
-        numbers = self.numbers.of(self.key)
-        if self.low:
-            low = self.numbers.value(self.low)
-            return [number for number in numbers if self.numbers.value(number) > low]
-        return ["..", *numbers, *(["-"] if self.is_signed else [])]
-
-    def after(self, token: str) -> tuple[Symbol, ...]:
-        """Returns the rest of the amount."""
-        if self.low:
-            return self.numbers.computed(self.key, token)
-        number = OneNumber(self.key, self.numbers)
+    def _after_begin_of_amount(self, key: str, token: str) -> Stack:
+        """Returns the rest of a number, a bound or a range that begins with a token."""
+        number = self._number(key)
         if token == BOUND:
             return (number,)
         if token == MINUS:  # "-9" or "-9..-6"
-            nearer = Sequel(OneOf((MINUS,)), (number,))
-            return (number, Sequel(OneOf(("..",)), (nearer,), is_open=True))
-        above = replace(self, low=token, may_be_empty=True)
-        return (*self.numbers.computed(self.key, token), Sequel(OneOf(("..",)), (above,), is_open=True))
+            return (number, sequel(one_of(BOUND), sequel(one_of(MINUS), number), is_open=True))
+        above = self._number(key, value_of(token, self.slots), may_be_empty=True)
+        return (*number.after(token), sequel(one_of(BOUND), above, is_open=True))
+
+    def _number(self, key: str, above: float = -inf, may_be_empty: bool = False) -> Symbol:
+        """Returns a number that may follow a key, or a sum or a multiple of numbers."""
+        return Symbol(
+            lambda: [each for each in self.of(key) if value_of(each, self.slots) > above],
+            lambda token: self._computed(key, token),
+            may_be_empty,
+        )
+
+    def _computed(self, key: str, base: str) -> Stack:
+        """Returns what may follow a number if the words compare figures: a factor, or a sum with another
+        number."""
+        compared = self.evidence.compared
+        if key not in KEYS or compared is None:
+            return ()
+        ways: list[Symbol] = [sequel(one_of("x"), one_of(*FACTORS))] if compared.by_factor else []
+        small = [each for each in COUNTS if each in self.said or (each == "1" and key in ONE)]
+        others = [number for number in (*self._fitting(UNIT_OF[key]), *small) if number != base]
+        if others and compared.by_difference:
+            often = sequel(one_of("x"), one_of(*STEPS), is_open=True)
+            ways.append(sequel(one_of(*SIGNS), one_of(*others), often))
+        return (sequel(any_of(*ways), is_open=True),) if ways else ()

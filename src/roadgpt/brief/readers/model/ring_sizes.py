@@ -65,12 +65,8 @@ def with_ring_sizes(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]
 def with_diameters(brief: Brief, tokens: Sequence[str], text: SlottedText) -> Brief:
     """Returns a Brief with the outer diameters of its roundabouts as the text gives them in metres.
 
-    A diameter above 70 m, or with too little room for the arms and lanes, is not set.
-
-    Args:
-        brief: the Brief of a plan.
-        tokens: the tokens of the plan, as ``with_ring_sizes`` returns them.
-        text: the description.
+    A diameter above 70 m, or with too little room for the arms and lanes, is not set. The tokens are those
+    that ``with_ring_sizes`` returns.
     """
     rings = [place for place, token in enumerate(tokens) if token == ROUNDABOUT]
     own = [n for n, each in enumerate(brief.junctions) if each.kind == ROUNDABOUT]
@@ -87,11 +83,7 @@ def with_diameters(brief: Brief, tokens: Sequence[str], text: SlottedText) -> Br
 
 def least_diameter(ring: JunctionClause, roads: Sequence[Brief]) -> float:
     """Returns the least outer diameter in metres at which every draft of a roundabout has room for its arms
-    and lanes. Of a smaller diameter, only the size word is kept.
-
-    Args:
-        ring: the roundabout.
-        roads: the roads before and behind the roundabout.
+    and lanes, and for those of the roads before and behind it. Of a smaller one, only the size word is kept.
     """
     arms = max(span(ring.arms).lo, span(ring.exit).lo + 1)
     lanes = [ring.lanes, *(each for road in roads for each in (road.lanes, road.against))]
@@ -104,7 +96,11 @@ def _sized_rings(tokens: Sequence[str], text: SlottedText) -> list[tuple[int, in
     number, and the word for its size.
     """
     sizes = [found for found in _sizes(tokens, text) if found[1]]
-    places = [place for place, token in enumerate(tokens) if token == ROUNDABOUT and _is_open(tokens, place)]
+    places = [
+        place
+        for place, token in enumerate(tokens)
+        if token == ROUNDABOUT and {"r=", "d="}.isdisjoint(_clause(tokens, place))
+    ]
     sized = [place for place in places if _size_at(tokens, place) is not None]
     is_shared = len(sizes) == 1 and SHARED.search(_near(text, sizes[0][0])) is not None
     if is_shared and EXCEPT.isdisjoint(word.text for word in text.words):
@@ -151,10 +147,6 @@ def _near(text: SlottedText, index: int) -> str:
 def _clause(tokens: Sequence[str], place: int) -> Sequence[str]:
     ends = [at for at in range(place, len(tokens)) if tokens[at] in PARTS]
     return tokens[place : ends[0] if ends else len(tokens)]
-
-
-def _is_open(tokens: Sequence[str], place: int) -> bool:
-    return not {"r=", "d="} & {*_clause(tokens, place)}
 
 
 def _size_at(tokens: Sequence[str], place: int) -> int | None:

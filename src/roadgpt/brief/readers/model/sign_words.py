@@ -108,10 +108,7 @@ def signs_in_words(said: str) -> SignsInWords:
     """Returns what words say about the signs at a number of junctions of a map.
 
     A sign is left out if the words give no number of its junctions, or several. Nothing is found in words
-    that take something back.
-
-    Args:
-        said: the words, as ``map_words.said_of`` returns them.
+    that take something back. The words are those that ``said_of`` returns.
     """
     if TAKEN_BACK.search(said):
         return SignsInWords()
@@ -140,16 +137,15 @@ def signs_in_words(said: str) -> SignsInWords:
     )
 
 
-def limited_signs(said: str) -> frozenset[Control]:
-    """Returns the signs that some words seem to limit to a part of the junctions: "only the roundabout has
+def limits_signs(said: str) -> bool:
+    """Returns whether some words seem to limit a sign to a part of the junctions: "only the roundabout has
     lights", "stop signs at half of them".
     """
     if EVERYWHERE.search(said) and re.search(rf"\b{EXCEPT}\b", said) is None:
-        return frozenset()
-    return frozenset(
-        control
-        for control, sign in SIGN_WORDS.items()
-        if re.search(rf"\b{LIMITED}\b[^.;:]{{0,40}}\b{sign}\b|\b{sign}\b[^.;:]{{0,25}}\b{LIMITED}\b", said)
+        return False
+    return any(
+        re.search(rf"\b{LIMITED}\b[^.;:]{{0,40}}\b{sign}\b|\b{sign}\b[^.;:]{{0,25}}\b{LIMITED}\b", said)
+        for sign in SIGN_WORDS.values()
     )
 
 

@@ -12,20 +12,25 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from roadgpt.brief.readers.model.decimals_in_words import one_with_decimals, with_decimals
 from roadgpt.brief.readers.model.measures import (
     Number,
+    as_grade,
     is_count,
     share_units,
     take_unit,
     take_unit_of_all,
     unit_at,
 )
-from roadgpt.brief.readers.model.number_words import LONGEST, SIZES, number_word, numbers_in_words
-from roadgpt.brief.readers.model.numerals import plain
-from roadgpt.brief.readers.model.slope_angles import as_grade
+from roadgpt.brief.readers.model.numerals import LONGEST, SIZES, number_word, numbers_in_words, plain
 from roadgpt.brief.readers.model.tolerances import tolerances_first, with_tolerances
-from roadgpt.brief.readers.model.unit_fractions import FAR, take_share, unit_fraction, whole_and_share
+from roadgpt.brief.readers.model.unit_fractions import (
+    FAR,
+    one_with_decimals,
+    take_share,
+    unit_fraction,
+    whole_and_share,
+    with_decimals,
+)
 from roadgpt.brief.readers.model.units import (
     AMBIGUOUS,
     FUNCTION_WORDS,
@@ -181,12 +186,9 @@ def _millions(tokens: list[str], at: int) -> Number | None:
     """Reads "a million", "two billion" and the like as one million, which is too many for any road."""
     if tokens[at] in MILLIONS:
         return Number(MILLION, at, at)
-    many = tokens[at] in ONES or tokens[at].isdecimal() or number_word(tokens[at]) > 0
-    return (
-        Number(MILLION, at, at + 1)
-        if many and tokens[at + 1 : at + 2] and tokens[at + 1] in MILLIONS
-        else None
-    )
+    is_number = tokens[at] in ONES or tokens[at].isdecimal() or number_word(tokens[at]) > 0
+    is_many = is_number and not MILLIONS.isdisjoint(tokens[at + 1 : at + 2])
+    return Number(MILLION, at, at + 1) if is_many else None
 
 
 def _digit_value(token: str) -> float | None:
@@ -299,9 +301,10 @@ def _replaced(tokens: list[str], said: list[str], numbers: list[Number], is_chan
             at += 1
             continue
         spoken = " ".join(said[number.first : number.last + 1])
-        after = tokens[number.last + 1 : number.last + 2]
-        if number.is_bare and number.first == number.last and after and _is_ordinal(tokens, number):
-            out.append(Word(tokens[at] + after[0], spoken + said[number.last + 1]))
+        is_figure = number.is_bare and number.first == number.last and tokens[at].isdigit()
+        after = "".join(tokens[number.last + 1 : number.last + 2])
+        if is_figure and number.value < 13 and after in ORDINALS - {"a", "o", "e"}:
+            out.append(Word(tokens[at] + after, spoken + said[number.last + 1]))
             at = number.last + 2
             continue
         if number.is_bare and is_count(tokens, number):
@@ -338,14 +341,6 @@ def _count(number: Number, spoken: str) -> list[Word]:
     if not spread:
         return [Word(str(value), spoken)]
     return [Word(str(max(value - spread, 0)), spoken), Word("to", ""), Word(str(value + spread), spoken)]
-
-
-def _is_ordinal(tokens: list[str], number: Number) -> bool:
-    return (
-        tokens[number.first].isdigit()
-        and number.value < 13
-        and tokens[number.last + 1] in ORDINALS - {"a", "o", "e"}
-    )
 
 
 def _tail(value: float, unit: Unit) -> list[str]:

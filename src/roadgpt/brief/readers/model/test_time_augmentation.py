@@ -7,9 +7,9 @@ skipped to save time.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from roadgpt.brief.map_clause import MAP
+from roadgpt.brief.junctions import MAP
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.mirror import in_mirror, in_mirror_tokens
@@ -54,29 +54,28 @@ class ScoredPlan:
 
 @dataclass(frozen=True, slots=True)
 class VariantPlans:
-    """The plans that the network wrote for one variant: in normal form, with their scores."""
+    """The plans that the network wrote for one variant, by their normal forms."""
 
-    plans: dict[str, tuple[float, WrittenPlan]]
+    plans: dict[str, WrittenPlan]
     refusal: float
     """The probability that the description does not ask for a road that can be built."""
 
     @property
-    def least(self) -> float:
-        """The lowest score among the plans of this variant."""
-        return min(score for score, _ in self.plans.values())
-
-    @property
     def best(self) -> str:
         """The normal form of the likeliest plan."""
-        return max(self.plans, key=lambda key: self.plans[key][0])
+        return max(self.plans, key=lambda key: self.plans[key].score)
 
     @property
     def is_clear(self) -> bool:
         """True if the network is nearly certain whether to refuse the description and which plan is right."""
         if not self.plans or UNDECIDED[0] < self.refusal < UNDECIDED[1]:
             return False
-        _, best = max(self.plans.values(), key=lambda plan: plan[0])
-        return sum(best.log_chances) > SURE
+        return sum(self.plans[self.best].log_chances) > SURE
+
+    def score(self, key: str) -> float:
+        """Returns the score of a plan, also of one that was not written for this variant."""
+        scores = {key: plan.score for key, plan in self.plans.items()}
+        return scores[key] if key in scores else min(scores.values()) - UNSEEN
 
 
 def scored_plans(
@@ -90,26 +89,26 @@ def scored_plans(
 
     Args:
         networks: the networks that write the plans.
-        words: the description or the change request.
+        words: the description, or the change request if ``key`` is given.
         refuse_from: smallest probability of a refusal, from 0 to 1, at which a refusal is allowed as a plan;
             with a value above 1, refusals are never allowed.
         shown: function that is applied to the text before the network reads it, for example to replace
             unusual numbers.
         key: function that returns the normal form of a plan of changes, or raises an error for an invalid
-            plan; if it is given, the words are a change request.
+            plan.
     """
     is_change = key is not None
-    normal_form = key or _normal_form
 
     def looks(words: str, is_mirrored: bool, barred: Sequence[str] = ()) -> list[VariantPlans]:
         text = shown(slotted(words, is_change))
         return [
-            _plans_of_variant(each, text, refuse_from, is_mirrored, normal_form, barred) for each in networks
+            _plans_of_variant(each, text, refuse_from, is_mirrored, key or _normal_form, barred)
+            for each in networks
         ]
 
     text = shown(slotted(words, is_change))
     variants, others = looks(words, False), list[tuple[str, bool]]()
-    if not _are_clear(variants):
+    if not (all(variant.is_clear for variant in variants) and len({each.best for each in variants}) == 1):
         others = _others(words)
         variants += [look for other in others for look in looks(*other)]
     found = _best_first(variants, text)
@@ -126,11 +125,6 @@ def _best_first(variants: Sequence[VariantPlans], text: SlottedText) -> tuple[Sc
     keys = dict.fromkeys(key for variant in variants for key in variant.plans)
     found = [_scored(key, variants, text) for key in keys]
     return tuple(sorted(found, key=lambda draft: -draft.score))
-
-
-def _are_clear(variants: Sequence[VariantPlans]) -> bool:
-    """True if all networks are nearly certain of the same plan."""
-    return all(variant.is_clear for variant in variants) and len({v.best for v in variants}) == 1
 
 
 def refusal(networks: Sequence[NeuralNetwork], words: str) -> float:
@@ -155,30 +149,27 @@ def _plans_of_variant(
     normal_form: Callable[[str], str],
     barred: Sequence[str],
 ) -> VariantPlans:
-    plans: dict[str, tuple[float, WrittenPlan]] = {}
-    chance = 0.0
-    for written in network.write(network.encode(text), text, refuse_from, barred=barred):
-        chance = written.refusal
+    plans: dict[str, WrittenPlan] = {}
+    found, chance = network.write(network.encode(text), text, refuse_from, barred)
+    for written in found:
         tokens = in_mirror_tokens(written.tokens) if is_mirrored else written.tokens
         if ROUNDABOUT in tokens and not text.is_change:
             from roadgpt.brief.readers.model.ring_sizes import with_ring_sizes  # only for networks
 
             tokens = with_ring_sizes(tokens, text)
-        seen = WrittenPlan(tokens, written.log_chances, written.refusal)
-        key = _key(seen.tokens, text, normal_form)
-        if key and (key not in plans or plans[key][0] < written.score):
-            plans[key] = (written.score, seen)
+        try:
+            line = _line(tokens, text)
+            key = line if tokens[0] in REFUSALS else normal_form(line)
+        except RoadGPTError:
+            continue  # the plan cannot be read
+        if key and (key not in plans or plans[key].score < written.score):
+            plans[key] = replace(written, tokens=tokens)
     return VariantPlans(plans, chance)
 
 
-def _key(tokens: Sequence[str], text: SlottedText, normal_form: Callable[[str], str]) -> str:
-    """Returns the plan in normal form; empty if it cannot be read."""
-    if tokens[0] in REFUSALS:
-        return " ".join(tokens)
-    try:
-        return normal_form(plan_of(tokens, text.slots))
-    except RoadGPTError:
-        return ""
+def _line(tokens: Sequence[str], text: SlottedText) -> str:
+    """Returns the plan with the values of its slots filled in, or the name of a refusal."""
+    return " ".join(tokens) if tokens[0] in REFUSALS else plan_of(tokens, text.slots)
 
 
 def _normal_form(line: str) -> str:
@@ -186,9 +177,8 @@ def _normal_form(line: str) -> str:
 
 
 def _scored(key: str, variants: Sequence[VariantPlans], text: SlottedText) -> ScoredPlan:
-    scores = [each.plans[key][0] if key in each.plans else each.least - UNSEEN for each in variants]
-    _, best = max((each.plans[key] for each in variants if key in each.plans), key=lambda found: found[0])
-    preferred = sum(max(each.plans, key=lambda other: each.plans[other][0]) == key for each in variants)
-    line = " ".join(best.tokens) if best.tokens[0] in REFUSALS else plan_of(best.tokens, text.slots)
-    number = len(variants)
-    return ScoredPlan(best.tokens, line, sum(scores) / number, best.log_chances, preferred / number)
+    """Returns a plan that was written for at least one of the variants, with its scores."""
+    best = max((each.plans[key] for each in variants if key in each.plans), key=lambda plan: plan.score)
+    score = sum(each.score(key) for each in variants) / len(variants)
+    agreement = sum(each.best == key for each in variants) / len(variants)
+    return ScoredPlan(best.tokens, _line(best.tokens, text), score, best.log_chances, agreement)

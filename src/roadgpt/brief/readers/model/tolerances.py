@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 from roadgpt.brief.readers.model.measures import Number, is_count, unit_at
 from roadgpt.brief.readers.model.nouns import COUNTED
-from roadgpt.brief.readers.model.number_words import numbers_in_words
-from roadgpt.brief.readers.model.numerals import plain
+from roadgpt.brief.readers.model.numerals import numbers_in_words, plain
 from roadgpt.brief.readers.model.units import ONES
 
 SIGNS = frozenset(

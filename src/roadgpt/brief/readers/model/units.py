@@ -6,50 +6,29 @@ from roadgpt.brief.readers.model.word_set import word_set
 
 Unit = Literal["metres", "percent", "degrees", "kmh", ""]
 
-UNITS: dict[tuple[str, ...], tuple[Unit, float]] = {}
-"""Maps the words of a unit to the unit in plans (such as metres) and to the factor that converts to it."""
-
-_SAID: tuple[tuple[str, Unit, float], ...] = (
-    (
-        "m mt mts mtr mtrs metre metres meter meters metern metro metros metri mètre mètres meteres",
-        "metres",
-        1.0,
-    ),
-    ("km kms kilometre kilometres kilometer kilometers kilometern kilomètre kilomètres", "metres", 1000.0),
-    ("kilometro kilometros chilometro chilometri", "metres", 1000.0),
-    ("cm centimetre centimetres centimeter centimeters zentimeter zentimetern", "metres", 0.01),
-    ("centimètre centimètres centimetro centimetros centimetri", "metres", 0.01),
-    ("ft feet foot fuß fuss pied pieds pie pies piede piedi", "metres", 0.3048),
-    ("yd yds yard yards yarda yardas iarde", "metres", 0.9144),
-    ("mile miles meile meilen mille_marin milla millas miglio miglia", "metres", 1609.344),
-    (
-        "% pct percent procent prozent per_cent pour_cent por_ciento per_cento pourcent porciento",
-        "percent",
-        1.0,
-    ),
-    ("‰ promille permille permil per_mille per_mil pour_mille por_mil", "percent", 0.1),
-    ("° º deg degs degree degrees degre degrees grad degrés degré grado grados gradi", "degrees", 1.0),
-    ("gon gons gradians grades_centésimaux", "degrees", 0.9),
-    ("kmh kph mph km/h", "kmh", 1.0),
+WORDS_OF_UNITS: tuple[tuple[Unit, float, str], ...] = (
+    ("metres", 1.0, "m mt mts mtr mtrs metre metres meter meters metern metro metros metri meteres"),
+    ("metres", 1000.0, "km kms kilometre kilometres kilometer kilometers kilometern"),
+    ("metres", 1000.0, "kilometro kilometros chilometro chilometri"),
+    ("metres", 0.01, "cm centimetre centimetres centimeter centimeters zentimeter zentimetern"),
+    ("metres", 0.01, "centimetro centimetros centimetri"),
+    ("metres", 0.3048, "ft feet foot fuß fuss pied pieds pie pies piede piedi"),
+    ("metres", 0.9144, "yd yds yard yards yarda yardas iarde"),
+    ("metres", 1609.344, "mile miles meile meilen mille_marin milla millas miglio miglia"),
+    ("percent", 1.0, "% pct percent procent prozent per_cent pour_cent por_ciento per_cento"),
+    ("percent", 1.0, "pourcent porciento"),
+    ("percent", 0.1, "‰ promille permille permil per_mille per_mil pour_mille por_mil"),
+    ("degrees", 1.0, "° º deg degs degree degrees degre degres grad grado grados gradi"),
+    ("degrees", 0.9, "gon gons gradians grades_centesimaux"),
+    ("kmh", 1.0, "kmh kph mph km/h"),
 )
-
-TIMES = frozenset(
-    ["h", "hr", "hrs", "hour", "std", "stunde", "heure", "hora", "ora"]
-    + ["s", "sec", "second", "sekunde", "seconde", "segundo", "secondo"]
-)
+"""Units in plans (such as metres), the factor that converts to each, and the words of the unit."""
+UNITS = {
+    tuple(word.split("_")): (unit, factor) for unit, factor, words in WORDS_OF_UNITS for word in words.split()
+}
+TIMES = word_set("h hr hrs hour std stunde heure hora ora s sec second sekunde seconde segundo secondo")
 """Units of time: a length divided by one of them is a speed."""
-
-
-def plain_unit(text: str) -> str:
-    """Returns the text of a unit without accents."""
-    return text.translate(str.maketrans("èéí", "eei"))
-
-
-for _words, _unit, _size in _SAID:
-    for _word in _words.split():
-        UNITS[tuple(plain_unit(_word).split("_"))] = (_unit, _size)
-
-ONES = frozenset(["a", "an", "one", "ein", "eine", "einen", "einem", "eins", "un", "une", "uno", "una"])
+ONES = word_set("a an one ein eine einen einem eins un une uno una")
 """Words that mean the number one before a unit ("a kilometre") or in a ratio ("one in ten")."""
 SHARES: dict[str, float] = {
     word: share
@@ -71,33 +50,7 @@ SHARE_FILLERS = frozenset(
 """Words that may occur between a fraction and its unit."""
 RATIO = frozenset({":", "in", "zu", "sur", "su", "en", "auf"})
 """Words between the two numbers of a ratio: "1:8", "one in eight", "1 zu 8"."""
-JOINTS = frozenset(
-    [
-        "to",
-        "-",
-        "and",
-        "or",
-        "through",
-        "bis",
-        "und",
-        "oder",
-        "a",
-        "et",
-        "ou",
-        "y",
-        "o",
-        "e",
-        "u",
-        "ed",
-        "od",
-        ",",
-        "al",
-        "/",
-        "till",
-        "until",
-        "..",
-    ]
-)
+JOINTS = word_set("to - and or through bis und oder a et ou y o e u ed od , al / till until ..")
 """Words between two numbers that share the unit after the second: "40 to 60 metres"."""
 SETS: dict[tuple[str, ...], int] = {
     tuple(key.split()): number
@@ -172,35 +125,8 @@ FUNCTION_WORDS: dict[str, frozenset[str]] = {
 }
 """Frequent words of each language, used to guess the language, since some words are numbers in one language
 only."""
-AMBIGUOUS = frozenset(
-    [
-        "once",
-        "due",
-        "sei",
-        "cent",
-        "mille",
-        "elf",
-        "dos",
-        "sept",
-        "tres",
-        "tre",
-        "mil",
-        "cien",
-        "six",
-        "dix",
-        "nove",
-        "seis",
-        "sette",
-        "null",
-        "zero",
-        "cento",
-        "dieci",
-        "fourty",
-        "vier",
-        "acht",
-        "neuf",
-        "huit",
-        "ochenta",
-    ]
+AMBIGUOUS = word_set(
+    "once due sei cent mille elf dos sept tres tre mil cien six dix nove seis sette null zero cento dieci",
+    "fourty vier acht neuf huit ochenta",
 )
 """Number words that mean something else in another language ("once", "très", "due to")."""

@@ -6,7 +6,7 @@ turn x3 left; straight len=91.4 | up        ->  turn x 3 left ; straight len= [1
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
-from roadgpt.brief.halfway import with_halfway
+from roadgpt.brief.plan import with_halfway
 from roadgpt.brief.readers.model.computed_numbers import KEYS as COMPUTED_KEYS
 from roadgpt.brief.readers.model.computed_numbers import ONE, Compared, computed, with_values
 from roadgpt.brief.readers.model.measures import LARGEST_SEEN
@@ -131,12 +131,7 @@ CLOSE = 0.0051
 
 def tokens_of(plan: str, slots: Sequence[NumberSlot], compared: Compared | None = None) -> list[str] | None:
     """Returns the tokens of a plan; None if the plan has a number for which there is neither a slot nor a
-    token.
-
-    Args:
-        plan: the plan.
-        slots: the numbers of the text.
-        compared: how the words may tell numbers by other numbers; None if no number is computed.
+    token. Without ``compared``, no number is computed from others.
     """
     out: list[str] = []
     key = ""
@@ -225,7 +220,8 @@ def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
     """Returns the plan that the tokens represent, with the values of the slots filled in."""
     out: list[str] = []
     for word in with_values(tokens, slots):
-        value = slots[SLOT_TOKENS.index(word)].value if _is_filled(word, slots) else 0.0
+        index = SLOT_TOKENS.index(word) if word in SLOT_TOKENS else SLOTS
+        value = slots[index].value if index < len(slots) else 0.0
         percent = out[-1] if out and out[-1] in PERCENTS else ""
         if percent:
             share = value / 100
@@ -248,10 +244,6 @@ def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
         text += word if follows or is_bound or word[0] in ";),:" else f" {word}"
     text = re.sub(r"\s+", " ", text).strip()
     return WAYS.sub(lambda ways: ways[0].replace(" ", "+"), text)
-
-
-def _is_filled(word: str, slots: Sequence[NumberSlot]) -> bool:
-    return word in SLOT_TOKENS and SLOT_TOKENS.index(word) < len(slots)
 
 
 def _plain(value: float, digits: int) -> str:

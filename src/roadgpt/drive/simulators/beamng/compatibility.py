@@ -1,4 +1,5 @@
-"""Lists which versions of BeamNG.tech and beamngpy work together, and gives advice for versions that do not.
+"""Finds out which protocol version BeamNG uses, lists which versions of BeamNG.tech and beamngpy work
+together, and gives advice for versions that do not.
 
 BeamNG and beamngpy each send a protocol version in their first message, and beamngpy continues only if both
 are the same. RoadGPT therefore drives with every pair of versions that passes this check, and logs a warning
@@ -9,7 +10,14 @@ the protocols.
 """
 
 import logging
-from typing import NamedTuple
+import socket
+import struct
+from importlib import import_module
+from typing import Any, NamedTuple
+
+from roadgpt.errors import SimulatorError
+
+MOST = 1 << 20  # bytes, the largest answer to the first message that is accepted
 
 
 class VersionPair(NamedTuple):
@@ -47,12 +55,8 @@ def warn_if_untested(version: str) -> None:
 
 
 def mismatch_advice(game: str, client: str, version: str) -> str:
-    """Returns advice for a user whose BeamNG and beamngpy use different protocols.
-
-    Args:
-        game: protocol version of the BeamNG that answered.
-        client: protocol version of the installed beamngpy.
-        version: version of the installed beamngpy.
+    """Returns advice for a user whose BeamNG uses the protocol ``game``, and whose beamngpy, of this
+    ``version``, uses the protocol ``client``.
     """
     theirs = [pair for pair in VERSION_PAIRS if pair.protocol == game]
     ours = [pair for pair in VERSION_PAIRS if pair.protocol == client]
@@ -64,3 +68,36 @@ def mismatch_advice(game: str, client: str, version: str) -> str:
         table = ", ".join(f"{pair.tech} with {pair.client}" for pair in VERSION_PAIRS if pair.is_tried)
         return f"{start}; {other}, or the beamngpy that goes with yours ({table})"
     return f"{start}; run 'python -m pip install beamngpy=={theirs[0].client}', or {other}"
+
+
+def protocol_at(host: str, port: int, protocol: str, patience: float) -> str:
+    """Sends a first message with the given protocol version to the program that listens on a port, and
+    returns the version in BeamNG's answer.
+
+    A message consists of its length (four bytes, big-endian) and one MessagePack map; the first message is
+    named Hello.
+
+    Raises:
+        OSError: no program listens on the port, or no answer came within ``patience`` seconds.
+        SimulatorError: the program that listens on the port is not BeamNG.
+    """
+    msgpack: Any = import_module("msgpack")
+
+    hello = msgpack.packb({"type": "Hello", "protocolVersion": protocol, "_id": 0}, use_bin_type=True)
+    with socket.create_connection((host, port), timeout=patience) as link:
+        link.sendall(struct.pack("!I", len(hello)) + hello)
+        try:
+            with link.makefile("rb") as said:
+                (length,) = struct.unpack("!I", said.read(4))
+                answer: Any = msgpack.unpackb(said.read(length), raw=False) if length <= MOST else None
+        except (ValueError, struct.error) as error:
+            raise _stranger(host, port) from error
+    if not isinstance(answer, dict) or "protocolVersion" not in answer:
+        raise _stranger(host, port)
+    return str(answer["protocolVersion"])
+
+
+def _stranger(host: str, port: int) -> SimulatorError:
+    return SimulatorError(
+        f"the program that listens on {host}:{port} is not BeamNG.tech; name another --beamng-port"
+    )

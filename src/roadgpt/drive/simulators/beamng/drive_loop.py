@@ -6,7 +6,7 @@ If the car reaches the goal or leaves its lane between two samples, that moment 
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -31,20 +31,6 @@ AI = "beamng_ai"
 """Name of the driver when BeamNG's own AI drives."""
 
 
-class Sample(NamedTuple):
-    """The car at one time, and its position relative to the road: ``s`` and ``t`` in metres, and ``outside``,
-    the share of the car outside its lane. ``throttle`` and ``brake`` are 0 to 1.
-    """
-
-    car: CarSample
-    s: float
-    t: float
-    outside: float
-    steer: float
-    throttle: float
-    brake: float
-
-
 class DriveLoop:
     """Drives one road, step by step, and records the samples."""
 
@@ -54,7 +40,7 @@ class DriveLoop:
         self.track = RoadTracker(road, world, loaded.body)
         self.monitor = DriveMonitor(road, world, loaded.body.box(LOCK))
         self.outlook = Outlook(road, world)
-        self.samples: list[Sample] = []
+        self.samples: list[CarSample] = []
         self.has_left = False
 
     def drive(self, keep_driving: bool) -> Ended:
@@ -69,21 +55,20 @@ class DriveLoop:
         loaded, world = self.loaded, self.world
         watchdog = loaded.session.watchdog
         watchdog.pause()
-        self._keep(loaded.now, (0.0, 0.0, 0.0))
+        self.samples.append(self._on_road(loaded.now, 0.0, 0.0))
         if self.guard is None:
             watchdog.due_in(loaded.settings.poll_timeout)
             loaded.let_ai_drive(world.limits.speed_limit)
             watchdog.pause()
         while True:
-            here = self.samples[-1]
-            now = here.car
-            if self._is_at_goal(here):
+            now = self.samples[-1]
+            if self._is_at_goal(now):
                 self._cut(self._is_at_goal)
                 return "goal"
             if self.monitor.is_stuck(now.x, now.y, now.time):
                 self._check_ai()
                 return "stuck"
-            if self._is_out(here):
+            if self._is_out(now):
                 if not self.has_left:
                     self.has_left = True
                     self._cut(self._is_out, keep=keep_driving)
@@ -93,51 +78,48 @@ class DriveLoop:
                 return "fell"
             if now.time >= self.monitor.limit:
                 return "timeout"
-            self._go_on(here)
+            self._go_on(now)
 
-    def _go_on(self, here: Sample) -> None:
+    def _go_on(self, here: CarSample) -> None:
         """Makes one step. The watchdog counts only BeamNG's time: RoadGPT may be compiling its functions, and
         the guard has its own clock."""
         look()
-        command = (0.0, 0.0, 0.0)
+        throttle = brake = 0.0
         loaded = self.loaded
         watchdog = loaded.session.watchdog
         if self.guard is not None:
             watchdog.due_in(loaded.settings.poll_timeout)
             image = loaded.image()
             watchdog.pause()
-            command = self.guard.ask(self._view(here, image))
+            steer, throttle, brake = self.guard.ask(self._view(here, image))
             watchdog.due_in(loaded.settings.poll_timeout)
-            loaded.steer(*command)
+            loaded.steer(steer, throttle, brake)
         now = loaded.step()
         watchdog.pause()
-        self._keep(now, command)
+        self.samples.append(self._on_road(now, throttle, brake))
 
-    def _view(self, here: Sample, image: FloatArray | None) -> View:
-        now, dt = here.car, 1.0 / self.loaded.settings.rate
-        state = (now.time, now.x, now.y, now.z, now.heading, now.speed, now.yaw_rate, here.s, here.t)
-        ahead = self.outlook.at(here.s)
-        return View(*state, self.road, self.world, here.steer, dt, now.vx, now.vy, image, *ahead)
-
-    def _keep(self, now: CarSample, command: tuple[float, float, float]) -> None:
-        self.samples.append(self._sample(now, command))
-
-    def _sample(self, now: CarSample, command: tuple[float, float, float]) -> Sample:
-        s, t, _ = self.track.place(now.x, now.y)
-        outside = self.track.outside(now, s)
-        told = self.loaded.session.reported_gain
+    def _view(self, now: CarSample, image: FloatArray | None) -> View:
+        dt, told = 1.0 / self.loaded.settings.rate, self.loaded.session.reported_gain
+        state = (now.time, now.x, now.y, now.z, now.heading, now.speed, now.yaw_rate, now.s, now.t)
         steer = now.steer if told is None else now.steer * told
-        pedals = (now.throttle, now.brake) if self.guard is None else command[1:]
-        return Sample(now, s, t, outside, steer, pedals[0], pedals[1])
+        ahead = self.outlook.at(now.s)
+        return View(*state, self.road, self.world, steer, dt, now.vx, now.vy, image, *ahead)
 
-    def _is_at_goal(self, sample: Sample) -> bool:
-        return self.monitor.is_at_goal(sample.car.x, sample.car.y, sample.s)
+    def _on_road(self, now: CarSample, throttle: float, brake: float) -> CarSample:
+        """Returns a sample with its position relative to the road, and with the pedals of the driver's
+        command if BeamNG's AI does not drive."""
+        if self.guard is not None:
+            now = now._replace(throttle=throttle, brake=brake)
+        s, t, _ = self.track.place(now.x, now.y)
+        return now._replace(s=s, t=t, outside=self.track.outside(now, s))
 
-    def _is_out(self, sample: Sample) -> bool:
-        pose = [getattr(sample if name == "s" else sample.car, name) for name in POSE]
-        return self.monitor.is_out(sample.outside, pose)
+    def _is_at_goal(self, sample: CarSample) -> bool:
+        return self.monitor.is_at_goal(sample.x, sample.y, sample.s)
 
-    def _cut(self, has_happened: Callable[[Sample], bool], keep: bool = False) -> None:
+    def _is_out(self, sample: CarSample) -> bool:
+        return self.monitor.is_out(sample.outside, [getattr(sample, name) for name in POSE])
+
+    def _cut(self, has_happened: Callable[[CarSample], bool], keep: bool = False) -> None:
         """Finds by interpolation the moment between the last two samples at which ``has_happened`` became
         true. With ``keep``, a sample of this moment is inserted before the last sample; otherwise it replaces
         the last sample."""
@@ -148,14 +130,12 @@ class DriveLoop:
         found = after
         for _ in range(HALVINGS):
             share = (low + high) / 2
-            tried = self._sample(
-                interpolate_samples(before.car, after.car, share), (0.0, after.throttle, after.brake)
-            )
+            tried = self._on_road(interpolate_samples(before, after, share), after.throttle, after.brake)
             if has_happened(tried):
                 high, found = share, tried
             else:
                 low = share
-        if before.car.time < found.car.time < after.car.time:
+        if before.time < found.time < after.time:
             self.samples[-1:] = [found, after] if keep else [found]
 
     def _check_ai(self) -> None:
@@ -167,23 +147,16 @@ class DriveLoop:
 
     def columns(self) -> tuple[Columns, float]:
         """Returns the columns of a Drive, and the lock angle of the front wheels in radians."""
-        cars = {
-            name: np.array([getattr(each.car, name) for each in self.samples]) for name in CarSample._fields
-        }
+        table = dict(zip(CarSample._fields, np.array(self.samples).T, strict=True))
         told = self.loaded.session.reported_gain
         lock = LOCK if told is None else abs(told)
-        steer = np.array([each.steer for each in self.samples])
         if told is None:  # not measured: the sign follows from the direction in which the car turned
-            turned = float(np.sum(steer * cars["yaw_rate"]))
-            steer = steer * math.copysign(LOCK, turned)
-        own = ("s", "t", "outside", "throttle", "brake")
-        ours = {name: np.array([getattr(each, name) for each in self.samples]) for name in own}
-        ours |= {
-            "steer": steer,
-            "ax": _slope(cars["vx"], cars["time"]) - cars["yaw_rate"] * cars["vy"],
-            "ay": _slope(cars["vy"], cars["time"]) + cars["yaw_rate"] * cars["vx"],
-        }
-        return Columns({name: ours.get(name, cars.get(name)) for name in COLUMNS}), lock  # type: ignore[misc]
+            turned = float(np.sum(table["steer"] * table["yaw_rate"]))
+            told = math.copysign(LOCK, turned)
+        table["steer"] = table["steer"] * told
+        table["ax"] = _slope(table["vx"], table["time"]) - table["yaw_rate"] * table["vy"]
+        table["ay"] = _slope(table["vy"], table["time"]) + table["yaw_rate"] * table["vx"]
+        return Columns({name: table[name] for name in COLUMNS}), lock
 
 
 def record(
@@ -195,7 +168,7 @@ def record(
         DriverError, SimulationError: as for ``DriveLoop.drive``.
     """
     recorder = DriveLoop(loaded, road, world, guard)
-    with loaded.session.within(loaded.settings.poll_timeout, "it was driving"):
+    with loaded.session.watchdog.within(loaded.settings.poll_timeout, "it was driving"):
         ended = recorder.drive(keep_driving)
     columns, lock = recorder.columns()
     name = AI if guard is None else guard.name

@@ -5,13 +5,13 @@ it supports only the options of the newest versions. The command line is that of
 """
 
 import platform
+import socket
 import subprocess
 import time
 from contextlib import suppress
 from pathlib import Path
 
 from roadgpt import children
-from roadgpt.drive.simulators.beamng.handshake import is_taken
 from roadgpt.drive.simulators.beamng.settings import BeamngSettings
 from roadgpt.errors import PartError, SimulatorError
 
@@ -51,6 +51,15 @@ def command_line(binary: Path, settings: BeamngSettings, port: int, user: Path |
     if user is not None:
         words += ["-userpath", str(user)]
     return words
+
+
+def is_taken(host: str, port: int) -> bool:
+    """Returns whether a program listens on this port."""
+    try:
+        with socket.create_connection((host, port), timeout=1.0):
+            return True
+    except OSError:
+        return False
 
 
 class BeamngProcess:

@@ -102,7 +102,7 @@ class LoadedRoad:
     def _settle(self) -> None:
         """Waits until the car is at rest. The first car of a session is also measured, and then moved to its
         exact start."""
-        with self.session.within(self.settings.poll_timeout, "the car was put down"):
+        with self.session.watchdog.within(self.settings.poll_timeout, "the car was put down"):
             self._rest()
             if self.session.body is None:
                 corners, gravity = self.vehicle.get_bbox(), self.vehicle.get_center_of_gravity()
@@ -181,12 +181,12 @@ class LoadedRoad:
 
         In BeamNG's other gearbox modes the car does not move until a gear is selected.
         """
-        with self.session.within(self.settings.poll_timeout, "the gearbox was set"):
+        with self.session.watchdog.within(self.settings.poll_timeout, "the gearbox was set"):
             self.vehicle.set_shift_mode(GEARBOX)
             if self.session.gain is not None:
                 return
         self._measure_steering()
-        with self.session.within(self.settings.poll_timeout, "the gearbox was set"):
+        with self.session.watchdog.within(self.settings.poll_timeout, "the gearbox was set"):
             self.vehicle.set_shift_mode(GEARBOX)  # it may have been reset with the car
 
     def _measure_steering(self) -> None:
@@ -197,7 +197,7 @@ class LoadedRoad:
         """
         found: list[float] = []
         echoed = 0.0
-        with self.session.within(self.settings.poll_timeout, "the steering was measured"):
+        with self.session.watchdog.within(self.settings.poll_timeout, "the steering was measured"):
             self.vehicle.control(steering=TRIAL, throttle=0.4, brake=0.0, parkingbrake=0.0)
             for _ in range(int(TRIAL_TIME * self.settings.rate)):
                 now = self.step()
@@ -223,7 +223,7 @@ class LoadedRoad:
         body = self.body
         # The camera is placed from the reference node; BeamNG's cars look along -y, their left is +x.
         place = (-body.node[1], -(camera.ahead - body.node[0]), camera.up - body.height - body.node[2])
-        with self.session.within(self.settings.poll_timeout, "the camera was opened"):
+        with self.session.watchdog.within(self.settings.poll_timeout, "the camera was opened"):
             self.camera = client().sensors.Camera(
                 f"{self.prefix}eye",
                 self.bng,
@@ -260,7 +260,10 @@ class LoadedRoad:
         session = self.session
         if kind is not None and not issubclass(kind, RoadGPTError):
             return  # the session is dropped as a whole
-        with session.within(self.settings.load_timeout, "a road was cleared away"), suppress(Exception):
+        with (
+            session.watchdog.within(self.settings.load_timeout, "a road was cleared away"),
+            suppress(Exception),
+        ):
             if self.camera is not None:
                 self.camera.remove()
             self.bng.scenario.stop()

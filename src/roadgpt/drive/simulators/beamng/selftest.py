@@ -162,7 +162,7 @@ class Selftest:
         session = self._session
         with LoadedRoad(session, bent(-20.0, STEEP), WORLD, 0) as loaded:
             loaded.open_camera(CameraSpec(1280, 720, 1.0, 2.0, 3.0, 0.15))
-            with session.within(self.settings.poll_timeout, "a picture was taken"):
+            with session.watchdog.within(self.settings.poll_timeout, "a picture was taken"):
                 for _ in range(10):  # the first frames may be black
                     loaded.step()
                 image = loaded.image()
@@ -186,7 +186,7 @@ class Selftest:
         session.vehicle = car
         place = tuple((scene.start + [0.0, 0.0, ABOVE_GROUND]).tolist())
         scenario.add_vehicle(car, place, as_quaternion(rotation(scene.heading, scene.grade)), False)
-        with session.within(self.settings.load_timeout, "RoadGPT's level was loading"):
+        with session.watchdog.within(self.settings.load_timeout, "RoadGPT's level was loading"):
             scenario.make(session.bng)
             session.bng.scenario.load(scenario)
             session.bng.scenario.start()

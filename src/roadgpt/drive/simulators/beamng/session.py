@@ -10,8 +10,7 @@ from importlib.metadata import version
 from typing import Any
 
 from roadgpt.drive.simulators.beamng import slots
-from roadgpt.drive.simulators.beamng.compatibility import mismatch_advice, warn_if_untested
-from roadgpt.drive.simulators.beamng.handshake import protocol_at
+from roadgpt.drive.simulators.beamng.compatibility import mismatch_advice, protocol_at, warn_if_untested
 from roadgpt.drive.simulators.beamng.launch import BeamngProcess, binary_of, command_line
 from roadgpt.drive.simulators.beamng.settings import BeamngSettings
 from roadgpt.drive.simulators.beamng.tracking import CarGeometry
@@ -96,7 +95,7 @@ class Session:
                 self._slot.note(self.game.process.pid)
                 self.game.wait(settings.start_timeout)
             self._check_pair(host, port)
-            with self.within(settings.start_timeout, "it was starting"):
+            with self.watchdog.within(settings.start_timeout, "it was starting"):
                 self.bng = package.BeamNGpy(host, port, quit_on_close=False)
                 self.bng.open(launch=False)
                 self._prepare()
@@ -142,25 +141,20 @@ class Session:
         """Returns a context manager that limits the time for loading a road; the first road may take
         minutes."""
         if self.has_loaded:
-            return self.within(self.settings.load_timeout, "it was loading a road")
+            return self.watchdog.within(self.settings.load_timeout, "it was loading a road")
         patience = max(self.settings.first_load_timeout, self.settings.load_timeout)
         logging.getLogger("roadgpt").warning(
             "roadgpt: BeamNG loads its first road, and may compile its shaders for some minutes "
             "(limit %g s, set ROADGPT_BEAMNG_FIRST_LOAD_TIMEOUT)",
             patience,
         )
-        return self.within(patience, "it was loading its first road")
-
-    def within(self, seconds: float, doing: str) -> AbstractContextManager[None]:
-        """Returns a context manager that interrupts calls to BeamNG that take longer than ``seconds``; see
-        `Watchdog`."""
-        return self.watchdog.within(seconds, doing)
+        return self.watchdog.within(patience, "it was loading its first road")
 
     def close(self) -> None:
         """Asks BeamNG to quit if RoadGPT started it; otherwise disconnects from it."""
         game, bng = self.game, self.bng
         if bng is not None:
-            with suppress(Exception), self.within(self.settings.poll_timeout, "it was closing"):
+            with suppress(Exception), self.watchdog.within(self.settings.poll_timeout, "it was closing"):
                 if game is not None:
                     bng.control.quit_beamng()
                 bng.disconnect()

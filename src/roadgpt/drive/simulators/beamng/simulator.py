@@ -79,7 +79,8 @@ class BeamngSimulator:
         keep_driving: bool,
     ) -> Drive:
         camera = camera_of(driver)
-        guard = None if self._ai_drives(driver) else DriverGuard(driver)
+        ai_drives = getattr(driver, "name", "") == IMITATES and not self.settings.imitation
+        guard = None if ai_drives else DriverGuard(driver)
         with LoadedRoad(session, road, world, seed) as loaded:
             if guard is None:
                 return record(loaded, road, world, None, seed, keep_driving)
@@ -89,6 +90,3 @@ class BeamngSimulator:
             with guard.watched():
                 guard.start(road, world, seed)
                 return record(loaded, road, world, guard, seed, keep_driving)
-
-    def _ai_drives(self, driver: "Driver") -> bool:
-        return getattr(driver, "name", "") == IMITATES and not self.settings.imitation

@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
-from roadgpt.drive.simulators.beamng.handshake import is_taken
+from roadgpt.drive.simulators.beamng.launch import is_taken
 from roadgpt.drive.simulators.beamng.settings import BeamngSettings
 from roadgpt.errors import SimulatorError, UsageError
 

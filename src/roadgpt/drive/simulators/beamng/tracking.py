@@ -74,11 +74,8 @@ class CarGeometry(NamedTuple):
         return cls(place, float(rear), float(front), half, float(under), height)
 
     def box(self, lock: float) -> Box:
-        """Returns the geometry as a Box, the form in which a Drive stores it.
-
-        Args:
-            lock: angle of the front wheels at full lock in radians.
-        """
+        """Returns the geometry as a Box, with the angle ``lock`` of the front wheels at full lock in
+        radians."""
         length, width, ahead = self.front - self.rear, 2 * self.half, (self.front + self.rear) / 2
         wheels = (ahead + AXLE * length, TYRES * width)
         return Box(length, width, ahead, lock, *wheels, height=self.height, under=-self.under)
@@ -126,6 +123,10 @@ class CarSample(NamedTuple):
     """Steering input, -1 to 1, as BeamNG reports it."""
     throttle: float
     brake: float
+    s: float = 0.0
+    t: float = 0.0
+    outside: float = 0.0
+    """Share of the car outside its lane, 0 to 1. The drive sets ``s``, ``t`` and ``outside``."""
 
 
 class RoadTracker:

@@ -226,18 +226,15 @@ ETK_LIKE = Car(
 def tables(car: Car) -> tuple[Any, Any]:
     """Returns the car's parameters in the form that the inner loop reads: one record for the car, and two
     records for its axles (front, rear)."""
-    body = _numbers(car) | {
-        "mass": car.mass,
-        "wheelbase": car.wheelbase,
-    }
+    body = _numbers(car) | {"mass": car.mass, "wheelbase": car.wheelbase}
     axles = [
         _numbers(axle)
         | {f"tyre_{name}": value for name, value in _numbers(axle.tyre).items()}
         | {
             "nominal_load": car.static_wheel_load(axle),
             "sprung_load": car.static_wheel_load(axle) - GRAVITY * axle.unsprung_mass,
+            "inclination": axle.inclination,
         }
-        | {"inclination": axle.inclination}
         for axle in (car.front, car.rear)
     ]
     if COMPILES:

@@ -8,7 +8,6 @@ from roadgpt.drive.compiled import compiled, inlined
 from roadgpt.drive.drive import COLUMNS, FloatArray
 from roadgpt.drive.lane_polygon import share_outside
 from roadgpt.drive.sampled_road import locate_on
-from roadgpt.drive.simulators.mujoco.bridge import call
 from roadgpt.drive.simulators.mujoco.dynamics import (
     PAST_VX,
     PAST_VY,
@@ -17,6 +16,7 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
     CarState,
     Ground,
     MujocoHandles,
+    call,
     step_once,
 )
 from roadgpt.drive.simulators.mujoco.model import BODY, STEP

@@ -8,11 +8,10 @@ the computing time.
 import math
 from typing import Any, NamedTuple
 
-from roadgpt.drive.compiled import inlined
+from roadgpt.drive.compiled import COMPILES, call_at, inlined
 from roadgpt.drive.drive import FloatArray
 from roadgpt.drive.lane_polygon import LanePolygon
 from roadgpt.drive.sampled_road import SampledRoad, locate_on, room_at
-from roadgpt.drive.simulators.mujoco.bridge import call
 from roadgpt.drive.simulators.mujoco.chassis_control import (
     SLOWEST_ABS,
     esc_torques,
@@ -43,9 +42,13 @@ SLIP_X, SLIP_Y, ABS, TCS, AT, LOAD, FX, FY = range(8)
 WHEEL_STATE = 8
 
 
+call: Any = call_at if COMPILES else lambda function, model, data: function(model, data)
+"""Calls one of MuJoCo's functions: compiled code by its address, plain Python through the bindings."""
+
+
 class MujocoHandles(NamedTuple):
-    """What compiled code needs to use MuJoCo: its functions, the model and the data, and array views into
-    the data."""
+    """What compiled code needs to use MuJoCo: its functions, the model and the data (all as ``call`` expects
+    them), and array views into the data."""
 
     first: Any
     second: Any
@@ -204,14 +207,9 @@ def _contact_axes(axis: Vector, normal: Vector) -> tuple[Vector, Vector, float]:
 
 @inlined
 def _wheel_load(axle: Any, share: float, depth: float, rate: float) -> float:
-    """Returns the load on the wheel in N; a tyre cannot pull.
-
-    Args:
-        axle: record with the tyre's stiffness and damping.
-        share: share of the tyre's width that has ground under it.
-        depth: compression of the tyre in m.
-        rate: speed in m/s at which the contact point moves away from the ground.
-    """
+    """Returns the load in N on a wheel with ground under the share ``share`` of its tyre's width; a tyre
+    cannot pull. ``depth`` is the compression of the tyre in m, and ``rate`` the speed in m/s at which the
+    contact point moves away from the ground."""
     load: float = share * (axle.tyre_vertical_stiffness * depth - axle.tyre_vertical_damping * rate)
     return max(load, 0.0)
 

@@ -6,14 +6,12 @@ from typing import TYPE_CHECKING, Any
 import mujoco
 import numpy as np
 
-from roadgpt.drive.compiled import bound
+from roadgpt.drive.compiled import COMPILES, FUNCTIONS, addresses, bound
 from roadgpt.drive.drive import COLUMNS, FloatArray
 from roadgpt.drive.lane_polygon import LanePolygon
-from roadgpt.drive.outlook import route_of
 from roadgpt.drive.sampled_road import BANK, GRADE, SampledRoad, sample_road, stations_of
-from roadgpt.drive.simulators.mujoco import bridge
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car, tables
-from roadgpt.drive.simulators.mujoco.control import STEPS, control_step
+from roadgpt.drive.simulators.mujoco.control import AX, AY, STEPS, TIME, control_step
 from roadgpt.drive.simulators.mujoco.dynamics import (
     ABS,
     AT,
@@ -28,6 +26,7 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
 )
 from roadgpt.drive.simulators.mujoco.hull import hull_points
 from roadgpt.drive.simulators.mujoco.model import SPIN_DOF, STEP, centre_height, model_of
+from roadgpt.network import is_route
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -36,8 +35,6 @@ CONTROL = STEPS * STEP
 """Length of a control step in seconds: the time between two commands of the driver."""
 SETTLED = 2e-4  # m/s and rad/s, below which all parts count as at rest
 LONGEST_SETTLING = 150  # control steps
-
-_PLACE = {name: place for place, name in enumerate(COLUMNS)}
 
 
 class Vehicle:
@@ -68,7 +65,7 @@ class Vehicle:
         rims = np.column_stack(profile.rims(stations_of(sampled)))
         lane = LanePolygon.along(road, world)
         beyond = profile.reach
-        if route_of(road) is not None:  # whose shoulders reach around the corners of junctions
+        if is_route(road):  # whose shoulders reach around the corners of junctions
             beyond = float(profile.shoulder(road.length))
         return cls(car, Ground(sampled, rims, beyond, world.site.friction, lane))
 
@@ -86,8 +83,7 @@ class Vehicle:
         self.wheels[:, AT] = s
         self._state[STATION] = s
         frame = self._frame(s)
-        x, y, height = self._point(s, t)
-        data.qpos[:3] = np.array([x, y, height]) + frame[:, 2] * car.cg_height
+        data.qpos[:3] = self._row_at(s)[:3] + t * frame[:, 1] + frame[:, 2] * car.cg_height
         mujoco.mju_mat2Quat(data.qpos[3:7], np.ascontiguousarray(frame).ravel())
         if speed:
             data.qvel[:3] = frame[:, 0] * speed
@@ -101,13 +97,13 @@ class Vehicle:
                     break
         data.time = 0.0
         self._move(0.0, 0.0, 0.0 if speed else 1.0, 0)
-        self.row[_PLACE["ax"]] = self.row[_PLACE["ay"]] = 0.0
+        self.row[AX] = self.row[AY] = 0.0
 
     def move(self, steer: float, throttle: float, brake: float) -> None:
         """Runs one control step of 20 ms with these commands: ``steer`` in rad, ``throttle`` and ``brake``
         from 0 to 1."""
         self._move(steer, throttle, brake, STEPS)
-        self.row[0] = round(self._data.time, 9)
+        self.row[TIME] = round(self._data.time, 9)
 
     def see(self) -> dict[str, float]:
         """Returns the present state of the car as a dictionary with the names in COLUMNS as keys."""
@@ -123,13 +119,6 @@ class Vehicle:
         stations = sampled.first + sampled.step * np.arange(len(sampled.table))
         return np.array([np.interp(s, stations, column) for column in sampled.table.T])
 
-    def _point(self, s: float, t: float) -> tuple[float, float, float]:
-        x, y, z, heading, *_ = self._row_at(s).tolist()
-        if self._is_banked:
-            left = self._frame(s)[:, 1]
-            return x + t * left[0], y + t * left[1], z + t * left[2]
-        return x - t * math.sin(heading), y + t * math.cos(heading), z
-
     def _frame(self, s: float) -> FloatArray:
         """Returns the road's unit vectors forward, left and up at station s, as the columns of a (3, 3)
         array."""
@@ -138,17 +127,13 @@ class Vehicle:
         along /= np.linalg.norm(along)
         left = np.array([-math.sin(heading), math.cos(heading), 0.0])
         up = np.cross(along, left)
-        if self._is_banked:
+        if self._ground.sampled.table.shape[1] > BANK:
             angle = math.atan(more[BANK - GRADE - 1])
             left, up = (
                 math.cos(angle) * left + math.sin(angle) * up,
                 math.cos(angle) * up - math.sin(angle) * left,
             )
         return np.column_stack([along, left, up])
-
-    @property
-    def _is_banked(self) -> bool:
-        return bool(self._ground.sampled.table.shape[1] > BANK)
 
 
 def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: Car = ETK_LIKE) -> Vehicle:
@@ -175,5 +160,9 @@ def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: 
 
 
 def _handles(model: Any, data: Any) -> MujocoHandles:
+    # MuJoCo would log warnings to a file in the current folder; our simulator reports what failed.
+    mujoco.set_mju_user_warning(lambda _: None)
+    functions = addresses() if COMPILES else tuple(getattr(mujoco, name) for name in FUNCTIONS)
+    both = (model._address, data._address) if COMPILES else (model, data)
     views = (data.qpos, data.qvel, data.qfrc_applied, data.xpos, data.xmat, data.cvel, data.subtree_com)
-    return MujocoHandles._make((*bridge.functions(), *bridge.handles(model, data), *views))
+    return MujocoHandles._make((*functions, *both, *views))

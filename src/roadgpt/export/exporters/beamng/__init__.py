@@ -40,9 +40,7 @@ def level_name(title: str) -> str:
     return f"roadgpt_{plain or 'road'}"
 
 
-def write_level(
-    road: Road, levels: Path, name: str, world: World, title: str = "", seed: int = SEED, model: str = MODEL
-) -> Path:
+def write_level(road: Road, levels: Path, name: str, world: World, title: str = "") -> Path:
     """Writes a level into a folder of levels, and returns the level's own folder.
 
     Args:
@@ -51,21 +49,19 @@ def write_level(
         name: Name of the level and of its folder, as returned by ``level_name``.
         world: The World, which defines lane width, shoulder width and friction.
         title: Title of the level in the game; empty to use ``name``.
-        seed: Seed of the random shifts of mesh nodes that prevent flicker.
-        model: Name of BeamNG's vehicle model.
 
     Raises:
         ExportError: The road has a number that is not finite.
         OSError: The folder cannot be written.
     """
-    scene = level_road(road, world, seed)
+    scene = level_road(road, world, SEED)
     title = title or name
     about, group = files.scenario(name, title)
     written = {
         "info.json": _json(files.info(name, title, world)),
         "main.materials.json": _json(files.materials(world)),
         "scenarios/drive/drive.json": _json([about]),
-        "scenarios/drive/drive.prefab.json": files.one_per_line([files.car(name, scene, model), *group]),
+        "scenarios/drive/drive.prefab.json": files.one_per_line([files.car(name, scene, MODEL), *group]),
     }
     for folder, objects in files.items(name, scene, world).items():
         written[f"main/{folder}/items.level.json"] = files.one_per_line(objects)

@@ -6,7 +6,7 @@ No tool other than the game can check such files; ``roadgpt doctor beamng`` load
 
 import json
 import uuid
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -49,7 +49,7 @@ def items(name: str, scene: LevelRoad, world: World) -> Mapping[str, Sequence[It
             for strip in scene.strips
             for part in (_dashes(strip) if strip.is_dashed else (strip,))
         ],
-        "MissionGroup/player": list(_player(name, scene)),
+        "MissionGroup/player": _player(name, scene),
     }
 
 
@@ -94,6 +94,8 @@ def _strip(level: str, strip: Strip) -> Item:
     nodes = _rows(strip.nodes)
     place = nodes[0][:3]
     if strip.is_mesh:
+        vertical: list[list[float]] = [[0, 0, 1]] * len(nodes)
+        upwards = vertical if strip.normals is None else _rows(strip.normals)
         return _object(
             level,
             strip.name,
@@ -106,7 +108,7 @@ def _strip(level: str, strip: Strip) -> Item:
             textureLength=5,
             breakAngle=3,
             widthSubdivisions=0,
-            nodes=[[*node, *across] for node, across in zip(nodes, _across(strip), strict=True)],
+            nodes=[[*node, *up] for node, up in zip(nodes, upwards, strict=True)],
         )
     return _object(
         level,
@@ -129,28 +131,21 @@ def _strip(level: str, strip: Strip) -> Item:
     )
 
 
-def _across(strip: Strip) -> list[list[float]]:
-    """Returns an upward unit vector for each node of a mesh: the normal of a banked mesh, else (0, 0, 1)."""
-    if strip.normals is None:
-        return [[0, 0, 1]] * len(strip.nodes)
-    return _rows(strip.normals)
-
-
-def _player(level: str, scene: LevelRoad) -> Iterator[Item]:
-    start = (scene.start + [0, 0, ABOVE_GROUND]).round(DECIMALS).tolist()
-    matrix = rotation(scene.heading, scene.grade).ravel().round(9).tolist()
-    yield _object(
-        level,
-        "spawn",
-        "SpawnSphere",
-        "player",
-        position=start,
-        rotationMatrix=matrix,
-        radius=1,
-        sphereWeight=1,
-    )
+def _player(level: str, scene: LevelRoad) -> list[Item]:
+    start = _start(scene)
     goal = scene.goal.round(DECIMALS).tolist()
-    yield _object(level, GOAL, "BeamNGWaypoint", "player", position=goal, scale=[4, 4, 4], drawDebug="0")
+    return [
+        _object(level, "spawn", "SpawnSphere", "player", **start, radius=1, sphereWeight=1),
+        _object(level, GOAL, "BeamNGWaypoint", "player", position=goal, scale=[4, 4, 4], drawDebug="0"),
+    ]
+
+
+def _start(scene: LevelRoad) -> Item:
+    """Returns the position and the rotation of the car at the start of the road."""
+    return {
+        "position": (scene.start + [0, 0, ABOVE_GROUND]).round(DECIMALS).tolist(),
+        "rotationMatrix": rotation(scene.heading, scene.grade).ravel().round(9).tolist(),
+    }
 
 
 def rotation(heading: float, grade: float) -> Array:
@@ -233,14 +228,12 @@ def scenario(name: str, title: str) -> tuple[Item, list[Item]]:
 def car(name: str, scene: LevelRoad, model: str) -> Item:
     """Returns the car at the start of the road, as an object for a prefab file. ``model`` names a car model
     of BeamNG."""
-    start = (scene.start + [0, 0, ABOVE_GROUND]).round(DECIMALS).tolist()
     return _object(
         name,
         "ego",
         "BeamNGVehicle",
         "drive_group",
-        position=start,
-        rotationMatrix=rotation(scene.heading, scene.grade).ravel().round(9).tolist(),
+        **_start(scene),
         dataBlock="default_vehicle",
         jBeam=model,
         autoEnterVehicle="false",

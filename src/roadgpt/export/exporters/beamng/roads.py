@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roadgpt.errors import ExportError
 from roadgpt.export.edges import line, normals
 from roadgpt.export.ego import goal_of, start_of
+from roadgpt.export.finite import finite
 from roadgpt.export.painted_lines import named_lines
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Edges, Profile, Road, World
@@ -115,56 +115,32 @@ def level_road(
     s = np.linspace(0.0, road.length, max(3, int(np.ceil(road.length / SPACING)) + 1))
     up = np.array([0.0, 0.0, lift])
     above = np.array([0.0, 0.0, rng.uniform(*ABOVE)])
-    middle = line(road, s, 0.0) + up
-    if not np.isfinite(middle).all():
-        raise ExportError("the road has a number that is not finite; check it before it is exported")
+    finite(line(road, s, 0.0))
     profile = world.profile_of(road)
-    ground = _ground(road, profile, s, world) + lift
-    meshes = _meshes(road, s, profile, rng, materials, prefix, ground, up)
-    decals = _decals(road, profile, s, up + above, materials, prefix)
-    first, goal = start_of(road), (goal_of(road) + road.length) / 2
-    return LevelRoad(
-        (*meshes, *decals),
-        road.at(first, world.profile_of(road).middle(first)) + up,
-        float(road.heading(first)),
-        float(road.grade(first)),
-        road.at(goal, world.profile_of(road).middle(goal)) + up,
-        ground,
-    )
-
-
-def _ground(road: Road, profile: Profile, s: Array, world: World) -> float:
-    """Returns the height of the ground in metres: just below the lowest point of the shoulders, or, without
-    shoulders, just below the floor of the world."""
-    if not profile.has_shoulders:
-        return world.site.z_floor - CLEAR
-    lowest = min(float(line(road, s, t)[:, 2].min()) for t in (0.0, *profile.rims(s)))
-    return lowest - UNDER - CLEAR
-
-
-def _meshes(
-    road: Road,
-    s: Array,
-    profile: Profile,
-    rng: np.random.Generator,
-    materials: Materials,
-    prefix: str,
-    ground: float,
-    up: Array,
-) -> list[Strip]:
-    """Returns the mesh of the shoulder, if there is one, and of the road."""
     banked = profile.superelevation_angle is not None
     across = np.pad(normals(road, s), ((1, 1), (0, 0)), mode="edge") if banked else None
-    strips = []
+    meshes, ground = [], world.site.z_floor - CLEAR + lift
     if profile.has_shoulders:
         rims = profile.rims(s)
+        lowest = min(float(line(road, s, t)[:, 2].min()) for t in (0.0, *rims))
+        ground = lowest - UNDER - CLEAR + lift
         below = _lengthened(_between(road, s, rims) + up) - np.array([0.0, 0.0, UNDER])
         depths = np.maximum(DEPTH, below[:, 2] - ground)
-        strips.append(_mesh(f"{prefix}verge", materials.verge, below, rims, across, depths))
+        meshes.append(_mesh(f"{prefix}verge", materials.verge, below, rims, across, depths))
     edges = profile.edges(s)
     shaken = _lengthened(_between(road, s, edges) + up)
     shaken[:, :2] += rng.uniform(-SHAKE, SHAKE, (len(shaken), 2))
-    return [*strips, _mesh(f"{prefix}road", materials.road, shaken, edges, across)]
+    depths = np.full(len(shaken), DEPTH)
+    meshes.append(_mesh(f"{prefix}road", materials.road, shaken, edges, across, depths))
+    first, goal = start_of(road), (goal_of(road) + road.length) / 2
+    return LevelRoad(
+        (*meshes, *_decals(road, profile, s, up + above, materials, prefix)),
+        road.at(first, profile.middle(first)) + up,
+        float(road.heading(first)),
+        float(road.grade(first)),
+        road.at(goal, profile.middle(goal)) + up,
+        ground,
+    )
 
 
 def _between(road: Road, s: Array, edges: Edges) -> Array:
@@ -191,16 +167,10 @@ def _decals(
 
 
 def _mesh(
-    name: str,
-    material: str,
-    points: Array,
-    edges: Edges,
-    across: Array | None,
-    depths: Array | None = None,
+    name: str, material: str, points: Array, edges: Edges, across: Array | None, depths: Array
 ) -> Strip:
-    deep = np.full(len(points), DEPTH) if depths is None else depths
     width = np.pad(edges.left - edges.right, 1, mode="edge")  # as many as the lengthened points
-    return Strip(name, material, np.column_stack([points, width, deep]), normals=across)
+    return Strip(name, material, np.column_stack([points, width, depths]), normals=across)
 
 
 def _lengthened(points: Array) -> Array:

@@ -36,13 +36,8 @@ class Crossings:
     """Creates the CommonRoad elements of a network's junctions."""
 
     def __init__(self, network: Network, lanelets: Sequence[Lanelet], first_free: int) -> None:
-        """Prepares the elements of a network's junctions.
-
-        Args:
-            network: The network.
-            lanelets: All lanelets of the network.
-            first_free: The first id for signs, lights and intersections.
-        """
+        """Prepares the elements for all lanelets of a network; ``first_free`` is the first id for signs,
+        lights and intersections."""
         self.network, self.first_free = network, first_free
         self.road_of = {each.id: each.road for each in lanelets}
         self.arms = [

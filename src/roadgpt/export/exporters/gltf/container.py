@@ -1,14 +1,19 @@
-"""Writes meshes as a binary glTF file: one buffer with all numbers, and JSON that describes its contents."""
+"""Writes meshes as a binary glTF file: one buffer with all numbers, and JSON that describes its contents.
 
+Textures are noise. They tile without a seam, and are the same for every road.
+"""
+
+import io
 import json
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
+from PIL import Image
 
-from roadgpt.export.exporters.gltf.grain import GRAINS, picture
 from roadgpt.geometry.curve import Array
 
 FLOAT, UINT = 5126, 5125  # component types
@@ -16,6 +21,7 @@ VERTICES, INDICES = 34962, 34963  # targets of buffer views
 # The picture repeats in both directions, and is filtered where it appears small.
 REPEATED = {"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # x stays, up is y, left is -z
+SIDE = 256  # pixels of a texture
 
 MATERIALS = {
     "asphalt": ((0.06, 0.06, 0.065, 1.0), 0.9),
@@ -25,6 +31,25 @@ MATERIALS = {
     "path": ((0.0, 0.30, 0.75, 1.0), 0.7),
 }
 """Base colour (linear red, green, blue, opacity) and roughness of each material, 0 to 1."""
+
+
+class Grain(NamedTuple):
+    """A texture that varies the brightness of a surface."""
+
+    metres: float
+    """Side length in metres of the square area that the texture covers."""
+    seed: int
+    octaves: tuple[tuple[int, float], ...]
+    """Layers of noise: for each, the number of noise cells along a side of the texture, and the amplitude
+    relative to the mean brightness."""
+
+
+GRAINS = {
+    "asphalt": Grain(5.0, 11, ((128, 0.34), (256, 0.30), (8, 0.10))),
+    "gravel": Grain(4.0, 17, ((64, 0.30), (256, 0.40))),
+    "grass": Grain(37.0, 23, ((24, 0.10), (64, 0.16), (256, 0.22))),
+}
+"""Textures by material. Their sizes and amplitudes are also used by the HTML page that replays a drive."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,10 +84,11 @@ def to_bytes(meshes: Sequence[TriangleMesh], near: Array) -> bytes:
     data = _scene(meshes, origin, used)
     content = bytearray()
     for mesh in meshes:
+        tile = GRAINS[mesh.material].metres if mesh.material in GRAINS else 1.0
         where = {
             "POSITION": _put(data, content, (mesh.points - origin) @ Y_UP.T, bounded=True),
             "NORMAL": _put(data, content, mesh.normals @ Y_UP.T),
-            "TEXCOORD_0": _put(data, content, mesh.texture / _tile(mesh.material)),
+            "TEXCOORD_0": _put(data, content, mesh.texture / tile),
         }
         indices = _put(data, content, mesh.triangles.reshape(-1))
         primitive = {"attributes": where, "indices": indices, "material": used.index(mesh.material)}
@@ -104,14 +130,9 @@ def _scene(meshes: Sequence[TriangleMesh], origin: Array, materials: Sequence[st
     }
 
 
-def _tile(material: str) -> float:
-    """Returns the length in metres that one repetition of a material's picture covers."""
-    return GRAINS[material].metres if material in GRAINS else 1.0
-
-
 def _image(data: dict[str, Any], content: bytearray, material: str) -> dict[str, Any]:
     """Appends a picture to the buffer, padded to a multiple of 4 bytes."""
-    packed = picture(material)
+    packed = _picture(material)
     view = {"buffer": 0, "byteOffset": len(content), "byteLength": len(packed)}
     data["bufferViews"].append(view)
     content += packed + b"\0" * (-len(packed) % 4)
@@ -150,3 +171,27 @@ def _material(name: str, grained: Sequence[str]) -> dict[str, Any]:
     if name in grained:
         looks["baseColorTexture"] = {"index": grained.index(name)}
     return {"name": name, "pbrMetallicRoughness": looks}
+
+
+@cache
+def _picture(name: str) -> bytes:
+    """Returns the texture of a material as a grey PNG file."""
+    grain = GRAINS[name]
+    levels = np.clip(np.round(225 * _noise(grain)), 0, 255).astype(np.uint8)
+    data = io.BytesIO()
+    Image.fromarray(levels).save(data, format="PNG", optimize=True)
+    return data.getvalue()
+
+
+def _noise(grain: Grain) -> Array:
+    """Returns the brightness of each pixel, 1 on average, as an array of shape (SIDE, SIDE)."""
+    rng = np.random.default_rng(grain.seed)
+    out = np.ones((SIDE, SIDE))
+    for cells, strength in grain.octaves:
+        knots = rng.random((cells, cells)) - 0.5
+        place = np.arange(SIDE) * cells / SIDE
+        low = place.astype(int)
+        share = place - low
+        rows = knots[low] * (1 - share[:, None]) + knots[(low + 1) % cells] * share[:, None]
+        out += strength * (rows[:, low] * (1 - share) + rows[:, (low + 1) % cells] * share)
+    return out

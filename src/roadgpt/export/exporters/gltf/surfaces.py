@@ -4,6 +4,8 @@ shoulder ______|____________:____________|______ shoulder   the slabs of road an
         |______|_________________________|______|           lines and path lie a little above them
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -24,6 +26,9 @@ PATH = 0.02  # m by which the path lies above the road
 PATH_WIDTH = 0.3  # m
 NAMES = {"left": "left edge line", "right": "right edge line", "middle": "middle line"}
 UP = np.array([0.0, 0.0, 1.0])
+
+_Band = tuple[Array, Array, Array, np.ndarray]
+"""Points, normals, texture coordinates and triangles, as in TriangleMesh."""
 
 
 def meshes(road: Road, world: World, poses: Poses | None = None) -> list[TriangleMesh]:
@@ -68,20 +73,19 @@ def _ground(road: Road, world: World, s: Array) -> TriangleMesh:
     low = np.stack([at, at + 1, at + columns + 1], axis=-1)
     high = np.stack([at, at + columns + 1, at + columns], axis=-1)
     normals = up / np.linalg.norm(up, axis=-1, keepdims=True)
-    parts = [TriangleMesh("", "grass", points, normals, points[:, :2], np.concatenate([low, high]))]
-    for bank in embankments(road, world.profile_of(road), s, land):
-        parts.append(_sloped(bank))
-    return _joined("ground", parts)
+    level: _Band = points, normals, points[:, :2], np.concatenate([low, high])
+    banks = embankments(road, world.profile_of(road), s, land)
+    return _joined("ground", "grass", [level, *map(_sloped, banks)])
 
 
-def _sloped(bank: Embankment) -> TriangleMesh:
-    """Returns the mesh of an embankment, with its front faces outwards."""
+def _sloped(bank: Embankment) -> _Band:
+    """Returns the surface of an embankment, with its front faces outwards."""
     left, right = (bank.foot, bank.edge) if bank.is_left else (bank.edge, bank.foot)
     along = np.gradient(bank.edge, axis=0)
     facing = np.cross(along, left - right)
     normals = facing / np.maximum(np.linalg.norm(facing, axis=-1, keepdims=True), 1e-9)
     points, both, _, triangles = _band(left, right, normals, np.zeros(len(left)), (0.0, 0.0))
-    return TriangleMesh("", "grass", points, both, points[:, :2], triangles)
+    return points, both, points[:, :2], triangles
 
 
 def _dashed(name: str, road: Road, profile: Profile, s: Array, index: int) -> TriangleMesh:
@@ -103,7 +107,7 @@ def _dashed(name: str, road: Road, profile: Profile, s: Array, index: int) -> Tr
         _band(left, right, up, at, (t, u))
         for left, right, up, at, t, u in zip(*(np.split(each, cuts) for each in columns), strict=True)
     ]
-    return _joined(name, [TriangleMesh("", "paint", *dash) for dash in dashes])
+    return _joined(name, "paint", dashes)
 
 
 def _path(road: Road, s: Array, world: World, poses: Poses | None) -> TriangleMesh:
@@ -150,16 +154,13 @@ def _slab(name: str, material: str, road: Road, s: Array, left: Array, right: Ar
         _end(low_a[0], low_b[0], b[0], a[0], np.array([left[0], right[0]])),
         _end(low_b[-1], low_a[-1], a[-1], b[-1], np.array([right[-1], left[-1]])),
     ]
-    return _joined(name, [TriangleMesh(name, material, *side) for side in sides])
-
-
-_Band = tuple[Array, Array, Array, np.ndarray]
+    return _joined(name, material, sides)
 
 
 def _band(
     left: Array, right: Array, normals: Array, along: Array, across: tuple[ArrayLike, ArrayLike]
 ) -> _Band:
-    """Returns points, normals, texture and triangles of a band between a left and a right edge."""
+    """Returns the band between a left and a right edge."""
     n = len(left)
     i = np.arange(n - 1)
     first = np.stack([n + i, n + i + 1, i + 1], axis=-1)
@@ -179,13 +180,12 @@ def _end(a: Array, b: Array, c: Array, d: Array, across: Array) -> _Band:
     return points, normals, texture, np.array([[0, 1, 2], [0, 2, 3]])
 
 
-def _joined(name: str, parts: list[TriangleMesh]) -> TriangleMesh:
-    """Merges several meshes of one material."""
-    shifts = np.cumsum([0, *(len(part.points) for part in parts)])
-    triangles = [part.triangles + shift for part, shift in zip(parts, shifts, strict=False)]
-    columns = [(part.points, part.normals, part.texture) for part in parts]
-    points, normals, texture = (np.concatenate(column) for column in zip(*columns, strict=True))
-    return TriangleMesh(name, parts[0].material, points, normals, texture, np.concatenate(triangles))
+def _joined(name: str, material: str, bands: Sequence[_Band]) -> TriangleMesh:
+    """Returns one mesh of several bands."""
+    shifts = np.cumsum([0, *(len(points) for points, *_ in bands)])
+    triangles = [band[3] + shift for band, shift in zip(bands, shifts, strict=False)]
+    points, normals, texture = (np.concatenate([band[k] for band in bands]) for k in range(3))
+    return TriangleMesh(name, material, points, normals, texture, np.concatenate(triangles))
 
 
 def _left(heading: Array) -> Array:

@@ -4,8 +4,8 @@ cubics.
 
 import numpy as np
 
+from roadgpt.export.exporters.opendrive.hermite import at, cubics
 from roadgpt.export.exporters.opendrive.plan import breaks_of
-from roadgpt.export.hermite import at, cubics
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import CubicProfile, GradeProfile, shifted
 from roadgpt.geometry.curve import Array
@@ -38,13 +38,8 @@ def rows(name: str, station: str, profile: CubicProfile, length: float) -> list[
     """Returns one XML element for each cubic of a profile, up to the end of the road; the first is at station
     0.
 
-    A cubic that is identical to the continuation of the previous one is left out.
-
-    Args:
-        name: Name of the elements.
-        station: Name of the attribute for the station at which a cubic begins.
-        profile: The cubics.
-        length: Length of the road in metres.
+    A cubic that is identical to the continuation of the previous one is left out. ``station`` names the
+    attribute for the station at which a cubic begins.
     """
     if profile.stations[0] == 0 and not any(1e-9 < s < length - 1e-9 for s in profile.stations):
         return [XmlElement(name, dict(zip((station, *"abcd"), (0.0, *profile.coefficients[0]), strict=True)))]

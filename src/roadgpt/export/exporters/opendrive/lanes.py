@@ -31,11 +31,15 @@ class RoadParts:
     _made: dict[object, XmlElement] = field(default_factory=dict)
     _level: dict[float, XmlElement] = field(default_factory=dict)
 
+    @property
+    def _speed_limit(self) -> dict[str, Value]:
+        return {"max": round(self.world.limits.speed_limit * 3.6, 6), "unit": "km/h"}
+
     @cached_property
     def road_type(self) -> XmlElement:
         """The element ``type`` with the speed limit."""
         made = XmlElement("type", {"s": 0, "type": "rural"}, is_shared=True)
-        made.add("speed", {"max": speed_kmh(self.world), "unit": "km/h"})
+        made.add("speed", self._speed_limit)
         return made
 
     def heights(self, road: Road) -> XmlElement:
@@ -51,11 +55,8 @@ class RoadParts:
     def lanes(self, road: Road, links: LaneLinks | None = None, is_inside: bool = False) -> XmlElement:
         """Returns the OpenDRIVE element ``lanes`` with all lanes, shoulders and road markings.
 
-        Args:
-            road: The road.
-            links: The links from lanes of the road to lanes of other roads; None if there are none.
-            is_inside: Whether the road is a connecting road in a junction. Lanes without a marking then get
-                the marking "none".
+        ``is_inside`` says whether the road is a connecting road in a junction. Lanes without a marking then
+        get the marking "none".
         """
         profile = self.world.profile_of(road)
         length = None if _is_constant(profile) else road.length
@@ -97,19 +98,17 @@ class RoadParts:
                 for name, other in (("predecessor", before), ("successor", after)):
                     if other is not None:
                         link.add(name, {"id": other})
-            yield made.extended(*widths, *_mark(lane.marking, is_inside), *self._rules(lane))
-
-    def _rules(self, lane: Lane) -> tuple[XmlElement, ...]:
-        """Returns the friction and the speed limit of a lane that is driven on."""
-        return self._driven_on if lane.kind == "driving" else ()
+            rules = self._driven_on if lane.kind == "driving" else ()
+            yield made.extended(*widths, *_mark(lane.marking, is_inside), *rules)
 
     @cached_property
     def _driven_on(self) -> tuple[XmlElement, ...]:
-        friction, limit = self.world.site.friction, speed_kmh(self.world)
+        """The friction and the speed limit of a lane that is driven on."""
+        friction = self.world.site.friction
         surface: dict[str, Value] = {"sOffset": 0, "friction": friction, "surface": "asphalt", "roughness": 0}
         return (
             XmlElement("material", surface, is_shared=True),
-            XmlElement("speed", {"sOffset": 0, "max": limit, "unit": "km/h"}, is_shared=True),
+            XmlElement("speed", {"sOffset": 0, **self._speed_limit}, is_shared=True),
         )
 
 
@@ -161,8 +160,3 @@ def _mark(kind: Marking, is_inside: bool) -> tuple[XmlElement, ...]:
     for t in (DOUBLE / 2, -DOUBLE / 2) if kind == "double" else (0,):
         made.add("line", {"length": length, "space": space, "tOffset": t, "sOffset": 0, "width": LINE})
     return (mark,)
-
-
-def speed_kmh(world: World) -> float:
-    """Returns the speed limit in km/h, rounded to six decimals."""
-    return round(world.limits.speed_limit * 3.6, 6)

@@ -15,7 +15,7 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any, List, Optional
 
-NAMES = Path(__file__).parent.parent
+NAMES = Path(__file__).parent.parent  # the packages with the competition's names, and this one
 PACKAGES = ("code_pipeline", "self_driving")
 ADVICE = "put a checkout of the competition's code on PYTHONPATH, or do without it"
 

@@ -1,0 +1,129 @@
+"""Writes the tables of a campaign; their bytes depend neither on the number of workers nor on interruptions.
+
+results.csv    one row per test: its proposal, its outcome, and its features
+cells.csv      one row per cell: its settings, the number of tests with each outcome, the number of bins of
+               the feature map that contain failures, and the farthest that the car was outside its
+               lane in any passed test
+"""
+
+import csv
+import json
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from roadgpt.campaign.behaviour import BOUNDS, cell_of
+from roadgpt.campaign.model import Cell
+from roadgpt.campaign.record import Record
+from roadgpt.campaign.rows import MEASURED, reading_store
+from roadgpt.campaign.status import CellStatus, cell_statuses
+from roadgpt.reading import json_of
+from roadgpt.run import seed_of
+from roadgpt.run.atomic import write_lines
+
+RESULTS, CELLS = "results.csv", "cells.csv"
+COLUMNS = (
+    "cell", "test", "batch", "origin", "seed", "outcome", "cause", "side", "length_m", "margin_m", "max_oob",
+    "beyond_m", "at_s_m", "description",
+)  # fmt: skip
+AXES, PER_AXIS = ("MAX_CURV", "STD_SA"), 25
+"""The feature map of a cell whose settings name no other: its axes, and the number of bins along each."""
+EVERY = (
+    f"SELECT tests.cell, tests.number, batch, origin, seed, given, {', '.join(MEASURED)}, description, "  # noqa: S608
+    "features FROM tests JOIN details USING (cell, number) "
+    "WHERE outcome IS NOT NULL ORDER BY tests.cell, tests.number"
+)
+OUTCOMES = {
+    "PASS": "passed",
+    "FAIL": "failed",
+    "INVALID": "invalid",
+    "ERROR": "in_error",
+    "VALID": "not_driven",
+}
+
+
+def write_tables(record: Record, folder: Path) -> None:
+    """Writes both tables, row by row; raises OSError."""
+    features = record.feature_names()
+    with reading_store(record.path):
+        write_lines(folder / RESULTS, _lines(record.stream(EVERY), features))
+    both = zip(record.cells(), cell_statuses(record), strict=True)
+    cells = [_cell_row(record, cell, status) for cell, status in both]
+    write_lines(folder / CELLS, map(_line, [tuple(cells[0]), *(tuple(row.values()) for row in cells)]))
+
+
+class _Echo:
+    """Stands in for a file, and returns what is written to it."""
+
+    def write(self, text: str) -> str:
+        """Returns the text."""
+        return text
+
+
+_line = csv.writer(_Echo(), lineterminator="\n").writerow
+
+
+def _lines(rows: Iterator[tuple[Any, ...]], features: Sequence[str]) -> Iterator[str]:
+    """Yields the lines of the table of results; numbers are copied as text, since there may be a million
+    rows."""
+    yield _line((*COLUMNS, *features))
+    written = _written(features)
+    for cell, number, batch, origin, seed, given, *rest, found in rows:
+        row = (cell, number, batch, origin, seed if given else seed_of(seed, number), *rest)
+        match = written.fullmatch(found)
+        if match is not None:
+            yield ",".join((_line(row)[:-1], *match.groups(""))) + "\n"
+        else:
+            values = {name: float(value) for name, value in json_of(found).items()}
+            yield _line((*row, *(values.get(name) for name in features)))
+
+
+def _written(features: Sequence[str]) -> re.Pattern[str]:
+    """Returns a pattern that matches features as the store has them, with one group for each number."""
+    each = (rf"(?:{re.escape(json.dumps(name))}: ([-+.\de]+)(?:, |(?=\}})))?" for name in features)
+    return re.compile(rf"\{{{''.join(each)}\}}")
+
+
+def _cell_row(record: Record, cell: Cell, status: CellStatus) -> dict[str, Any]:
+    counts = Counter(status.outcomes)
+    left = "SELECT count(*) FROM tests WHERE outcome = 'FAIL' AND side = 'left' AND cell = ?"
+    ((failed_left,),) = record.query(left, (cell.name,))
+    setup = cell.request.setup
+    return {
+        "cell": cell.name,
+        "description": cell.request.words,
+        "designer": setup.designer,
+        "driver": setup.driver,
+        "simulator": setup.simulator,
+        "generator": cell.generator,
+        "goal": cell.goal,
+        "seed": cell.request.seed,
+        "tests": counts.total(),
+        "valid": counts.total() - counts["INVALID"] - counts["ERROR"],
+        **{name: counts[outcome] for outcome, name in OUTCOMES.items()},
+        "failed_left": failed_left,
+        "failing_cells": _failing_cells(record, cell),
+        "least_margin_m": status.least_margin,
+        "passed_partly_outside": status.partly_outside,
+        "passed_mostly_outside": status.mostly_outside,
+        "passed_max_oob": status.max_oob,
+        "passed_beyond_m": status.beyond,
+        "friction": status.friction,
+    }
+
+
+def _failing_cells(record: Record, cell: Cell) -> int:
+    """Counts the bins of the feature map that contain failures: a measure of how much these differ."""
+    axes, cells = cell.settings.get("axes", AXES), cell.settings.get("cells", PER_AXIS)
+    if not isinstance(axes, (list, tuple)) or not isinstance(cells, int) or not {*axes} <= {*BOUNDS}:
+        axes, cells = AXES, PER_AXIS  # another generator's settings mean something else
+    failures = record.stream(
+        "SELECT features FROM tests JOIN details USING (cell, number) "
+        "WHERE tests.cell = ? AND outcome = 'FAIL'",
+        (cell.name,),
+    )
+    with reading_store(record.path):
+        places = {cell_of(json_of(features), axes, cells) for (features,) in failures}
+    return len(places - {None})

@@ -1,0 +1,11 @@
+"""Gives RoadGPT what its client for other interpreters (``names/roadgpt_client.py``) already has: messages as
+JSON Lines, one JSON value per line, and the generator of which RoadGPT's own is a subclass."""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # a type checker knows the file under the name that generators' interpreters use
+    from roadgpt_client import ClientTestGenerator, Message, received, send
+else:
+    from roadgpt.sbft.names.roadgpt_client import ClientTestGenerator, Message, received, send
+
+__all__ = ["ClientTestGenerator", "Message", "received", "send"]

@@ -1,0 +1,65 @@
+"""Descriptions that look like contradictions: what can be built is read with a doubt, the rest is refused."""
+
+import pytest
+
+from roadgpt.brief import read
+from roadgpt.brief.plan import plan
+from roadgpt.brief.readers.model.plan_choice import agrees_with_numbers
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
+from roadgpt.brief.refusal import ContradictionError
+
+HONEST = [
+    ("Bitte eine ebene Strecke ohne Rechtskurven, dafür mit drei Linkskurven.", "turn x3 left | flat"),
+    (
+        "Two left-handers, both level; only the 80 m straight between them climbs, at around 6 %, and nothing"
+        " else slopes.",
+        "turn left flat; straight up len=80 pct=6; turn left flat",
+    ),
+    (
+        "Downhill all the way. Or rather, uphill all the way, but never steeper than 6 percent, and with two"
+        " turns.",
+        "turn x2 | up steepest=..6",
+    ),
+]
+
+
+@pytest.mark.parametrize(("words", "meant"), HONEST)
+def test_what_only_looks_like_a_contradiction_is_read_with_a_doubt(words: str, meant: str) -> None:
+    brief = read(words)
+    assert plan(brief) == meant
+    assert brief.confidence <= 0.5
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "Four curves, all to the left, two of them to the right.",
+        "A road with exactly two turns: three to the left and one to the right.",
+        "Eine durchgehend ebene Straße ohne jedes Gefälle, die am Ende 10 m höher liegt als am Anfang.",
+        "I need five turns, all of them to the right, and the third one goes to the left.",
+    ],
+)
+def test_real_contradictions_are_refused_with_what_may_be_meant(words: str) -> None:
+    with pytest.raises(ContradictionError, match=r"contradicts itself about .*; or is this meant: --plan"):
+        read(words)
+
+
+@pytest.mark.parametrize(
+    ("words", "tokens", "line", "agrees"),
+    [
+        ("three turns, each with a radius of 30 m", ["turn", "x3", "|", "r=", "[1]"], "turn x3 | r=30", True),
+        ("three turns, each with a radius of 30 m", ["turn", "x3"], "turn x3", False),
+        (
+            "4 turns: 2 left and 1 right",
+            ["turn", "x2", "left", ";", "turn", "right"],
+            "turn x2 left; turn right",
+            False,
+        ),
+    ],
+)
+def test_a_plan_agrees_with_the_numbers_in_the_words(
+    words: str, tokens: list[str], line: str, agrees: bool
+) -> None:
+    draft = ScoredPlan(tuple(tokens), line, 0.0, (), agreement=0.0)
+    assert agrees_with_numbers(draft, slotted(words)) is agrees
