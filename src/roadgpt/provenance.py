@@ -36,8 +36,8 @@ class NameOrigins:
         self._files.setdefault(key, str(file))
 
     def untrusted_file(self, key: str) -> str | None:
-        """Returns the file that names the driver or server with this key; None if the user named it too,
-        or if no file names it.
+        """Returns the file in which this key names a driver or server; None if no file names one, or if the
+        user named the same one.
         """
         return None if key in self._named else self._files.get(key)
 

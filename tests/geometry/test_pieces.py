@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from roadgpt.geometry import Piece, PieceCurve, project, wrap_angle
 from roadgpt.geometry.curve import wrapped
-from roadgpt.geometry.pieces import joined
+from roadgpt.geometry.pieces import along_all, joined
 
 curvatures = st.floats(-1 / 14, 1 / 14)
 pieces = st.lists(st.builds(Piece, st.floats(0.5, 60), curvatures, curvatures), min_size=1, max_size=6)
@@ -42,6 +42,23 @@ def test_no_gap_between_pieces(curve: PieceCurve) -> None:
     joints = np.cumsum([p.length for p in curve.pieces])[:-1]
     gaps = np.hypot(*(curve.at(joints + 1e-9) - curve.at(joints - 1e-9)).T)
     assert np.all(gaps < 1e-8)
+
+
+@given(curves)
+def test_the_end_is_where_the_curve_is_after_its_length(curve: PieceCurve) -> None:
+    x, y, heading = curve.end
+    assert [x, y] == pytest.approx(curve.at(curve.length), abs=1e-9)
+    assert heading == pytest.approx(curve.heading(curve.length), abs=1e-12)
+
+
+@given(st.lists(curves, min_size=1, max_size=4))
+def test_curves_together_are_where_each_is_alone(several: list[PieceCurve]) -> None:
+    """Their ends and the joints of their pieces are among the stations."""
+    stations = [np.r_[np.linspace(0, c.length, 9), np.cumsum([p.length for p in c.pieces])] for c in several]
+    points, headings = along_all(several, stations)
+    pairs = list(zip(several, stations, strict=True))
+    assert points == pytest.approx(np.concatenate([c.at(s) for c, s in pairs]), abs=1e-9)
+    assert headings == pytest.approx(np.concatenate([c.heading(s) for c, s in pairs]), abs=1e-12)
 
 
 @given(st.floats(15, 200), st.floats(0.1, 3.0), st.floats(0, 1), st.floats(-13, 13))

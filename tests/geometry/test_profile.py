@@ -29,6 +29,14 @@ def test_heights_and_grades_have_no_jump(profile: GradeProfile) -> None:
         assert ask(at - 1e-9) == pytest.approx(ask(at + 1e-9), abs=1e-7)
 
 
+@given(profiles(), st.floats(-0.1, 1.1))
+def test_one_station_has_the_height_and_the_grade_of_many(profile: GradeProfile, share: float) -> None:
+    s = np.array([share * profile.stations[-1], *profile.stations])
+    found = np.array([profile.at(each) for each in s.tolist()])
+    assert found[:, 0] == pytest.approx(profile.height(s), abs=1e-12)
+    assert found[:, 1] == pytest.approx(profile.grade(s), abs=1e-12)
+
+
 def test_a_parabola_between_two_grades_is_the_textbook_one() -> None:
     """A crest from +4 % to -2 % over 60 m: its top lies 40 m in, 0.8 m up (y = g1 x - (g1-g2) x^2 / 2L)."""
     profile = GradeProfile(0.0, (0.0, 60.0), (0.04, -0.02))

@@ -6,7 +6,8 @@ from itertools import islice
 import numpy as np
 
 from roadgpt.brief.readers.model import WEIGHTS
-from roadgpt.learn.data import training_batches
+from roadgpt.brief.readers.model.wordpiece import WordPieces
+from roadgpt.learn.data import batches, examples, training_batches
 from roadgpt.learn.feed import fed_batches
 from roadgpt.learn.pair import Pair
 from roadgpt.learn.pretrained import read_vocabulary
@@ -19,8 +20,11 @@ SHARES = {"hand": 1.0}
 
 def test_batches_come_from_each_process_in_turn() -> None:
     pieces = read_vocabulary(WEIGHTS / "pieces.txt")
+    words = WordPieces(pieces)
     make = partial(training_batches, hand=HAND, pieces=pieces, shares=SHARES, size=4, pool=2)
     found = list(islice(fed_batches(2, 5, make), 4))
     for first in (0, 1):
-        for mine, theirs in zip(found[first::2], make(10 + first), strict=False):
+        seed = 10 + first
+        alone = batches(examples(seed, HAND, words, SHARES), 4, 2, seed)
+        for mine, theirs in zip(found[first::2], alone, strict=False):
             assert all(np.array_equal(*both) for both in zip(mine, theirs, strict=True))

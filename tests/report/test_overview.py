@@ -105,9 +105,9 @@ def test_an_outcome_of_another_tool_is_shown_as_it_is(tmp_path: Path) -> None:
 
 def test_the_cross_marks_the_first_record_outside(tmp_path: Path) -> None:
     """The competition's record has is_oob in the 13th place, and the position in the second."""
-    from roadgpt.report.overview import _entry
+    from roadgpt.report.overview import _thumbnail
 
     records = [[i / 10, [10.0 * i, 5.0, 1.0], *[0] * 10, i >= 3, 0, 0, 0, 0] for i in range(6)]
     path = tmp_path / "test.0002.json"
     path.write_text(json.dumps(test_file(1) | {"test_outcome": "FAIL", "execution_data": records}))
-    assert _entry(path).failed_at == (30.0, 5.0)
+    assert _thumbnail(path).failed_at == (30.0, 5.0)

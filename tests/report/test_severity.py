@@ -14,7 +14,7 @@ from roadgpt.drive import Columns
 from roadgpt.report import drawing
 from roadgpt.report.birds_eye import severities
 from roadgpt.report.canvas import OUTCOMES, SEVERE, outcome_of
-from roadgpt.report.overview import Thumbnail, _entry, overview
+from roadgpt.report.overview import Thumbnail, _thumbnail, overview
 from roadgpt.report.page.gallery import gallery
 from roadgpt.report.places import places_of
 from roadgpt.report.view.scene import scene
@@ -88,14 +88,14 @@ def test_the_overview_tells_them_apart(runs: dict[str, Run], tmp_path: Path) -> 
         write_run(run, tmp_path)
     files = sorted(tmp_path.glob("test.*.json"))
     for file, run in zip(files, runs.values(), strict=True):
-        entry = _entry(file)
+        entry = _thumbnail(file)
         assert run.verdict is not None
         assert entry.share == pytest.approx(run.verdict.max_oob)
         # the competition's own folders have no verdicts: then the records tell
         alone = tmp_path / "alone" / file.name
         alone.parent.mkdir(exist_ok=True)
         alone.write_text(json.dumps(json.loads(file.read_text())))
-        assert _entry(alone).graded == entry.graded == outcome_of(run)
+        assert _thumbnail(alone).graded == entry.graded == outcome_of(run)
     (page,) = overview(tmp_path)
     assert min(shares_of(page, SEVERE.values())) > 1e-4
 

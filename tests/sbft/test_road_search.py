@@ -105,6 +105,8 @@ def test_what_cannot_be_used_teaches_nothing() -> None:
         assert np.array_equal(silent.ask().control_points(), road.control_points())
     told.ask()
     told.tell("PASS", [], [])
+    silent.ask()
+    assert np.array_equal(told.ask().control_points(), silent.ask().control_points())
 
 
 def test_the_tolerance_is_that_of_the_executor() -> None:

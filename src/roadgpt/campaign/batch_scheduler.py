@@ -139,6 +139,8 @@ class BatchScheduler:
         return range(begin, last + 1)
 
     def designs(self, batch: int) -> tuple[Design, ...]:
-        """Returns the designs without junctions of the tests in a batch; all these tests must have ended."""
+        """Returns the designs of the tests in a batch, except those with junctions; all tests of the batch
+        must have ended.
+        """
         designs = (result.plain_design for result in self._results(self.batches[batch]))
         return tuple(design for design in designs if design is not None)

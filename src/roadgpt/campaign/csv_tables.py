@@ -17,8 +17,9 @@ from typing import Any
 from roadgpt.campaign.behaviour import BOUNDS, cell_of
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.rows import MEASURED, reading_store
+from roadgpt.campaign.rows import MEASURED
 from roadgpt.campaign.status import CellStatus, cell_statuses
+from roadgpt.campaign.store_check import reading_store
 from roadgpt.reading import json_of
 from roadgpt.run import seed_of
 from roadgpt.run.atomic import write_lines

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from roadgpt.campaign.model import Cell, NumberedTest, Result
-from roadgpt.campaign.rows import cell_text, reading_store
+from roadgpt.campaign.rows import cell_text
 from roadgpt.campaign.single_test import seed_of_driver
-from roadgpt.campaign.store_check import LATER, check_store
+from roadgpt.campaign.store_check import LATER, check_store, reading_store
 from roadgpt.campaign.store_tables import SCHEMA, Tables, refusals
 from roadgpt.chat import Spent
 from roadgpt.drive import Drive

@@ -2,19 +2,14 @@
 
 import json
 import math
-import sqlite3
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter, ValidationError
 
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.campaign.single_test import FinishedTest
-from roadgpt.errors import UsageError
 from roadgpt.reading import json_of
 from roadgpt.road import Design
 from roadgpt.run.atomic import to_bytes
@@ -28,33 +23,6 @@ SPENT = ("ended", "design_s", "drive_s", "tokens", "cost", "trace")
 """The columns of the table ``tests`` that depend on the clock or on the session."""
 RESULT = ", ".join(("tests.number, batch, seed, given", *MEASURED, "origin, design, description, features"))
 """The columns of a result in the joined tables ``tests`` and ``details``."""
-BUSY = {
-    sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_FULL, sqlite3.SQLITE_NOMEM,
-    sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_PERM, sqlite3.SQLITE_INTERRUPT,
-}  # fmt: skip
-"""SQLite's errors that do not mean that the store is damaged, such as a lock or a full disk."""
-
-
-def damaged(path: Path, why: object) -> UsageError:
-    """Returns the error to raise for a store with content that RoadGPT never writes."""
-    reason = " ".join(str(why).split())[:160]
-    return UsageError(
-        f"{path} is damaged, or not as roadgpt wrote it ({reason}); "
-        "start the campaign again in another folder"
-    )
-
-
-@contextmanager
-def reading_store(path: Path) -> Iterator[None]:
-    """Raises one clear error if code in a ``with`` block fails because a store's content is damaged."""
-    try:
-        yield
-    except sqlite3.Error as error:
-        if getattr(error, "sqlite_errorcode", 0) & 0xFF in BUSY:
-            raise
-        raise damaged(path, error) from error
-    except (ValueError, TypeError, LookupError, AttributeError, OverflowError) as error:
-        raise damaged(path, f"{type(error).__name__}: {error}") from error
 
 
 def design_text(design: "AnyDesign | None") -> str | None:
@@ -79,7 +47,7 @@ def _designs() -> "TypeAdapter[AnyDesign]":
     return TypeAdapter(AnyDesign)
 
 
-def test_values(ended: FinishedTest, now: float, trace: int | None) -> tuple[Any, ...]:
+def values_of_test(ended: FinishedTest, now: float, trace: int | None) -> tuple[Any, ...]:
     """Returns the values for the columns ``MEASURED`` and ``SPENT`` of a test that has ended now, where
     ``trace`` is the number of the file with the drives."""
     spent = ended.spent

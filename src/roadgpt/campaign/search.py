@@ -1,3 +1,5 @@
+"""What the generators that search share: their settings, and the class that they inherit from."""
+
 from collections.abc import Sequence
 from typing import Annotated, Literal
 

@@ -118,8 +118,8 @@ def _cell(record: Record, name: str) -> str:
 
 
 def chosen(place: Selection, choice: Choice | None) -> list[Selection]:
-    """Splits a Selection into Selections of one test each, in order: those of a Choice, or all tests whose
-    Runs can be read.
+    """Returns one Selection for each test of a Selection, in order: for the tests that the Choice selects or,
+    without one, for all tests whose Runs can be read.
 
     Raises:
         UsageError: a file cannot be read.

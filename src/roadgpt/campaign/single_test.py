@@ -117,8 +117,8 @@ def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], me
         if proposal.design is not None:
             return prove(proposal.design, proposal.seed, world, setup, task.number, cell.brief)
         assert cell.brief is not None, "only a cell with words lets its tests be drafted"
-        known = [design for block in earlier for design in block]
-        return perform(cell.brief, proposal.seed, world, setup, task.number, known, meter)
+        drafted_before = [design for block in earlier for design in block]
+        return perform(cell.brief, proposal.seed, world, setup, task.number, drafted_before, meter)
     except (DesignError, ReplyError) as error:
         spent = meter.spent.since(before)
         return replace(error_run(task, cell, str(error)), spent=spent if spent.calls else None)

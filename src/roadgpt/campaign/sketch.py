@@ -6,12 +6,15 @@ A sketch takes about a tenth of the time of a candidate, because no road is buil
 a search can compare many sketches, and build only the roads that it wants to drive.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt.brief.element import Elements
+from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
+from roadgpt.brief.ranges import Range
 from roadgpt.campaign.behaviour import behaviour_of_line
 from roadgpt.campaign.departure import RoadStations, stations_of
 from roadgpt.campaign.mutation import redrawn, varied
@@ -58,6 +61,11 @@ class Sketch(NamedTuple):
     """The road at the places where the car may leave its lane."""
 
 
+@lru_cache(maxsize=16)  # every sketch of a cell asks
+def _turns_of(brief: Brief) -> Range:
+    return outline(brief).turns
+
+
 def sketch(task: VariationTask) -> Sketch | None:
     """Returns the sketch that a task describes; None if the road to mutate could not be drafted, or if every
     road that was tried leaves the map, overlaps itself or has the wrong number of turns."""
@@ -69,7 +77,7 @@ def sketch(task: VariationTask) -> Sketch | None:
             parents = [redrawn(parents[0], rng, task.setting.world)]
     else:
         parents = [elements_of(design.segments) for design in task.parents]
-    asked = outline(task.setting.brief or NOBODY).turns
+    asked = _turns_of(task.setting.brief or NOBODY)
     for attempt in range(TRIES if parents else 0):
         numeric = task.numeric if attempt < BOLD else NUMERIC[1]
         elements = varied(parents, rng, task.setting.world, numeric, ROUNDS if task.kind == "wild" else 1)

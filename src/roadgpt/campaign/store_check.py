@@ -7,9 +7,12 @@ each of its rows is checked when it is read.
 """
 
 import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from roadgpt.campaign.rows import MEASURED, SPENT, damaged, reading_store
+from roadgpt.campaign.rows import MEASURED, SPENT
+from roadgpt.errors import UsageError
 
 TEXT = "typeof({0}) = 'text'"
 WHOLE = "(typeof({0}) = 'integer' AND {0} BETWEEN 0 AND 9223372036854775807)"
@@ -48,6 +51,33 @@ they are read.
 """
 META = ("finished", "plan", "versions")
 _checked: set[tuple[str, int]] = set()
+BUSY = {
+    sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_FULL, sqlite3.SQLITE_NOMEM,
+    sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_PERM, sqlite3.SQLITE_INTERRUPT,
+}  # fmt: skip
+"""SQLite's errors that do not mean that the store is damaged, such as a lock or a full disk."""
+
+
+def damaged(path: Path, why: object) -> UsageError:
+    """Returns the error to raise for a store with content that RoadGPT never writes."""
+    reason = " ".join(str(why).split())[:160]
+    return UsageError(
+        f"{path} is damaged, or not as roadgpt wrote it ({reason}); "
+        "start the campaign again in another folder"
+    )
+
+
+@contextmanager
+def reading_store(path: Path) -> Iterator[None]:
+    """Raises one clear error if code in a ``with`` block fails because a store's content is damaged."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        if getattr(error, "sqlite_errorcode", 0) & 0xFF in BUSY:
+            raise
+        raise damaged(path, error) from error
+    except (ValueError, TypeError, LookupError, AttributeError, OverflowError) as error:
+        raise damaged(path, f"{type(error).__name__}: {error}") from error
 
 
 def check_store(path: Path, db: sqlite3.Connection) -> None:

@@ -35,11 +35,11 @@ from roadgpt.campaign.rows import (
     design_text,
     detail_values,
     plain,
-    reading_store,
     result_of_row,
-    test_values,
+    values_of_test,
 )
 from roadgpt.campaign.single_test import FinishedTest, Task
+from roadgpt.campaign.store_check import reading_store
 from roadgpt.chat import Spent
 from roadgpt.errors import RoadGPTError, UsageError
 
@@ -88,7 +88,9 @@ class Tables:
     """The tables in a database: in the file of a campaign, or in memory (``FolderStore``)."""
 
     group_seconds = 1.0
-    """Longest time, s, that a result waits to be stored; if the process is killed, results of it are lost."""
+    """Longest time in seconds that a result waits to be stored; if the process is killed, the results of
+    this time are lost.
+    """
 
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
         self.path = path
@@ -307,7 +309,7 @@ class Tables:
             db.executemany(
                 f"UPDATE tests SET {_set(MEASURED + SPENT, '?')} WHERE cell = ? AND number = ?",  # noqa: S608
                 [
-                    (*test_values(one, now, trace and trace[0]), cell, one.result.number)
+                    (*values_of_test(one, now, trace and trace[0]), cell, one.result.number)
                     for cell, one in ended
                 ],
             )

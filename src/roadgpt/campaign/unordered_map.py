@@ -23,7 +23,7 @@ def unordered_map(function: Callable[[T], U], items: Sequence[T], workers: int, 
     as it is ready. The workers end when the caller stops the iteration, for example with Ctrl-C.
 
     Args:
-        function: a function at the top level of a module.
+        function: a function at the top level of a module, or a ``partial`` of one.
         items: its arguments; with several workers, items and results must be picklable.
         workers: number of processes; 1: the function runs in this process.
         log: the file that receives what worker processes print.

@@ -41,7 +41,7 @@ FOLDER = (DOTENV, PROJECT)
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 LINE = re.compile(r"\s*(?:export\s+)?([A-Za-z_]\w*)\s*=\s*(.*?)\s*")
 PREFIXES = ("ROADGPT_", "OPENAI_", "AZURE_OPENAI_")
-"""The first letters of all variables that are looked up."""
+"""The first letters of all variables that set something."""
 OF_OTHERS = "ROADGPT_NO_NUMBA"  # used in the room drive
 MOST_BYTES = 1_000_000  # of a settings file
 

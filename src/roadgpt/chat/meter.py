@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from math import ceil
+from typing import NamedTuple
 
 from roadgpt.chat.model import LEAST_REPLY, ChatSettings, Message, Spent, Usage
 from roadgpt.chat.prices import cost_of, price_of
@@ -78,7 +79,13 @@ class Meter:
         return ENDLESS if left >= 0 else 0
 
 
-_now: ContextVar[tuple[Meter | None, str]] = ContextVar("roadgpt_meter", default=(None, ""))
+class _Now(NamedTuple):
+    meter: Meter | None = None
+    occasion: str = ""
+
+
+NOBODY = _Now()
+_now: ContextVar[_Now] = ContextVar("roadgpt_meter", default=NOBODY)
 
 
 @contextmanager
@@ -90,7 +97,7 @@ def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
         occasion: a label for what the questions are about, such as "road 3"; recordings use it to
             distinguish a question about one road from the same question about another.
     """
-    before = _now.set((meter, occasion))
+    before = _now.set(_Now(meter, occasion))
     try:
         yield meter
     finally:
@@ -99,7 +106,7 @@ def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
 
 def occasion() -> str:
     """Returns the label of the current questions, as given to ``counting``; empty if there is none."""
-    return _now.get()[1]
+    return _now.get().occasion
 
 
 class Account:
@@ -115,7 +122,7 @@ class Account:
     @property
     def meter(self) -> Meter:
         """The meter of the current campaign; the Chat's own meter if there is no campaign."""
-        return _now.get()[0] or self._own
+        return _now.get().meter or self._own
 
     def count(self, model: str, usage: Usage, seconds: float) -> None:
         """Counts one answered request."""

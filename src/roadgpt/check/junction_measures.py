@@ -13,7 +13,8 @@ import numpy as np
 
 from roadgpt.brief.junction_ranges import side_of
 from roadgpt.brief.junctions import RAMPS, Control, JunctionKind, LaneKind, Side, Way
-from roadgpt.geometry import CubicProfile
+from roadgpt.geometry import CubicProfile, PieceCurve
+from roadgpt.geometry.pieces import along_all
 from roadgpt.network import Connection, Junction, Network, NetworkRoad, Passage, RoadEnd, Route
 from roadgpt.network.lane_design import LEAST_WIDTH
 
@@ -244,15 +245,15 @@ def _one_way_sides(
 
 def directions_of(network: Network, arms: Sequence[RoadEnd]) -> list[float]:
     """Returns the directions of arms out of their junctions, in degrees counter-clockwise from +x."""
-    found = []
+    plans, stations = [], []
     for end in arms:
         plan = network.road(end.road).road.plan
+        assert isinstance(plan, PieceCurve)
         far = min(OUT, plan.length)
-        (x, y), (to_x, to_y) = plan.at(
-            [0.0, far] if end.contact == "start" else [plan.length, plan.length - far]
-        )
-        found.append(math.degrees(math.atan2(to_y - y, to_x - x)))
-    return found
+        plans.append(plan)
+        stations.append(np.array([0.0, far] if end.contact == "start" else [plan.length, plan.length - far]))
+    points = along_all(plans, stations)[0] if plans else np.empty((0, 2))
+    return [math.degrees(math.atan2(y, x)) for x, y in (points[1::2] - points[::2]).tolist()]
 
 
 def _wrapped(angle: float) -> float:

@@ -1,4 +1,5 @@
-"""Measures how tightly lines beside a centre line bend, such as the middle or the edge of a lane."""
+"""Measures how tightly lines beside a centre line bend, such as the middle or the edge of a lane, and reports
+junctions where they bend too tightly."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator

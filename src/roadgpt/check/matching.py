@@ -2,8 +2,8 @@
 
 Turns are matched one to one and in order. A requested straight matches either the whole straight between two
 turns of the road, or a piece of it that goes up, is flat or goes down throughout. If several straights are
-requested between two turns, they are matched with such pieces in order, each piece at most once. Straights in
-a row that go the same way, but differ in grade, may also be parts of one piece.
+requested between two turns, they are matched with such pieces in order, each piece at most once. Requested
+straights in a row that all go up, or all go down, with different grades may also be parts of one piece.
 """
 
 from collections.abc import Callable, Sequence
@@ -198,7 +198,9 @@ def _ramps(wanted: tuple[Feature, ...]) -> list[list[Feature]]:
 
 
 def _fit(found: Measures, piece: MeasuredFeature, ramp: Sequence[Feature]) -> bool:
-    """Returns whether a piece, or as many parts of it as there are straights in the ramp, fit them."""
+    """Returns whether a piece fits the only straight of a ramp, or its parts fit its straights in order."""
+    if len(ramp) == 1:
+        return fits(piece, ramp[0])
     changes = [change_of_grade(one.grade, other.grade) for one, other in pairwise(ramp)]
     parts = found.cut(piece, [change for change in changes if change is not None])
     return len(parts) == len(ramp) and all(map(fits, parts, ramp))

@@ -157,6 +157,7 @@ class Measures:
         """Returns a piece of a straight, cut where its grade, over 10 m, changes in the ways given.
 
         With n changes there are n + 1 parts, or fewer if the piece does not have all the changes in order.
+        A part may be as short as one station.
         """
         first, last = (int(at) for at in np.searchsorted(self.line.s, (piece.start - 1e-6, piece.end - 1e-6)))
         local = _local_grades(self.line, first, last)

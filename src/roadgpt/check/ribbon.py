@@ -6,19 +6,21 @@ right[0] --- right[1] --- right[2]
 """
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Edges, Samples
 
 Indices = NDArray[np.intp]
 
-BLOCK = 8  # quads
-PORTION = 512  # quads whose pairs are found at once
-ROUNDING = 1e-6  # m
+Boxes = tuple[Array, Array]
+"""Lower and upper corners (x, y) of n bounding boxes, ``(n, 2)`` each."""
+
+BLOCK = 8  # quads per bounding box in the second comparison
+PORTION = 512  # quads per bounding box in the first comparison and per result; a multiple of BLOCK
 SLIVER = 1e-6  # m^2: a corner flatter than this does not count as convex
 
 
@@ -66,21 +68,56 @@ def near_pairs(quads: Array, reach: float, apart: int = 2) -> Iterator[tuple[Ind
     """Yields index pairs of quads whose bounding boxes are at most ``reach`` metres apart.
 
     The indices satisfy j - i >= ``apart``. Each item contains all such pairs for ``PORTION`` consecutive
-    values of j, in driving order, so a caller that needs only the first contact can stop early. Inside an
-    item, pairs of the same two ``BLOCK``s of quads follow each other, so that which one comes first is fixed.
+    values of j, in driving order, so a caller that needs only the first contact can stop early. To avoid
+    comparing all quads of a long road, bounding boxes of many quads are compared first.
     """
     low, high = quads.min(axis=1) - reach, quads.max(axis=1)
-    middles, far = (low + high) / 2, float((high - low).max()) + ROUNDING
-    tree = cKDTree(middles)
-    for first in range(0, len(quads), PORTION):
-        own = cKDTree(middles[first : first + PORTION])
-        found = own.sparse_distance_matrix(tree, far, p=np.inf, output_type="ndarray")
-        i, j = found["j"], found["i"] + first
-        i, j = i[j - i >= apart], j[j - i >= apart]
-        near = ((low[i] <= high[j]) & (low[j] <= high[i])).all(axis=1)
-        i, j = i[near], j[near]
-        order = np.lexsort((j, i, j // BLOCK, i // BLOCK))
-        yield i[order], j[order]
+    blocks, portions = _boxes(low, high, BLOCK), _boxes(low, high, PORTION)
+    for portion in range(len(portions[0])):
+        yield _pairs_of_portion(portion, portions, blocks, (low, high), apart)
+
+
+def _pairs_of_portion(
+    portion: int, portions: Boxes, blocks: Boxes, boxes: Boxes, apart: int
+) -> tuple[Indices, Indices]:
+    near = _meeting(portions, np.arange(portion + 1), np.array([portion]))[0]
+    per = PORTION // BLOCK
+    own = np.arange(portion * per, min((portion + 1) * per, len(blocks[0])))
+    theirs = (near[:, None] * per + np.arange(per)).ravel()
+    first, second = _meeting(blocks, theirs[theirs < len(blocks[0])], own)
+    worth = (first <= second) & ((second - first + 1) * BLOCK > apart)
+    first, second = first[worth], second[worth]
+    within = np.arange(BLOCK)
+    i = (first[:, None, None] * BLOCK + within[:, None]) + np.zeros(BLOCK, np.intp)
+    j = (second[:, None, None] * BLOCK + within) + np.zeros((BLOCK, 1), np.intp)
+    wanted = (j - i >= apart) & (j < len(boxes[0]))
+    i, j = i[wanted], j[wanted]
+    low, high = boxes
+    meet = _touch(low[i], high[i], low[j], high[j])
+    return i[meet], j[meet]
+
+
+def _boxes(low: Array, high: Array, size: int) -> Boxes:
+    """Returns the bounding boxes of every ``size`` consecutive boxes."""
+    starts = np.arange(0, len(low), size)
+    return np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
+
+
+def _meeting(boxes: Boxes, some: Indices, others: Indices) -> tuple[Indices, Indices]:
+    """Returns the pairs of boxes that touch: their indices from ``some``, and those from ``others``."""
+    low, high = boxes
+    touch = _touch(low[some][:, None], high[some][:, None], low[others], high[others])
+    one, other = np.nonzero(touch)
+    return some[one], others[other]
+
+
+def _touch(low: Array, high: Array, other_low: Array, other_high: Array) -> Any:
+    return (
+        (low[..., 0] <= other_high[..., 0])
+        & (other_low[..., 0] <= high[..., 0])
+        & (low[..., 1] <= other_high[..., 1])
+        & (other_low[..., 1] <= high[..., 1])
+    )
 
 
 def gaps(quads: Array, i: Indices, j: Indices) -> Array:

@@ -64,7 +64,7 @@ def converse() -> None:
                 break
             screen = Screen(roads)
             given = run.usual_values(meant or words, roads, is_plan=bool(meant))
-            run.carry_out(screen, meant or words, given)
+            run.carry_out(screen, meant or words, **given)
             if not _changed(screen):
                 break
         except RoadGPTError as error:

@@ -20,7 +20,8 @@ def progress(
 
     Yields a function, to be called with the number of steps that are done. Its keyword arguments change the
     bar: ``total`` is a new total, and ``rate`` is a text to show after the numbers. ``what`` are the steps in
-    the plural, such as 'faults'. Lines are printed (``has_lines``) only if standard error is no terminal.
+    the plural, such as 'faults'. ``total`` is None if it is unknown. If standard error is no terminal,
+    lines are printed instead of a bar or, without ``has_lines``, nothing.
     """
     if quiet or not (has_lines or sys.stderr.isatty()):
         yield lambda *_, **__: None

@@ -50,8 +50,8 @@ def roads_named(
 ) -> Iterator[NamedRoad]:
     """Yields the roads that the names refer to, each road once, and none whose key is in ``seen``.
 
-    Of a folder, it yields the roads of the choice; without a choice, all roads if ``takes_all``, else its
-    only road.
+    From a folder, it yields the roads that the choice selects. Without a choice, it yields all roads if
+    ``takes_all`` is true; otherwise the folder must hold exactly one road.
 
     Raises:
         UsageError: A name is wrong, no road of a folder matches the choice, or the only road of a folder is
@@ -72,7 +72,11 @@ def use_each(
     takes_all: bool = False,
 ) -> int:
     """Calls ``use`` for each road that the names refer to; a name or a road that cannot be used is reported
-    and skipped. Returns the exit status.
+    and skipped. Returns the exit status: 0, 1 if a format cannot hold a road, or 2 if a name or a road cannot
+    be used.
+
+    Raises:
+        PartError: a plug-in cannot be used, which would fail for every road.
     """
     errors, seen = list[RoadGPTError](), set[object]()
     for file in files:
@@ -88,6 +92,8 @@ def _reported(errors: list[RoadGPTError]) -> Iterator[None]:
     """Context manager: prints an error about a road instead of raising it, and appends it to ``errors``."""
     try:
         yield
+    except PartError:
+        raise
     except (UsageError, ExportError) as error:
         warn(error)
         errors.append(error)

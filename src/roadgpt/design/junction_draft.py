@@ -79,7 +79,7 @@ def drawn_junction(
             continue
         kerb = float(rng.uniform(*KERBS))
         drawn = JunctionDesign(
-            after=1,
+            after=1,  # whoever places the junction sets the number of segments before it
             kind=kind,
             take=taken + 1,
             control=clause.control or "none",

@@ -158,22 +158,22 @@ class NetworkSearch:
         # "five junctions, two of them forks" has no third fork
         named = {clause.kind for clause in self.brief.junctions}
         for number, clause in enumerate(self.brief.junctions):
-            place: PlaceDesign | None
+            drawn: PlaceDesign | None
             if clause.kind in LANE_KINDS:
                 around = self.brief.roads[number : number + 2]
-                place = drawn_change(with_side_of_change(self.brief.junctions, number), around)
+                drawn = drawn_change(with_side_of_change(self.brief.junctions, number), around)
             elif clause.kind in RAMPS:
-                place = drawn_ramp(clause, self._room_beside(number))
+                drawn = drawn_ramp(clause, self._room_beside(number))
             else:
                 asked = self._at_end_of_ramp(number) or self._with_ring_lanes(number)
-                place = drawn_junction(asked, self.rng, haste, named)
-            if place is None:
+                drawn = drawn_junction(asked, self.rng, haste, named)
+            if drawn is None:
                 is_small = clause.kind == "roundabout" and not (clause.take and clause.exit)
                 why = "such an island is too small for so many arms" if is_small else "it has no such ways on"
                 self.failed[f"{why} at a {clause.name}"] += 1
                 return None
             lanes = None if self._has_usual_lanes else self.lanes[number + 1]
-            found.append(place.model_copy(update={"lanes": lanes}))
+            found.append(drawn.model_copy(update={"lanes": lanes}))
         return found
 
     def _with_ring_lanes(self, number: int) -> JunctionClause:

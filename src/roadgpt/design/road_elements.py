@@ -24,11 +24,8 @@ from roadgpt.design.elements import straight, turn_segments
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Geometry, Segment, build
 
-MILLIMETRE, CENTIMETRE, TENTH = (
-    1000.0,
-    100.0,
-    10.0,
-)  # how distances, radii, and angles and inclines are written
+MILLIMETRE, CENTIMETRE = 1000.0, 100.0  # per metre: distances and radii are rounded to these
+TENTH = 10.0  # per degree and per percent
 FREE_STRAIGHT = Feature("straight", "straight")
 LEAST_SHARED = 1.5  # m of a segment within a turn, at least, for it to be a part of the turn
 LEAST = 1.0  # m that a straight segment keeps

@@ -100,8 +100,8 @@ def save(
         PartError: A format is unknown.
         UsageError: ``name`` cannot be the name of a file.
         ExportError: A format cannot hold this road, a program that an exporter needs is missing or fails, or
-            a file cannot be written. For a Route, if one format cannot hold junctions, or needs a route where
-            there is none, no file is written.
+            a file cannot be written. If the road is a Route, and one of the formats cannot hold junctions or
+            needs a way through the network where there is none, no file is written.
     """
     parts = [exporter_of(format_) for format_ in dict.fromkeys(formats)]
     if not name or name == ".." or Path(name).name != name:

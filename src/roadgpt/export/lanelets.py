@@ -157,7 +157,8 @@ class _NumberedLanelets:
         if not 0 <= at < len(lanes):
             return None
         other, (right, left) = lanes[at], section[lane]
-        if (left if step > 0 else right) not in section[other]:  # behind a median
+        # by identity: neighbours share the very bound, unless there is a median between them
+        if (left if step > 0 else right) not in section[other]:
             return None
         return self.ids[road, n, other], profile.leads_along(other) == profile.leads_along(lane)
 

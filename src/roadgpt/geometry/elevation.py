@@ -66,6 +66,17 @@ class GradeProfile:
         z = self.z0 + before(steps * (g[1:] + g[:-1]) / 2)
         return s[:-1], z, g[:-1], (g[1:] - g[:-1]) / steps
 
+    def at(self, s: float) -> tuple[float, float]:
+        """Returns the height in metres and the grade as a ratio at one station, without the overhead of
+        arrays.
+        """
+        last = max(bisect_right(self.stations[:-1], s) - 1, 0)
+        knots = self.knots[: last + 2]
+        rises = [(s1 - s0) * (g1 + g0) / 2 for (s0, g0), (s1, g1) in pairwise(knots[:-1])]
+        (start, grade), (end, after) = knots[-2:]
+        u, change = s - start, (after - grade) / (end - start)
+        return self.z0 + sum(rises) + u * (grade + u * change / 2), grade + u * change
+
     def height(self, s: ArrayLike) -> Array:
         """Returns heights in metres."""
         u, i = placed(s, self._table[0])

@@ -76,6 +76,21 @@ class PieceCurve:
     def _lengths(self) -> Array:
         return np.array([piece.length for piece in self.pieces])
 
+    @property
+    def end(self) -> tuple[float, float, float]:
+        """x and y in metres and the heading in radians at the end, as ``at`` and ``heading`` give them, but
+        computed faster.
+        """
+        s = turned = across = along = 0.0
+        for piece in self.pieces[:-1]:
+            dx, dy = _step(piece, piece.length, self.heading0 + turned)
+            across, along = across + dx, along + dy
+            s, turned = s + piece.length, turned + piece.length * (piece.k0 + piece.k1) / 2
+        last, u, heading = self.pieces[-1], self.length - s, self.heading0 + turned
+        dx, dy = _step(last, u, heading)
+        dk = (last.k1 - last.k0) / last.length
+        return self.x + across + dx, self.y + along + dy, heading + u * (last.k0 + u * dk / 2)
+
     def at(self, s: ArrayLike) -> Array:
         """Returns points of shape ``(..., 2)`` in metres at stations ``s`` of shape ``(...)``."""
         u, i = placed(s, self._table[0])
@@ -99,6 +114,33 @@ class PieceCurve:
         return np.asarray(k0[i] + u * dk[i])
 
 
+def along_all(curves: Sequence[PieceCurve], stations: Sequence[Array]) -> tuple[Array, Array]:
+    """Returns points ``(n, 2)`` in metres and headings ``(n,)`` in radians on one or more curves, each at its
+    own stations in metres, one curve after another. They are the same as those of ``at`` and ``heading``, but
+    are computed faster.
+    """
+    counts = [len(curve.pieces) for curve in curves]
+    is_piece = np.arange(max(counts)) < np.array(counts)[:, None]
+    rows = np.zeros((3, *is_piece.shape))
+    rows[0] = 1.0  # m, of what fills up the rows of curves with fewer pieces
+    rows[:, is_piece] = np.array([(p.length, p.k0, p.k1) for curve in curves for p in curve.pieces]).T
+    length, k0, k1 = rows
+    x, y, heading = np.array([(curve.x, curve.y, curve.heading0) for curve in curves]).T[..., None]
+    dk = (k1 - k0) / length
+    heading = heading + before(length * (k0 + k1) / 2)
+    dx, dy = advance(length, heading, k0, dk, length)
+    x, y = x + before(dx), y + before(dy)
+    start = np.where(is_piece, before(length), np.inf)
+    s, curve = np.concatenate(stations), np.repeat(np.arange(len(curves)), [len(each) for each in stations])
+    piece = np.maximum((start[curve] <= s[:, None]).sum(axis=1) - 1, 0)
+    x, y, heading, k0, dk, length, start = (
+        each[curve, piece] for each in (x, y, heading, k0, dk, length, start)
+    )
+    u = s - start
+    dx, dy = advance(u, heading, k0, dk, length)
+    return np.stack((x + dx, y + dy), axis=-1), heading + u * (k0 + u * dk / 2)
+
+
 def advance(u: Array, heading: Array, k: Array, dk: Array, length: Array) -> tuple[Array, Array]:
     """Returns the displacements along x and y in metres after ``u`` metres on a line, an arc or a clothoid
     that starts with a heading in radians and a curvature ``k`` in 1/m, which changes by ``dk`` per metre. The
@@ -113,6 +155,17 @@ def advance(u: Array, heading: Array, k: Array, dk: Array, length: Array) -> tup
             if some.any():
                 dx[some], dy[some] = integral(u[some], heading[some], k[some], dk[some])
     return dx, dy
+
+
+def _step(piece: Piece, u: float, heading: float) -> tuple[float, float]:
+    """Returns the displacements after ``u`` metres on one piece, as ``advance`` does but faster."""
+    dk = (piece.k1 - piece.k0) / piece.length
+    bend = abs(dk) * piece.length**2
+    if 0 < bend < ALMOST_ARC:
+        dx, dy = _quadrature(*(np.array([value]) for value in (u, heading, piece.k0, dk)))
+        return float(dx[0]), float(dy[0])
+    x, y = _fresnel(u, heading, piece.k0, dk) if bend else _arc(u, heading, piece.k0)
+    return float(x), float(y)
 
 
 def _arc(u: Number, heading: Number, k: Number) -> tuple[Number, Number]:

@@ -1,3 +1,6 @@
+"""A curriculum of descriptions: it advances to the next description when the agent reaches the goal often
+enough."""
+
 from collections import deque
 from collections.abc import Sequence
 from typing import Any

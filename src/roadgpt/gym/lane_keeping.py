@@ -1,3 +1,5 @@
+"""The environment ``roadgpt/LaneKeeping-v0``: drive a road that meets a description, and stay in the lane."""
+
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -100,8 +100,9 @@ def recounted(pair: Pair, rng: np.random.Generator) -> Pair | None:
 
 
 def joined(one: Pair, other: Pair, rng: np.random.Generator) -> Pair | None:
-    """Returns a pair that joins the roads of two pairs into one road; None if they have refusals,
-    requirements for the whole road or junctions, are in a language without phrases, or cannot be joined.
+    """Returns a pair that joins the roads of two pairs into one road. Returns None if either pair is a
+    refusal, has junctions or requirements for the whole road, if there are no phrases in its language, or if
+    the two cannot be joined.
     """
     if one.lang not in LANGUAGES:
         return None

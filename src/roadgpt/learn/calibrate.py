@@ -5,7 +5,7 @@ often than its plan is the labelled one, because most texts can be labelled in s
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from roadgpt.learn.data import NETWORK
 from roadgpt.learn.pair import Pair, normal_change
 from roadgpt.learn.told_prompts import ToldPrompt, is_right
 
-Settings = dict[str, Any]
 MOST_WRONGLY = 0.012  # share of valid held-back descriptions that may be refused; higher for new descriptions
 STEPS = 30
 CAUTION = 2.0
@@ -32,7 +31,24 @@ CAUTION_OF_ROADS = 3.3
 PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
 
 
-def calibrated(reader: ModelReader, pairs: Sequence[Pair], prompts: Sequence[ToldPrompt] = ()) -> Settings:
+class EnsembleCalibration(TypedDict):
+    """What is fitted to the readings of an ensemble."""
+
+    refuse_from: float
+    """The lowest probability at which a refusal is accepted."""
+    confidence: dict[str, float]
+    """The weights of the confidence model."""
+
+
+class Calibration(EnsembleCalibration):
+    """The content of ``settings.json``: what is fitted to descriptions of single roads, and to the rest."""
+
+    changes: dict[str, float]
+    """The weights of the confidence model for change requests."""
+    routes: EnsembleCalibration | None
+
+
+def calibrated(reader: ModelReader, pairs: Sequence[Pair], prompts: Sequence[ToldPrompt] = ()) -> Calibration:
     """Returns the content of ``settings.json``, fitted to ``pairs`` and ``prompts``, on which the networks
     must not have been trained: the calibration for descriptions of roads, the weights of the confidence model
     for "changes", and the calibration for descriptions of "routes".
@@ -55,7 +71,7 @@ def calibrated(reader: ModelReader, pairs: Sequence[Pair], prompts: Sequence[Tol
     }
 
 
-def calibrated_routes(reader: ModelReader, routes: Ensemble, pairs: Sequence[Pair]) -> Settings:
+def calibrated_routes(reader: ModelReader, routes: Ensemble, pairs: Sequence[Pair]) -> EnsembleCalibration:
     """Returns the calibration of the ensemble for routes, fitted to the valid pairs that describe routes."""
     of_routes = [pair for pair in pairs if _is_route(pair) and not pair.is_refusal]
     return calibrated_ensemble(reader, routes, of_routes, CAUTION)
@@ -63,7 +79,7 @@ def calibrated_routes(reader: ModelReader, routes: Ensemble, pairs: Sequence[Pai
 
 def calibrated_ensemble(
     reader: ModelReader, ensemble: Ensemble, pairs: Sequence[Pair], caution: float = 1.0
-) -> Settings:
+) -> EnsembleCalibration:
     """Returns the calibration of an ensemble, fitted to valid descriptions of the kind that this ensemble
     reads: the lowest probability at which a refusal is accepted, and the weights of the confidence model, in
     whose fit a wrong reading counts ``caution`` times and a right one once.

@@ -150,10 +150,10 @@ def examples(
 
 
 def is_for_roads_only(pair: Pair) -> bool:
-    """Returns whether a pair is suitable only for the networks that read single roads: its plan of a single
-    road names a part of routes, such as a junction, in ``beside(...)`` or in a refusal. If a network for
-    single roads writes such a name, the description is passed on to the network for routes, which must
-    therefore not learn these names.
+    """Returns whether only the networks for single roads may be trained with a pair. This is so if its plan
+    is for a single road, but names something that only routes have, such as a junction, in ``beside(...)`` or
+    in a refusal. With such a name, a network for single roads passes the description on to the network for
+    routes, which must not learn to do so.
     """
     if pair.is_change or pair.family.startswith(NETWORK):
         return False

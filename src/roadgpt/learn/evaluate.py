@@ -42,7 +42,7 @@ class Reading:
 
 
 class Score(NamedTuple):
-    """The number of readings, and shares from 0 to 1.
+    """The number of readings, and shares from 0 to 1, in the order of the columns of ``HEAD``.
 
     ``exact`` is the share of all readings that are right. ``refused_rightly`` is the share of refused ones
     among the descriptions that should be refused. The other shares refer to valid descriptions:

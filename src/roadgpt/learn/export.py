@@ -182,7 +182,7 @@ def _settings(
     held_back: Sequence[Pair],
     kept: Path | None,
     prompts: Sequence[ToldPrompt],
-) -> dict[str, Any]:
+) -> Mapping[str, Any]:
     """Returns the calibration of the reader in ``folder``; what was not trained keeps its calibration."""
     reader = ModelReader(folder)
     if kept is None:

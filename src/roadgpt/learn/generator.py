@@ -126,6 +126,7 @@ def draw(
     phrases: str = "",
     plan_of: Callable[[str], str | None] = assembled,
     family: str = "generated",
+    is_change: bool = False,
 ) -> Pair | None:
     """Returns a random text for a symbol of a grammar with further ``phrases`` (see ``grammar_of``), and the
     plan that ``plan_of`` makes of what its rules wrote. Returns None if they make no sense, or if the text is
@@ -143,7 +144,7 @@ def draw(
     typed = noisy(text, language, rng)
     if not 1 <= len(text) <= LONGEST or is_held_out(text) or is_held_out(typed):
         return None
-    return Pair(typed, plan, f"{family}-{language}", language, family == "changes")
+    return Pair(typed, plan, f"{family}-{language}", language, is_change)
 
 
 def draw_specified(language: str, rng: np.random.Generator) -> Pair | None:
@@ -159,5 +160,5 @@ def _changes_of(raw: str) -> str:
     return plan if plan.startswith("!") else normal_change(plan)
 
 
-draw_change = partial(draw, phrases="changes", plan_of=_changes_of, family="changes")
+draw_change = partial(draw, phrases="changes", plan_of=_changes_of, family="changes", is_change=True)
 """Draws a change request."""

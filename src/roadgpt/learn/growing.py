@@ -36,16 +36,15 @@ def deepened(weights: Mapping[str, Tensor], layers: int) -> dict[str, Tensor]:
             f"give a multiple of {present} with --encoder-layers"
         )
     out = _with_copies(weights, ENCODER, times)
-    for layer in range(layers):
-        if layer % times == 0:
-            last = f"{ENCODER}{layer}.{NORMS[-1]}"
-            scale, shift = out[f"{last}weight"], out[f"{last}bias"]
-            mean = shift.mean()
-            spread = (scale.square().mean() + (shift - mean).square().mean()).sqrt()
-            continue
-        for norm in NORMS:
-            out[f"{ENCODER}{layer}.{norm}weight"] = torch.full_like(scale, float(spread))
-            out[f"{ENCODER}{layer}.{norm}bias"] = torch.full_like(shift, float(mean))
+    for first in range(0, layers, times):
+        last = f"{ENCODER}{first}.{NORMS[-1]}"
+        scale, shift = out[f"{last}weight"], out[f"{last}bias"]
+        mean = shift.mean()
+        spread = (scale.square().mean() + (shift - mean).square().mean()).sqrt()
+        for copy in range(first + 1, first + times):
+            for norm in NORMS:
+                out[f"{ENCODER}{copy}.{norm}weight"] = torch.full_like(scale, float(spread))
+                out[f"{ENCODER}{copy}.{norm}bias"] = torch.full_like(shift, float(mean))
     return out
 
 

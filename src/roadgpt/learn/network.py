@@ -195,7 +195,7 @@ def layers_of(weights: Mapping[str, Tensor], part: str) -> int:
 def network_of(weights: Mapping[str, Tensor], pieces: int, tokens: int) -> ReaderNetwork:
     """Returns the network with these weights, for so many word pieces and tokens."""
     encoder, decoder = (layers_of(weights, part) for part in (ENCODER, DECODER))
-    reader = ReaderNetwork(NetworkSizes(pieces, tokens, layers=encoder, decoder_layers=decoder))
+    reader = ReaderNetwork(NetworkSizes(pieces=pieces, tokens=tokens, layers=encoder, decoder_layers=decoder))
     reader.load_state_dict(weights)
     return reader
 

@@ -94,14 +94,16 @@ def route_of(parts: Sequence[Pair], language: str, rng: np.random.Generator) -> 
     if len(text) > LONGEST:
         return None
     try:
-        plan = _checked(" // ".join(part.plan for part in parts))
+        plan = _standard_route(" // ".join(part.plan for part in parts))
     except (Discarded, RoadGPTError):
         return None
     return Pair(text, plan, "networks/routes", language)
 
 
-def _checked(line: str) -> str:
-    """Returns a plan in standard form; raises as ``assembled_route`` does."""
+def _standard_route(line: str) -> str:
+    """Returns a plan of a route in standard form. Raises BriefError if the plan is impossible, and Discarded
+    if it has too many junctions.
+    """
     brief = read_plan(line)
     check(brief, map_size=None)
     if len(brief.junctions) > MOST_JUNCTIONS:
@@ -160,7 +162,7 @@ def assembled_route(raw: str) -> str:
     if everywhere:
         parts = _on_every_road(parts, everywhere)
     line = " // ".join(parts)
-    return _checked(f"{line} || {' '.join(dict.fromkeys(of_all))}" if of_all else line)
+    return _standard_route(f"{line} || {' '.join(dict.fromkeys(of_all))}" if of_all else line)
 
 
 def _part(raw: str) -> str:

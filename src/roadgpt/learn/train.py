@@ -96,8 +96,8 @@ def train(
     Args:
         folder: the folder of the training.
         pieces: the vocabulary of word pieces.
-        weights: ``model.safetensors`` of all-MiniLM-L6-v2, or the folder of an exported reader; None starts
-            from random weights.
+        weights: ``model.safetensors`` of all-MiniLM-L6-v2, or the folder of an exported reader; None if the
+            folder has a checkpoint.
         hand: hand-written pairs for training.
         plan: settings of the training.
         report: called with a progress line from time to time.
@@ -140,7 +140,11 @@ def train(
 def _started(
     kept: dict[str, torch.Tensor] | None, weights: Path | None, pieces: Sequence[str], plan: TrainingSettings
 ) -> ReaderNetwork:
-    """Returns the network with the weights of a checkpoint, of an exported reader or of MiniLM."""
+    """Returns the network with the weights of a checkpoint, of an exported reader or of MiniLM.
+
+    Raises:
+        LearnError: there are no such weights.
+    """
     tokens = len(TOKENS if plan.is_of_routes else OF_ROADS)
     if kept is None and weights and weights.is_dir():
         exported = exported_weights(weights, plan.ending)
@@ -149,10 +153,11 @@ def _started(
         kept = deepened(kept, plan.encoder_layers or layers_of(kept, ENCODER))
     if kept:
         return network_of(kept, len(pieces), tokens)
+    if weights is None:
+        raise LearnError("a new training starts from --weights, or from the reader that is --installed")
     layers = plan.decoder_layers or NetworkSizes().decoder_layers
-    reader = ReaderNetwork(NetworkSizes(len(pieces), tokens, decoder_layers=layers))
-    if weights:
-        load_minilm(reader, weights, pieces)
+    reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=tokens, decoder_layers=layers))
+    load_minilm(reader, weights, pieces)
     return reader
 
 

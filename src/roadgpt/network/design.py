@@ -162,7 +162,9 @@ PlaceDesign = JunctionDesign | RampDesign | LanesChangeDesign
 
 
 def ends_route(place: PlaceDesign) -> bool:
-    """Returns whether the route ends at a place because it turns back there onto the road of arrival."""
+    """Returns whether the car would turn back at a place onto the road on which it came; the route then ends
+    there.
+    """
     return isinstance(place, JunctionDesign) and place.taken is None
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from roadgpt.brief.junction_ranges import side_of
 from roadgpt.brief.junctions import Control
 from roadgpt.errors import UsageError
+from roadgpt.geometry import GradeProfile, PieceCurve
 from roadgpt.geometry.curve import wrapped
 from roadgpt.network.arm_design import ArmDesign
 from roadgpt.network.building import Builder, Stub, edges_at
@@ -88,8 +89,10 @@ class _RouteGrowth:
     def _end(self) -> NetworkPose:
         """Returns the pose at the end of the road on which the route has arrived."""
         arrival = self.builder.roads[self.passed[-1]].road
-        x, y, z = arrival.at(arrival.length).tolist()
-        return NetworkPose((x, y, z), float(arrival.heading(arrival.length)))
+        assert isinstance(arrival.plan, PieceCurve)
+        assert isinstance(arrival.elevation, GradeProfile)
+        x, y, heading = arrival.plan.end
+        return NetworkPose((x, y, arrival.elevation.at(arrival.length)[0]), heading)
 
     def pass_place(self, number: int, place: PlaceDesign) -> None:
         """Builds a place of the design, with its arms and the road on which the route goes on."""

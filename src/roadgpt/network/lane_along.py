@@ -49,7 +49,7 @@ Term = tuple[float, Width]
 def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
     """Returns the lane that a route follows on a road, which leads in the direction of the route, with
     traffic on the right. ``lanes`` are the indices of the lanes followed one after another, from 0 at the
-    centre line.
+    centre line; each differs by 1 from the one before.
     """
     profile = road.profile
     assert profile is not None

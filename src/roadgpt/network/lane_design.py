@@ -94,6 +94,7 @@ class LanesChangeDesign(FrozenFields):
 
 def narrow_part(taper: float, width: float) -> float:
     """Returns the length in metres in which a lane that ends or begins is narrower than ``LEAST_WIDTH``. Over
-    ``taper`` metres, its width changes between 0 and ``width`` metres as a cubic that is level at both ends.
+    ``taper`` metres, its width changes between 0 and ``width`` metres, which are ``LEAST_WIDTH`` or more, as
+    a cubic that is level at both ends.
     """
     return taper * (0.5 - math.sin(math.asin(1 - 2 * LEAST_WIDTH / width) / 3))

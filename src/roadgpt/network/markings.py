@@ -16,7 +16,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.network.building import width_at
 from roadgpt.network.network import Arm, Contact, Junction, Network, NetworkRoad, RoadEnd, Roundabout
 from roadgpt.network.passages import CROSSED, CROSSWALK, STOP_LINE, line_before
-from roadgpt.network.paved import Area, ribbon, stations_of
+from roadgpt.network.paved import Area, ribbons, stations_of
 from roadgpt.road.profile import DASH, GAP, LINE
 
 BLOCK, BLOCK_GAP = 0.5, 0.25  # m, lengths of a block and of a gap in a give-way line (Germany, RMS-1)
@@ -234,7 +234,7 @@ def _around(network: Network, junction: Junction, arm: Arm, ring: Roundabout) ->
     x, y, z = ring.centre
     circle = shapely.Point(x, y).buffer(ring.radius + ring.width + STOP_LINE / 2, quad_segs=CIRCLE).exterior
     # traffic keeps to its side of the arm: only the part there is crossed by entering traffic
-    lane, *others = (ribbon(network.road(each.road).road) for each in (onto[0], *off))
+    lane, *others = ribbons([network.road(each.road).road for each in (onto[0], *off)])
     for other in others:
         lane = shapely.difference(lane, other)
     pieces = _pieces(shapely.intersection(circle, lane.buffer(-STOP_LINE / 2)))

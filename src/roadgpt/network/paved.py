@@ -5,6 +5,7 @@ All roads here have a profile, a reference line of pieces, and no superelevation
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from roadgpt.geometry import CubicProfile, PieceCurve
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.pieces import along_all
 from roadgpt.road import Road
 
 if TYPE_CHECKING:
@@ -36,7 +38,7 @@ def areas_of(roads: Sequence[Road]) -> NDArray[np.object_]:
     """Returns the area of the carriageway of each road, as a valid polygon without edges that cross."""
     import shapely
 
-    areas = np.array([ribbon(road) for road in roads], object)
+    areas = ribbons(roads)
     # where a road turns more tightly than it is wide, its ribbon crosses itself
     crossed = ~shapely.is_valid(areas)
     areas[crossed] = shapely.make_valid(areas[crossed])
@@ -97,21 +99,47 @@ def without_small_islands(whole: Area, nodes: Sequence[Area], least: Sequence[fl
 
 
 def ribbon(road: Road) -> "Polygon":
-    """Returns the polygon of the carriageway of a road, beginning with the right edge.
+    """Returns the polygon of the carriageway of one road; see ``ribbons``."""
+    found: Polygon = ribbons([road])[0]
+    return found
+
+
+def ribbons(roads: Sequence[Road]) -> NDArray[np.object_]:
+    """Returns one polygon for each road: its carriageway, beginning with the right edge.
 
     Both ends of the line between the directions are corners of the polygon, because lanes of other roads may
     have a corner there. Without them, rounding would leave a gap between the end of the road and such a lane.
     """
     import shapely
 
-    assert road.profile is not None
-    s = stations_of(road)
-    centre, heading = road.plan.at(s), road.plan.heading(s)
+    if not roads:
+        return np.array([], object)
+    stations = [stations_of(road) for road in roads]
+    centre, heading = along_all([_pieces_of(road) for road in roads], stations)
     to_left = np.stack((-np.sin(heading), np.cos(heading)), axis=-1)
-    offsets = *road.profile.edges(s), road.profile.centre(s)
-    left, right, middle = (centre + t[:, None] * to_left for t in offsets)
-    corners = np.concatenate((right, middle[-1:], left[::-1], middle[:1]))
-    return shapely.Polygon(np.round(corners / GRID) * GRID)
+    rows = [_offsets(road, s) for road, s in zip(roads, stations, strict=True)]
+    left, right, middle = (centre + np.concatenate(t)[:, None] * to_left for t in zip(*rows, strict=True))
+    ends = np.cumsum([len(s) for s in stations]).tolist()
+    corners = [
+        np.concatenate((right[a:b], middle[b - 1 : b], left[a:b][::-1], middle[a : a + 1]))
+        for a, b in pairwise([0, *ends])
+    ]
+    numbers = np.repeat(np.arange(len(roads)), [len(each) for each in corners])
+    found: NDArray[np.object_] = shapely.polygons(
+        shapely.linearrings(np.round(np.concatenate(corners) / GRID) * GRID, indices=numbers)
+    )
+    return found
+
+
+def _offsets(road: Road, s: Array) -> tuple[Array, Array, Array]:
+    """Returns the offsets of the left edge, the right edge and the line between the directions."""
+    assert road.profile is not None
+    return *road.profile.edges(s), road.profile.centre(s)
+
+
+def _pieces_of(road: Road) -> PieceCurve:
+    assert isinstance(road.plan, PieceCurve)
+    return road.plan
 
 
 def stations_of(road: Road) -> Array:
@@ -121,11 +149,10 @@ def stations_of(road: Road) -> Array:
     The ends of all pieces of the reference line are stations; if widths vary, there is also a station about
     every metre.
     """
-    plan, profile = road.plan, road.profile
-    assert isinstance(plan, PieceCurve)
+    profile = road.profile
     assert profile is not None
     stops, at = [0.0], 0.0
-    for piece in plan.pieces:
+    for piece in _pieces_of(road).pieces:
         bend, count = max(abs(piece.k0), abs(piece.k1)), 1
         if bend:
             step = min(LONGEST, math.sqrt(8 * SAG / (bend * (1 + bend * profile.reach))))

@@ -42,7 +42,7 @@ class Route(Road):
 
     @classmethod
     def along(cls, network: Network, legs: Sequence[Leg]) -> Self:
-        """Returns the route that follows these legs through a network, in this order; there may be none.
+        """Returns the route that follows these legs through a network, in this order. ``legs`` may be empty.
 
         Raises:
             UsageError: The network has no road outside junctions, a road or a lane does not exist, two legs
@@ -155,7 +155,7 @@ def _check_joint(network: Network, one: Leg, two: Leg) -> None:
                 "to the next lane of the same direction"
             )
         return
-    left, entered = network.ends_of(one)[1], network.ends_of(two)[0]
+    (_, left), (entered, _) = network.ends_of(one), network.ends_of(two)
     if (continued := network.continued_at.get(left)) is not None:
         is_joined = _continues(continued, one, two)
     elif (found := network.connection_of.get(two.road)) is not None:

@@ -124,9 +124,12 @@ def joined_grades(roads: Sequence[Road]) -> GradeProfile:
 
 def joined_plans(roads: Sequence[Road]) -> PieceCurve:
     """Returns the reference lines of roads, one after another, from the start of the first one."""
-    plans = [road.plan for road in roads if isinstance(road.plan, PieceCurve)]
-    pieces = tuple(piece for plan in plans for piece in plan.pieces)
-    return replace(plans[0], pieces=pieces)
+    plans = []
+    for road in roads:
+        if not isinstance(road.plan, PieceCurve):
+            raise TypeError("the reference lines of a network are given by pieces")
+        plans.append(road.plan)
+    return replace(plans[0], pieces=tuple(piece for plan in plans for piece in plan.pieces))
 
 
 def joined_roads(roads: Sequence[Road]) -> Road:

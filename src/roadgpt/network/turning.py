@@ -1,8 +1,8 @@
 """Computes the curve of a connecting road: a clothoid, an arc and a clothoid between two straight lines.
 
-The two lines meet at one point. A curve whose arc has a radius of 1 m and that turns by ``turn`` radians
-begins ``tangent_length(turn)`` metres before this point and ends as far behind the point. A curve of radius R
-is R times as large.
+The two lines meet at one point. Take a curve that turns by ``turn`` radians and whose arc has a radius of
+1 m: it begins ``tangent_length(turn)`` metres before this point and ends the same distance behind it.
+A curve of radius R is R times as large.
 """
 
 import math

@@ -100,7 +100,7 @@ def pages(folder: Path | str) -> Iterator[Figure]:
     shown = [names[i : i + PER_PAGE] for i in range(0, len(names), PER_PAGE)][:MOST_PAGES]
     for number, page in enumerate(shown, 1):
         part = f"page {number} of {len(shown)}, of {len(names)} roads" if len(shown) > 1 else ""
-        yield page_of([_entry(path) for path in page], about, part, size)
+        yield page_of([_thumbnail(path) for path in page], about, part, size)
 
 
 def _about(folder: Path) -> tuple[tuple[str, str], float]:
@@ -116,7 +116,7 @@ def _about(folder: Path) -> tuple[tuple[str, str], float]:
         raise UsageError(f"{card} cannot be read ({error!r}); remove it or make the roads again") from error
 
 
-def _entry(path: Path) -> Thumbnail:
+def _thumbnail(path: Path) -> Thumbnail:
     test = _loaded(path)
     try:
         points = np.asarray(test.get("interpolated_points") or np.empty((0, 2)), float)[:, :2]

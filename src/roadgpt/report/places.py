@@ -147,8 +147,10 @@ def _said(finding: Finding) -> str:
 
 
 def name_places(axes: Axes, places: Sequence[MarkedPlace], length: float, at_top: bool = False) -> None:
-    """Labels places on axes whose x is the distance along a road of ``length`` metres, each label next to the
-    station of its place, and each next one farther from the bottom of the axes, or from the top.
+    """Labels places on axes whose x is the distance along a road of ``length`` metres.
+
+    Each label is next to the station of its place. The labels are staggered: each is farther from the bottom,
+    or from the top, of the axes than the one before.
     """
     wide, high = inches_of(axes)
     for number, place in enumerate(places):

@@ -53,6 +53,7 @@ def elevation_of(segments: Sequence[Segment], z0: float) -> GradeProfile:
     for i, at, half, _ in vertical_curves_of(segments):
         stations += [at - half, at + half]
         values += [grades[i - 1], grades[i]]
+    # not sum(), which rounds differently from Python 3.12 on
     stations += [*accumulate(segment.distance for segment in segments)][-1:]
     values.append(grades[-1])
     return GradeProfile(z0, tuple(stations), tuple(values))

@@ -77,7 +77,8 @@ class Profile:
             positive where it falls to the right, as in OpenDRIVE; None for a level cross-section.
         offset: Offset in metres from the centre line of the road to the line between the lanes on the left
             and those on the right: the element ``laneOffset`` of OpenDRIVE.
-        median: Width in metres of the median between this line and the oncoming lanes; 0 for no median.
+        median: Width in metres of the median between the oncoming lanes and the line between the directions;
+            0 for no median.
         left_hand: Whether traffic drives on the left: the lanes on the left then lead along the road, and
             those on the right against it.
 

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 Outcome = Literal["PASS", "FAIL", "INVALID", "ERROR", "VALID"]
 """The outcome of a Run. VALID: the road breaks no rule and was not driven."""
 SEED_BITS = 53  # so that a seed survives every JSON reader
-DESIGNING = ("numpy", "scipy", "pydantic")
-DRIVING = ("mujoco-core", "numba")
+LIBRARIES = ("numpy", "scipy", "pydantic")
+LIBRARIES_OF_DRIVES = ("mujoco-core", "numba")
 
 
 class Setup(Frozen):
@@ -201,7 +201,8 @@ def seed_of(seed: int, index: int) -> int:
 
 
 def versions_of(setup: Setup) -> dict[str, str]:
-    """Returns the versions of RoadGPT, Python and the libraries that affect the results, and the platform.
+    """Returns the versions of RoadGPT, Python and the libraries that affect the results, and the platform, so
+    that differences between Runs can be explained.
 
     With BeamNG, they include its settings, and its Python client, whose version determines that of BeamNG.
     """
@@ -210,7 +211,7 @@ def versions_of(setup: Setup) -> dict[str, str]:
         "python": platform.python_version(),
         "machine": f"{platform.system()} {platform.machine()}",
     }
-    found |= {name: _version(name) for name in DESIGNING + (DRIVING if setup.drives else ())}
+    found |= {name: _version(name) for name in LIBRARIES + (LIBRARIES_OF_DRIVES if setup.drives else ())}
     if setup.drives and setup.simulator == "beamng":
         from roadgpt.drive.simulators.beamng.settings import BeamngSettings
 

@@ -255,20 +255,26 @@ def run_test(points: Any, index: int, request: Request, generating: float, is_te
     Raises:
         PartError: a plug-in is not installed.
     """
-    table = np.asarray(points if is_test else [], float).reshape(-1, 2)
-    road, message = None, TOO_FEW if is_test else WRONG_TYPE
-    if len(table) >= 2:
-        try:
-            road = Road.through(table)
-            _, message = sbft_verdict(table, request.world.site.map_size)
-        except RoadGPTError as error:
-            road, message = None, str(error)
-    if road is None or message:
+
+    def invalid(message: str, road: Road | None = None) -> Run:
         findings = (Finding("sbft", message),)
         return Run(
             request, index, request.seed, "INVALID", message, road=road, findings=findings,
             seconds=Seconds(generating),
         )  # fmt: skip
+
+    if not is_test:
+        return invalid(WRONG_TYPE)
+    table = np.asarray(points, float).reshape(-1, 2)
+    if len(table) < 2:
+        return invalid(TOO_FEW)
+    try:
+        road = Road.through(table)
+        is_valid, message = sbft_verdict(table, request.world.site.map_size)
+    except RoadGPTError as error:
+        return invalid(str(error))
+    if not is_valid:
+        return invalid(message, road)
     try:
         run = prove(road, request.seed, request.world, request.setup, index)
     except PartError:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.rows import reading_store
 from roadgpt.campaign.status import CellStatus, Status, status_of
+from roadgpt.campaign.store_check import reading_store
 from roadgpt.plural import plural
 from roadgpt.reading import json_of
 from roadgpt.report.page import write

@@ -234,6 +234,7 @@ def _log_weight(tables: NDArray[Any]) -> Array:
 
 def trend(successes: Sequence[int], totals: Sequence[int]) -> Trend:
     """Returns Cochran and Armitage's test for a trend in the success rate from group to group.
+    ``successes`` and ``totals`` are counts for each group, in the order of the groups.
 
     z is r * sqrt(n - 1), where n is the number of all trials, and r is the correlation between the success of
     a trial (0 or 1) and the number of its group. The variance is computed with the total number of successes

@@ -48,8 +48,10 @@ SBFT: dict[Cause | None, str] = {
     "stop line": "Successful test",
 }
 
-FAILING: dict[str, Cause] = {"wrong turn": "wrong turn", "wrong way": "wrong way", "stop line": "stop line"}
-"""The incidents that fail a test if nothing else failed, and the cause. A tyre off the road fails no test."""
+FAILING: tuple[Cause, ...] = ("wrong turn", "wrong way", "stop line")
+"""The kinds of incidents that fail a test if nothing else failed; each is the cause then. A tyre off the
+road fails no test.
+"""
 
 FAILED: dict[Cause, str] = {
     "out of lane": "left its lane to the {side}{where} {reached} {fast}{how}",
@@ -60,6 +62,7 @@ FAILED: dict[Cause, str] = {
     "stuck": "was stuck {reached}: it moved less than 1 m in 10 s",
     "timeout": "ran out of time {reached} of {length:.0f} m",
 }
+"""The description of a failure by its cause; ``_failed`` fills in the gaps."""
 
 
 def judge(
@@ -158,8 +161,9 @@ def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, C
 def _first_of(incidents: Sequence[Incident], drive: "Drive", step: int) -> tuple[int, Cause | None]:
     """Returns the step and the cause of the first failing incident; ``step`` and None if there is none."""
     for each in incidents:
-        if each.kind in FAILING:
-            return int(np.searchsorted(drive["time"], each.at_time)), FAILING[each.kind]
+        cause = next((cause for cause in FAILING if cause == each.kind), None)
+        if cause is not None:
+            return int(np.searchsorted(drive["time"], each.at_time)), cause
     return step, None
 
 
@@ -199,11 +203,12 @@ def _kept(road: "Road", drive: "Drive", world: "World", margin: float, beyond: f
 def _failed(road: "Road", drive: "Drive", world: "World", step: int, cause: Cause, side: Side | None) -> str:
     profile = world.profile_of(road)
     is_beside = side == ("right" if profile.left_hand else "left") and profile.driven > 0
+    has_crossed = cause == "out of lane" and has_departed(road, drive, world)[step]
     return FAILED[cause].format(
         side=side,
         where=", into the next lane of its direction," if is_beside else "",
         reached=f"after {drive['s'][step]:.0f} m",
         fast=f"at {drive['speed'][step] * 3.6:.0f} km/h",
-        how=": a front tyre passed the marking" if has_departed(road, drive, world)[step] else "",
+        how=": a front tyre passed the marking" if has_crossed else "",
         length=road.length,
     )

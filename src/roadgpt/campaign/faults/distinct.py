@@ -72,14 +72,20 @@ def between(some: Sequence[Surroundings], others: Sequence[Surroundings]) -> Arr
     if not least.size:
         return least
     one, other = _stacked(some), _stacked(others)
+    count = one.shape[-1] - 2 * SHIFT
     for shift in range(-SHIFT, SHIFT + 1):
         # each profile is moved by half of the shift, so that distances are symmetric
-        here, there = (slice(SHIFT + steps, steps - SHIFT) for steps in (shift // 2, shift // 2 - shift))
-        a, b = one[..., here], other[..., there]
-        apart = cdist(a[0], b[0], "sqeuclidean") / BEND**2 + cdist(a[1], b[1], "sqeuclidean") / GRADE**2
+        starts = SHIFT + shift // 2, SHIFT + shift // 2 - shift
+        (bends, grades, beyond), (bends_, grades_, beyond_) = (
+            each[..., start : start + count] for each, start in zip((one, other), starts, strict=True)
+        )
+        apart = (
+            cdist(bends, bends_, "sqeuclidean") / BEND**2 + cdist(grades, grades_, "sqeuclidean") / GRADE**2
+        )
         # averaged over the stations at which at least one of the two roads exists
-        np.minimum(least, apart / (a.shape[-1] - a[2] @ b[2].T), out=least)
-    alike = np.equal.outer(*(np.array([each.kind for each in them], object) for them in (some, others)))
+        np.minimum(least, apart / (count - beyond @ beyond_.T), out=least)
+    kinds, their_kinds = (np.array([each.kind for each in them], object) for them in (some, others))
+    alike = np.equal.outer(kinds, their_kinds)
     return np.where(alike, np.sqrt(least), np.inf)
 
 

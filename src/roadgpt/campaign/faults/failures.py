@@ -37,11 +37,13 @@ class LocatedFailure:
 
 
 def failures_of(folder: Path, most: int | None = None, cell: str = "") -> tuple[list[LocatedFailure], int]:
-    """Returns the failures of a run, a folder of runs, or a campaign, cell by cell, and their number; see
-    ``fault.faults_in``.
+    """Returns the failures of a run, a folder of runs, or a campaign, cell by cell, and how many there are.
 
     Failures that are not in the evenly spread sample of ``most``, or whose road is not stored or cannot be
     built, are counted but not returned.
+
+    Raises:
+        UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.
     """
     with open_record(folder) as record:
         names = record.query(
@@ -54,7 +56,8 @@ def failures_of(folder: Path, most: int | None = None, cell: str = "") -> tuple[
 
 
 def drivers_of(folder: Path) -> set[str]:
-    """Returns the names of the drivers of a run, a folder of runs or a campaign; raises UsageError."""
+    """Returns the names of the drivers of a run, a folder of runs or a campaign; raises UsageError
+    as ``failures_of`` does."""
     with open_record(folder) as record:
         return {cell.request.setup.driver for cell in record.cells()}
 

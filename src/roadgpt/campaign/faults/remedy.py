@@ -75,11 +75,15 @@ class Remedy:
         return self.name.split()[0]
 
 
-def _of(which: str, change: Callable[[Alignment, Bend, float], Alignment], size: float) -> Change:
+def _of_bend(
+    bend_of: Callable[[FailurePlace], Bend | None],
+    change: Callable[[Alignment, Bend, float], Alignment],
+    size: float,
+) -> Change:
     """Returns a change of one of the bends of a FailurePlace, which applies if there is such a bend."""
 
     def changed(place: FailurePlace) -> Alignment | None:
-        bend: Bend | None = getattr(place, which)
+        bend = bend_of(place)
         return change(place.alignment, bend, size) if bend else None
 
     return changed
@@ -98,18 +102,25 @@ def _remedies(percent: int, metres: int, flatter: float, grades: str) -> Iterato
         is_hilly = np.abs(place.alignment.grade).max() > HILLY
         return place.alignment.levelled(flatter) if is_hilly else None
 
-    yield Remedy(f"wider {percent}", bigger, _of("bend", Alignment.widened, more))
+    def here(change: Callable[[Alignment, Bend, float], Alignment], size: float) -> Change:
+        return _of_bend(lambda place: place.bend, change, size)
+
+    before = _of_bend(lambda place: place.before, Alignment.widened, more)
+    after = _of_bend(lambda place: place.after, Alignment.widened, more)
+    yield Remedy(f"wider {percent}", bigger, here(Alignment.widened, more))
     yield Remedy(
-        f"shorter {percent}", f"a bend that turns {percent} % less", _of("bend", Alignment.shortened, less)
+        f"shorter {percent}",
+        f"a bend that turns {percent} % less",
+        here(Alignment.shortened, less),
     )
     yield Remedy(
         f"eased {metres}",
         f"curvature that changes over {metres} m more",
-        _of("bend", Alignment.eased, metres),
+        here(Alignment.eased, metres),
     )
     yield Remedy(f"apart {metres}", f"{metres} m of straight between the bend and the one before", apart)
-    yield Remedy(f"before {percent}", f"{bigger} before", _of("before", Alignment.widened, more))
-    yield Remedy(f"after {percent}", f"{bigger} after", _of("after", Alignment.widened, more))
+    yield Remedy(f"before {percent}", f"{bigger} before", before)
+    yield Remedy(f"after {percent}", f"{bigger} after", after)
     yield Remedy(f"flatter {grades}", f"{grades} grades", flat)
     yield Remedy(f"slower {percent}", f"a speed limit {percent} % lower", lambda its: its.alignment, less)
 

@@ -13,13 +13,13 @@ from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
 from roadgpt.campaign.jobs import MOST_DEATHS, FinishedJob, Job, RunningJob, WorkerConfig
-from roadgpt.campaign.workers.process_loop import READY, JobMessage, apply_each, pickled, unpickled
+from roadgpt.campaign.workers.process_loop import ERROR, READY, JobMessage, apply_each, pickled, unpickled
 from roadgpt.errors import RoadGPTError
 
 T = TypeVar("T")
 U = TypeVar("U")
 
-LOST = "lost"  # kind of the end of a job that was given up; also named as a field of FinishedJob
+LOST = "lost"  # kind of the end of a job that was given up
 CHUNKS = 4  # parts per worker into which ``map`` divides its items: few messages, no long wait for the last
 
 
@@ -216,7 +216,11 @@ class JobQueue(ABC, Generic[W]):
 
 
 def _finished_job(work: QueuedJob, kind: str, what: bytes) -> FinishedJob:
+    key = work.key or 0
     try:
-        return FinishedJob(work.key or 0, **{kind: unpickled(what)})
+        found = unpickled(what)
     except Exception as error:  # an error whose class cannot be unpickled, for example
-        return FinishedJob(work.key or 0, error=RuntimeError(f"an answer cannot be read: {error}"))
+        return FinishedJob(key, error=RuntimeError(f"an answer cannot be read: {error}"))
+    if kind == LOST:
+        return FinishedJob(key, lost=found)
+    return FinishedJob(key, error=found) if kind == ERROR else FinishedJob(key, value=found)

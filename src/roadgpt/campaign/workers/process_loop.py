@@ -26,7 +26,7 @@ from roadgpt.children import ends_its_own, private_streams
 HEAD = struct.Struct("<Q")
 BEAT = 1.0  # s between signs of life
 ALIVE, READY, VALUE, ERROR = "alive", "ready", "value", "error"
-"""Kinds of messages from a worker to its parent; the last two are named as fields of FinishedJob."""
+"""Kinds of messages from a worker to its parent."""
 
 
 class JobMessage(NamedTuple):

@@ -69,8 +69,9 @@ class ServerQuirks:
 
 @cache
 def quirks_of(place: str, model: str, api: str) -> ServerQuirks:
-    """Returns what has been found out about a model on a server, for one of the server's two APIs."""
-    del model  # a key of the cache
+    """Returns what has been found out about a model on a server, for one of the server's two APIs. ``model``
+    is only a key of the cache: the models of a server may differ.
+    """
     # OpenAI's newer models reject the old name, most other servers silently ignore the new one
     caps = ("max_completion_tokens", "max_tokens")
     caps = caps if has_openai_prices(place) else caps[::-1]
@@ -175,9 +176,12 @@ class OpenAI:
         If the server may have rejected the format of a request, or the answer is not usable, the question is
         asked in the next looser format. Plain text is asked for once more if it does not give the JSON.
         """
-        before, answer, why = self.spent, Answer(), ""
+        before = self.spent
+        answer, why = Answer(), ""
         way = self._quirks.response_format if schema is not None else ResponseFormat.TEXT
-        refused, asked, is_last = set[ResponseFormat](), messages, schema is None
+        refused = set[ResponseFormat]()
+        asked = messages
+        is_last = schema is None  # the next unusable reply in plain text ends the attempts
         for _ in range(MOST_REQUESTS):
             try:
                 answer = self._exchange(asked, schema, way)

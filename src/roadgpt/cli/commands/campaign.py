@@ -1,3 +1,5 @@
+"""``roadgpt campaign``: runs thousands of tests with many workers; can be resumed after any interruption."""
+
 import sys
 from contextlib import redirect_stdout
 from pathlib import Path
@@ -37,7 +39,8 @@ PARAMETERS = (
     Option("--goal", "What to search for: failures, coverage (roads as diverse as possible), hardest (least "
            "margin), boundary (just between PASS and FAIL). [default: no search]",
            click.Choice(["failures", "coverage", "hardest", "boundary"])),
-    Option("--generator", "Test generator. [default: quality_diversity with --goal, else words (no search)]"),
+    Option("--generator", "Test generator. [default: 'quality_diversity' with --goal, else 'words', which "
+           "does not search]"),
     Option("--seconds", "Start no more tests after this many seconds.", SECONDS),
     options.seed("The same seed gives the same table.", 0),
     options.out("Folder for the campaign. [default: a new one]"),

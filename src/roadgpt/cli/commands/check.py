@@ -1,3 +1,6 @@
+"""``roadgpt check``: checks roads from files against the rules."""
+
+import time
 from dataclasses import replace
 from typing import Any
 
@@ -40,6 +43,7 @@ def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -
     from roadgpt.network import has_no_route
     from roadgpt.run import Setup, prove
 
+    begun = time.perf_counter()
     blueprint, remarks = blueprint_of(file, world)
     run = prove(blueprint, world=world, setup=Setup(rules=rules, geometry=geometry, drives=False))
     row = row_of(run, file)
@@ -50,4 +54,5 @@ def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -
     for sentence in row.findings[1:]:
         screen.detail(f"{file}: also, {sentence}")
     said = row.description if row.findings else f"valid by the rules '{rules}'"
-    return replace(row, description=said, length_m=None if is_only_map else row.length_m)
+    length, seconds = None if is_only_map else row.length_m, time.perf_counter() - begun
+    return replace(row, description=said, length_m=length, seconds=seconds)

@@ -1,3 +1,5 @@
+"""``roadgpt compare``: measures how alike two roads are."""
+
 import json
 from dataclasses import asdict
 from pathlib import Path

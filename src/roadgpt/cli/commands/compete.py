@@ -1,3 +1,7 @@
+"""``roadgpt compete``: runs a test generator of the SBFT competition, or the server of the SDC
+competition.
+"""
+
 import logging
 import sys
 from pathlib import Path
@@ -143,8 +147,8 @@ OPTIONS = (
 def sdc_command(port: int, host: str, quiet: bool) -> None:
     """Start a gRPC server that selects and ranks tests by how likely the car is to leave its lane.
 
-    The likelihood is estimated from the line that RoadGPT's default driver plans to drive: from its distance
-    to the middle of the lane. Nothing is driven. Once the client has sent enough outcomes, the estimate is
+    The likelihood is estimated from how far the line that RoadGPT's default driver plans to drive is from the
+    middle of the lane. Nothing is driven. Once the client has sent enough outcomes, the estimate is
     fitted to them and also uses the curvature of the roads. Ctrl-C ends the service.
 
     \b

@@ -1,3 +1,5 @@
+"""``roadgpt config``: lists all settings with their origin, and all plug-ins."""
+
 import inspect
 import json
 import re

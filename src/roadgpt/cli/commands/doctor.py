@@ -1,3 +1,5 @@
+"""``roadgpt doctor``: checks this installation, or an installed BeamNG, and says how to solve problems."""
+
 import json
 import platform
 import sys

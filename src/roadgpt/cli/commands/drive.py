@@ -1,3 +1,5 @@
+"""``roadgpt drive``: drives roads from files, or repeats tests of a campaign."""
+
 import sys
 from collections.abc import Sequence
 from contextlib import redirect_stdout

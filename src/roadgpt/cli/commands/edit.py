@@ -1,3 +1,5 @@
+"""``roadgpt edit``: changes a road according to a request in plain words."""
+
 import json
 import sys
 from contextlib import redirect_stdout

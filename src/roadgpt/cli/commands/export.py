@@ -1,3 +1,5 @@
+"""``roadgpt export``: writes roads in the formats of other tools."""
+
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any

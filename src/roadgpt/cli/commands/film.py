@@ -1,3 +1,5 @@
+"""``roadgpt film``: films a drive from behind the car or from its hood, or two drives side by side."""
+
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any

@@ -1,3 +1,5 @@
+"""``roadgpt import``: reads a road from an OpenDRIVE file."""
+
 import json
 import shlex
 from pathlib import Path

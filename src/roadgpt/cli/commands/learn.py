@@ -86,8 +86,8 @@ OF_EXPORT = (
            "for single roads.", folder),
     Option("--routes", "Folder of a training run with --routes; its neural network reads routes and maps.",
            folder),
-    Option("--only", "The network of the installed reader that CHECKPOINT replaces; both: CHECKPOINT and "
-           "--second replace those for single roads. The others stay as they are.",
+    Option("--only", "Which network of the installed reader CHECKPOINT replaces; with 'both', CHECKPOINT and "
+           "--second replace the two for single roads. The others stay as they are.",
            click.Choice((*NETWORKS_OF_READER, BOTH))),
     Option("--prompts", "File with prompts and truths, to which the confidence for single roads is fitted; "
            "repeat the option for more files.", default=SPENT, multiple=True),

@@ -1,3 +1,5 @@
+"""``roadgpt read``: shows how a description is interpreted, without making a road."""
+
 import json
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any

@@ -1,3 +1,5 @@
+"""``roadgpt report``: writes a report on a folder of runs, a campaign or a study."""
+
 import shlex
 from pathlib import Path
 

@@ -1,3 +1,5 @@
+"""``roadgpt resume``: continues a campaign or a run that was interrupted."""
+
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 

@@ -1,7 +1,10 @@
+"""``roadgpt run``: designs, checks, drives, judges and draws roads from a description."""
+
 import secrets
 import shlex
 import sys
 from contextlib import redirect_stdout
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -23,7 +26,6 @@ if TYPE_CHECKING:
     from roadgpt.run.folder import Draw
 
 SEEDS = 1_000_000  # random seeds are below this number, so that they are short enough to type again
-NOT_OF_SETUP = ("roads", "seed", "out", "junit", "route", "axes", "formats")
 
 OPTIONS = (
     Option("-n --roads", "Number of roads.", ROADS, 1),
@@ -61,7 +63,7 @@ def command(words: tuple[str, ...], as_json: bool, quiet: bool, verbose: bool, *
       4  a language model could not be used, or its token or cost limit was hit
     Roads finished before an error are saved in full.
     """
-    carry_out(Screen(rest["roads"], as_json, quiet, verbose), " ".join(words), rest)
+    carry_out(Screen(rest["roads"], as_json, quiet, verbose), " ".join(words), **rest)
 
 
 def usual_values(words: str, roads: int, is_plan: bool = False) -> dict[str, Any]:
@@ -79,9 +81,23 @@ def usual_values(words: str, roads: int, is_plan: bool = False) -> dict[str, Any
     return values
 
 
-def carry_out(screen: Screen, words: str, given: dict[str, Any]) -> None:
-    """Interprets the description, makes its roads, and prints each road when it is finished. ``given`` has
-    the values of the options.
+def carry_out(
+    screen: Screen,
+    words: str,
+    *,
+    roads: int,
+    seed: int | None,
+    out: Path | None,
+    junit: Path | None,
+    route: str,
+    axes: "Scale",
+    formats: "tuple[Format, ...]",
+    **given: Any,
+) -> None:
+    """Interprets the description, makes its roads, and prints each road when it is finished.
+
+    The keyword arguments are the values of the options. Without ``seed``, it is that of the runs in ``out``
+    or, if there are none, a random one. ``route`` is empty for a random one.
 
     Raises:
         RoadGPTError: The description, a plug-in or the folder cannot be used, or nothing could be designed.
@@ -91,7 +107,6 @@ def carry_out(screen: Screen, words: str, given: dict[str, Any]) -> None:
     from roadgpt.chat import Meter
     from roadgpt.run import Setup, brief_of, seed_in
 
-    roads, seed, out, junit, route, axes, formats = (given.pop(name) for name in NOT_OF_SETUP)
     world, pictures = options.world_of(given), options.pictures_of(given)
     given["reader"] = options.reader_of(given)
     chat = options.chat_of(given, given["reader"], given["designer"])

@@ -1,3 +1,5 @@
+"""``roadgpt show``: summarises a run, a folder of runs or a campaign, or shows a campaign's progress."""
+
 from pathlib import Path
 from typing import Any
 

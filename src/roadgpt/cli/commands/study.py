@@ -1,3 +1,5 @@
+"""``roadgpt study``: evaluates roads as RoadGPT's thesis did, by measurements and by asking people."""
+
 import shlex
 import time
 from collections.abc import Sequence

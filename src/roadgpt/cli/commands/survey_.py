@@ -1,3 +1,5 @@
+"""``roadgpt study survey``: makes, serves and analyses a survey in which people rate roads."""
+
 from pathlib import Path
 
 import click

@@ -1,3 +1,5 @@
+"""``roadgpt view``: writes a page with the road in 3-D and a replay of its drive, or pictures."""
+
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any

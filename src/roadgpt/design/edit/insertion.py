@@ -54,6 +54,7 @@ PREFERRED = {
 }
 """Angle in degrees and radius in metres of a new turn if the request does not give them."""
 MOST_NEW = 12
+HALVED = 0  # in place of a number of segments: the longest segment is split in half
 FILLERS = (0.0, SEPARATE)  # m of straight road in the place of a removed turn
 
 
@@ -64,8 +65,8 @@ class Insert:
     before: str
     elements: RoadElements
     split: int | None = None
-    """Number of segments of that element that stay in front of the new ones; 0 to split its longest segment
-    in half; None if it is not split.
+    """Number of segments of that element that stay in front of the new ones, or ``HALVED``; None if it is not
+    split.
     """
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
@@ -75,7 +76,7 @@ class Insert:
         if self.split is None:
             return (*elements[:at], *self.elements, *elements[at:])
         own, count = list(elements[at].segments), self.split
-        if not count:
+        if count == HALVED:
             longest = max(range(len(own)), key=lambda i: own[i].distance)
             half = round(own[longest].distance / 2 * MILLIMETRE) / MILLIMETRE
             rest = round((own[longest].distance - half) * MILLIMETRE) / MILLIMETRE

@@ -95,7 +95,7 @@ def slope_candidates(
     """Returns the candidates that change the slopes of many elements at once, or of those parts of them that
     climb, fall or are level.
     """
-    is_bounded = change.bound and elements
+    is_bounded = bool(change.bound and elements)
     steps = [_bounded(change, elements)] if is_bounded else _slopes(change, elements, world)
     if is_of_parts:
         steps = [_only_parts(change, step) for step in steps]
@@ -280,8 +280,17 @@ def hill_sentence(placed: PlacedChange, elements: RoadElements, is_alone: bool) 
     return f"a {placed.change.kind} of {2 * half:.0f} m is new{where}"
 
 
-def _hill_of(placed: PlacedChange, elements: RoadElements) -> tuple[float, float]:
-    """Returns the station of the middle of a crest or a dip, and the metres from its beginning to there.
+class Hill(NamedTuple):
+    """Where a new crest or dip is."""
+
+    middle: float
+    """Station of its middle in metres."""
+    half: float
+    """Metres from its beginning to its middle."""
+
+
+def _hill_of(placed: PlacedChange, elements: RoadElements) -> Hill:
+    """Returns the place of a new crest or dip.
 
     It lies in the middle of the straight or, if the change asks for the middle of the road, as near to that
     as the straight allows.
@@ -292,4 +301,4 @@ def _hill_of(placed: PlacedChange, elements: RoadElements) -> tuple[float, float
     if place and place.how == "middle":
         whole = sum(element.length for element in elements)
         middle = min(max(whole / 2, start + LEAST_FOR_HILL / 2), start + where.length - LEAST_FOR_HILL / 2)
-    return middle, min(LONGEST_HALF, middle - start, start + where.length - middle)
+    return Hill(middle, min(LONGEST_HALF, middle - start, start + where.length - middle))

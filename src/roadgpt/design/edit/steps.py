@@ -111,9 +111,10 @@ class Adjust:
             seen = self.element.seen
             more = self.length.aim - (seen.length if seen else self.element.length)
             now = now.lengthened(self.element.length + more - now.length)
-        rooms = (each and each.room for each in (self.degrees, self.radius, self.length, self.grade))
+        wanted = (self.degrees, self.radius, self.length, self.grade)
+        degrees, radius, length, grade = (each and each.room for each in wanted)
         kind: Literal["turn", "straight"] = "turn" if self.element.is_turn else "straight"
-        asked = Feature(kind, kind, None, *rooms)
+        asked = Feature(kind, kind, None, degrees, radius, length, grade)
         return replace(now, asked=both(now.asked, asked) if now.asked else asked)
 
     def _bent(self, now: RoadElement) -> RoadElement:

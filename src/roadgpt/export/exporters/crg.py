@@ -56,7 +56,7 @@ def document(road: Road, world: World) -> str:
     right, left = _across(headings, step, world.profile_of(road), road.length)
     phi = [NOTHING, *map(_field, headings.tolist())]
     edges = [map(_field, _heights(road, points, t).tolist()) for t in (right, left)]
-    rows = [f"{turned}{right}{left}" for turned, right, left in zip(phi, *edges, strict=True)]
+    rows = ["".join(fields) for fields in zip(phi, *edges, strict=True)]
     return "\n".join([*_header(road.length, step, points, headings, right, left), *rows, ""])
 
 

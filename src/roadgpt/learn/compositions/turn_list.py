@@ -87,7 +87,9 @@ class TurnList:
         return f"{self.voice.number(value)}{self.units[what]}"
 
     def draw(self, key: str, number: int = 1) -> list[int]:
-        """Returns different random angles ("deg"), radii ("r") or lengths ("len") and counts them."""
+        """Returns random angles ("deg"), radii ("r") or lengths ("len"), no two alike, and adds their
+        number to that of the numbers drawn.
+        """
         low, high = FIGURES[key]
         if self.voice.spells:
             high = min(high, 95)  # "the next three hundred" would be another number

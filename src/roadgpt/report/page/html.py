@@ -78,15 +78,16 @@ def _anchored(cell: TableCell) -> str:
 
 
 def _table(table: Table) -> str:
+    numeric = table.columns_with_numbers()
     heads = "".join(
         f'<th scope="col"{_class(is_number)}>{escape(head)}</th>'
-        for head, is_number in zip(table.heads, table.has_numbers, strict=True)
+        for head, is_number in zip(table.heads, numeric, strict=True)
     )
     rows = []
     for number, row in enumerate(table.rows, 1):
         cells = "".join(
             f"<td{_class(is_number, len(each.text) <= SHORT)}>{_anchored(each)}</td>"
-            for each, is_number in zip(row, table.has_numbers, strict=True)
+            for each, is_number in zip(row, numeric, strict=True)
         )
         is_total = table.has_total and number == len(table.rows)
         rows.append(f"<tr{TOTAL if is_total else ''}>{cells}</tr>")

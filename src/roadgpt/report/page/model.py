@@ -44,9 +44,8 @@ class Table:
     has_total: bool = False
     """Whether the last row holds totals."""
 
-    @property
-    def has_numbers(self) -> list[bool]:
-        """Whether each column has numbers."""
+    def columns_with_numbers(self) -> list[bool]:
+        """Returns for each column whether it has numbers."""
         return [
             any(isinstance(row[n].value, (int, float)) for row in self.rows) for n in range(len(self.heads))
         ]
@@ -147,10 +146,10 @@ def spelled(
     link: Callable[[TableCell], str],
 ) -> str:
     """Returns a line of text in a markup language, in which each kind of piece is written by a function."""
-    pieces = (line,) if isinstance(line, str) else line
-    return "".join(
-        command(piece) if isinstance(piece, ShellCommand)
-        else words(piece) if isinstance(piece, str)
-        else link(piece)
-        for piece in pieces
-    )  # fmt: skip
+
+    def written(piece: str | TableCell) -> str:
+        if isinstance(piece, ShellCommand):  # before str, which it is, too
+            return command(piece)
+        return words(piece) if isinstance(piece, str) else link(piece)
+
+    return "".join(map(written, (line,) if isinstance(line, str) else line))

@@ -111,7 +111,7 @@ def unformulated(value: Raw) -> Raw:
 
 def latex_of(table: Table) -> str:
     """Returns a table as a LaTeX float that uses booktabs; columns with numbers are right-aligned."""
-    places = "".join("r" if is_number else "l" for is_number in table.has_numbers)
+    places = "".join("r" if is_number else "l" for is_number in table.columns_with_numbers())
     body = [" & ".join(_latex(each.text) for each in row) + r" \\" for row in table.rows]
     if table.has_total and body:
         body.insert(-1, r"\midrule")

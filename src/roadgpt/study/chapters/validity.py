@@ -169,7 +169,8 @@ def source_of(designer: str, parts: Parts, kind: Kind) -> Source:
         if part.designer == designer and part.roads:
             total = part.count(kind.of) if kind.of else len(part.roads)
             counts.append(Count(part.words, part.count(kind.which), total, part.overview))
-    name, slug = ", ".join(filter(None, (designer, kind.name))), "-".join(filter(None, (designer, kind.slug)))
+    name = ", ".join(filter(None, (designer, kind.name)))
+    slug = "-".join(filter(None, (designer, kind.slug)))
     return Source(name, tuple(counts), slug)
 
 

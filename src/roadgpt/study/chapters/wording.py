@@ -86,7 +86,7 @@ def folded(title: str, lines: Sequence[Block]) -> list[Block]:
 def near_and_far(near: tuple[float, str] | None, far: tuple[float, str] | None) -> list[str]:
     """Returns a sentence on the passed drive that came closest to failing, and one on the failed drive in
     which the car went farthest out of its lane. Each is given by its margin in metres (negative if it failed)
-    and its name; None if there is none, or if drives end where the car leaves its lane."""
+    and its name; None if there is none. ``far`` is None, too, if drives end where the car leaves its lane."""
     out = []
     if near is not None:
         out.append(

@@ -242,7 +242,7 @@ class ModelReader:
         usual, counts = with_ordinary_numbers(text)
         if usual == text:
             return None
-        found = ensemble.scored(words, shown=lambda seen: with_ordinary_numbers(seen)[0])
+        found = ensemble.scored(words, shown=lambda seen: with_ordinary_numbers(seen).text)
         if not found or found[0].is_refusal:
             return None
         tokens = tuple(counts.get(token, token) for token in found[0].tokens)

@@ -6,6 +6,8 @@ numbers, and the original numbers are then restored in its plan. Later checks co
 map and its limits. The network still refuses what is impossible on any map ("with a roundabout").
 """
 
+from typing import NamedTuple
+
 from roadgpt.brief.readers.model.nouns import COUNTED
 from roadgpt.brief.readers.model.slots import SlottedText, Word, slot_name
 
@@ -19,10 +21,16 @@ BEFORE_NOUN = 3
 """The largest number of words between a number and the noun it counts: "40 very sharp turns"."""
 
 
-def with_ordinary_numbers(text: SlottedText) -> tuple[SlottedText, dict[str, str]]:
-    """Returns the description with small counts of turns in place of unusually large ones, and the original
-    of each small count. The description is unchanged if all its numbers are ordinary.
-    """
+class OrdinaryNumbers(NamedTuple):
+    """A description with small counts of turns in place of unusually large ones."""
+
+    text: SlottedText
+    counts: dict[str, str]
+    """The original of each small count."""
+
+
+def with_ordinary_numbers(text: SlottedText) -> OrdinaryNumbers:
+    """Returns the description with ordinary numbers; it is unchanged if all its numbers are ordinary."""
     free = [number for number in STAND_INS if all(word.text != number for word in text.words)]
     counts: dict[str, str] = {}
     out: list[Word] = []
@@ -35,7 +43,7 @@ def with_ordinary_numbers(text: SlottedText) -> tuple[SlottedText, dict[str, str
             out.append(Word(free.pop(0), word.written))
         else:
             out.append(word)
-    return SlottedText(tuple(out), text.slots), counts
+    return OrdinaryNumbers(SlottedText(tuple(out), text.slots), counts)
 
 
 def _large_count(text: SlottedText, at: int) -> str:

@@ -6,6 +6,7 @@ of the text with a suitable unit, or a number that a word implies ("right angle"
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 
 from roadgpt.brief.beside import BESIDE
 from roadgpt.brief.junctions import LONGEST_ROUTE, ROUTE
@@ -92,6 +93,7 @@ class PlanAutomaton:
         self._stack = pushed(self._stack, word)
 
 
+@cache
 def _refusals() -> tuple[Symbol, ...]:
     clashing, beyond = (one_of(*causes, may_be_empty=True) for causes in (CLASHING, OF_CAUSES["!impossible"]))
     return (
@@ -118,6 +120,7 @@ def _description(numbers: Numbers) -> Symbol:
     return any_of(_route(any_of(whole, clauses), numbers), _map(numbers))
 
 
+@cache
 def _beside() -> Symbol:
     names = one_of(*sorted(BESIDE))
     return sequel(one_of("beside("), names, list_tail(",", names, MOST_NAMES - 1), one_of(")"))

@@ -6,6 +6,7 @@ token, so the next token decides between them (LL(1)). The state of an unfinishe
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cache
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,9 +25,13 @@ Stack = tuple[Symbol, ...]
 """The symbols that must or may follow, the next one first."""
 
 
+def _nothing(token: str) -> Stack:
+    return ()
+
+
 def one_of(*tokens: str, may_be_empty: bool = False) -> Symbol:
     """Returns one of several tokens; without any, nothing can stand there."""
-    return Symbol(lambda: tokens, lambda token: (), may_be_empty)
+    return Symbol(lambda: tokens, _nothing, may_be_empty)
 
 
 def sequel(head: Symbol, *rest: Symbol, is_open: bool = False) -> Symbol:
@@ -62,7 +67,8 @@ def list_tail(joint: str, item: Symbol, most: int) -> Symbol:
 
 def later(make: Callable[[], Symbol], may_be_empty: bool = False) -> Symbol:
     """Returns a symbol that is made when it is needed; a symbol can thus contain itself."""
-    return Symbol(lambda: make().first(), lambda token: make().after(token), may_be_empty)
+    made = cache(make)
+    return Symbol(lambda: made().first(), lambda token: made().after(token), may_be_empty)
 
 
 def allowed(stack: Stack) -> list[str]:

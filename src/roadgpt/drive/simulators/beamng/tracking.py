@@ -122,11 +122,14 @@ class CarSample(NamedTuple):
     steer: float
     """Steering input, -1 to 1, as BeamNG reports it."""
     throttle: float
+    """0 to 1, as is ``brake``."""
     brake: float
-    s: float = 0.0
-    t: float = 0.0
-    outside: float = 0.0
-    """Share of the car outside its lane, 0 to 1. The drive sets ``s``, ``t`` and ``outside``."""
+    s: float = math.nan
+    """Station in metres; the drive sets ``s``, ``t`` and ``outside``, which are NaN before."""
+    t: float = math.nan
+    """Offset from the centre line in metres."""
+    outside: float = math.nan
+    """Share of the car outside its lane, 0 to 1."""
 
 
 class RoadTracker:

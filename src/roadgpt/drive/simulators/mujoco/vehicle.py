@@ -127,7 +127,8 @@ class Vehicle:
         along /= np.linalg.norm(along)
         left = np.array([-math.sin(heading), math.cos(heading), 0.0])
         up = np.cross(along, left)
-        if self._ground.sampled.table.shape[1] > BANK:
+        is_banked = self._ground.sampled.table.shape[1] > BANK  # only banked roads have this column
+        if is_banked:
             angle = math.atan(more[BANK - GRADE - 1])
             left, up = (
                 math.cos(angle) * left + math.sin(angle) * up,

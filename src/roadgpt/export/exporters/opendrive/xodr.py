@@ -108,7 +108,10 @@ def _network_document(network: Network, world: World, revision: int) -> XmlEleme
     signals, parts = Signals(network), RoadParts(world)
     root = XmlElement("OpenDRIVE").extended(_header(bounds, revision))
     for member, own in zip(network.roads, starts, strict=True):
-        made = _road(member.road, member.id, parts, *_place(network, member), own)
+        links, inside, lane_links = _place(network, member)
+        made = _road(
+            member.road, member.id, parts, links=links, junction=inside, lane_links=lane_links, starts=own
+        )
         root.extended(made.extended(*signals.on_road(member.id)))
     root.extended(*signals.controllers())
     for junction in network.junctions:
