@@ -50,8 +50,10 @@ def main(roads: int = 1_000, folder: Path | None = None) -> None:
         place = folder or Path(stack.enter_context(tempfile.TemporaryDirectory()))
         begun = time.process_time()
         files = [
-            save(road, place, ["opendrive"], world, f"{number:04d}{kind}")[0]
+            path
             for number, (road, world, kind) in enumerate(made)
+            for path in save(road, place, ["opendrive"], world, f"{number:04d}{kind}")
+            if path.suffix == ".xodr"
         ]
         wrote = time.process_time() - begun
         begun = time.process_time()

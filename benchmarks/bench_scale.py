@@ -143,7 +143,7 @@ def overhead() -> None:
 
 def workers() -> None:
     """Real tests with one worker and with two; what the process that writes has to do for each."""
-    tests = 96
+    tests = 480
     rates = []
     print("\n| workers | tests | tests/s | times | main process, CPU per test | bytes per test on the disk |")
     print("|---|---|---|---|---|---|")

@@ -50,6 +50,22 @@ def test_equal_odds_are_one_half_and_threefold_odds_three_quarters() -> None:
     assert confidence({"bias": 0.0, "numbers": -log(3)}, {"numbers": 1.0}, (), PLAIN) == 0.25
 
 
+def test_tokens_of_the_plan_weigh_once_each_and_slots_do_not() -> None:
+    plan = draft("turn", "left", "deg=", "[1]", ";", "turn", "left", "deg=", "[2]")
+    found = features([EvenNetwork(-0.1)], plan, PLAIN)  # type: ignore[list-item]
+    tokens = {name: value for name, value in found.items() if name.startswith("has ")}
+    assert tokens == {"has turn": 1.0, "has left": 1.0, "has deg=": 1.0, "has ;": 1.0}
+    assert confidence({"bias": 0.0, "has left": log(3), "has crest": 9.0}, found, (), PLAIN) == 0.75
+
+
+def test_left_and_right_are_trusted_alike() -> None:
+    left, right = (
+        features([EvenNetwork(-0.1)], draft("turn", side, "|", f"{side}s=", "2"), PLAIN)  # type: ignore[list-item]
+        for side in ("left", "right")
+    )
+    assert left == right
+
+
 @given(st.floats(-20, 20))
 def test_a_measure_that_is_ignored_leaves_doubt_and_another_word_does_not(bias: float) -> None:
     text = slotted("dear Ruth, three turns, one of them 40 m long, and a tree")

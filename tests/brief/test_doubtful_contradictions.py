@@ -8,8 +8,18 @@ from roadgpt.brief.readers.model.plan_choice import agrees_with_numbers
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.refusal import ContradictionError
+from roadgpt.brief.words import SURE
 
 HONEST = [
+    ("Zwei Kurven und die ganze Zeit nur rauf, runter geht's nirgends.", "turn x2 | up"),
+    ("Nur bergauf, nirgends bergab, und kaum mehr als 3 % steil.", "| up turns=1.. steepest=..3"),
+    (
+        "Tres curvas y ni una más: izquierda de 100 grados como mínimo, derecha de 40 como máximo, izquierda"
+        " de entre 50 y 60.",
+        "turn left deg=100..; turn right deg=..40; turn left deg=50..60",
+    ),
+]
+LEARNT = [
     ("Bitte eine ebene Strecke ohne Rechtskurven, dafür mit drei Linkskurven.", "turn x3 left | flat"),
     (
         "Two left-handers, both level; only the 80 m straight between them climbs, at around 6 %, and nothing"
@@ -31,6 +41,13 @@ def test_what_only_looks_like_a_contradiction_is_read_with_a_doubt(words: str, m
     assert brief.confidence <= 0.5
 
 
+@pytest.mark.parametrize(("words", "meant"), LEARNT)
+def test_denials_and_corrections_that_the_networks_have_learnt_leave_no_doubt(words: str, meant: str) -> None:
+    brief = read(words)
+    assert plan(brief) == meant
+    assert brief.confidence >= SURE
+
+
 @pytest.mark.parametrize(
     "words",
     [
@@ -38,6 +55,7 @@ def test_what_only_looks_like_a_contradiction_is_read_with_a_doubt(words: str, m
         "A road with exactly two turns: three to the left and one to the right.",
         "Eine durchgehend ebene Straße ohne jedes Gefälle, die am Ende 10 m höher liegt als am Anfang.",
         "I need five turns, all of them to the right, and the third one goes to the left.",
+        "Cuatro curvas, pero ninguna a la izquierda y ninguna a la derecha.",
     ],
 )
 def test_real_contradictions_are_refused_with_what_may_be_meant(words: str) -> None:

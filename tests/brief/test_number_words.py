@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadgpt.brief.readers.model.numerals import LANGUAGES, numbers_in_words, plain, spell
+from roadgpt.brief.readers.model.numerals import LANGUAGES, begins_number, numbers_in_words, plain, spell
 from roadgpt.brief.readers.model.slots import slotted
 
 IN_METRES = {
@@ -54,6 +54,15 @@ IN_METRES = {
 )
 def test_numbers_in_words_are_read_as_people_mean_them(words: str, metres: float) -> None:
     assert [each.value for each in slotted(words).slots] == [metres]
+
+
+@given(st.integers(2, 9999), st.sampled_from(LANGUAGES))
+def test_numbers_begin_with_words_that_begin_numbers(number: int, language: str) -> None:
+    assert begins_number(plain(spell(number, language)).replace("-", " ").split()[0])
+
+
+def test_other_words_begin_no_number() -> None:
+    assert not any(map(begins_number, ("road", "links", "virage", "curva", "and", "und", "hairpin")))
 
 
 @given(st.integers(2, 9999), st.sampled_from(LANGUAGES))

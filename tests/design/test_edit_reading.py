@@ -263,10 +263,7 @@ REVERSALS = [
 ]
 
 REORDERED = [
-    (
-        "inverse le sens de tous les virages : la gauche devient la droite et la droite devient la gauche",
-        "turn all: side other",
-    ),
+    ("inverse le sens de tous les virages", "turn all: side other"),
     ("reverse the second turn", "turn 2: side other"),
     ("reverse the slope", "road: slope x-1"),
     ("swap left and right", "road: mirror"),
@@ -318,7 +315,7 @@ HEIGHTS = [
 
 ALONG = [
     ("make the road 8 m longer", "road: length +8"),
-    ("the last straight shall lose 10 m", "straight -1: length -10"),
+    ("the last straight shall lose 10 m of its length", "straight -1: length -10"),
     ("the climbing section should be 80 m", "straight up: length =80"),
     ("append a 50 m climb", "add straight up len=50 at_end"),
     ("over the last 80 m it should climb", "end len=80: slope up"),

@@ -120,3 +120,20 @@ def test_a_single_turn_uses_the_whole_range_above_a_bound() -> None:
     radii = [found.radius for found in measured("turn left r=50..")]
     assert min(radii) >= 50
     assert max(radii) > 60
+
+
+def test_halves_with_grades_are_halves_and_end_where_they_began() -> None:
+    for found in measured("straight up pct=5; straight down pct=5 | turns=0 len=240"):
+        (road,) = found.straights
+        up, down = road.pieces[0], road.pieces[-1]
+        assert up.end - up.start == pytest.approx(down.end - down.start, rel=0.02)
+        assert found.climb == pytest.approx(0, abs=0.05)
+
+
+def test_straights_without_figures_for_their_slopes_differ_in_length() -> None:
+    shares = [
+        (up.end - up.start) / found.length
+        for found in measured("straight up; straight down | turns=0 len=240")
+        for up in found.straights[0].pieces[:1]
+    ]
+    assert max(shares) - min(shares) > 0.1

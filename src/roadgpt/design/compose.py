@@ -74,7 +74,25 @@ def composed(order: TurnSequence, task: DraftTask) -> list[Element] | None:
         elements = _with_hills(elements, outline.hills, task.rng)
     length = _asked_length(outline, task.windows)
     whole = _with_length(elements, length, task) if length else elements
-    return _from_corner_to_corner(whole, task.world) if whole and outline.turns.hi == 0 else whole
+    if whole is None or order.turns:
+        return whole
+    whole = _evened(whole, order.gaps[0])
+    return _from_corner_to_corner(whole, task.world) if outline.turns.hi == 0 else whole
+
+
+def _evened(elements: list[Element], wishes: Sequence[Feature]) -> list[Element]:
+    """Returns the straights of a road without turns. Those of open length have equal lengths if each has a
+    number for its grade, so that "the first half climbs at 5 percent, the second falls at 5" comes out even,
+    or if they have equal heights.
+    """
+    free = [i for i, element in enumerate(elements) if element.is_elastic]
+    open_wishes = [wish for wish in wishes if not wish.length or wish.length.hi == inf]
+    have_grades = all(wish.grade and wish.grade.number is not None for wish in open_wishes)
+    heights = {abs(wish.climb.number or 0.0) if wish.climb else 0.0 for wish in open_wishes}
+    if len(free) != len(open_wishes) or not (have_grades or (len(heights) == 1 and all(heights))):
+        return elements
+    length = sum(elements[i].length for i in free) / max(len(free), 1)
+    return [element._replace(straight=length) if element.is_elastic else element for element in elements]
 
 
 def _from_corner_to_corner(elements: list[Element], world: World) -> list[Element]:

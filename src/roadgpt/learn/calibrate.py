@@ -4,6 +4,7 @@ For single roads these are prompts with truths: a reading is right if the roads 
 often than its plan is the labelled one, because most texts can be labelled in several ways.
 """
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import TypedDict
 
@@ -12,6 +13,7 @@ import numpy as np
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import NEVER, ModelReader, UncalibratedReading
+from roadgpt.brief.readers.model.confidence import HAS
 from roadgpt.brief.readers.model.ensemble import Ensemble
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.test_time_augmentation import refusal
@@ -29,6 +31,9 @@ than an unnecessary doubt.
 CAUTION_OF_ROADS = 3.3
 """The same for a reading of a single road."""
 PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
+PULL_OF_TOKENS = 10.0  # the same for the inputs that say which tokens a plan has, of which there are many
+FEWEST = 25
+"""The least number of readings with a token in their plans for which the token gets a weight."""
 
 
 class EnsembleCalibration(TypedDict):
@@ -129,14 +134,20 @@ def _weights(found: Sequence[tuple[UncalibratedReading, bool]], caution: float =
     """
     if not found:
         return {"bias": 0.0}
-    names = ("bias", *found[0][0].features)
-    rows = np.array([(1.0, *looks.features.values()) for looks, _ in found])
+    counts = Counter(name for looks, _ in found for name in looks.features)
+    names = ("bias", *(name for name, count in counts.items() if count >= FEWEST or not _is_token(name)))
+    rows = np.array([[looks.features.get(name, 0.0) for name in names] for looks, _ in found])
+    rows[:, 0] = 1.0
     rights = np.array([is_right for _, is_right in found], dtype=float)
     counted = np.where(rights > 0, 1.0, caution)
     weights = np.zeros(rows.shape[1])
-    pull = PULL * np.eye(rows.shape[1])
+    pull = np.diag([PULL_OF_TOKENS if _is_token(name) else PULL for name in names])
     for _ in range(STEPS):
         chances = 1 / (1 + np.exp(-rows @ weights))
         curvature = rows.T @ (rows * (counted * chances * (1 - chances))[:, None]) + pull
         weights += np.linalg.solve(curvature, rows.T @ (counted * (rights - chances)) - pull @ weights)
     return {name: round(float(value), 4) for name, value in zip(names, weights, strict=True)}
+
+
+def _is_token(name: str) -> bool:
+    return name.startswith(HAS)

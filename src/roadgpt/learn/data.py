@@ -32,11 +32,11 @@ SHARES: Mapping[str, float] = {
     "hand": 0.12,
     "free": 0.20,
     "contrasts": 0.09,
-    "changes": 0.14,
-    "generated": 0.10,
-    "generated contrasts": 0.07,
+    "changes": 0.13,
+    "generated": 0.08,
+    "generated contrasts": 0.06,
     "generated changes": 0.08,
-    "generated specs": 0.20,
+    "generated specs": 0.24,
 }
 """The share of each series of pairs in the training of the networks for single roads and changes."""
 SHARES_OF_ROUTES: Mapping[str, float] = {
@@ -246,7 +246,7 @@ def with_shared_values(line: str, slots: Sequence[NumberSlot]) -> str:
     """
     if line.startswith("!"):
         return line
-    brief = read_plan(line)
+    before = brief = read_plan(line)
     turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
     for name in FIELDS:
         amounts = {getattr(clause, name) for clause in turning}
@@ -258,7 +258,7 @@ def with_shared_values(line: str, slots: Sequence[NumberSlot]) -> str:
             for clause in brief.clauses
         )
         brief = brief.model_copy(update={"clauses": clauses, name: shared})
-    return plan(brief) if normal(brief) == normal(read_plan(line)) else line
+    return plan(brief) if brief is before or normal(brief) == normal(before) else line
 
 
 def _is_said_once(amount: Amount, slots: Sequence[NumberSlot]) -> bool:

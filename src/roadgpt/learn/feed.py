@@ -12,7 +12,7 @@ from roadgpt.learn.data import Numbers
 
 Make = Callable[[int], Iterator[tuple[Numbers, Numbers]]]
 """A function that can be sent to another process, and yields the batches of a seed without end."""
-WAITING = 6  # batches of each process that wait to be used
+WAITING = 24  # batches of each process that wait to be used; a process makes as many at a time
 LONGEST = 300.0  # seconds until a process that sends nothing is taken for ended
 
 

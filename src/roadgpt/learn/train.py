@@ -121,7 +121,8 @@ def train(
     shares = SHARES_OF_ROUTES if plan.is_of_routes else SHARES
     make = partial(training_batches, hand=hand, pieces=pieces, shares=shares, size=plan.size, pool=POOL)
     stream = fed_batches(plan.feeders, seed, make) if plan.feeders else make(seed)
-    began, losses = time.monotonic(), []
+    began = time.monotonic()
+    losses: list[torch.Tensor] = []
     reader.train()
     for step in range(first, plan.steps):
         check()
@@ -194,7 +195,7 @@ def _step(
     batch: tuple[Numbers, Numbers],
     rate: float,
     device: torch.device,
-) -> float:
+) -> torch.Tensor:
     for group in optimiser.param_groups:
         group["lr"] = group["top"] * rate
     pieces, tokens = (torch.from_numpy(part).to(device) for part in batch)
@@ -207,7 +208,7 @@ def _step(
     loss.backward()
     nn.utils.clip_grad_norm_(reader.parameters(), 1.0)
     optimiser.step()
-    return float(loss.detach())
+    return loss.detach()  # a tensor: to ask for its number here would make the GPU wait
 
 
 def _is_fast_in_bfloat16(device: torch.device) -> bool:
@@ -218,11 +219,11 @@ def _note(
     folder: Path,
     step: int,
     plan: TrainingSettings,
-    losses: list[float],
+    losses: list[torch.Tensor],
     speed: float,
     report: Callable[[str], None],
 ) -> None:
-    loss = sum(losses) / len(losses)
+    loss = float(sum(losses)) / len(losses)
     with (folder / "losses.jsonl").open("a", encoding="utf-8") as file:
         file.write(
             json.dumps({"step": step, "pairs": step * plan.size * plan.workers, "loss": round(loss, 4)})

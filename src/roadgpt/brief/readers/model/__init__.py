@@ -21,7 +21,6 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model.closed_loops import asks_for_a_closed_loop
 from roadgpt.brief.readers.model.confidence import DOUBT, features
-from roadgpt.brief.readers.model.denied_words import without_denials
 from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.negative_numbers import negative_number
@@ -212,8 +211,7 @@ class ModelReader:
 
     def _brief_in_spite_of(self, why: str, words: str, text: SlottedText, ensemble: Ensemble) -> Brief:
         """Returns the Brief of the likeliest plan that is no refusal, with a low confidence, if the plan
-        agrees with every number in the words and the networks are not certain of the contradiction, or if
-        only a denial that fits this plan was taken for one.
+        agrees with every number in the words and the networks are not certain of the contradiction.
 
         Raises:
             ContradictionError: the description contradicts itself; the error has the Brief.
@@ -227,9 +225,7 @@ class ModelReader:
             brief = self._as_brief(words, text, best, ensemble)
         except BriefError:
             raise refused(why) from None
-        is_likely = ensemble.refusal(text) < CERTAIN and agrees_with_numbers(best, text)
-        rest = None if is_likely else without_denials(text, why, best.tokens, self._meanings)
-        if not is_likely and (rest is None or ensemble.refusal(rest) >= ensemble.refuse_from):
+        if ensemble.refusal(text) >= CERTAIN or not agrees_with_numbers(best, text):
             raise ContradictionError(f"{refused(why)}; or is this meant", plan(brief), brief)
         return brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
 

@@ -175,6 +175,12 @@ def number_word(word: str) -> int:
     return next(iter(numbers_in_words((word,)).values()), 0)
 
 
+@cache
+def begins_number(word: str) -> bool:
+    """Returns whether a number in words can begin with this word, as in "a hundred" or "eighty metres"."""
+    return word == "a" or any(_value(word, language) is not None for language in LANGUAGES)
+
+
 def _value(text: str, language: str) -> int | None:
     """Returns the value of a number in words; None if they are no number."""
     text = _one_spelling(text, language)

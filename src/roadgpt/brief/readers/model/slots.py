@@ -21,7 +21,14 @@ from roadgpt.brief.readers.model.measures import (
     take_unit_of_all,
     unit_at,
 )
-from roadgpt.brief.readers.model.numerals import LONGEST, SIZES, number_word, numbers_in_words, plain
+from roadgpt.brief.readers.model.numerals import (
+    LONGEST,
+    SIZES,
+    begins_number,
+    number_word,
+    numbers_in_words,
+    plain,
+)
 from roadgpt.brief.readers.model.tolerances import tolerances_first, with_tolerances
 from roadgpt.brief.readers.model.unit_fractions import (
     FAR,
@@ -268,6 +275,8 @@ def _part(tokens: list[str], at: int) -> Number | None:
 
 def _spelled(tokens: list[str], at: int, language: str) -> Number | None:
     """Reads the longest number word at this place, with or without hyphens."""
+    if not begins_number(tokens[at]):
+        return None
     best: Number | None = None
     key: list[str] = []
     place = at
