@@ -1,7 +1,7 @@
 """Starts and ends child processes.
 
-Ctrl-C in the terminal does not reach them. When a child process is ended, the processes that it started are
-ended as well."""
+Ctrl-C in the terminal does not reach these child processes. When a child process is ended, the processes that
+it started are ended as well."""
 
 import os
 import signal

@@ -2,8 +2,8 @@
 only if the user named it, because a run, a campaign, a plan or a folder may come from somebody else. Code
 that reads such a file records the drivers and servers that the file names (``add_from_file``). Code that
 reads the user's options records those that the user names (``add_from_user``). Before the code of a driver is
-run, or a key is sent to a server, ``untrusted_file`` tells whether it was named only by a file. If the user's
-own Python program names a driver or server, no file is recorded for it, so it is trusted.
+run, or a key is sent to a server, ``untrusted_file`` tells whether only a file named the driver or server. If
+the user's own Python program names a driver or server, no file is recorded for it, so it is trusted.
 """
 
 from collections.abc import Callable
@@ -36,8 +36,8 @@ class NameOrigins:
         self._files.setdefault(key, str(file))
 
     def untrusted_file(self, key: str) -> str | None:
-        """Returns the file in which this key names a driver or server; None if no file names one, or if the
-        user named the same one.
+        """Returns the file that names the driver or server with this key. Returns None if the user named the
+        driver or server, too, or if no file names it.
         """
         return None if key in self._named else self._files.get(key)
 

@@ -82,8 +82,8 @@ def finish() -> None:
 def leave() -> None:
     """Ends the process at once with the exit status of the received signal, without waiting for threads.
 
-    It does nothing if no signal was received. It is needed because, after a KeyboardInterrupt inside a C
-    library, Python would end the process by SIGINT and ignore the exit status.
+    The function does nothing if no signal was received. The function is needed because, after a
+    KeyboardInterrupt in a C library, Python would end the process by SIGINT and ignore the exit status.
     """
     if not status():
         return

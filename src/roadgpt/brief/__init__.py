@@ -84,7 +84,7 @@ __all__ = [
 
 PLAN = "plan"
 """The name of the plan reader. If a plan lists a roundabout or the like in ``beside(...)``, the road is built
-without it. If another reader lists one in ``Brief.beside``, ``read`` raises NotBuiltError."""
+without it. If another reader lists a roundabout in ``Brief.beside``, ``read`` raises NotBuiltError."""
 
 
 class Reader(Protocol):

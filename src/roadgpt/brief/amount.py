@@ -85,7 +85,7 @@ def amount_text(amount: Amount) -> str:
 
 
 def read_amount(text: str) -> Amount:
-    """Returns the amount that a plan gives; raises BriefError if the text is none, or a range is reversed."""
+    """Returns the amount that a plan gives. Raises BriefError for other texts and for reversed ranges."""
     match = AMOUNT.fullmatch(text)
     if not match or not (match[1] or match[3]) or (match[1] and match[3] and not match[2]):
         raise BriefError(f"'{text[:40]}' is not a number in a plan; write 3, 3.., ..3 or 3..5")

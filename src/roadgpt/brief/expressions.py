@@ -1,8 +1,8 @@
 """Finds what a description asks for besides the shape of a road, in five languages: the size of the map,
 traffic on the left, a motorway.
 
-The readers take a length for one of a road; so the size of a map ("on a map of 500 m by 500 m") is taken out
-of the words before they are read.
+The readers take every length for a length of the road. The size of a map ("on a map of 500 m by 500 m") is
+therefore removed from the words before a reader reads the words.
 """
 
 import re
@@ -65,15 +65,15 @@ class SizedMap(NamedTuple):
     """The size of a map, and the rest of the words."""
 
     metres: float
-    """The side of the square map; of two different sides, the shorter one."""
+    """The side of the square map in metres; if the words give two sides, the shorter side."""
     rest: str
 
 
 def said_map_size(words: str) -> SizedMap | None:
-    """Returns the size of the map that words ask for; None if they give none.
+    """Returns the size of the map that words ask for, and the other words; None if the words give no size.
 
-    "On a map of 500 m by 500 m" is taken out; of "a map of 500 m by 500 m with two crossroads", its size.
-    Raises BriefError if no map may have this size, or the words say nothing else.
+    "On a map of 500 m by 500 m" is removed; "a map of 500 m by 500 m with two crossroads" only loses the
+    size. Raises BriefError if no map may have this size, or if the words say nothing else.
     """
     found = next(filter(None, (form.search(words) for form in MAP_SIZES)), None)
     if found is None:
@@ -124,7 +124,7 @@ LEFT_HAND_BY_PLACE = re.compile(
 )
 TRAFFIC = re.compile(r"traffic|verkehr|circulation|circulacion|circolazione|trafico")
 FORK = re.compile(r"\b(?:bivio|biforcazione|fourche|bifurcation)\b")
-"""Where "keep left" says where the route goes."""
+"""Words for a fork, where "keep left" tells the way of the route instead of the driving side."""
 NEGATED = re.compile(
     r"\b(?:no|not|without|never|kein|keinen|nicht|ohne|pas de|sans|sin|senza)\b(?:\s\w+)?\s*$"
 )
@@ -145,8 +145,8 @@ def says_left_hand(words: str, by_place: bool = False) -> bool:
 def with_driving_side(brief: Brief, words: str) -> Brief:
     """Returns the Brief with traffic on the left if the Brief or the words ask for it; otherwise unchanged.
 
-    The phrase "left-hand traffic" does not ask for other cars: if no other word of the description does,
-    "traffic" is removed from ``beside``, the things that are mentioned but not required.
+    The phrase "left-hand traffic" does not ask for other cars. If no other word of the description asks for
+    cars, "traffic" is removed from ``beside``, the things that are mentioned but not required.
     """
     if not (brief.left_hand or says_left_hand(words)):
         return brief
@@ -169,7 +169,7 @@ NOT_ONE = _bag(
     "no not without off from to towards toward near beside leaving leave join joining over under",
     "kein keine keiner ohne neben zur zum von pas sans vers quitter sin hacia junto senza verso accanto non",
 )
-"""Words that mean, up to three words before "motorway", that the road is not one, or only near one."""
+"""Words, up to three before "motorway", that say that the road is no motorway or only near a motorway."""
 WORDS_BEFORE = 3  # how many words before "motorway" are searched for NOT_ONE
 PARTS_OF_ONE = _bag(
     "exit exits ramp ramps slip interchange junction entrance bridge services ausfahrt auffahrt"

@@ -21,14 +21,14 @@ POSSIBLE: dict[JunctionKind, tuple[str, ...]] = {
     "lane_gain": (),
     "lane_change": ("left", "right"),
 }
-"""The values of ``take`` that are possible at a kind of junction. At kinds that are not listed, the route can
-go every way except "ramp" and "main", and back only at a roundabout."""
+"""The values of ``take`` that are possible at a kind of junction. At kinds that are not listed, all values
+except "ramp" and "main" are possible; "back" is possible only at a roundabout."""
 MOST_BLOCKS = 8
 MOST_OF_KIND = 12
 MOST_ARMS_OF_MINI = 4  # with more, kerbs between them would have radii below 3 m
 CIRCULATORY = 10.0  # m, about: the outer diameter of a roundabout minus the diameter of its island
 STEPS = {"lane_drop": -1, "lane_gain": 1, "lane_change": 0}
-"""The number of lanes of the road behind a place where lanes change, minus that of the road before it."""
+"""The number of lanes behind a lane drop, gain or change, minus the number of lanes before."""
 LEAST_BESIDE_RAMP = 28.0  # m; source: the rule ``ramp_too_short``
 LEAST_LANE = 17.0  # m, before the taper; with the wide part of a taper of 60 m, these are the required 28 m
 WIDE_IN_TAPER = 0.196  # of the taper: the share in which the lane is still wider than 0.9 of its full width
@@ -250,7 +250,7 @@ def _check_blocks(asked: MapClause, wanted: Range) -> None:
 
 
 def most_ends(asked: MapClause) -> float:
-    """Returns the greatest number of dead ends of a map of junctions, which it has without blocks."""
+    """Returns the greatest number of dead ends of a map of junctions: the number if no block is enclosed."""
     counts = [span(each.count) for each in asked.junctions]
     arms = sum(ARMS[each.kind].hi * n.hi for each, n in zip(asked.junctions, counts, strict=True))
     return arms - 2 * (sum(n.hi for n in counts) - 1)

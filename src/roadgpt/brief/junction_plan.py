@@ -51,8 +51,8 @@ def junction_plan(junction: JunctionClause) -> str:
 
 
 def read_junction(text: str) -> JunctionClause:
-    """Returns the junction that a part of a plan describes, which must not be empty. Raises BriefError if a
-    word or number is not part of the plan language, or a field is given twice.
+    """Returns the junction that a non-empty part of a plan describes. Raises BriefError if a word or number
+    is not part of the plan language, or a field is given twice.
     """
     kind, *words = text.split()
     fields: dict[str, object] = {"kind": kind}

@@ -38,15 +38,15 @@ BENDS = {"slight": Range(SIDE, 75), "sharp": Range(95, 180)}
 
 
 def side_of(turn: float) -> Way:
-    """Returns the way that a change of direction in degrees, positive to the left, leads; a small one leads
-    straight on.
+    """Returns the way that corresponds to a change of direction in degrees, positive to the left. Changes of
+    up to ``SIDE`` degrees are "straight".
     """
     return "left" if turn > SIDE else "right" if turn < -SIDE else "straight"
 
 
 def bends_as(take: Take | None, turn: float) -> bool:
     """Returns whether a change of direction in degrees is as slight or as sharp as ``take``, such as
-    "slight_left", requires; its side is not compared.
+    "slight_left", requires; the sides are not compared.
     """
     return abs(turn) in BENDS.get((take or "").partition("_")[0], Range())
 

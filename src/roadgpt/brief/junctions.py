@@ -130,7 +130,7 @@ class JunctionCount(Frozen):
     kind: MapJunctionKind
     count: Amount = ONE
     control: Control | None = None
-    """The sign or light of these junctions; None if they have that of the map."""
+    """The sign or light of these junctions; None if they have the sign or light of the map."""
 
 
 class MapClause(Frozen):
@@ -168,8 +168,8 @@ class MapClause(Frozen):
         return self
 
     def ends_of_tree(self, arms: float) -> Range:
-        """Returns how many dead ends the map may have if its junctions, joined as a tree without blocks,
-        leave ``arms`` free arms; each block joins two of them.
+        """Returns how many dead ends the map may have. ``arms`` is the number of arms that are free if the
+        junctions are joined as a tree without blocks; each block uses two of these arms.
         """
         blocks = span(self.blocks)
         enclosing = Range(arms - 2 * blocks.hi, arms - 2 * max(blocks.lo, 0))

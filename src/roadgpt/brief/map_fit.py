@@ -31,7 +31,7 @@ def check_room(brief: Brief, map_size: float, min_radius: float, road_width: flo
     the road really fits. Lengths are in metres.
 
     Raises:
-        NoRoomError: the road cannot fit; the message says what would.
+        NoRoomError: the road cannot fit; the message says what would fit.
         BriefError: a radius is larger than the map.
     """
     _straights(brief, map_size, road_width)

@@ -53,8 +53,8 @@ def _kind_text(each: JunctionCount) -> str:
 
 def read_map(line: str) -> MapClause:
     """Returns the map that a plan describes. Raises BriefError if a word or number is not part of the plan
-    language, a field is given twice, or the plan gives neither a grid nor junctions, or a grid whose kinds of
-    junctions have no signs.
+    language, a field is given twice, the plan gives neither a grid nor junctions, a grid has ``blocks=``, or
+    a kind of junction in a grid has no sign.
     """
     fields: dict[str, object] = {}
     counts: list[JunctionCount] = []

@@ -16,7 +16,7 @@ OTHER: dict[str | None, str | None] = {
         for take in get_args(Take)
     },
 }
-"""Every side, way and take, and the one that is its mirror image."""
+"""Every side, way and take, with its mirror image."""
 
 
 def mirrored(brief: Brief) -> Brief:

@@ -59,7 +59,7 @@ class Clause(Frozen):
     counts as one feature ("two S-bends" is 2).
     """
     side: Side | None = None
-    """The direction of every turn; if the turns alternate, that of the first."""
+    """The direction of every turn; if the turns alternate, the direction of the first turn."""
     alternating: bool = False
     sharpness: Sharpness | None = None
     degrees: Amount | None = None
@@ -75,7 +75,7 @@ class Clause(Frozen):
     """The grade in percent, always positive; ``slope`` says whether it is up or down."""
     climb: Amount | None = None
     """How many metres each feature rises or falls from its start to its end, always positive; ``slope`` says
-    whether it is up or down. The height of a crest, the depth of a dip.
+    whether it is up or down. For a crest or a dip, ``climb`` is the height or the depth.
     """
 
 
@@ -119,8 +119,9 @@ class Brief(Frozen):
     motorway: bool = False
     """True if the description asks for a motorway; see ``brief.motorway``."""
     alike: bool = False
-    """True if turns of one kind must have the same angle and radius, and straights the same length, as far as
-    they have no numbers of their own. Straights between the turns count if the clauses name none."""
+    """True if turns of one kind must have the same angle and radius, and straights the same length. Turns and
+    straights with different numbers of their own are excepted. If the clauses name no straights between the
+    turns, all straights between the turns must have the same length."""
     hard: bool = False
     """True if the road should be difficult for a lane keeper: tight turns, fast approaches, crests."""
     beside: tuple[Beside, ...] = ()
@@ -149,7 +150,8 @@ class Brief(Frozen):
     map_size: Annotated[float, Field(ge=50, le=10_000)] | None = None
     """The side of the square map in metres; None if the description does not give it."""
     map: MapClause | None = None
-    """The map of roads that is required instead of one road; then no other requirement is given."""
+    """The map of roads that is required instead of one road. A plan then gives no other requirements than
+    ``length``, ``left_hand``, ``map_size`` and ``beside``."""
     other: str = ""
     """The plan of the second likeliest reading, if the reader is not sure of this Brief; otherwise empty."""
 
@@ -186,7 +188,7 @@ class Brief(Frozen):
         """The numbers of lanes along and against the drive, such as "2+1"; None if neither is required.
 
         A direction without a requirement gets one lane. On a motorway, the direction against the drive then
-        gets none, because a motorway is built as one carriageway.
+        gets no lane, because a motorway is built as one carriageway.
         """
         if self.lanes is None and self.against is None:
             return None
@@ -217,17 +219,17 @@ class Brief(Frozen):
 
     @property
     def both_ends(self) -> tuple[Clause, ...]:
-        """``starts`` and ``ends``, as far as they are given."""
+        """``starts`` and ``ends``, without fields that are None."""
         return tuple(end for end in (self.starts, self.ends) if end is not None)
 
     @property
     def has_free_shape(self) -> bool:
-        """Whether nothing but lanes and markings is required of the road."""
+        """Whether nothing is required of the road but lanes, markings, or that it is a motorway."""
         return self._requires_only((*OF_THE_WORDS, "lanes", "against", "divided", "centre", "motorway"))
 
     @property
     def is_straight_of_any_length(self) -> bool:
-        """Whether nothing is required of the road but that it has no turns, lanes and markings."""
+        """Whether the road must have no turns, and is otherwise of free shape (see ``has_free_shape``)."""
         return self.turns == exactly(0) and self.model_copy(update={"turns": None}).has_free_shape
 
     @property

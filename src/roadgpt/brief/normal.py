@@ -10,8 +10,8 @@
 - A serpentine 'of 4 turns or more' becomes a serpentine without a count. ``alternating`` is not set for kinds
   that always alternate.
 - A requirement for every turn (sharpness, degrees, radius) moves to the clauses if they name the turns.
-- If all clauses have the same slope and none has a height, it becomes that of the whole road.
-- A height in metres makes 'steeply up' an 'up', and is uphill without a direction.
+- If all clauses have the same slope and none has a height, this slope becomes the slope of the whole road.
+- A height in metres turns 'steeply up' into 'up'. A height without a direction is uphill.
 - Fields that only repeat the clauses (number of turns, left or right, slope, first and last feature) are
   cleared.
 - If 4 of 5 turns go left, 1 goes right; if none goes left, all turns go right.
@@ -38,7 +38,7 @@ MOST_STEPS = 9  # one step may enable another; contradictory Briefs need the mos
 UNSAID = {"words": "", "unused": (), "confidence": 1.0, "other": ""}
 """The fields of a Brief that require nothing."""
 NAMED_BY = {"degrees": "sharpness", "radius": "sharpness", "length": "size"}
-"""The numbers that like parts share, and the field whose word stands in the place of such a number."""
+"""The numbers that like parts share, each with the field for a word that replaces the number."""
 PLAIN: dict[Slope, Slope] = {
     "steeply_up": "up",
     "steeply_down": "down",
@@ -89,10 +89,10 @@ def _simpler(brief: Brief) -> Brief:
 
 
 def with_like_numbers(brief: Brief) -> Brief:
-    """Returns a Brief whose clauses of one kind have the angle, radius or length that one of them is given.
+    """Returns a Brief in which all clauses of a kind get the angle, radius or length that one clause has.
 
-    Clauses with a word instead, such as "sharp", keep it, and so do all if several numbers are given. A Brief
-    that does not ask for like parts is returned unchanged.
+    A clause with a word instead of the number, such as "sharp", stays as it is. If clauses of a kind have
+    different numbers, they all stay as they are. A Brief without ``alike`` is returned unchanged.
     """
     if not brief.alike:
         return brief

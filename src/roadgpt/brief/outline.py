@@ -63,7 +63,7 @@ class Feature:
     length: Range | None = None
     grade: Range | None = None
     climb: Range | None = None
-    """How many metres it rises from its start to its end; negative if it falls."""
+    """How many metres the feature rises from its start to its end; negative if it falls."""
 
     def limits(self, *more: str) -> str:
         """Returns the requirements as text, such as ': to the left, 25 to 120 degrees'; empty if there are
@@ -80,7 +80,7 @@ class Feature:
 
 def both(one: Feature, other: Feature) -> Feature:
     """Returns a feature with the requirements of two features; ranges are intersected and may become
-    empty. The name is that of the first, unless it says nothing more than its kind.
+    empty. The result has the name of the second feature if the first name is only its kind.
     """
     name = other.name if one.name == one.kind else one.name
     ranges: dict[str, Any] = {name: overlap(getattr(one, name), getattr(other, name)) for name in FEATURE}
@@ -138,7 +138,7 @@ class Outline:
     starts: Feature | None = None
     ends: Feature | None = None
     alike: bool = False
-    """Whether turns of one group, and straights, must be equal, see ``Brief.alike``."""
+    """Whether turns of one name must be equal, and straights equally long; see ``Brief.alike``."""
     hard: bool = False
 
     @property

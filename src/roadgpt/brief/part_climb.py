@@ -1,5 +1,5 @@
-"""Heights of single turns and straights: what a climb in metres says of their lengths and grades, when it
-contradicts them, and the slopes of crests and dips.
+"""Heights of single turns and straights: the lengths and grades that follow from a climb in metres, the
+contradictions between these numbers, and the slopes of crests and dips.
 """
 
 from collections.abc import Mapping
@@ -15,12 +15,12 @@ USUALLY_STEEPEST = 12.0  # percent, of a part whose height is given and whose le
 BUMP_SLOPES: Mapping[Kind, tuple[Slope, Slope]] = {"crest": ("up", "down"), "dip": ("down", "up")}
 STRAIGHT_ON = Clause(kind="straight")
 TOGETHER = frozenset({"s_bend", "chicane"}) | (SHAPED - {"turn"}) | {"slalom"}
-"""The kinds that are several turns, which share the height."""
+"""The kinds that consist of several turns; the turns share the height of the clause."""
 
 
 def climb_of_each(clause: Clause) -> Amount | None:
-    """Returns how many metres each single turn or straight of a clause rises or falls; None if no height is
-    asked of it. The turns of an S-bend share its height equally.
+    """Returns how many metres each single turn or straight of a clause rises or falls; None if the clause
+    asks for no height. The turns of an S-bend share its height equally.
     """
     if clause.climb is None or clause.kind in STRAIGHT or clause.kind not in TOGETHER:
         return clause.climb
@@ -38,8 +38,9 @@ def slopes_of_bump(clause: Clause) -> list[Clause]:
 
 
 def without_joints(clauses: tuple[Clause, ...]) -> list[Clause]:
-    """Leaves out each crest between a straight that climbs and one that falls, and each dip between one that
-    falls and one that climbs: it is the place where the two meet. One with figures of its own stays.
+    """Leaves out each crest between a climbing and a falling straight, and each dip between a falling and a
+    climbing straight: such a crest or dip is only the place where the straights meet. A crest or dip with
+    requirements of its own stays.
     """
     around = zip((STRAIGHT_ON, *clauses), clauses, (*clauses[1:], STRAIGHT_ON), strict=False)
     return [clause for before, clause, after in around if not _is_joint(before, clause, after)]
@@ -65,8 +66,8 @@ def limits_of_climb(
 ) -> tuple[Range | None, Range]:
     """Returns the ranges of length (metres) and grade (percent, positive) of a part of a given height.
 
-    ``length`` and ``grade`` are what is asked for in figures, or None. A turn ``has_radius`` if its radius is
-    given, so that its angle and radius give the length.
+    ``length`` and ``grade`` are the ranges that are asked for, or None. ``has_radius`` is True for a turn
+    whose radius is given; the angle and the radius then determine the length.
     """
     allowed = grade or Range(LEAST_GRADE, STEEPEST)
     low, high = max(climb.lo, 0.0), climb.hi

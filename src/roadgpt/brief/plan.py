@@ -57,13 +57,13 @@ OF_WHOLE = ("length", "left_hand", "map_size", "beside")
 PLACES = ("starts", "ends")
 INNER = "(starts|ends|beside)"
 ALIKE = "alike"
-"""A flag of a road; plans of whole routes, and older plans, have it among the things beside the road."""
+"""A flag of a road. In older plans, and for a whole route or map, the word stands in ``beside(...)``."""
 ONE = Amount(lo=1, hi=1)
 HALFWAY = "halfway"
 """The word for half of the length of the whole route, as in ``| halfway // t_junction left || len=400``."""
 HALF = re.compile(rf"\b{HALFWAY}\b")
 SHARES_OF_HALF = (0.45, 0.55)
-"""The shares of the length of the route that count as half of it."""
+"""The least and the greatest share of the route's length that count as half of the route."""
 WHOLE_LENGTH = re.compile(r"\|\|[^|]*\blen=(\d+(?:\.\d+)?)(?![\d.])")
 Model = TypeVar("Model", Brief, Clause)
 

@@ -13,7 +13,7 @@ class Range:
     lo: float = -inf
     hi: float = inf
     number: float | None = field(default=None, compare=False, repr=False)
-    """The number of which the interval is the tolerance; None if an interval was asked for."""
+    """The number that was asked for, if the interval is its tolerance; None if an interval was asked for."""
 
     def __contains__(self, number: float) -> bool:
         return self.lo <= number <= self.hi
@@ -34,17 +34,17 @@ class Range:
 
     @property
     def usual(self) -> float:
-        """The number of which the range is the tolerance, or else its middle; infinite if an end is open."""
+        """``number``, or the middle of the range if ``number`` is None; infinite if one end is open."""
         return (self.lo + self.hi) / 2 if self.number is None else self.number
 
     @property
     def negative(self) -> Range:
-        """The range of the negative numbers."""
+        """The range of the same numbers with the opposite sign."""
         return Range(-self.hi, -self.lo, None if self.number is None else -self.number)
 
     def around(self, share: float) -> Range:
-        """Returns the range with the fraction ``share`` (0 to 1) of the tolerance of its number; unchanged if
-        it has no number.
+        """Returns the range with its tolerance on both sides of ``number`` multiplied by ``share`` (0 to 1);
+        unchanged if ``number`` is None.
         """
         if self.number is None:
             return self

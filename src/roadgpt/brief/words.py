@@ -149,8 +149,8 @@ TURNING_SLACK = 0.10  # ratio, around the degrees of all turns together
 
 
 def degrees_slack(degrees: float) -> float:
-    """Returns the tolerance of an angle in degrees: 10 % of it, but at most 7 degrees, or at most 10 from 90
-    degrees on.
+    """Returns the tolerance of an angle in degrees: 10 % of the angle, but at most 7 degrees for angles below
+    90 degrees, and at most 10 degrees for angles from 90 degrees on.
     """
     return min(0.1 * abs(degrees), 7.0 if abs(degrees) < 90 else 10.0)
 

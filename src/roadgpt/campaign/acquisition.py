@@ -38,8 +38,8 @@ class Predictions(NamedTuple):
 
 
 def select(goal: Goal, n: int, expected: Predictions, counts: Sequence[Counter[int]]) -> list[int]:
-    """Returns the indices of the n most valuable candidates for a goal, the most valuable first; ``counts``
-    is for each map the number of failures so far in each cell, or of tests for the goal "coverage"."""
+    """Returns the indices of the n most valuable candidates for a goal, the most valuable first. ``counts``
+    has one Counter per map: the failures (for the goal "coverage": the tests) so far in each cell."""
     weight = (expected.margins <= 0.0).astype(float) if goal != "coverage" else np.ones_like(expected.margins)
     maps: list[tuple[NDArray[np.intp], Array]] = []
     for cells, of_cells in zip(expected.cells, counts, strict=True):
@@ -80,8 +80,9 @@ def stacked(shapes: Sequence[PlanShape]) -> PlanShape:
 
 
 def spread_out(features: Sequence[Array], n: int, hazard: Array) -> list[int]:
-    """Returns the indices of up to n candidates with diverse features, from the half of them that looks
-    hardest (``hazard``), as long as the surrogate has too few drives to learn from."""
+    """Returns the indices of up to n candidates with diverse features, chosen from the half of the
+    candidates with the largest ``hazard``. Used until the surrogate has enough drives to learn from.
+    """
     order = np.argsort(-hazard, kind="stable")[: max(n, (len(features) + 1) // 2)]
     signs = np.array([features[i] for i in order])
     if len(order) <= n:

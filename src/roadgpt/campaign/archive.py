@@ -60,8 +60,9 @@ class Archive:
 
 
 def grid(bounds: Array, along: int) -> CellsOf:
-    """Returns a map with ``along`` equally wide cells along each axis; the outermost cells also hold values
-    out of the bounds ``(axes, 2)``, lower and upper. The cell numbers vary fastest along the last axis."""
+    """Returns a map with ``along`` equally wide cells along each axis, between the lower and upper ``bounds``
+    ``(axes, 2)``. Values beyond the bounds belong to the outermost cells. The cell numbers vary fastest along
+    the last axis."""
     low, width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
 
     def cells_of(places: Array) -> Cells:

@@ -129,7 +129,7 @@ class BatchScheduler:
         return [*self._store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
 
     def known(self, batch: int) -> range:
-        """Returns the indices of earlier batches; every draft in this batch must differ from their roads."""
+        """Returns the indices of earlier batches from whose roads every draft in ``batch`` must differ."""
         last = batch - self._lag
         if last < 0 or self.cell.in_sequence:
             return range(last + 1)

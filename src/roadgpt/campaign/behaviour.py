@@ -64,8 +64,8 @@ def behaviour_of(road: Road, brief: Brief | None) -> dict[str, float]:
 
 
 def behaviour_of_samples(points: Array, heading: Array, brief: Brief | None) -> dict[str, float]:
-    """Returns the same from points ``(n, 3)`` of the centre line, and headings in radians at equally spaced
-    stations."""
+    """Returns the features of a road's geometry, by name, from points ``(n, 3)`` of the centre line and from
+    headings in radians at equally spaced stations."""
     found = measure(points, outline(brief or Brief()).widest)
     turns = found.turns
     out = {
@@ -85,8 +85,8 @@ def behaviour_of_samples(points: Array, heading: Array, brief: Brief | None) -> 
 
 
 def behaviour_of_line(points: Array, axes: Sequence[str], brief: Brief | None) -> dict[str, float]:
-    """Returns those of the features ``axes`` that need no drive, by name, from points ``(n, 3)`` of the
-    centre line, about one per metre."""
+    """Computes features from points ``(n, 3)`` of the centre line, about one per metre. Returns, by name, the
+    features in ``axes`` that need no drive."""
     found = features_of(points)
     if not set(axes) <= {*found, *DRIVEN}:
         step = np.diff(points[:, :2], axis=0)
@@ -96,8 +96,8 @@ def behaviour_of_line(points: Array, axes: Sequence[str], brief: Brief | None) -
 
 
 def turns_asked(brief: Brief | None) -> int:
-    """Returns the number of turns that get features of their own: the number that the Brief states if
-    it is exact and at most six, else 0.
+    """Returns the number of turns that get separate features such as RADIUS_1. This is the number of turns
+    in the Brief; 0 if the Brief states none, a range, or more than six.
     """
     asked = outline(brief).turns if brief else None
     return int(asked.lo) if asked and 0 < asked.lo == asked.hi <= MOST_TURNS else 0
@@ -118,8 +118,8 @@ def bounds_of(axis: str) -> tuple[float, float]:
 
 
 def cell_of(features: Mapping[str, float], axes: Sequence[str], cells: int) -> tuple[int, ...] | None:
-    """Returns the cell of the feature map to which a test with some features belongs, as one index per axis;
-    None if it lacks one of them. ``cells`` is the number of cells along each axis."""
+    """Returns the cell of the feature map to which a test belongs, as one index per axis; None if
+    ``features`` lacks one of the axes. ``cells`` is the number of cells along each axis."""
     if any(axis not in features for axis in axes):
         return None
     place = []

@@ -111,8 +111,8 @@ def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
 
 
 def paired(roads: dict[int, Elements], kept: Sequence[int], lost: Sequence[int]) -> list[BoundaryPair]:
-    """Returns boundary pairs as ``pairs_of`` does, from the elements of each road by test number, and the
-    numbers of the tests that passed and of those that failed."""
+    """Returns boundary pairs as ``pairs_of`` does. ``roads`` has the elements of each road by test number;
+    ``kept`` and ``lost`` are the numbers of the passed and of the failed tests."""
     rows: dict[tuple[float, ...], list[int]] = {}
     for number in kept:
         rows.setdefault(_row(roads[number]), []).append(number)

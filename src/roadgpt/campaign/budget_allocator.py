@@ -3,8 +3,8 @@ from roadgpt.chat import ChatSettings, Spent
 
 
 class BudgetAllocator:
-    """Divides a campaign's limits on tokens and money among the tests that run at the same time, which stay
-    within the limits even if each one spends its whole allowance."""
+    """Divides a campaign's limits on tokens and money among the tests that run at the same time. The campaign
+    stays within the limits even if every test spends its whole allowance."""
 
     def __init__(self, chat: ChatSettings | None, tokens: int, cost: float) -> None:
         """Takes the limits, and the tokens and USD that were spent before."""
@@ -13,7 +13,7 @@ class BudgetAllocator:
         self._given: dict[int, Allowance] = {}
 
     def share(self, parts: int = 1) -> Allowance:
-        """Returns an allowance of one of so many equal parts of the remaining tokens and money."""
+        """Divides the remaining tokens and money into ``parts`` equal parts; returns one part."""
         tokens, cost = self._limits
         if tokens is not None:
             tokens -= int(self._spent[0] + sum(given.tokens or 0 for given in self._given.values()))

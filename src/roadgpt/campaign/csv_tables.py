@@ -2,8 +2,8 @@
 
 results.csv    one row per test: its proposal, its outcome, and its features
 cells.csv      one row per cell: its settings, the number of tests with each outcome, the number of bins of
-               the feature map that contain failures, and the farthest that the car was outside its
-               lane in any passed test
+               the feature map that contain failures, and the largest share and distance of the car
+               outside its lane in passed tests
 """
 
 import csv
@@ -30,7 +30,7 @@ COLUMNS = (
     "beyond_m", "at_s_m", "description",
 )  # fmt: skip
 AXES, PER_AXIS = ("MAX_CURV", "STD_SA"), 25
-"""The feature map of a cell whose settings name no other: its axes, and the number of bins along each."""
+"""The feature map of a cell whose settings define no map: the axes, and the number of bins per axis."""
 EVERY = (
     f"SELECT tests.cell, tests.number, batch, origin, seed, given, {', '.join(MEASURED)}, description, "  # noqa: S608
     "features FROM tests JOIN details USING (cell, number) "

@@ -1,15 +1,15 @@
-"""Predicts where on a road a car will leave its lane, from where it left it on earlier roads.
+"""Predicts where on a road a car will leave its lane; learns from the lane departures on earlier roads.
 
     stations of driven roads --logistic regression--> chance to leave the lane at a station of a new road
 
 A road is looked at every 3 m. At each of these stations, a few signs describe what the car has just met: how
-fast it would enter the bend, the bend itself, and how suddenly the curvature changed. A regression learns how
-likely a car that has come to a station leaves its lane there. For a new road, this gives the chance that the
-car fails at all, and the mean of the steering up to where it fails.
+fast it would enter the bend, the bend itself, and how suddenly the curvature changed. A regression learns the
+chance that a car leaves its lane at a station that it has reached. For a new road, the module predicts the
+chance that the car fails at all, and the mean of the steering up to the departure.
 
-A drive ends where it fails, so the standard deviation of the steering (STD_SA) depends on this place. With
-``lane_centring``, the estimate up to the true place misses STD_SA by 4.5 degrees, and the best estimate that
-does not know it by 13.
+A drive ends at the lane departure, so the standard deviation of the steering (STD_SA) depends on this place.
+With ``lane_centring``, an estimate up to the true place misses STD_SA by 4.5 degrees. The best estimate
+without knowledge of this place misses STD_SA by 13 degrees.
 """
 
 from collections.abc import Sequence
@@ -64,13 +64,14 @@ class DepartureForecast(NamedTuple):
     chance: Array
     """Chance that the car leaves its lane, ``(n,)``."""
     steering: Array
-    """Mean of the standard deviation of the wheels' angle up to where it does, radians, ``(n,)``."""
+    """Standard deviation of the wheels' angle up to the departure, radians, ``(n,)``: the mean over all
+    stations, weighted by the chance of a departure there."""
     likeliest: Array
-    """The same up to the likeliest place, ``(n,)``."""
+    """Standard deviation of the wheels' angle up to the likeliest departure, radians, ``(n,)``."""
 
     def table(self) -> Array:
-        """Returns features ``(n, 3)``, each scaled to a magnitude of about 1; the first two are estimates of
-        the steering."""
+        """Returns features ``(n, 3)``: ``steering``, ``likeliest`` and ``chance``, each scaled to a magnitude
+        of about 1."""
         return np.stack([self.steering / 0.1, self.likeliest / 0.1, self.chance], axis=1)
 
 
@@ -128,9 +129,9 @@ class DepartureModel:
 
 
 def logistic(rows: Array, leaves: Array) -> Array:
-    """Returns the coefficients ``(signs,)`` of a logistic regression of ``leaves`` ``(n,)``, 1 where the car
-    left its lane, on signs ``(n, signs)``, whose last column is 1. For columns scaled to a standard deviation
-    of 1, the penalty is half of RIDGE times the sum of their squares; the last one is free.
+    """Fits ``leaves`` ``(n,)``, 1 where the car left its lane, by a logistic regression on the signs ``rows``
+    ``(n, signs)``, whose last column is 1. Returns the coefficients ``(signs,)``. The penalty is RIDGE / 2
+    times the sum of the squared coefficients except the last, for columns with a standard deviation of 1.
     """
     scale = rows.std(axis=0)
     scale[scale < 1e-9] = 1.0

@@ -67,8 +67,8 @@ class Proposal:
 
     design: "AnyDesign | None"
     """The road's design. None: a worker drafts the road from the cell's Brief, with ``seed`` and the
-    number of the test. The drafted road differs from the designs in the batches whose results the generator
-    has received.
+    number of the test. The drafted road differs from at least the latest 1500 designs (from all designs if
+    ``Cell.in_sequence``) in the batches whose results the generator has received.
     """
     seed: int
     """Seed of the driver. If ``design`` is None, one seed for both draft and driver is derived from this seed

@@ -61,15 +61,15 @@ def mutated(elements: Elements, rng: Rng, world: World, numeric: float = 0.0) ->
 
 
 def crossed_over(one: Elements, other: Elements, rng: Rng) -> Elements:
-    """Returns the first elements of one road and then the last of another, at most 24; the cuts are
-    random."""
+    """Joins the first elements of one road to the last elements of another road; returns at most 24
+    elements. Both roads are cut at random."""
     first, last = int(rng.integers(1, len(one) + 1)), int(rng.integers(len(other)))
     return (one[:first] + other[last:])[:MOST_ELEMENTS]
 
 
 def interpolated(one: Elements, other: Elements, share: float) -> Elements | None:
-    """Returns a road between one (share 0) and the other (share 1); None if their sequences of turns and
-    straights differ."""
+    """Returns a road between two roads; ``share`` 0 gives the first road, 1 the second. Returns None if the
+    roads' sequences of turns and straights differ."""
     if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return None
 
@@ -199,8 +199,8 @@ def _enlarged(elements: Elements, rng: Rng, world: World) -> Elements:
 
 
 def redrawn(elements: Elements, rng: Rng, world: World) -> Elements:
-    """Draws all turns anew, leaves out most straights, and draws the lengths of the others, up to 30 m,
-    anew."""
+    """Returns the road with new random turns in place of its turns. Most straights are left out; the other
+    straights get new random lengths of at most 30 m."""
     least = world.limits.min_radius * OVER_LEAST_RADIUS
     most, spared = float(rng.uniform(*REDRAWN)), rng.uniform(0.0, SPARED)
     out = []

@@ -168,7 +168,7 @@ class Record(Tables):
         return ""
 
     def tests(self, cell: str = "", which: str | None = None) -> list[NumberedTest]:
-        """Returns the names of tests, of a cell or of all, that have ended and whose Runs can be read.
+        """Returns the names of the ended tests whose Runs can be read, of one cell or (empty) of all cells.
 
         ``which`` is None for all tests, in order; "failures" for those that failed; "worst" for those that
         failed and then those that passed, each by increasing margin.

@@ -48,8 +48,8 @@ def _designs() -> "TypeAdapter[AnyDesign]":
 
 
 def values_of_test(ended: FinishedTest, now: float, trace: int | None) -> tuple[Any, ...]:
-    """Returns the values for the columns ``MEASURED`` and ``SPENT`` of a test that has ended now, where
-    ``trace`` is the number of the file with the drives."""
+    """Returns the values for the columns ``MEASURED`` and ``SPENT`` of a test that has ended at ``now``.
+    ``trace`` is the number of the file that holds the test's drive."""
     spent = ended.spent
     return (
         *(getattr(ended.result, name) for name in MEASURED),  # SQLite stores NaN as NULL

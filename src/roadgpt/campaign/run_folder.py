@@ -93,8 +93,8 @@ class RunFolder:
     roads: int
     """Number of roads requested."""
     made: tuple[Path, ...] = ()
-    """This folder and those of its parents that were created for this session, innermost first. They are
-    removed if no road can be designed.
+    """The folders (this folder or parents of it) that this session created, innermost first. They are removed
+    if no road can be designed.
     """
     tests: dict[int, FinishedRun] = field(default_factory=dict)
     """The tests that have ended, by number."""

@@ -118,8 +118,8 @@ def _cell(record: Record, name: str) -> str:
 
 
 def chosen(place: Selection, choice: Choice | None) -> list[Selection]:
-    """Returns one Selection for each test of a Selection, in order: for the tests that the Choice selects or,
-    without one, for all tests whose Runs can be read.
+    """Splits a Selection into one Selection per test, in order. Returns the tests that the Choice selects; if
+    ``choice`` is None, all tests whose Runs can be read.
 
     Raises:
         UsageError: a file cannot be read.

@@ -132,7 +132,7 @@ def error_run(task: Task, cell: Cell, sentence: str, trace: str = "") -> Run:
 
 
 def seed_of_driver(number: int, proposal: Proposal) -> int:
-    """Returns the driver's seed in test ``number``, with which the road is designed, too, if need be."""
+    """Returns the driver's seed in test ``number``; a road that the worker designs has the same seed."""
     return seed_of(proposal.seed, number) if proposal.design is None else proposal.seed
 
 

@@ -67,8 +67,8 @@ def _turns_of(brief: Brief) -> Range:
 
 
 def sketch(task: VariationTask) -> Sketch | None:
-    """Returns the sketch that a task describes; None if the road to mutate could not be drafted, or if every
-    road that was tried leaves the map, overlaps itself or has the wrong number of turns."""
+    """Returns the sketch that a task describes. Returns None if the road to mutate could not be drafted, or
+    if every attempt gave a road that leaves the map, overlaps itself or has the wrong number of turns."""
     rng = np.random.default_rng(task.seed)
     if task.kind == "wild":
         found = draft(task.setting, rng)
@@ -90,7 +90,7 @@ def sketch(task: VariationTask) -> Sketch | None:
 
 
 def sketch_of(known: tuple[Design, VariationContext]) -> tuple[Sketch, PlanShape]:
-    """Returns the sketch of an existing design of a cell, as if the road had begun as one, and its shape."""
+    """Returns the sketch and the shape of an existing design of a cell."""
     design, setting = known
     elements = elements_of(design.segments)
     x, y, _ = design.starting_point

@@ -1,4 +1,4 @@
-"""Returns the state of a campaign and of its cells, even while a process is working on it; SQLite counts."""
+"""Returns the state of a campaign and its cells, even while a process works on it; SQLite counts tests."""
 
 import time
 from collections import Counter
@@ -55,8 +55,8 @@ class CellStatus:
 
     @property
     def remark(self) -> str:
-        """A warning if a search for the boundary of failure drove no road, or if less than 5 % of the driven
-        roads passed or less than 5 % failed; otherwise empty.
+        """A warning about a search for the boundary of failure that drove no road, or in which less than 5 %
+        of the driven roads passed or less than 5 % failed; otherwise empty.
         """
         kept, failed = self.outcomes.get("PASS", 0), self.outcomes.get("FAIL", 0)
         driven = kept + failed

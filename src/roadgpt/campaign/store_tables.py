@@ -163,9 +163,9 @@ class Tables:
     def results(
         self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()
     ) -> Iterator[Result]:
-        """Yields one by one the results of tests of a cell, or of all, that have ended, sorted by cell and
-        number. ``where`` is a condition in SQL on the columns of ``tests`` and ``details``, with placeholders
-        for ``values``.
+        """Yields the results of the ended tests of a cell (None: of all cells), sorted by cell and number.
+        ``where`` is a condition in SQL on the columns of ``tests`` and ``details``, with placeholders for
+        ``values``.
         """
         chosen, names = ("tests.cell = ? AND", [cell]) if cell is not None else ("", [])
         sql = (
@@ -274,7 +274,7 @@ class Tables:
             db.execute("UPDATE meta SET value = 'yes' WHERE name = 'finished'")
 
     def spend(self, spent: Spent) -> None:
-        """Adds what a language model used outside of finished tests, as for a test beyond its allowance."""
+        """Adds what a language model used outside of finished tests, as in a test beyond its allowance."""
         with self._whole() as db:
             db.execute(
                 "UPDATE sittings SET tokens = tokens + ?, cost = cost + ? WHERE rowid = ?",

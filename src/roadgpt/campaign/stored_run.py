@@ -20,7 +20,7 @@ def stored_run(
     cell: Cell, result: Result, road: Road, drive: Drive | None, versions: Mapping[str, str]
 ) -> Run:
     """Returns the Run of a test from its stored result, the road of its design, and its stored drive. Without
-    a drive, it has no verdict; ``versions`` are those of the software that made the campaign."""
+    a drive, the Run has no verdict; ``versions`` are those of the software that made the campaign."""
     request, brief = cell.request, cell.brief
     is_invalid = result.outcome == "INVALID"
     return Run(

@@ -1,9 +1,9 @@
 """Features of a road that predict, without a drive, how close a car will come to leaving its lane.
 
 The best predictor of recorded outcomes is the curvature of the middle of the driven lane, averaged over some
-metres; with lanes of 4 m it is k / (1 + 2k), where k is the curvature of the centre line. The first 25 m are
-left out, since the car starts from rest, and the last 8 m, since the test ends 8 m before the end of the
-road. The features include the largest averages of this curvature in left and in right bends over windows of
+metres. With lanes of 4 m, this curvature is k / (1 + 2k), where k is the curvature of the centre line. The
+first 25 m are left out, since the car starts from rest. The last 8 m are left out, since they are not driven.
+The features include the largest averages of this curvature in left and in right bends over windows of
 several lengths, how fast the curvature changes, the length of the straight before the tightest bend, slopes,
 and crests.
 
@@ -59,8 +59,8 @@ NAMES = (
     "rush_right",
 )
 STEERING = tuple(NAMES.index(name) for name in NAMES if name.startswith("steering"))
-"""Indices of the features that estimate STD_SA up to different places. STD_SA is nearly proportional to one
-of them; which one depends on where the car leaves its lane.
+"""Indices of the features that estimate STD_SA up to different places. The place where the car leaves
+its lane decides to which of these features STD_SA is nearly proportional.
 """
 
 
@@ -138,13 +138,13 @@ def steering_so_far(s: Array, lane: Array, world: World) -> Array:
 
 
 def before(values: Array, lag: int) -> Array:
-    """Returns the values of ``lag`` samples before; the first value is repeated before the start."""
+    """Returns for each sample the value ``lag`` samples earlier; near the start, the first value."""
     return np.asarray(values[np.maximum(np.arange(len(values)) - lag, 0)])
 
 
 def squared_speed(s: Array, lane: Array, world: World, acceleration: float) -> Array:
-    """Returns the square of the speed in m^2/s^2 of a car that starts from rest, accelerates as far as the
-    bend at each place allows, and brakes at once.
+    """Returns the square of a car's speed at each sample, m^2/s^2. The car starts from rest and brakes
+    in no time. It accelerates up to the speed limit or to the speed that the curvature allows.
     """
     most = np.minimum(world.limits.speed_limit**2, LATERAL / np.maximum(np.abs(lane), 1e-6))
     most[0] = 0.0

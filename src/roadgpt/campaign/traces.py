@@ -3,9 +3,9 @@
 The drives of a group of tests are stored in one file under ``traces/``, in the format of ``numpy.savez``. Its
 entry ``header`` is a line of JSON: the ``columns`` in their order, the ``steps`` in which they are measured,
 and the tests whose ``drives`` the file holds. The drive of test 17 of cell c02 is the entry ``c02/17``,
-integers ``(columns, n)``: the second differences of each column, in steps, which are near 0 for a car's
-motion and compress well (12 kB for a drive of 28 s). The cumulative sum of a row, taken twice and multiplied
-by its step, is the column of ``roadgpt.drive.COLUMNS`` in its unit.
+integers ``(columns, n)``: the second differences of each column, counted in steps. For a car's motion, these
+differences are near 0 and compress well (12 kB for a drive of 28 s). Two cumulative sums of a row, times the
+column's step, give the column of ``roadgpt.drive.COLUMNS`` in its unit.
 
 Stores of earlier versions hold Apache Parquet files instead. In these, a row is one time step of a drive; the
 columns ``cell`` and ``number`` identify the test, and the metadata under ``roadgpt`` holds the headers.

@@ -24,7 +24,7 @@ def unordered_map(function: Callable[[T], U], items: Sequence[T], workers: int, 
 
     Args:
         function: a function at the top level of a module, or a ``partial`` of one.
-        items: its arguments; with several workers, items and results must be picklable.
+        items: the argument of each call; with several workers, items and results must be picklable.
         workers: number of processes; 1: the function runs in this process.
         log: the file that receives what worker processes print.
 

@@ -73,8 +73,8 @@ def open_chat(settings: ChatSettings) -> Chat:
     replay, the answers come from that folder instead of a server.
 
     Raises:
-        ChatError: the server needs an API key and there is none, no model is named and the server does not
-            have exactly one, or the library of the provider is not installed.
+        ChatError: the API key that the server needs is missing; no model is named, and the server has none
+            or several; or the library of the provider is not installed.
         UsageError: both recording and replay are set, or there is no recording to replay.
         PartError: no provider of that name is installed.
     """
@@ -104,8 +104,8 @@ def asks_a_model(part: Any) -> bool:
 def plugin_of(kind: str, name: str, settings: ChatSettings | None = None) -> Any:
     """Returns the plug-in of a kind and name, ready for use; it is created once and then reused.
 
-    If its class takes ChatSettings, it gets ``settings`` or, if these are None, those that the user has
-    configured. A plug-in that cannot be called is returned unchanged.
+    A class that takes ChatSettings gets ``settings``; if ``settings`` is None, the class gets the settings
+    that the user has configured. A plug-in that cannot be called is returned unchanged.
     """
     return _made(kind, name, (settings or configured()) if asks_a_model(plugins.find(kind, name)) else None)
 

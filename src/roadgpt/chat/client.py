@@ -73,7 +73,8 @@ class ApiClient:
 
     def send(self, api: str, body: dict[str, Any]) -> dict[str, Any]:
         """Sends a request to one of the library's APIs, such as "chat.completions", and returns the response.
-        Raises RequestError if the request failed and so did its repetitions, if any could help.
+        The library repeats a failed request if this may help. Raises RequestError if no attempt succeeds, and
+        NotReadableError if the response is too large.
         """
         return self._sent(attrgetter(f"{api}.with_raw_response.create")(self._client), body)
 

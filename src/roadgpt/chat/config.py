@@ -41,7 +41,7 @@ FOLDER = (DOTENV, PROJECT)
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 LINE = re.compile(r"\s*(?:export\s+)?([A-Za-z_]\w*)\s*=\s*(.*?)\s*")
 PREFIXES = ("ROADGPT_", "OPENAI_", "AZURE_OPENAI_")
-"""The first letters of all variables that set something."""
+"""The beginnings of the names of all variables that set something."""
 OF_OTHERS = "ROADGPT_NO_NUMBA"  # used in the room drive
 MOST_BYTES = 1_000_000  # of a settings file
 
@@ -108,8 +108,8 @@ def settings_with_origin(
 
 
 def settings_from(found: Mapping[str, Setting]) -> ChatSettings:
-    """Returns the ChatSettings with these values. Raises UsageError if one is not valid; the message says
-    where it was found.
+    """Returns the ChatSettings with these values. Raises UsageError if a value is not valid; the message says
+    where the value was found.
     """
     try:
         return ChatSettings.model_validate({name: setting.value for name, setting in found.items()})
@@ -156,8 +156,8 @@ def key_for(base_url: str | None) -> Key | None:
 
 
 def trust_server(base_url: str, wanted: str | None, place: object) -> None:
-    """Allows the server that a file names (``wanted``) to receive the user's key if the user has named the
-    same server; raises UsageError if not. ``place`` is the file, or its folder, for the message.
+    """Allows a server to receive the user's key if the user (``base_url``) and a file (``wanted``) name this
+    server. Raises UsageError if the two differ. ``place`` is the file, or its folder, for the message.
     """
     if wanted is None or origin_of(base_url) != origin_of(wanted):
         told = wanted or "no server of its own"
@@ -278,8 +278,8 @@ def _chat_table(whole: Mapping[str, Any], path: str) -> dict[str, Any]:
 
 
 def unknown_key(path: str, table: str, key: str, keys: Sequence[str]) -> UsageError:
-    """Returns the error for a key that a table of settings in a file cannot have; ``keys`` are those that it
-    can have.
+    """Returns the error for a key that a table of settings in a file cannot have; ``keys`` are the keys that
+    the table can have.
     """
     near = get_close_matches(key, keys, 1)
     advice = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(keys)}"
@@ -288,7 +288,7 @@ def unknown_key(path: str, table: str, key: str, keys: Sequence[str]) -> UsageEr
 
 def unknown_variables(others: Collection[str] = ()) -> list[str]:
     """Returns the variables whose names begin with ``ROADGPT_`` but are unknown, as texts such as
-    "ROADGPT_MODLE in .env"; ``others`` are those that set other options than those of a language model.
+    "ROADGPT_MODLE in .env"; ``others`` are known variables that do not concern language models.
     """
     known = {f"ROADGPT_{name.upper()}" for name in (*FIELDS, KEY)} | {OF_OTHERS, *others}
     places = (("the environment", os.environ), (DOTENV, _dotenv(Path(DOTENV))))

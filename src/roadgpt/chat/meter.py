@@ -41,7 +41,7 @@ class Meter:
 
     def reply_tokens(self, messages: Sequence[Message], settings: ChatSettings, model: str) -> int:
         """Returns the largest number of tokens that the answer to these messages may have without exceeding a
-        limit; raises BudgetError if too few are left.
+        limit. Raises BudgetError if too few are left, or if money is limited and a price is unknown.
         """
         prompt = tokens_in(*(message.text for message in messages))
         affordable = self._affordable(prompt, price_of(settings, model), model)

@@ -164,8 +164,8 @@ class ChatSettings(ChatValue):
         return price
 
     def essence(self) -> Self:
-        """Returns a copy of the settings in which those that may change when a campaign is resumed have their
-        defaults: the limits of tokens and money, the price, the time-out, the retries and the folders of
+        """Returns a copy of the settings with defaults for all fields that may change when a campaign is
+        resumed: the limits of tokens and money, the price, the time-out, the retries and the folders of
         recordings.
         """
         usual = type(self)()
@@ -184,7 +184,7 @@ class ChatSettings(ChatValue):
 
 def two_prices(text: str) -> tuple[float, float]:
     """Parses a text such as "0.15/0.60" into USD per million tokens of prompt and of completion; raises
-    ValueError if it is not two numbers.
+    ValueError if the text is not two numbers, from 0 to less than a million.
     """
     try:
         prompt, completion = (float(part) for part in text.split("/"))

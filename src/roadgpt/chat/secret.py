@@ -24,7 +24,7 @@ class Key:
 
 
 NO_KEY = Key("none", "nowhere")
-"""A placeholder for servers that need no key, because the library requires one."""
+"""A placeholder for servers that need no key: the library always requires a key."""
 
 
 def masked(value: str) -> str:

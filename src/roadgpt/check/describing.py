@@ -10,7 +10,7 @@ def describe(road: Road) -> Brief:
 
     Each turn is a clause with side, angle and radius, and each straight a clause with its length. A clause
     also states the mean grade, unless the turn or straight is level. The Brief includes the length of the
-    whole road, and its climb unless it rounds to 0 m.
+    whole road. A climb that rounds to 0 m is left out.
 
     Raises:
         UsageError: The road has no two different points.

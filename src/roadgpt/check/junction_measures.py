@@ -1,7 +1,7 @@
 """Measures the junctions that a route passes: kind, directions, exits and signs, on the finished geometry.
 
-The direction of an arm is that of the straight line from its contact with the junction to the point 15 m
-farther out (on a shorter road, to the other end), so a bend within these 15 m changes the direction.
+The direction of an arm is the direction of the straight line from the junction to the point 15 m along the
+arm. On a shorter road, the line leads to the far end. So a bend within these 15 m changes the direction.
 """
 
 import math
@@ -41,8 +41,8 @@ class MeasuredJunction:
     turn: float
     """Change of direction of the route, left positive; 180 if the route leaves on the arm of arrival."""
     exit: int
-    """Number of the arm on which the route leaves, in the same order as ``gaps``: 1 for the first arm after
-    the arm of arrival, the highest number for the arm of arrival itself."""
+    """Number of the arm on which the route leaves. Arms are counted from 1 in the order of ``gaps``; the arm
+    of arrival comes last."""
     ways: tuple[float, ...]
     """Changes of direction from the arm of arrival to each other arm, left positive, in the same order as
     ``gaps``."""
@@ -106,8 +106,9 @@ class MeasuredLanes:
     side: Side | None
     """The side of the lane that ends or begins, or to which the route changes."""
     behind: float = 0.0
-    """Distance in metres along the route from ``s`` to the place where the lane becomes too narrow for a car
-    (drop) or wide enough (gain), or to the middle of the first change of lanes; negative if before ``s``."""
+    """Distance in metres along the route from ``s`` to the place where the ending lane becomes too narrow for
+    a car, or the new lane wide enough. For a change of lanes: to the middle of the first change. Negative if
+    before ``s``."""
 
 
 def measured_places(route: Route) -> list[MeasuredJunction | MeasuredLanes]:

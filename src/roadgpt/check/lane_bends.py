@@ -36,8 +36,8 @@ def bends_below(
 ) -> tuple[Finding, ...]:
     """Returns a Finding for each junction or roundabout with a bend below ``least`` metres.
 
-    ``what`` says of what the radius is, with a gap for it. ``bends_at`` gives the bends of a junction, with
-    traffic on the right.
+    ``what`` names the line and has a ``{}`` for its radius, as in ``str.format``. ``bends_at`` gives the
+    bends of a junction, with traffic on the right.
     """
     found = []
     seen = network.right_hand
@@ -53,9 +53,9 @@ def bends_below(
 
 
 def tightest_bend(member: NetworkRoad, share: float, only_right: bool = False) -> LaneBend | None:
-    """Returns the tightest bend of a line along the right lane of a connecting road (through a junction);
-    None if the line is straight or, with ``only_right``, never bends to the right. A radius of 0 means that
-    it folds.
+    """Returns the tightest bend of a line along the right lane of a connecting road (through a junction).
+    With ``only_right``, bends to the left are ignored. None: the line has no such bend. A radius of 0 means
+    that the line folds.
 
     The line lies to the right of the centre line, at a distance of ``share`` times the width of the lane: 0.5
     for the middle of the lane, 1 for its right edge. Where the width varies, the line is not an arc even if

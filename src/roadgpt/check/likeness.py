@@ -16,7 +16,7 @@ Wanted = Sequence[Feature | None]
 
 
 class LikeGroup(list[int]):
-    """The places of features that must be alike; ``common`` has the ranges that all of them must meet."""
+    """The indices of features that must be alike; all features must meet the ranges in ``common``."""
 
     def __init__(self, common: Feature, place: int) -> None:
         super().__init__([place])
@@ -24,8 +24,8 @@ class LikeGroup(list[int]):
 
 
 def like_groups(features: Wanted) -> list[LikeGroup]:
-    """Returns the groups of two or more features that must be alike: those of one name whose ranges can be
-    met by one and the same. A place with None belongs to no group.
+    """Returns the groups of two or more features that must be alike. Features must be alike if they have the
+    same name and their ranges overlap. A None in ``features`` belongs to no group.
     """
     groups: list[LikeGroup] = []
     for place, feature in enumerate(features):
@@ -56,8 +56,8 @@ def _common(one: Feature, other: Feature) -> Feature | None:
 def like_straights(gaps: Sequence[Sequence[Feature]]) -> list[LikeGroup]:
     """Groups the gaps before, between and after the turns whose straights must be equally long.
 
-    These are gaps with one required straight. If no straight is required between the turns, all gaps between
-    them are a group, whose ``common`` has no length.
+    Gaps with exactly one required straight are grouped by ``like_groups``. If no straight is required between
+    the turns, all gaps between turns are one group; the ``common`` of this group has no length.
     """
     groups = like_groups([gap[0] if len(gap) == 1 else None for gap in gaps])
     inner = range(1, len(gaps) - 1)
@@ -71,7 +71,8 @@ def like_straights(gaps: Sequence[Sequence[Feature]]) -> list[LikeGroup]:
 def likeness_complaints(found: Measures, asked: Outline) -> Iterator[Complaint]:
     """Yields a complaint for each group of turns or straights that should be alike and is not.
 
-    If the counts are open, so that it is not known which turn is which, only turns of one group are compared.
+    If the number of turns is open, a road is compared only if all required turns have one name and no
+    straight is required.
     """
     wanted = _wanted(asked, len(found.turns))
     if wanted is None:

@@ -21,12 +21,12 @@ from roadgpt.plural import plural
 RULE = "promises"
 SHARE = 0.1  # ratio by which a distance between junctions may differ from the requested distance
 NEVER_USUAL = ("lights", "stop")
-"""Signs that a junction has only if they were asked for; a roundabout has signs to give way without it."""
+"""Signs that a junction has only on request; a roundabout has signs to give way even without a request."""
 CORNERS = 4  # corners of a grid; at each, the road may bend without a junction
 
 
 def broken_map(route: Route, asked: MapClause, length: Amount | None) -> tuple[Finding, ...]:
-    """Returns one Finding for each requirement that the map of a route does not meet; ``length`` is the
+    """Returns one Finding for each requirement that the map of a route does not meet. ``length`` is the
     required length of all roads outside junctions, in metres.
     """
     found = measured_map(route.network)

@@ -92,12 +92,12 @@ def best_match(
     of_turns: Callable[[Group, int, int], Match[T]],
     of_gap: Callable[[int, tuple[Feature, ...]], Match[T]],
 ) -> Match[T]:
-    """Returns the match of a road of ``count`` turns with an Outline in which the fewest features are not as
-    requested.
+    """Returns the best match of a road of ``count`` turns with an Outline: the match with the fewest features
+    that are not as requested.
 
-    ``of_turns`` matches a group with turns of the road, given the group, the index of the first turn and the
-    number of turns. ``of_gap`` matches requested straights with the gap before a turn, given the index of the
-    turn (``count`` for the last gap) and the straights.
+    ``of_turns`` matches a group with turns of the road; its arguments are the group, the index of the first
+    turn and the number of turns. ``of_gap`` matches requested straights with the gap before a turn; its
+    arguments are the index of the turn (``count`` for the last gap) and the straights.
     """
     groups, turns_are_free = asked.groups, not asked.names_all_turns
 
@@ -124,8 +124,8 @@ def best_match(
 
 
 def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
-    """Returns one Complaint for each turn or straight of an Outline that a road, in driving order, does not
-    have as requested; a single one about the number of turns if no match is possible.
+    """Returns the Complaints about the turns and straights of an Outline, in driving order. If no match is
+    possible, the only Complaint is about the number of turns.
     """
     turns, gaps = found.turns, found.gaps
 
@@ -207,8 +207,8 @@ def _fit(found: Measures, piece: MeasuredFeature, ramp: Sequence[Feature]) -> bo
 
 
 def change_of_grade(one: Range | None, other: Range | None) -> GradeChange | None:
-    """Returns the change of grade between two straights in a row if both go up or both go down, one of them
-    more steeply; None otherwise.
+    """Returns the change of grade between two straights in a row that both go up, or both go down, with
+    different grades; None for all other straights.
     """
     if one is None or other is None:
         return None

@@ -85,7 +85,7 @@ class GradeChange(NamedTuple):
     """A change of grade between two parts of a straight that both go up, or both go down."""
 
     grade: float
-    """The grade in percent between those of the two parts."""
+    """A grade in percent: the mean of the grades that are requested of the two parts."""
     rises: bool
     """Whether the grade of the second part is the larger one; -4 percent is larger than -8."""
 
@@ -154,7 +154,7 @@ class Measures:
         return sum(turn.side == side for turn in self.turns)
 
     def cut(self, piece: MeasuredFeature, changes: Sequence[GradeChange]) -> tuple[MeasuredFeature, ...]:
-        """Returns a piece of a straight, cut where its grade, over 10 m, changes in the ways given.
+        """Cuts a piece of a straight at the given changes of its grade, over 10 m, and returns the parts.
 
         With n changes there are n + 1 parts, or fewer if the piece does not have all the changes in order.
         A part may be as short as one station.

@@ -10,8 +10,8 @@ from roadgpt.network import Junction, Network, NetworkRoad, Route
 
 
 def junction_finding(rule: str, route: Route | None, junction: Junction, what: str) -> Finding:
-    """Returns the Finding that something is wrong at a junction; ``what`` describes it without the place. Its
-    station is where the route enters the junction; None if no route passes it.
+    """Returns the Finding that something is wrong at a junction; ``what`` describes it without the place. The
+    station of the Finding is where the route enters the junction; None if no route passes the junction.
     """
     x, y, _ = junction.node
     s = None
@@ -24,7 +24,8 @@ def road_finding(
     rule: str, route: Route | None, member: NetworkRoad, s: float, what: str, stops: bool = False
 ) -> Finding:
     """Returns the Finding that something is wrong at station ``s`` (m) of a road; ``what`` describes it
-    without the place. Its station is one of the route; None if the road is not on the route.
+    without the place. The station of the Finding is measured along the route; None if the road is not on the
+    route.
     """
     with np.errstate(invalid="ignore", over="ignore"):  # a number of the road may not be finite
         x, y, _ = member.road.at(s).tolist()
@@ -35,8 +36,8 @@ def road_finding(
 
 
 def station_on(route: Route | None, member: NetworkRoad, s: float) -> float | None:
-    """Returns the distance in metres along a route to the place that is ``s`` metres along a road, the first
-    time that the route uses it; None if there is no route, or if the road is not on the route.
+    """Returns the distance in metres along a route to station ``s`` of a road. If the route uses the road
+    more than once, the first time counts. None: there is no route, or the road is not on the route.
     """
     if route is None:
         return None
@@ -47,7 +48,7 @@ def station_on(route: Route | None, member: NetworkRoad, s: float) -> float | No
 
 
 def station_near(route: Route | None, member: NetworkRoad, x: float, y: float) -> float | None:
-    """Returns what ``station_on`` does, for the place on a road that is nearest to (x, y)."""
+    """Returns the result of ``station_on`` for the place on a road that is nearest to (x, y)."""
     if station_on(route, member, 0.0) is None:
         return None
     return station_on(route, member, float(member.road.locate(x, y)[0]))
@@ -60,7 +61,7 @@ def name_of(junction: Junction) -> str:
 
 
 def owner_of(network: Network, member: NetworkRoad) -> str:
-    """Returns the name of the junction or roundabout to which a road belongs, else of the road itself."""
+    """Returns the name of the junction or roundabout that contains a road; otherwise the name of the road."""
     if member.junction is not None:
         return name_of(network.junction(member.junction))
     ring = network.roundabout_of.get(member.id)

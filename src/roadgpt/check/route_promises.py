@@ -36,9 +36,9 @@ ROUNDING = 0.5  # m, allowed deviation from a range of outer diameters
 
 
 def broken_promises(route: Route, brief: Brief, map_size: float) -> tuple[Finding, ...]:
-    """Returns one Finding for each requirement that a route does not meet; only that for the number of
-    junctions and lane changes, if it is wrong. "motorway" requires less of a road that the map, a square with
-    sides of ``map_size`` metres, cannot hold.
+    """Returns one Finding for each requirement that a route does not meet. If the number of junctions and
+    lane changes is wrong, nothing else is compared. On a small map, "motorway" and "sweeping" require less;
+    ``map_size`` is the side of the map in metres.
     """
     found = measured_places(route)
     if len(found) != len(brief.junctions):
@@ -74,7 +74,7 @@ def _moved(place: MeasuredJunction | MeasuredLanes, behind: Brief) -> float:
 
 
 def stretches_of(route: Route) -> list[tuple[float, Road]]:
-    """Returns the roads of a route outside junctions, each after the station of its start in metres."""
+    """Returns the roads of a route outside junctions as pairs (station of the start in metres, road)."""
     found: list[tuple[float, list[NetworkRoad]]] = []
     for start, member in route.roads:
         last = found[-1][1][-1] if found else None

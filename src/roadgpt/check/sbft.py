@@ -203,7 +203,7 @@ def smallest_radius(nodes: Array) -> tuple[float, int]:
 
 def radii(nodes: Array) -> Array:
     """Returns radii ``(n - 5,)`` in metres of the circles through nodes i, i+2, i+4 of ``(n, 2)``; infinite
-    where these are collinear.
+    where the three nodes are collinear.
     """
     a, b, c = nodes[:-5], nodes[2:-3], nodes[4:-1]
     (ax, ay), (bx, by), (cx, cy) = a.T, b.T, c.T

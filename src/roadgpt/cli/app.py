@@ -43,7 +43,7 @@ class Commands(click.Group):
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """Imports and returns the command of that name; None if there is none."""
+        """Imports the command ``name`` and returns the command; returns None if ``name`` is unknown."""
         if name not in COMMANDS:
             return None
         module = f"{name}_" if iskeyword(name) else name

@@ -50,8 +50,8 @@ def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool)
 
 
 def faults_of(status: "Status") -> "Faults | None":
-    """Returns the distinct faults of a campaign; if ``roadgpt faults`` has not yet determined them, groups
-    of similar failures among at most ``COMPARED`` failures. Returns None if no test was driven.
+    """Returns the distinct faults of a campaign; None if no test was driven. Before ``roadgpt faults``
+    has tried small changes, returns groups of similar failures among at most ``COMPARED`` failures.
     """
     from roadgpt.campaign.faults.fault import faults_in
 
@@ -103,7 +103,7 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
 
 
 def outside_lines(status: "Status") -> Iterator[str]:
-    """Yields a line about passed tests in which the car was partly outside its lane, if there were any."""
+    """Yields one line about passed tests with the car partly or mostly outside its lane, if there are any."""
     passed = status.outcomes.get("PASS", 0)
     partly = sum(cell.partly_outside for cell in status.cells)
     mostly = sum(cell.mostly_outside for cell in status.cells)
@@ -132,10 +132,10 @@ def headline(status: "Status") -> str:
 
 
 def cell_lines(cells: "Sequence[CellStatus]", width: int = 10_000) -> list[str]:
-    """Returns a table with a line for each cell; columns beyond ``width`` characters are left out.
+    """Returns a table with a line for each cell; a column that ends beyond ``width`` is left out.
 
     A cell is one combination of the campaign's descriptions, designers, drivers and other settings. The
-    last column counts as only ``LEAST`` characters wide, so its texts may extend beyond ``width``.
+    last column counts as ``LEAST`` characters wide, so longer texts of this column extend beyond ``width``.
     """
     rows = [HEAD, *map(_columns, cells)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

@@ -55,8 +55,8 @@ EARLIER = {
     ("sdc", "serve"): (("compete", "sdc"), "compete sdc"),
     ("sdc",): (("compete", "sdc", "--help"), "compete sdc"),
 }
-"""Maps the earlier name of a command, as words, to the words that replace it, and to the present command as
-it is shown to the user.
+"""Maps the words of an earlier command to two things: the present words, and a text that shows the present
+command to the user.
 """
 
 EARLIER_OPTIONS = {"--verge": "--shoulder"}
@@ -64,8 +64,8 @@ EARLIER_VALUES = {"--view bonnet": "--view hood"}
 
 
 def renamed(args: Sequence[str]) -> tuple[list[str], str]:
-    """Returns the arguments after ``roadgpt`` with the present name of the command, and a sentence that tells
-    the user this name; the sentence is empty if nothing was replaced.
+    """Returns the arguments after ``roadgpt``, with an earlier command name replaced by the present name, and
+    a sentence that tells the user the present name; the sentence is empty if nothing was replaced.
     """
     for words, (new, shown) in EARLIER.items():
         if tuple(args[: len(words)]) == words:
@@ -75,8 +75,8 @@ def renamed(args: Sequence[str]) -> tuple[list[str], str]:
 
 
 def renamed_options(args: Sequence[str], known: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Returns the arguments after a command with the present names of options, and for each replaced name a
-    sentence that tells the user the present one. ``known`` are the names that the command has now.
+    """Returns the arguments after a command, with earlier names of options replaced by present names, and a
+    sentence for the user about each replaced name. ``known`` are the option names that the command has now.
     """
     new: list[str] = []
     told: list[str] = []

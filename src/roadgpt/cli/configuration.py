@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 TABLES = ("run", "world", "beamng")
 CHAT_TABLE = "chat"
 EARLIER_KEYS = {"verge": "shoulder"}
-"""Maps the keys of campaign plans that have another name in configuration files to that name."""
+"""Maps earlier keys, which campaign plans still use, to present keys; configuration files may use both."""
 
 OF_FOLDER, OF_USER, OF_ENVIRONMENT = "folder", "user", "environment"
 YOURSELF = "a file of this folder cannot decide that; say it yourself with the option"

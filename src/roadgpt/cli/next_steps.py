@@ -42,8 +42,8 @@ class WithoutFailure:
 
 
 def next_steps(quiet: WithoutFailure | None) -> list[tuple[str, str]]:
-    """Returns suggestions for results without a failure (``quiet``), each with the command that carries it
-    out; none if too few tests passed, or if command-line options cannot express the whole request.
+    """Returns pairs of a suggestion and a command for results without a failure (``quiet``). The list is
+    empty if too few tests passed, or if command-line options cannot express the whole request.
     """
     if quiet is None or quiet.passed < FEWEST or not quiet.request.words:
         return []

@@ -51,7 +51,7 @@ class Option(click.Option):
         is_rare: Whether --help omits the option and only --help-all lists it; has no effect on commands with
             few options.
         table: The table of configuration files in which the option can be set; empty if files cannot set it.
-            A switch that files can set also gets its opposite, such as --no-lane-departure.
+            A switch that files can set also gets an opposite switch, like --no-lane-departure.
         key: The option's key in that table; empty if it is the option's first name.
         guard: A function that refuses values which a configuration file must not set.
         unit: Factor that converts the field's value to the option's value, such as 3.6 from m/s to km/h.
@@ -94,8 +94,8 @@ class Option(click.Option):
         return given if given is None or isinstance(given, str) or self.unit == 1.0 else given / self.unit
 
     def written(self, value: Any, usual: Any = None, is_set: bool = False) -> list[str]:
-        """Returns the command-line arguments that give the field a value; none for the default (``usual``, or
-        else the option's), unless a configuration file sets the option (``is_set``).
+        """Returns the command-line arguments that give the field a value. The default needs no arguments,
+        except if a file or the environment sets the option (``is_set``). ``usual`` replaces the default.
         """
         default = self.read(self.default) if usual is None else usual
         if value is None or (value == default and not is_set):
@@ -151,7 +151,7 @@ class Option(click.Option):
             return self.type_cast_value(ctx, setting.value)
 
     def found(self, layers: "Sequence[Layer]") -> "Setting | None":
-        """Returns the value from the first source that sets the option; None if no source sets it.
+        """Returns the Setting from the first source that sets the option; None if no source sets the option.
 
         Args:
             layers: The environment and the configuration files, highest precedence first.
@@ -237,8 +237,9 @@ def words_of(
 ) -> list[str]:
     """Returns the command-line arguments that give options these values, by the names of the fields.
 
-    An option without a value is left out, as is a default: that in ``usual``, or else the option's own.
-    ``told`` are the keys of options that configuration files set; for these, even a default is given.
+    Options without a value and options with their default value are left out. Defaults in ``usual`` replace
+    the options' own defaults. ``told`` are the keys of options that configuration files or the environment
+    set; these options are given even with their default value.
     """
     return [
         word

@@ -11,8 +11,8 @@ PICTURES = ("png", "svg", "pdf")  # as report.FORMATS has them, which would load
 
 
 def measure(low: float, high: float, unit: str = "", above: bool = False) -> Callable[[str], float]:
-    """Returns the type of an option that takes a finite number within bounds, which are included, or only the
-    upper one if ``above``. The unit is for messages.
+    """Returns the type of an option that takes a finite number from ``low`` to ``high``. If ``above`` is
+    True, ``low`` itself is not allowed. Messages show the unit.
     """
     bounds = f"above {low:g}, up to {high:g}" if above else f"from {low:g} to {high:g}"
     return _number(float, "number", low, high, f"give a number {bounds}{unit and ' ' + unit}", above)

@@ -327,8 +327,8 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
 
 
 def choice_of(values: dict[str, Any]) -> "Choice | None":
-    """Returns which of --failures, --faults and --worst was given; None if none was. Removes all three from
-    ``values``.
+    """Returns which option the user gave: --failures, --faults or --worst; None if the user gave none
+    of the three. Removes all three from ``values``.
 
     Raises:
         UsageError: More than one choice is given.

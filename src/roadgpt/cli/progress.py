@@ -18,10 +18,10 @@ def progress(
 ) -> Iterator[Callable[..., None]]:
     """Shows on standard error, during a ``with`` block, how many steps are done and the remaining time.
 
-    Yields a function, to be called with the number of steps that are done. Its keyword arguments change the
-    bar: ``total`` is a new total, and ``rate`` is a text to show after the numbers. ``what`` are the steps in
-    the plural, such as 'faults'. ``total`` is None if it is unknown. If standard error is no terminal,
-    lines are printed instead of a bar or, without ``has_lines``, nothing.
+    Yields a function; call this function with the number of finished steps. Its keyword arguments change the
+    bar: ``total`` is a new total, and ``rate`` is a text to show after the numbers. ``what`` names the steps
+    in the plural, such as 'faults'. ``total`` is None if the number of steps is unknown. If standard error
+    is no terminal, lines are printed instead of a bar; nothing is printed if ``has_lines`` is False.
     """
     if quiet or not (has_lines or sys.stderr.isatty()):
         yield lambda *_, **__: None

@@ -1,5 +1,5 @@
-"""Builds the commands that repeat a Run: one makes its road from the description, the other drives its
-road file.
+"""Builds the two commands that repeat a Run. ``roadgpt run`` makes the road from the description again;
+``roadgpt drive`` drives the road file again.
 """
 
 import shlex
@@ -48,11 +48,11 @@ def option_words(
     asks: bool = True,
     also: Set[str] = frozenset(),
 ) -> list[str]:
-    """Returns the options that differ from their defaults or are set in a configuration file, and those whose
-    keys are in ``also``.
+    """Returns the command-line arguments for three kinds of options: options that differ from their defaults,
+    options that configuration files or the environment set, and options with keys in ``also``.
 
-    ``of_setup`` are the options of the command that set fields of the Setup; ``asks`` says whether it has
-    options for language models.
+    ``of_setup`` are the command's options that set fields of the Setup. ``asks`` says whether the command
+    has options for language models.
 
     Raises:
         UsageError: A configuration file cannot be used.

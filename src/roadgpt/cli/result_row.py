@@ -88,8 +88,8 @@ class Row:
 
     @property
     def told(self) -> str:
-        """The outcome as commands print it; for a PASS with any part of the car outside its lane, it says how
-        far outside, such as 'PASS (62 % out, 1.13 m)'.
+        """The outcome as commands print it. If any part of the car was outside its lane in a passed drive,
+        the outcome says how far, such as 'PASS (62 % out, 1.13 m)'.
         """
         if self.test_outcome != "PASS" or not self.max_oob:
             return self.outcome
@@ -120,8 +120,8 @@ class Row:
 
 
 def outside(share: float | None, beyond: float | None) -> str:
-    """Returns how far a car was outside its lane as text, such as '62 % out, 1.13 m'; empty if the road
-    was not driven.
+    """Returns how far a car was outside its lane as text, such as '62 % out, 1.13 m' or 'inside'; empty if
+    the road was not driven.
     """
     if share is None:
         return ""
@@ -170,7 +170,7 @@ def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
 
 
 def row_of(run: "Run", file: str, name: str = "") -> Row:
-    """Returns the row of a Run; ``file`` is the road file that it names, ``name`` a shorter one in lines."""
+    """Returns the row of a Run; ``file`` is the Run's road file. Lines show ``name``, if given, instead."""
     return Row(
         file,
         run.outcome,

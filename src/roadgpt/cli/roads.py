@@ -54,8 +54,8 @@ def roads_named(
     ``takes_all`` is true; otherwise the folder must hold exactly one road.
 
     Raises:
-        UsageError: A name is wrong, no road of a folder matches the choice, or the only road of a folder is
-            to be yielded and the folder has none or several.
+        UsageError: A name is wrong, no road of a folder matches the choice, or a folder that must hold
+            exactly one road holds none or several.
     """
     seen = set() if seen is None else seen
     for file in files:
@@ -76,7 +76,7 @@ def use_each(
     be used.
 
     Raises:
-        PartError: a plug-in cannot be used, which would fail for every road.
+        PartError: a plug-in cannot be used; every further road would fail, too.
     """
     errors, seen = list[RoadGPTError](), set[object]()
     for file in files:
@@ -170,8 +170,8 @@ def _single(file: str) -> NamedRoad:
 def blueprint_of(file: str, world: "World") -> tuple["Blueprint", tuple[str, ...]]:
     """Returns the design or the road in a file, and remarks on assumptions made in reading it.
 
-    If the file defines lanes, lane options have no effect; a remark then names the ones that were given in
-    ``world``, the World that the options describe. The file may also be the folder of a run.
+    ``world`` is the World that the options describe. If the file defines lanes, lane options have no effect;
+    a remark then names the lane options that differ from their defaults. ``file`` may be the folder of a run.
 
     Raises:
         UsageError: The file holds no road, or the folder is not that of a run.
@@ -207,8 +207,8 @@ def shown_runs(
 ) -> "list[Run]":
     """Returns the named Runs, to show them together; a road file becomes a Run without a drive.
 
-    ``world`` and ``geometry`` are for road files. ``what`` is the output that shows at most ``most`` Runs,
-    for messages, such as 'a page'.
+    ``world`` and ``geometry`` are for road files. The output can show at most ``most`` Runs; ``what``
+    names the output in messages, such as 'a page'.
 
     Raises:
         UsageError: A name is wrong, a road cannot be read, or there are more than ``most``.
@@ -247,10 +247,10 @@ def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
 
 @contextmanager
 def named_in_errors(file: str) -> Iterator[None]:
-    """Puts the name of a file before the sentence that says what is wrong with its road, unless it is there.
+    """Context manager: puts the name of a file before an error message that does not contain the name.
 
     Raises:
-        UsageError, ExportError: What was raised inside, with the name.
+        UsageError, ExportError: The error that was raised in the ``with`` block, with the file's name.
     """
     try:
         yield
@@ -290,8 +290,8 @@ def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) 
 def check_file(path: Path, kind: str, usual: Path, endings: Sequence[str] = ()) -> None:
     """Checks that a path is suitable for a file to write, such as a page, a film or a picture (``kind``).
 
-    ``usual`` is an example of a name, for the message. ``endings`` are the extensions that the file may have,
-    the usual one first; empty: any.
+    ``usual`` is an example of a name, for the message. ``endings`` are the permitted extensions, the usual
+    extension first; if empty, every extension is permitted.
 
     Raises:
         UsageError: The path is a folder, or has another extension.

@@ -27,9 +27,9 @@ MOST_TESTS = 40  # of a cell, one by one
 
 
 def show(path: Path | str, choice: Choice | None = None) -> str:
-    """Returns the summary of a Run with the commands that repeat it, or an overview of the tests in a folder,
-    a campaign or a cell. Of the roads that were chosen in a folder, a single one is summarised, several are
-    listed.
+    """Returns the summary of a Run with the commands that repeat the Run, or an overview of the tests in a
+    folder, a campaign or a cell. If ``choice`` selects one road of a folder, returns the summary of this
+    road. If ``choice`` selects several roads, returns a list with one line per road.
 
     Raises:
         UsageError: No run, folder, campaign, cell or test has that name.

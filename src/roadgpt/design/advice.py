@@ -121,8 +121,8 @@ def _offer(brief: Brief, world: World, fits: Fits, likely: float) -> str:
 def no_room(error: NoRoomError, world: World, fits: Fits) -> str:
     """Returns the message for a road that does not fit on the map.
 
-    If the message suggests a length or a map size, a road was drafted with it. If neither the length of the
-    road nor that of a straight is required, or the road has no turns, the result is the message of ``error``.
+    If the message suggests a length or a map size, a road was drafted with it. The result is the message of
+    ``error`` if no length of the road or of a straight is required, or if the road must have no turns.
     ``fits`` tests whether roads can be drafted for a Brief on a map, as ``road_search.fits`` does.
     """
     brief = error.brief

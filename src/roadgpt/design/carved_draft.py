@@ -2,8 +2,8 @@
 required kinds.
 
 Roads that are joined at random, as in ``village_draft``, seldom use up every arm. In a grid, all arms lead
-somewhere; without a street between two crossroads, these are T-junctions, and without one between two
-T-junctions a road leads on.
+somewhere. If the street between two crossroads is taken out, both become T-junctions. If the street between
+two T-junctions is taken out, a road leads on at both places.
 """
 
 import cmath

@@ -10,7 +10,7 @@ GRADES = ("slope", "incline")
 
 
 def is_one_road(place: JunctionClause) -> bool:
-    """Returns whether the roads before and behind a place are the same road, with other lanes at most."""
+    """Returns whether the roads before and behind a place are one road, whose lanes may change there."""
     return place.kind in LANE_KINDS or (place.kind in RAMPS and place.take == "main")
 
 
@@ -22,10 +22,10 @@ def leads_straight_on(place: JunctionClause) -> bool:
 def with_roads_continued(brief: Brief) -> Brief:
     """Returns the requirements for a route, in which a road continues as it was before.
 
-    A motorway continues where only its lanes change, and past its ramps, so that no part of it is drafted
-    with tight bends or steep grades. There, other roads keep their slope, and stay without turns, where
-    nothing else is required of the next part. A road without turns also continues behind junctions where the
-    route goes straight on.
+    A motorway stays a motorway past its ramps and where only its lanes change, so that no part is drafted
+    with tight bends or steep grades. In such places, other roads keep their slope, and stay without turns, if
+    nothing else is required of the next part. Under the same condition, a road without turns also
+    stays without turns behind a junction where the route goes straight on.
     """
     roads = list(brief.stretches)
     one_road = [n for n, place in enumerate(brief.junctions) if is_one_road(place)]

@@ -25,8 +25,8 @@ def sentences(
     """Returns a sentence for each turn and straight that has changed, and for the road as a whole.
 
     ``elements`` and ``found`` are those of the road before the edit. If the Look at the road after the edit
-    has no elements of the same names, only the measured turns are compared. ``draft`` is the edited design
-    before further segments were changed to keep the road valid.
+    has no elements, the sentences give the number of turns before and after the edit, and describe each turn
+    after it. ``draft`` is the edited design before further segments were changed to keep the road valid.
     """
     new = after.found
     things = _things(elements, after.elements, new) if after.elements else _counted(found, new)
@@ -40,8 +40,8 @@ def sentences(
 def grades_changed(
     before: Design, after: Design, stretches: Sequence[tuple[float, float]], geometry: Geometry
 ) -> Iterator[str]:
-    """Yields a sentence on the mean grade of each stretch of a road before and after an edit; the stretches
-    must have the same stations in metres on both roads, and one named twice counts once.
+    """Yields a sentence on the mean grade of each stretch of a road before and after an edit. Each stretch
+    is a pair of stations in metres, valid for both roads. A stretch named twice counts once.
     """
     for start, end in dict.fromkeys(stretches):
         grades = []

@@ -23,7 +23,7 @@ ANY_TURN = Range(25, 120)  # degrees, where nothing is said: the table in brief.
 AIMS = {meaning.names[0]: meaning.aim for meaning in KINDS.values() if meaning.aim}
 SHARPNESS_AIMS = {meaning.degrees: meaning.aim for meaning in SHARPNESS.values() if meaning.aim}
 WORD_RADII = frozenset(meaning.radius for meaning in (*KINDS.values(), *SHARPNESS.values()))
-"""The radii of words such as "gentle", whose turns use the whole range."""
+"""The ranges of radii of words such as "gentle"; turns named with these words use the whole range."""
 FEWEST_TO_BOUND = 3  # turns of which one is as tight as a bound allows
 NEAR_BOUND = 1.06  # greatest ratio of its radius to the bound
 WIDEST = 115.0  # m, of a radius that nobody asked for
@@ -45,7 +45,7 @@ TIGHTER = 1.35  # ratio of the widest radius of a hard road to its least
 
 
 class DraftTask(NamedTuple):
-    """What the parts of a draft are drawn for."""
+    """The requirements, the World and the random generator with which the parts of a draft are drawn."""
 
     outline: Outline
     windows: Windows
@@ -58,8 +58,8 @@ class DraftTask(NamedTuple):
 def narrowed_turns(turns: Sequence[Feature], task: DraftTask) -> list[Feature]:
     """Returns the turns with the ranges from which their angle, radius, length and grade are chosen.
 
-    The ranges lie a little inside the required ones. Where a number is required, they lie close around it,
-    less close in haste.
+    The ranges lie a little inside the required ones. If a number is required, its range lies close around
+    the number; the more haste, the wider this range.
 
     Raises:
         DesignError: a range is empty, for example because the rules forbid a radius as too tight.
@@ -71,10 +71,11 @@ def narrowed_turns(turns: Sequence[Feature], task: DraftTask) -> list[Feature]:
 def with_one_at_bound(
     narrowed: Sequence[Feature], turns: Sequence[Feature], task: DraftTask
 ) -> list[Feature]:
-    """Returns narrowed turns, one of them about as tight as the others must at least be wide, if a number was
-    given for that: "no radius below 25 m" is then true of roads, and "25 m at the tightest" as well.
+    """Returns the narrowed turns; the radius of a random turn is set to at most 1.06 times the least allowed.
 
-    ``turns`` are the same turns with the required ranges. Of two turns or fewer none is changed.
+    This needs three turns or more, which all have the same least radius, given as a number. The road then
+    meets both "no radius below 25 m" and "25 m at the tightest". ``turns`` are the same turns with the
+    required ranges.
     """
     out, bounds = [*narrowed], {overlap(turn.radius, task.outline.each_turn.radius) for turn in turns}
     bound = bounds.pop()
@@ -257,8 +258,8 @@ def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Gene
 def drawn_straight(wish: Feature, least: float, mean: float, task: DraftTask) -> float:
     """Chooses the length of a required straight at random, in metres.
 
-    It is at least ``least`` metres if the required range allows that. Without an upper limit, it is
-    ``mean`` metres longer on average.
+    It is at least ``least`` metres if the required range allows that. Without an upper limit, the length
+    exceeds its lower limit by about ``mean`` metres on average, and by less in haste.
     """
     span = wish.length or Range(10, inf)
     low, high = span.lo, span.hi

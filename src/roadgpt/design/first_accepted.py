@@ -19,7 +19,7 @@ LANES_DIFFER = (
 """The reason why a draft fails if a lane does not continue at a junction (rule ``unreachable``)."""
 NUMBER = re.compile(r"\d[\d.]*")
 PLACE = re.compile(r"^at s = [\d.]+ m: | near \([^)]*\)")
-"""The place of a fault, of which nothing can be seen on a draft that is not shown."""
+"""Matches the place of a fault in a message; it is cut out, because the user never sees the draft."""
 Draft = TypeVar("Draft", NetworkDesign, MapDesign)
 
 
@@ -38,7 +38,7 @@ def first_accepted(
         build: builds the route of a draft.
         brief, world: the requirements, and the World with the limits that the rules check.
         failed: number of drafts that failed for each reason; this function adds to it. Reasons that differ
-            only in places and sizes, or are findings of one rule, count as the first of them.
+            only in places and numbers count together, under the first of them; so do findings of one rule.
         most: greatest number of drafts that are built.
     """
     reasons: dict[str, str] = {}

@@ -49,9 +49,9 @@ def corrected_draft(
     """Returns the segments of a draft, corrected in up to eight rounds, and a Complaint for each requirement
     that they still violate.
 
-    ``limit`` is the range of inclines that are allowed, in percent. Between consecutive straights of which at
-    least one has a fixed length, parabolas have the share ``ease`` of comfort, and ``share`` elsewhere; for
-    these and ``bumps``, see ``Pace.eased``.
+    ``limit`` is the range of inclines that are allowed, in percent. ``ease`` and ``share`` are fractions of
+    the comfortable vertical radius. ``ease`` is used between consecutive straights if at least one of them
+    has a fixed length, and ``share`` elsewhere. For ``bumps``, see ``Pace.eased``.
     """
     ends = np.cumsum([element.length for element in elements])
     for n in range(CORRECTIONS):

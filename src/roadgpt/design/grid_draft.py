@@ -28,7 +28,7 @@ CONTACT = 13.0  # m, approximate distance from a node to the start of its roads
 ALIKE = 2  # how far a count may exceed its lower limit if it has no upper limit
 SIDES: tuple[tuple[int, int], ...] = ((-1, 0), (1, 0), (0, -1), (0, 1))
 KINDS: tuple[NodeKind, ...] = ("end", "bend", "t_junction", "crossroads", "star")
-"""The kinds of nodes of a grid at which 1 to 5 roads meet."""
+"""The kind of a node of a grid at which 1, 2, 3, 4 or 5 roads meet, in this order."""
 
 Cell = tuple[int, int]
 """The column and the row of a node, from 0."""
@@ -70,8 +70,8 @@ def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, has
 def drawn_count(asked: Amount | None, rng: Rng, most: int = 8, least: int = 1) -> int:
     """Returns a random whole number that ``asked`` allows and that lies between ``least`` and ``most``.
 
-    If ``asked`` has no upper limit, the result exceeds the lowest possible number by 2 at most. There must be
-    at least one possible number. If ``asked`` is None, all numbers from ``least`` to ``most`` are allowed.
+    If ``asked`` is None or has no upper limit, the result exceeds the lowest possible number by 2 at most.
+    There must be at least one possible number.
     """
     both = overlap(span(asked), Range(least, most))
     assert both is not None

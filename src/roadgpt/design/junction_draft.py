@@ -48,8 +48,8 @@ def drawn_junction(
 ) -> JunctionDesign | None:
     """Returns a random junction that meets its requirements; None if 200 draws found none.
 
-    The larger ``haste``, from 0 to 1, the smaller the junction. A junction of any kind gets none of the kinds
-    ``others``, if it can be a T-junction or crossroads then.
+    The larger ``haste``, from 0 to 1, the smaller the junction. If no kind is required, the kinds in
+    ``others`` are avoided, provided that a T-junction or crossroads remains possible.
     """
     for _ in range(ROUNDS):
         kind = _kind(asked, rng, others)

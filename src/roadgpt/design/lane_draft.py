@@ -40,7 +40,7 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
 
     ``room`` is the length in metres that is available for the acceleration or deceleration lane with its
     taper. If no length is required, the lane is made to fit, but is at least 20 m long without its taper. If
-    no taper is required, it is shorter than usual where the lane would else not fit.
+    no taper is required, the taper is shorter than usual where the lane would otherwise not fit.
     """
     assert asked.kind in RAMPS
     wide = LEAST_BESIDE_RAMP + SLACK if asked.length is None else _length(asked.length)
@@ -61,8 +61,8 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
 
 
 def with_side_of_change(places: Sequence[JunctionClause], number: int) -> JunctionClause:
-    """Returns what is required of a place; a lane that begins or ends there gets its side if a lane change
-    beside it says that: the car changes into the lane that begins, and has left the side on which one ends.
+    """Returns what is required of a place. If the side of a lane is open, a lane change beside the place sets
+    it: a lane begins on the side to which the car then changes, and ends on the side that the car has left.
     """
     place = places[number]
     before = places[number - 1] if number else None
@@ -79,7 +79,8 @@ def with_side_of_change(places: Sequence[JunctionClause], number: int) -> Juncti
 def drawn_change(asked: JunctionClause, around: Sequence[Brief]) -> LanesChangeDesign:
     """Returns a place where a lane ends, begins or is changed, which meets its requirements.
 
-    If a road ``around`` it, before or behind the place, has to be short, the taper is shorter than usual.
+    ``around`` are the requirements for the roads before and behind the place. If one of these roads has to be
+    short, the taper is shorter than usual.
     """
     side = asked.take or asked.side or "right"
     room = MOST_IN_TAPER * min(span(road.length).hi for road in around)
@@ -103,8 +104,8 @@ def counted_from_lanes(brief: Brief, places: Sequence[PlaceDesign], width: float
     however, meet where the lane's taper ends or begins.
 
     A car changes lanes in the middle of the road behind the place of a ``lane_change``. If only the road
-    before this place has a required length, the Brief measures it up to that middle, and the road behind gets
-    a length of 40 to 80 m. ``width`` is that of each lane in metres.
+    before this place has a required length, the Brief measures this length up to the lane change, and the
+    road behind gets a length of 40 to 80 m. ``width`` is that of each lane in metres.
     """
     roads = list(brief.roads)
     for n, place in enumerate(places):
@@ -138,9 +139,9 @@ def _longer(road: Brief, more: float) -> Brief:
 def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
     """Returns the lanes of each road of a route, before, between and behind its junctions.
 
-    Where nothing is required, a road has one lane in each direction. On a motorway, and up to the next
-    crossings before and behind a merge or an exit, a road is a one-way carriageway instead: with one lane on
-    a ramp, and usually two elsewhere.
+    Where nothing is required, a road has one lane in each direction. A motorway is a one-way carriageway
+    instead. So is each road between a merge or an exit and the nearest junctions of other kinds. A one-way
+    carriageway has one lane on a ramp, and usually two elsewhere.
 
     If no lanes are required for a road behind a junction, it usually gets the lanes of the road before the
     junction if the route leads straight on. If the route turns, it gets these lanes only if the lanes of both

@@ -33,7 +33,7 @@ NARROW = 1.25  # ratio of the ends of a range that was given as one number, whic
 def with_like_parts(order: TurnSequence, task: DraftTask) -> TurnSequence:
     """Returns the sequence with narrow ranges for turns and straights that must be alike.
 
-    ``check.likeness`` says which these are. A part that has none like it is left as it is.
+    ``check.likeness`` says which these are. The other turns and straights are left as they are.
 
     Raises:
         DesignError: a turn cannot have the required angle or radius.

@@ -4,8 +4,8 @@ An answer has the fields of a design file; junctions stand in a list or in numbe
 junction2, ...). What does not apply to a junction is null or left out. The answer is read by the reader of
 design files, which refuses what it does not know.
 
-Nothing else of a proposed route is changed. What is wrong is stated in sentences that name its segments and
-junctions, so that the model can correct it:
+Nothing else of a proposed route is changed. If the setting ``repair`` is "none", the route is not even moved.
+What is wrong is stated in sentences that name its segments and junctions, so that the model can correct it:
 
     segment 3: near (262, 125): road 2 leaves the map by 12.3 m at x = 250; the map runs from 0 to 250 m
     junction 1 at s = 62 m: asked to turn left, turns -90 degrees
@@ -40,7 +40,7 @@ from roadgpt.network.stretch_profiles import refuse_other_lanes
 from roadgpt.road import World
 
 RULES = "chat_junction_rules.txt"
-"""The rules for junctions, which a language model gets behind those for roads."""
+"""Prompt file with the rules for junctions; a language model gets them after the rules for roads."""
 ON_ROAD = re.compile(r"^on the road from s = [^:]*: ")
 CENTIMETRES = 2  # decimals of a start that is moved
 ROUTES = "routes with junctions, medians or traffic on the left are"
@@ -50,7 +50,7 @@ LEFT_OUT: dict[Repair, str] = {
     "place": f"{ROUTES} moved onto the map, but neither rotated nor raised, and {ALIKE}",
     "full": f"{ROUTES} moved onto the map, but not repaired otherwise, and {ALIKE}",
 }
-"""What is left out for routes, by the setting ``repair``."""
+"""Sentence on what is not done for routes, for each value of the setting ``repair``."""
 MOST_SAID = 300  # characters of an objection to an answer
 Exit = Annotated[int, Field(strict=True)]
 
@@ -180,7 +180,7 @@ def route_outcome(chat: Chat, task: DesignTask) -> Outcome:
 
 
 def judged_route(answer: AnswerNetwork, task: DesignTask, number: int, model: str) -> Outcome:
-    """Returns the route of an answer, moved onto the map, and what is still wrong with it.
+    """Returns the route of an answer, moved onto the map if ``repair`` allows, and what is wrong with it.
 
     Raises:
         UsageError: the answer is not a route, or no route can be built from it.

@@ -1,5 +1,5 @@
-"""Drafts networks, and finds how large their maps have to be: routes through junctions, and maps of roads.
-Single roads do not need these rooms.
+"""Drafts networks (routes through junctions, and maps of roads) and finds how large their maps have to be.
+Single roads do not need this module.
 """
 
 from functools import lru_cache
@@ -29,7 +29,7 @@ EDGES = 40.0  # m, kept free at the edges of the map
 
 
 def draft_network(brief: Brief, world: World, rng: np.random.Generator) -> NetworkDesign | MapDesign:
-    """Returns a valid route, or a valid map if the Brief has one, that meets the Brief.
+    """Returns a valid route that meets the Brief, or a valid map of roads if the Brief asks for a map.
 
     Raises:
         DesignError: no draft was accepted; the message says which requirement failed, and what to do.

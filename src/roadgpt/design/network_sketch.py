@@ -52,8 +52,8 @@ class NetworkSketch(NamedTuple):
 def sketched(
     lines: Sequence[PlanLine], places: Sequence[PlaceDesign], profiles: Sequence[Profile]
 ) -> NetworkSketch:
-    """Returns the sketch of a route; its roads, of which ``profiles`` are the cross-sections, lie before,
-    between and after ``places``.
+    """Returns the sketch of a route. ``lines`` and ``profiles`` are the centre lines and cross-sections of
+    the roads before, between and after ``places``.
     """
     pen = _Pen(lines[0], profiles[0].reach)
     for number, (place, line) in enumerate(zip(places, lines[1:], strict=True)):

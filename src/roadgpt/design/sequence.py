@@ -25,7 +25,7 @@ ROUNDS = 60  # of drawing sides until the numbers of left and right turns are ri
 
 
 OpenTurn = tuple[Feature, bool]
-"""A turn whose side may be open, and whether it must go to the other side than the one before."""
+"""A turn whose side may be open, and whether it must go to the side opposite to the previous turn."""
 
 
 class TurnSequence(NamedTuple):
@@ -56,7 +56,7 @@ def may_repeat_last_turn(outline: Outline) -> bool:
 
 def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> TurnSequence:
     """Chooses at random what the Outline leaves open: the number of turns, the side of each, and
-    where straights are. If ``plain``, it has as few turns as the requirements allow.
+    where straights are. If ``plain``, the road has as few turns as the requirements allow.
 
     Raises:
         DesignError: the required numbers of left, right and all turns contradict each other.

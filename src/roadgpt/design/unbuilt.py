@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from roadgpt.network.lane_design import LanesDesign
 
 TURNING_LANES: Mapping[JunctionKind, int] = {"t_junction": 1, "crossroads": 2}
-"""How many lanes of a road can end or begin at a junction: they lead to the side or come from there."""
+"""For each kind of junction, how many lanes per direction can turn off there or come from the side."""
 
 
 def check_built(brief: Brief) -> None:

@@ -189,7 +189,8 @@ def joined(
     """Returns the segments with a vertical radius wherever the grade changes.
 
     Each chosen radius is the one that ``Pace.eased`` gives for ``ease``, or smaller if there is not enough
-    room. A radius is chosen for the segments with the indices ``opened``; None: for all without one.
+    room. ``opened`` are the indices of the segments for which a radius is chosen; None for all segments
+    without a radius.
     """
     out, at, own = [], 0.0, set[int]()
     for i, segment in enumerate(segments):

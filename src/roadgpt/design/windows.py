@@ -55,7 +55,7 @@ class Windows:
     def of(self, feature: Feature) -> Range | None:
         """Returns the range of grades for the design of a feature, a little inside its required range.
 
-        If no grade is required of the feature, returns the range for the whole road; None if it is open.
+        If no grade is required of the feature, returns the range for the road; None if that is open as well.
 
         Raises:
             DesignError: the required grade is steeper than allowed, or contradicts that of the whole road.
@@ -79,7 +79,7 @@ class Windows:
         return own
 
     def row(self, straights: Sequence[Feature]) -> list[Range | None]:
-        """Returns a range of grades per straight; where none is required, one unlike the neighbour's."""
+        """Returns a range of grades per straight; an open grade gets a range unlike that of a neighbour."""
         out = [self.of(straight) for straight in straights]
         for i, straight in enumerate(straights):
             known = out[i - 1] if i else (out[i + 1] if i + 1 < len(out) else None)

@@ -50,9 +50,9 @@ __all__ = [
 class Driver(Protocol):
     """Controls the car.
 
-    A driver may also have a method ``start(road, world, seed)``, which is called once before time 0, and an
-    attribute ``name``, which is recorded in the Drive. Without this attribute, the name of the driver's class
-    is recorded.
+    A driver may also have a method ``start(road, world, seed)``. This method is called once before time 0.
+    A driver may have an attribute ``name``. The Drive records this name; without a name, the Drive records
+    the name of the driver's class.
     """
 
     def steer(self, view: View) -> Command:
@@ -76,8 +76,8 @@ class Simulator(Protocol):
 
         At every control step the simulator checks these conditions in this order: the car has reached the
         goal; the car is stuck; the car is out of its lane; the car has fallen; the time is up. The first
-        condition that holds ends the drive. The car is out of its lane if the share of it that is outside
-        exceeds ``world.limits.oob_tolerance``. If ``world.limits.lane_departure`` is set, one front tyre
+        condition that holds ends the drive. The car is out of its lane if the share of its box outside the
+        lane exceeds ``world.limits.oob_tolerance``. If ``world.limits.lane_departure`` is set, one front tyre
         beyond a marking is enough. With ``keep_driving``, the drive goes on when the car leaves its lane.
 
         Raises:
@@ -115,8 +115,8 @@ def simulate(
     Raises:
         PartError: there is no simulator or driver of that name.
         UsageError: the user's file does not define a driver, the road is a map without a route, or the
-            simulator cannot apply a setting of the world, the superelevation of the road, or the junctions of
-            a route.
+            simulator cannot apply a setting of the world, or cannot build the superelevation of the road or
+            the junctions of a route.
         DriverError: the driver raised an exception, returned something that is not a command, or hung.
         SimulatorError: the simulator itself failed.
         SimulationError: the physics became unstable, or the recorded motion is impossible for a car.
@@ -144,8 +144,8 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -
             ``world.section.bank``.
 
     Raises:
-        UsageError: the simulator cannot apply a field that the world sets, the superelevation of the road, or
-            the junctions of a route; the message says which.
+        UsageError: the simulator cannot apply one of these: a field that the world sets, the superelevation
+            of the road, or the junctions of a route. The message says which.
     """
     from roadgpt.road import World
 

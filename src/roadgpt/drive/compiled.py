@@ -142,10 +142,10 @@ def compiled(function: Function) -> Function:
 
 
 def bound(function: Function, arguments: tuple[Any, ...]) -> Function:
-    """Returns a function from ``compiled`` as machine code for arguments of the same types as ``arguments``.
+    """Returns the machine code of a function from ``compiled``, for the types that ``arguments`` have.
 
     The result does not check the types of its arguments, because this check would often take longer than the
-    function itself. Call the result only with arguments of exactly these types: others are misread. If
+    function itself. Call the result only with arguments of exactly these types: other types are misread. If
     nothing can be compiled, the function is returned unchanged.
     """
     if not COMPILES:

@@ -30,8 +30,8 @@ class DriveMonitor:
     """Watches one drive along a road, from its first step to its end."""
 
     def __init__(self, road: "Road", world: "World", box: Box, keep_driving: bool = False) -> None:
-        """Prepares the checks, by the tolerances of the world; if it sets ``lane_departure``, the front tyres
-        are checked, too. With ``keep_driving``, the car may leave its lane.
+        """Prepares the checks with the tolerances of the world. If the world sets ``lane_departure``, the
+        front tyres are checked, too. With ``keep_driving``, the car may leave its lane.
         """
         self.start = min(START, road.length / 2)
         """Station in metres where the car is placed."""
@@ -94,7 +94,7 @@ class DriveMonitor:
         return time - self._since >= STUCK_TIME - ROUNDING
 
     def is_out(self, outside: float, pose: ArrayLike | None) -> bool:
-        """Returns whether the car is out of its lane, with the share ``outside`` (0 to 1) of its box.
+        """Returns whether the car is out of its lane; ``outside`` is the share (0 to 1) of its box outside.
 
         If lane departures count, a car with a front tyre beyond a marking is out of its lane, too. ``pose``
         has the values of the columns POSE, shape (6,); it may be None if lane departures do not count.

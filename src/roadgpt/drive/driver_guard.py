@@ -2,14 +2,15 @@
 
 All errors of a driver are raised as DriverError. A driver that hangs is stopped in one of two ways:
 
-- In the main thread of a system with interval timers (Linux, macOS) it is stopped by a signal, which ends
-  endless loops, sleeps and most waits.
-- Elsewhere (other threads, Windows) it is stopped by an exception that Python raises in the driver's thread
-  between two instructions. That ends endless loops, but ``time.sleep(60)`` is only ended after 60 seconds.
+- In the main thread of a system with interval timers (Linux, macOS) a signal stops the driver. The signal
+  ends endless loops, sleeps and most waits.
+- Elsewhere (other threads, Windows) an exception stops the driver. Python raises the exception in the
+  driver's thread between two instructions. The exception ends endless loops at once, but a call of
+  ``time.sleep(60)`` only after 60 seconds.
 
-A driver that hangs inside compiled code which never returns to Python cannot be stopped from within its own
-process. Users' drivers that are given by a plug-in's name or as PATH.py:CLASS therefore run in a separate
-process (``roadgpt.drive.isolation``), which can be ended.
+No code in the same process can stop a driver that hangs inside compiled code and never returns to Python.
+Users' drivers that are given by a plug-in's name or as PATH.py:CLASS therefore run in a separate process
+(``roadgpt.drive.isolation``), which can be ended.
 """
 
 import contextlib
@@ -36,7 +37,7 @@ TICK = 0.2  # s between two checks of the clock
 
 
 class RemoteDriverError(DriverError):
-    """A DriverError about a driver that runs in its own process; its message already names the driver."""
+    """A DriverError about a driver in a separate process; the message already names the driver."""
 
 
 class _HungError(BaseException):

@@ -18,9 +18,9 @@ from roadgpt.errors import UsageError
 def load_driver(spec: str) -> Any:
     """Creates the driver that a user named, in this process, and returns it.
 
-    If a driver's file is named only in a stored file (of a run, a campaign or a plan), it is run only if the
-    user agrees (see ``drive.permission``). Use ``isolation.driver_of`` to get a user's driver in a
-    process of its own.
+    If only a stored file (of a run, a campaign or a plan) names a driver's file, the driver runs only after
+    the user has agreed (see ``drive.permission``). Use ``isolation.driver_of`` to run a user's driver in a
+    separate process.
 
     Args:
         spec: the name of a driver plug-in, or PATH.py:CLASS.

@@ -1,5 +1,5 @@
-"""Decides which drivers may be run. If a driver's file is named only in a stored file, such as a run's
-``run.json``, its code is not run until the user names the driver or agrees.
+"""Decides which drivers may be run. If only a stored file, such as a run's ``run.json``, names a
+driver's file, the driver's code is not run until the user names the driver or agrees.
 
 Plug-ins need no permission, because the user has installed them.
 """
@@ -19,7 +19,7 @@ def split_spec(spec: str) -> tuple[str, str]:
 
 
 def permit(spec: str) -> None:
-    """Records that the user has named this driver, so that it may also be run if a stored file names it.
+    """Records that the user has named this driver; stored files may then name the driver, too.
 
     A run that was made on another machine names the driver by a path that does not exist on this machine.
     Drivers with the same file name and the same class therefore count as the same driver, and the file that
@@ -31,8 +31,8 @@ def permit(spec: str) -> None:
 
 
 def driver_from_file(spec: str, file: object) -> str:
-    """Returns the driver to use where a stored file names ``spec``: the driver that the user has named, if
-    its file name and class are the same, otherwise ``spec``."""
+    """Returns the driver to use where a stored file names ``spec``. If the user has named a driver with the
+    same file name and class, the result is the user's driver; otherwise the result is ``spec``."""
     if not split_spec(spec)[0] or CODE.given_as(_whole(spec)):
         return spec
     theirs = CODE.given_as(_short(spec))

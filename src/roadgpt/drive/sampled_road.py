@@ -1,5 +1,5 @@
-"""Samples a road for the physics as a table of equally spaced stations, from which the smooth road surface is
-computed at any point.
+"""Samples a road for the physics as a table of equally spaced stations. From this table, the smooth road
+surface is computed at any point.
 
 Between stations, x, y and z of the centre line are cubic polynomials, and its direction has no jumps. The
 table continues straight beyond both ends. On a road with superelevation, the surface is rotated about the
@@ -29,8 +29,8 @@ class SampledRoad(NamedTuple):
 
     table: FloatArray
     """Shape (n, 8): x, y, z (m), heading (rad, unwrapped), grade, curvature (1/m), cosine and sine of the
-    heading. On a road with superelevation (n, 10): also the tangent of the superelevation, and its change
-    per metre."""
+    heading. On a road with superelevation the shape is (n, 10); the two further columns are the tangent of
+    the superelevation, and the change of this tangent per metre."""
     first: float
     """Station of row 0 in metres; negative."""
     step: float

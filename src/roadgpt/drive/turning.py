@@ -25,8 +25,8 @@ drivers accept at low speeds: 0.31 at 20 mph and less (Texas, Procedures for Est
 GENTLE = 200.0  # m, radius from which on nobody slows down inside a junction
 EDGE = 1.5  # m, from the middle of a car to the edge of its lane on the fastest path: NCHRP 672, 6.7.2
 BLEND = 10.0
-"""Metres before and behind a junction, over which the line of the road becomes that of the junction; and half
-of the metres over which a line inside a junction moves from one side of its lane to the other."""
+"""Metres before and behind a junction over which a planned line changes from the road to the junction. Inside
+a junction, a line moves from one side of its lane to the opposite side over twice this distance."""
 
 FRONT = 2.25  # m, from the centre of gravity to the front of RoadGPT's saloon
 BEFORE_LINE = 1.0  # m, from the front of the stopped car to the stop line
@@ -43,8 +43,8 @@ def turning_speed(curvature: float) -> float:
     """Returns the speed in m/s at which people drive through a bend of a junction or roundabout.
 
     On a radius of 10 m the speed is 20 km/h (lateral acceleration 3.1 m/s^2), on 15 m 23 km/h (2.8 m/s^2), on
-    30 m 30 km/h (2.3 m/s^2). Above a radius of 200 m it is infinite. ``curvature`` is that of the driven
-    line, in 1/m.
+    30 m 30 km/h (2.3 m/s^2). Above a radius of 200 m the speed is infinite. ``curvature`` is the
+    curvature of the driven line in 1/m.
     """
     if abs(curvature) * GENTLE < 1:
         return math.inf
@@ -54,9 +54,9 @@ def turning_speed(curvature: float) -> float:
 def highest_speeds(road: "Road", line: DrivingLine, braking: float = math.inf) -> list[float] | None:
     """Returns the speed in m/s that stop signs and the bends of junctions allow, at each station of a line.
 
-    Where nothing limits the speed, it is infinite. The result is None on a road without junctions.
-    ``braking`` is the largest deceleration in m/s^2 before and inside junctions; by default, it is that of
-    the driver's own plan.
+    Where nothing limits the speed, the speed is infinite. The result is None on a road without junctions.
+    ``braking`` is the largest deceleration in m/s^2 before and inside junctions. By default only stop signs
+    limit the deceleration here, and the driver's plan limits it later.
     """
     ways = passages(road)
     if not ways:
@@ -95,16 +95,16 @@ def kept_in_lane(
 
     In a junction the middle of the car stays at least ``EDGE`` metres from both edges of its lane; in a lane
     narrower than ``2 * EDGE``, it stays in the middle of the lane. The line moves sideways over ``2 * BLEND``
-    metres, also where the bends of a ring and of the way into it follow each other at once: a line without
-    kinks, whose curvature stays near that of the road.
+    metres, even where the bend into a roundabout is followed at once by the bend of its ring. The line has no
+    kinks, and the curvature of the line stays near the curvature of the road.
 
     Args:
         road: The road or route; without junctions, the offsets are returned unchanged.
         world: The World.
         s: Stations of the line in metres, ``(n,)``.
         offset: Offsets of the line in metres to the left of the centre line, ``(n,)``.
-        inwards: Distance in metres, positive to the left, by which the car leaves its line because it cuts
-            bends, ``(n,)``.
+        inwards: Distance in metres between the line and the path of the car, which cuts bends; positive to
+            the left, ``(n,)``.
     """
     if not passages(road):
         return offset

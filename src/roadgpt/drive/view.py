@@ -23,7 +23,7 @@ class JunctionAhead(NamedTuple):
     control: str
     """What applies to the car: "priority", "yield", "stop", "lights" or "none". Lights are always green."""
     length: float
-    """Length in metres of the way through the junction that is still ahead."""
+    """Length in metres of that part of the way through the junction which is still ahead of the car."""
 
 
 class View(NamedTuple):
@@ -75,7 +75,7 @@ class View(NamedTuple):
     lanes_left: int = 0
     """Number of driving lanes to the left of the lane that the car is to follow, oncoming lanes included."""
     lanes_right: int = 0
-    """Number of driving lanes to the right of this lane."""
+    """Number of driving lanes to the right of the lane that the car is to follow, oncoming lanes included."""
 
 
 class CameraSpec(NamedTuple):

@@ -36,8 +36,8 @@ class Exporter(Protocol):
     """Writes roads in one format.
 
     An exporter whose attribute ``holds_junctions`` is True also gets routes through junctions
-    (``roadgpt.network.Route``). An exporter without this attribute gets single roads only. One that also has
-    an attribute ``needs_route`` that is True gets no maps without a route (``roadgpt.network.has_no_route``).
+    (``roadgpt.network.Route``). An exporter without this attribute gets single roads only. An exporter whose
+    attribute ``needs_route`` is also True gets no maps without a route (``roadgpt.network.has_no_route``).
     """
 
     name: str
@@ -100,8 +100,8 @@ def save(
         PartError: A format is unknown.
         UsageError: ``name`` cannot be the name of a file.
         ExportError: A format cannot hold this road, a program that an exporter needs is missing or fails, or
-            a file cannot be written. If the road is a Route, and one of the formats cannot hold junctions or
-            needs a way through the network where there is none, no file is written.
+            a file cannot be written. No file is written if a format cannot hold the junctions of a Route,
+            or needs a route through a map that has none.
     """
     parts = [exporter_of(format_) for format_ in dict.fromkeys(formats)]
     if not name or name == ".." or Path(name).name != name:

@@ -84,8 +84,8 @@ def line(road: Road, s: Array, t: ArrayLike) -> Array:
 
     There is one point for each station in ``s``.
 
-    In a bend with a radius smaller than ``t``, the offset is reduced so that the line does not fold back on
-    itself.
+    On the inside of a tight bend, the offset is limited to 0.95 of the radius of the bend, so that the line
+    does not fold back on itself.
     """
     k = road.curvature(s)
     inside = k * np.asarray(t) > PINCH

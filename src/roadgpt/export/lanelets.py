@@ -33,9 +33,9 @@ class LaneletBound:
 
 
 LaneletSection = dict[int, tuple[LaneletBound, LaneletBound]]
-"""The driving lanes of one section of a road, from right to left: the bounds of each lane on the right and on
-the left, as seen along the road, by the id of the lane in OpenDRIVE. Neighbours share the bound between them,
-unless there is a median.
+"""The driving lanes of one section of a road, from right to left. Maps the id of a lane in OpenDRIVE to the
+right and the left bound of the lane, as seen along the road. Neighbouring lanes share a bound, except across
+a median.
 """
 
 

@@ -13,12 +13,12 @@ BLOCK = 128  # points that are compared at once
 def meeting(
     z: Complex, s: Array, earlier: Complex, earlier_s: Array, apart: float, neighbours: float
 ) -> tuple[Indices, Indices]:
-    """Returns the index pairs of points, one on a line and one on its earlier part, that are closer than
-    ``apart``.
+    """Returns pairs of points that are closer than ``apart`` metres, as two arrays of indices: of the points
+    in ``z``, on a line, and of the points in ``earlier``, on an earlier part of the line.
 
     Points are x + iy in metres, ``(n,)`` and ``(m,)``, each with its station in metres; ``earlier`` may be
-    ``z``, to compare a line with itself. Only pairs count in which the point of ``z`` is more than
-    ``neighbours`` metres farther along the line. Both arrays returned have the shape ``(number of pairs,)``.
+    ``z``, to compare a line with itself. A pair counts only if the point in ``z`` is more than ``neighbours``
+    metres farther along the line. Both arrays returned have the shape ``(number of pairs,)``.
     """
     blocks = [
         _near_block(z[first : first + BLOCK], s[first : first + BLOCK], earlier, earlier_s, apart, neighbours)

@@ -115,9 +115,9 @@ class PieceCurve:
 
 
 def along_all(curves: Sequence[PieceCurve], stations: Sequence[Array]) -> tuple[Array, Array]:
-    """Returns points ``(n, 2)`` in metres and headings ``(n,)`` in radians on one or more curves, each at its
-    own stations in metres, one curve after another. They are the same as those of ``at`` and ``heading``, but
-    are computed faster.
+    """Returns points ``(n, 2)`` in metres and headings ``(n,)`` in radians on one or more curves, in order.
+    ``stations`` are those on each curve in metres. ``at`` and ``heading`` give the same values, but
+    more slowly.
     """
     counts = [len(curve.pieces) for curve in curves]
     is_piece = np.arange(max(counts)) < np.array(counts)[:, None]

@@ -45,7 +45,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
     value.
     Observation ``camera``: an image (height, width, 3) from behind the windscreen.
 
-    Reward of a step: metres gained along the lane, minus 0.1 per metre of distance from the middle of the
+    Reward of a step: metres gained along the road, minus 0.1 per metre of distance from the middle of the
     lane, minus a small penalty for rough steering; +10 at the goal, -10 if the car leaves its lane, falls off
     the road, overturns or gets stuck. The goal and each of these failures set ``terminated``; running
     out of time sets ``truncated``.
@@ -62,7 +62,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         world: values for fields of ``roadgpt.road.World``, such as ``{"friction": 0.6}``; all other fields
             keep their defaults. If ``world`` gives no friction, a road surface that the description names,
             such as "icy", determines the friction.
-        camera: camera of the observation; by default the one of the SBFT competition, with 320 x 160 pixels.
+        camera: camera of the observation; by default the SBFT competition's camera, with 320 x 160 pixels.
         reader: name of the plug-in that reads the descriptions.
 
     Raises:
@@ -191,7 +191,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         return told if self._ended is None else {**told, "ended": self._ended}
 
     def render(self) -> Any:
-        """Returns the image of a camera behind the car, (360, 640, 3); None if the render mode is None."""
+        """Returns the image (360, 640, 3) of a camera behind the car; None without a render mode or road."""
         if self.render_mode is None or self.road is None:
             return None
         from roadgpt.scene import Camera as Pinhole

@@ -34,7 +34,7 @@ LONGEST = 420  # letters of a joined text
 
 def augmented(pair: Pair, others: Mapping[str, Sequence[Pair]], rng: np.random.Generator) -> Pair:
     """Returns a hand-written pair, in most cases with random variations. ``others`` are hand-written pairs by
-    language; one of them may be joined to the pair.
+    language; a random pair from ``others`` in the same language may be joined to the pair.
     """
     if rng.random() < 0.5 and (seen := mirrored(pair.text, pair.plan)):
         pair = replace(pair, text=seen[0], plan=seen[1])
@@ -78,8 +78,9 @@ def both_changes(one: Pair, other: Pair, rng: np.random.Generator) -> Pair | Non
 
 
 def recounted(pair: Pair, rng: np.random.Generator) -> Pair | None:
-    """Returns the pair with a new, random count of turns, 2 to 9. Returns None unless the original
-    count, 2 to 10, occurs exactly once in the text and once in the plan.
+    """Returns the pair with a new, random count of turns, 2 to 9. Returns None if the plan
+    has no count from 2 to 10, has several counts, or has the same number elsewhere. Also returns None if the
+    count is not the only number in the text, or occurs there twice.
     """
     counts = COUNT.findall(pair.plan)
     if len(counts) != 1 or not 2 <= int(counts[0]) <= 10:
@@ -100,9 +101,9 @@ def recounted(pair: Pair, rng: np.random.Generator) -> Pair | None:
 
 
 def joined(one: Pair, other: Pair, rng: np.random.Generator) -> Pair | None:
-    """Returns a pair that joins the roads of two pairs into one road. Returns None if either pair is a
-    refusal, has junctions or requirements for the whole road, if there are no phrases in its language, or if
-    the two cannot be joined.
+    """Returns a pair that joins the roads of two pairs into one road. Neither pair may be a refusal, or
+    have junctions or requirements for the whole road. Returns None for such a pair, for a language without
+    phrases, for texts that are too long together, and for a joined road that makes no sense.
     """
     if one.lang not in LANGUAGES:
         return None

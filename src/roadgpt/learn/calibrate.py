@@ -1,7 +1,8 @@
 """Fits a reader's confidence to how often the reader was right on texts held back from training.
 
-For single roads these are prompts with truths: a reading is right if the roads made of it are. That is more
-often than its plan is the labelled one, because most texts can be labelled in several ways.
+For single roads, the texts are prompts with truths: a reading is right if the roads made from the reading
+meet the truth. A reading may be right although its plan differs from the label, because most texts can be
+labelled in several ways.
 """
 
 from collections import Counter
@@ -29,11 +30,11 @@ CAUTION = 2.0
 than an unnecessary doubt.
 """
 CAUTION_OF_ROADS = 3.3
-"""The same for a reading of a single road."""
+"""Weight of a wrong reading of a single road, relative to a right one."""
 PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
 PULL_OF_TOKENS = 10.0  # the same for the inputs that say which tokens a plan has, of which there are many
 FEWEST = 25
-"""The least number of readings with a token in their plans for which the token gets a weight."""
+"""A token gets a weight only if it occurs in the plans of at least this many readings."""
 
 
 class EnsembleCalibration(TypedDict):
@@ -46,7 +47,7 @@ class EnsembleCalibration(TypedDict):
 
 
 class Calibration(EnsembleCalibration):
-    """The content of ``settings.json``: what is fitted to descriptions of single roads, and to the rest."""
+    """The content of ``settings.json``: the calibration for single roads, change requests and routes."""
 
     changes: dict[str, float]
     """The weights of the confidence model for change requests."""
@@ -54,10 +55,10 @@ class Calibration(EnsembleCalibration):
 
 
 def calibrated(reader: ModelReader, pairs: Sequence[Pair], prompts: Sequence[ToldPrompt] = ()) -> Calibration:
-    """Returns the content of ``settings.json``, fitted to ``pairs`` and ``prompts``, on which the networks
-    must not have been trained: the calibration for descriptions of roads, the weights of the confidence model
-    for "changes", and the calibration for descriptions of "routes".
+    """Returns the content of ``settings.json``: the calibration for descriptions of roads, the weights of the
+    confidence model for "changes", and the calibration for descriptions of "routes".
 
+    The content is fitted to ``pairs`` and ``prompts``, which the networks must not have seen in training.
     Without prompts, the confidence for single roads is fitted to the pairs.
     """
     honest = [pair for pair in pairs if not pair.is_refusal]
@@ -85,9 +86,9 @@ def calibrated_routes(reader: ModelReader, routes: Ensemble, pairs: Sequence[Pai
 def calibrated_ensemble(
     reader: ModelReader, ensemble: Ensemble, pairs: Sequence[Pair], caution: float = 1.0
 ) -> EnsembleCalibration:
-    """Returns the calibration of an ensemble, fitted to valid descriptions of the kind that this ensemble
-    reads: the lowest probability at which a refusal is accepted, and the weights of the confidence model, in
-    whose fit a wrong reading counts ``caution`` times and a right one once.
+    """Returns the calibration of an ensemble: the lowest probability at which a refusal is accepted, and the
+    weights of the confidence model. ``pairs`` are valid descriptions of the kind that the ensemble reads.
+    When the weights are fitted, a wrong reading counts ``caution`` times and a right reading counts once.
     """
     read = [(reader.uncalibrated(pair.text, NEVER), _bare(pair.plan)) for pair in pairs]
     return {

@@ -65,7 +65,7 @@ MENTIONS = 0.15
 TALK = 0.07
 """Share of all pairs that get additional small talk, such as a greeting."""
 CAUSED = ("!contradiction", "!impossible")
-"""Refusals that can name a cause; a plan that consists of one of these words alone names none."""
+"""Refusals that can name a cause. A plan that has only one of these words names no cause."""
 MOTORWAY = re.compile(r" ?\bmotorway\b")
 STRIDE = 8
 """The lengths of texts and plans in a batch are rounded up to a multiple of this number."""
@@ -73,7 +73,7 @@ SAID_BACK = 0.06
 """Share of hand-written pairs whose text is replaced by RoadGPT's own sentence for the plan."""
 FIELDS = ("degrees", "radius")
 FEWEST = 2
-"""The least number of turning clauses for which the rewritten plan is shorter."""
+"""Values are moved only from at least this many clauses with turns; from fewer, no plan gets shorter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,8 +91,8 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
     token that is not in the vocabulary.
 
     A slot token stands for a number in the text. With ``rng``, the slot tokens are chosen at random, so that
-    the network learns all of them equally well. A refusal whose cause is not labelled gets no end token, so
-    that nothing is learnt about what follows.
+    the network learns all of them equally well. A refusal without a labelled cause gets no end token, so that
+    the network learns nothing about the token after the refusal.
     """
     taken = slotted(pair.text, pair.is_change)
     plan = pair.plan if pair.is_change else with_shared_values(_without_motorway(pair.plan), taken.slots)
@@ -152,8 +152,8 @@ def examples(
 def is_for_roads_only(pair: Pair) -> bool:
     """Returns whether only the networks for single roads may be trained with a pair. This is so if its plan
     is for a single road, but names something that only routes have, such as a junction, in ``beside(...)`` or
-    in a refusal. With such a name, a network for single roads passes the description on to the network for
-    routes, which must not learn to do so.
+    in a refusal. Such names teach a network for single roads to pass the description on to the network for
+    routes. The network for routes must not learn this.
     """
     if pair.is_change or pair.family.startswith(NETWORK):
         return False
@@ -238,11 +238,11 @@ def padded(rows: Sequence[Sequence[int]]) -> Numbers:
 
 
 def with_shared_values(line: str, slots: Sequence[NumberSlot]) -> str:
-    """Moves degrees and radii that all turns share to the part of a plan that holds for the whole road; the
+    """Moves degrees and radii that all turns share to the part of a plan that holds for the whole road. The
     normal form stays the same, and a refusal stays as it is.
 
-    A value is moved only if each of its numbers occurs exactly once in the description, whose numbers are
-    ``slots``, two or more turns share it, and the plan has no such value for the whole road yet.
+    A value is moved only if two or more clauses share the value, and the plan has no such value for the whole
+    road yet. Each number of the value must occur exactly once in ``slots``, the numbers of the description.
     """
     if line.startswith("!"):
         return line

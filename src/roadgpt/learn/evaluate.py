@@ -44,9 +44,9 @@ class Reading:
 class Score(NamedTuple):
     """The number of readings, and shares from 0 to 1, in the order of the columns of ``HEAD``.
 
-    ``exact`` is the share of all readings that are right. ``refused_rightly`` is the share of refused ones
-    among the descriptions that should be refused. The other shares refer to valid descriptions:
-    those for which one aspect was read correctly, and those that were refused (``refused_wrongly``).
+    ``exact`` is the share of all readings that are right. Of the descriptions that should be refused,
+    ``refused_rightly`` is the share that was refused. The other shares are of the valid descriptions: the
+    share in which an aspect was read correctly, and the share that was refused (``refused_wrongly``).
     """
 
     number: int
@@ -137,7 +137,8 @@ def by(found: Sequence[Reading], key: Callable[[Pair], str]) -> dict[str, Score]
 def confusion(found: Sequence[Reading]) -> Counter[tuple[str, str]]:
     """Counts, over all wrong readings, which words of the right plan were read as which other words. The
     words of a plan are compared without regard to their order, and those that differ are paired
-    alphabetically; '-' stands for no word. A wrong refusal counts as the pair ('a road', 'refused').
+    alphabetically; '-' stands for no word. A wrong refusal counts as the pair ('a road', 'refused'),
+    and a missed refusal as a pair such as ('!impossible', 'a road').
     """
     table: Counter[tuple[str, str]] = Counter()
     for reading in found:

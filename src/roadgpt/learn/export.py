@@ -132,13 +132,13 @@ def export_checkpoints(
         held_back: pairs that the networks were not trained on, for the calibration.
         fillers: see ``word_meanings.filler_words``.
         meanings: see ``word_meanings.word_meanings``.
-        kept: the folder of an exported reader, whose networks and calibration stay where no checkpoint
-            replaces them; None: all networks are in ``checkpoints``.
+        kept: the folder of an exported reader, which supplies the networks that are not in ``checkpoints``,
+            and their calibration; None if ``checkpoints`` has all networks.
         prompts: see ``calibrated``.
 
     Raises:
-        LearnError: there is no checkpoint, one is of the other kind of network, or the embeddings of the
-            networks differ.
+        LearnError: a checkpoint is missing or is of the wrong kind of network (for routes or single roads),
+            or the embeddings of the networks differ.
     """
     readers = {name: _trained(checkpoint, name) for name, checkpoint in checkpoints.items()}
     if kept and kept.resolve() != folder.resolve():

@@ -22,8 +22,9 @@ LONGEST = 500  # letters of a text
 SPOILED = 0.045
 """Share of valid descriptions that are made contradictory or impossible on purpose."""
 COMPOSED = {"en": 0.6, "de": 0.15, "fr": 0.15, "es": 0.15, "it": 0.15}
-"""Share of the pairs that come from ``compositions`` instead of a grammar, by language. Other languages than
-English only have lists of turns there. A quarter of the English compositions are such lists: 0.15 as well.
+"""Share of the pairs that come from ``compositions`` instead of a grammar, by language. In languages
+other than English, all compositions are lists of turns. In English, a quarter of the compositions are lists
+of turns; their share of the pairs is 0.15 as well.
 """
 SHARES = {"en": 0.62, "de": 0.10, "fr": 0.10, "es": 0.09, "it": 0.09}
 EVEN = {"en": 0.44, "de": 0.14, "fr": 0.14, "es": 0.14, "it": 0.14}
@@ -51,8 +52,8 @@ def pairs(seed: int, languages: Mapping[str, float] = SHARES) -> Iterator[Pair]:
 def series(
     seed: int, number: int, drawn: Callable[[str, np.random.Generator], Pair | None]
 ) -> Iterator[Pair]:
-    """Yields what ``drawn`` makes of random languages, without end; ``number`` tells apart the series of one
-    seed.
+    """Yields an endless series of pairs that ``drawn`` makes, each in a random language. ``number``
+    distinguishes the series that have the same seed.
     """
     rng = np.random.default_rng([seed, number])
     while True:
@@ -75,8 +76,8 @@ def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
 
 
 def assembled(raw: str) -> str | None:
-    """Returns the standard form of the plan that the grammar rules wrote, or only the refusal if it has one;
-    None if the plan makes no sense.
+    """Returns the plan that the grammar rules wrote, in standard form. If the rules wrote a refusal, returns
+    only the refusal. Returns None if the plan makes no sense.
 
     Raises:
         Discarded: as ``road_of`` does.
@@ -92,7 +93,7 @@ def road_of(raw: str) -> str:
     """Returns the plan of a road with its parts in the usual order; grammar rules write them in any order.
 
     Raises:
-        Discarded: a clause of the plan names no kind of element, such as "turn" or "straight", or several.
+        Discarded: a clause of the plan does not name exactly one kind of element, such as "turn".
     """
     wishes = [wish.lstrip("| ").replace("straight_", "straight ") for wish in WISH.findall(raw)]
     clauses = [_kind_first(part) for part in WISH.sub(" ", raw).split(";")]
@@ -128,9 +129,9 @@ def draw(
     family: str = "generated",
     is_change: bool = False,
 ) -> Pair | None:
-    """Returns a random text for a symbol of a grammar with further ``phrases`` (see ``grammar_of``), and the
-    plan that ``plan_of`` makes of what its rules wrote. Returns None if they make no sense, or if the text is
-    held out or has more than 500 characters.
+    """Returns a random text for a symbol of a grammar, and the plan that ``plan_of`` makes from what the
+    grammar rules wrote. ``phrases`` names the phrases of the grammar (see ``grammar_of``). Returns None if
+    the plan makes no sense, or if the text is empty, is held out or has more than 500 characters.
     """
     speaker = Speaker(grammar_of(language, phrases), rng)
     try:

@@ -1,8 +1,8 @@
 """Makes trained weights fit a larger network, so that training goes on instead of beginning anew.
 
 New tokens get small random embeddings. A new layer is a copy of the layer before it, but its outputs are
-zero. Before further training, the larger network therefore writes the same plans as the smaller one; with
-more encoder layers it does so nearly, because each of them normalises what passes through it.
+zero. Before further training, the larger network therefore writes the same plans as the smaller one. With
+more encoder layers, the plans are only nearly the same, because each new layer normalises its input.
 """
 
 from collections.abc import Mapping
@@ -14,19 +14,19 @@ from roadgpt.errors import LearnError
 from roadgpt.learn.network import DECODER, ENCODER, layers_of
 
 SILENT = ("attention.out.", "own.out.", "across.out.", "narrow.")
-"""How the names of the output weights of a layer go on; these weights are zero in a new layer."""
+"""The output weights of a layer, by how their names go on after the layer's number; zero in a new layer."""
 NORMS = ("norm.", "last_norm.")
-"""The same for the norms of an encoder layer."""
+"""The norms of an encoder layer, by how their names go on after the layer's number."""
 SPREAD = 0.02
 
 
 def deepened(weights: Mapping[str, Tensor], layers: int) -> dict[str, Tensor]:
     """Returns the weights with more encoder layers: each present layer is followed by silent copies. The
-    norms of a copy have one mean and one spread, those that its input usually has, so that the copy changes
-    its input little.
+    norms of a copy give the copy's output the mean and the spread that the copy's input usually has.
+    Therefore the copy changes its input little.
 
     Raises:
-        LearnError: ``layers``, the number of the new network, is not a multiple of the present number.
+        LearnError: ``layers``, the new number of encoder layers, is not a multiple of the present number.
     """
     present = layers_of(weights, ENCODER)
     times, rest = divmod(layers, present)
@@ -49,8 +49,8 @@ def deepened(weights: Mapping[str, Tensor], layers: int) -> dict[str, Tensor]:
 
 
 def grown(weights: Mapping[str, Tensor], tokens: int, layers: int, seed: int = 0) -> dict[str, Tensor]:
-    """Returns the weights for a network with more tokens or more decoder layers; ``seed`` is that of the
-    embeddings of new tokens.
+    """Returns the weights for a network with more tokens or more decoder layers. The embeddings of
+    new tokens are random, with the seed ``seed``.
 
     Raises:
         LearnError: ``tokens`` is too small, or ``layers`` is not a multiple of the present number.

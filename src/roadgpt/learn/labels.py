@@ -16,7 +16,8 @@ LONGEST = 2000  # letters
 
 def read_pairs(paths: Iterable[Path], is_change: bool = False) -> tuple[list[Pair], list[str]]:
     """Returns all usable pairs of JSON-lines files, of changes or of descriptions, and one sentence for each
-    line that is not usable: ``read_pair`` rejects it, or its text is held out or repeats an earlier one.
+    unusable line. A line is unusable if ``read_pair`` rejects it, or its text is held out or repeats
+    an earlier text.
     """
     good: list[Pair] = []
     problems: list[str] = []

@@ -26,7 +26,7 @@ DENIED_ON_ROUTES: Phrases = {
     language: {names: ways for names, ways in its.items() if TOLD_ON_ROUTES.isdisjoint(names.split(", "))}
     for language, its in DENIED.items()
 }
-"""The phrases of ``DENIED`` that do not deny what a route consists of."""
+"""The phrases of ``DENIED`` for routes: without those that deny a part of a route, such as a junction."""
 TALK: Mapping[str, Mapping[str, Sequence[str]]] = phrases_of("talk")
 """Greetings, reasons and the like that can stand "before" or "after" a text, by language."""
 NAMED = re.compile(r" ?beside\(([^()]*)\)")
@@ -37,9 +37,9 @@ NUMBERS = {"lanes": (2, 6), "lane_width": (2, 5), "speed": (20, 120)}
 
 
 def with_mention(pair: Pair, rng: np.random.Generator) -> Pair | None:
-    """Returns the pair with a mention ("in the rain") or a denial ("no traffic") added; None if the plan is a
-    refusal, already lists what would be mentioned or denied, or would list too many names, or if there are no
-    phrases in the language.
+    """Returns the pair with a mention ("in the rain") or a denial ("no traffic") added. Returns None for a
+    refusal, for a language without phrases, and for a plan that already lists the thing mentioned or denied,
+    or would list too many names.
     """
     is_said = rng.random() < 0.7
     denied = DENIED_ON_ROUTES if is_of_junctions(pair.plan) else DENIED
@@ -79,8 +79,8 @@ def names_in(plan: str) -> list[str]:
 
 
 def with_names(plan: str, names: Sequence[str]) -> str:
-    """Returns the plan with these names in ``beside(...)`` instead of those that were there; on a single
-    road, "alike" becomes the flag of that name.
+    """Returns the plan with these names in ``beside(...)`` instead of those that were there. In the plan
+    of a single road, the name "alike" becomes the flag "alike".
     """
     bare = re.sub(rf" ?\b{ALIKE}\b", "", NAMED.sub("", plan)).rstrip(" |")
     whole = "||" if is_of_junctions(plan) else "|"

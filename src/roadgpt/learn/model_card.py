@@ -25,9 +25,9 @@ def card(
         data: number of pairs in each split of the data, by name of the split.
         found: the model's readings of the test split.
         others: readings of the same split by other readers, by name of the reader.
-        shown: the model's readings of the validation split, of which confusions and mistakes are shown:
-            people who write training pairs may read the card, so it quotes no description from the test
-            split.
+        shown: the model's readings of the validation split. The card shows confusions and mistakes from
+            these readings. People who write training pairs may read the card, so the card quotes no
+            description from the test split.
     """
     return "\n".join(
         [

@@ -51,11 +51,11 @@ def grams(text: str) -> Counter[tuple[str, ...]]:
 
 
 def near_duplicates(texts: Sequence[str]) -> list[NearDuplicate]:
-    """Returns all pairs of texts of which more than 60 % of the shorter one's 5-grams are in
-    both, worst first.
+    """Returns all pairs of texts in which more than 60 % of the shorter text's 5-grams also occur in the
+    longer text, worst first.
 
-    A pair is skipped if both texts have fewer than five words, or if one has masked words only, such as "two
-    left bends", since there are few ways to write such texts.
+    A pair is skipped if both texts have fewer than five words, or if one text has only masked words, such as
+    "two left bends". There are few ways to write such texts.
     """
     counted = [grams(text) for text in texts]
     places: dict[tuple[str, ...], list[int]] = defaultdict(list)

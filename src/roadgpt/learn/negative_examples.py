@@ -20,12 +20,12 @@ BEYOND: dict[str, list[str]] = WORDS["beyond"]
 """Texts, by language, with requirements that no road can meet."""
 OF_RADIUS = re.compile("[rR]adius|rayon|radio|raggio")
 CAUSES = {"turning": "turns", "many": "turns", "straight": "turns", "left": "sides", "right": "sides"}
-"""The cause of a contradiction, by the requirement that is contradicted; for all others it is the slope."""
+"""Maps a contradicted requirement to the cause of the refusal; for all others, the cause is "slope"."""
 BEYOND_BY = {
     "within {near}": "length", "{near}": "radius", "{far}": "length", "{grade}": "grade", "vertical": "grade",
     "{much}": "turns", "loop": "loop", "circle": "degrees",
 }  # fmt: skip
-"""The cause of an impossible requirement, by the first of these parts that its text has."""
+"""Maps a part of an impossible requirement's text to the cause; the first part found in the text counts."""
 
 
 def contradicted(pair: Pair, rng: np.random.Generator) -> Pair | None:

@@ -110,8 +110,9 @@ class DecoderLayer(nn.Module):
     ) -> Tensor:
         """Applies the layer to embedded tokens x (batch, tokens, width).
 
-        ``own`` and ``across`` are keys and values of the plan so far and of the description, each (batch,
-        heads, length, head size); ``mask`` and ``seen`` are added to the attention scores of the two.
+        ``own`` has the keys and values of the plan so far, and ``across`` those of the description, each
+        (batch, heads, length, head size). ``mask`` is added to the attention scores of the plan, and ``seen``
+        to the attention scores of the description.
         """
         x = x + self.dropout(self.own(self.norms[0](x), *own, mask))
         x = x + self.dropout(self.across(self.norms[1](x), *across, seen))
@@ -193,7 +194,7 @@ def layers_of(weights: Mapping[str, Tensor], part: str) -> int:
 
 
 def network_of(weights: Mapping[str, Tensor], pieces: int, tokens: int) -> ReaderNetwork:
-    """Returns the network with these weights, for so many word pieces and tokens."""
+    """Returns the network with these weights; ``pieces`` and ``tokens`` are the sizes of its vocabularies."""
     encoder, decoder = (layers_of(weights, part) for part in (ENCODER, DECODER))
     reader = ReaderNetwork(NetworkSizes(pieces=pieces, tokens=tokens, layers=encoder, decoder_layers=decoder))
     reader.load_state_dict(weights)

@@ -14,8 +14,8 @@ OURS = "reader."
 
 
 def exported_weights(folder: Path, ending: str = "") -> dict[str, Floats]:
-    """Returns the weights by their parameter names in ``roadgpt.learn.network.ReaderNetwork``; weights that
-    were exported in int8 keep its rounding. ``ending`` is what precedes ".onnx" in the names of the files.
+    """Returns the weights by their parameter names in ``roadgpt.learn.network.ReaderNetwork``. Weights that
+    were exported in int8 stay rounded. ``ending`` is what precedes ".onnx" in the names of the files.
 
     Raises:
         LearnError: the folder has no exported reader.

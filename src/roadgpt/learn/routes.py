@@ -67,8 +67,8 @@ OF_EVERY_ROAD = re.compile(r"@([^\s;|@]+)")
 
 
 def routes(roads: Sequence[Pair], junctions: Sequence[Pair], rng: np.random.Generator) -> Iterator[Pair]:
-    """Yields an endless series of routes of two or three parts, each described by a hand-written text: of a
-    road without junctions, or of a route with junctions. Yields nothing if no language has suitable pairs of
+    """Yields an endless series of routes of two or three parts. A hand-written text describes each part: a
+    road without junctions, or a route with junctions. Yields nothing if no language has suitable pairs of
     both kinds.
     """
     of_roads = grouped(filter(_is_road, roads), lambda pair: pair.lang)
@@ -83,8 +83,8 @@ def routes(roads: Sequence[Pair], junctions: Sequence[Pair], rng: np.random.Gene
 
 
 def route_of(parts: Sequence[Pair], language: str, rng: np.random.Generator) -> Pair | None:
-    """Returns the texts, joined by words such as "then", with their plans as one route; None if the text is
-    longer than 330 letters, or the route is impossible or has more than six junctions.
+    """Returns one pair with the joined texts, such as "... then ...", and the joined plans. Returns None if
+    the text is longer than 330 letters, or if the route is impossible or has more than six junctions.
     """
     text = parts[0].text.strip()
     for part in parts[1:]:
@@ -147,11 +147,12 @@ def _is_open(pair: Pair) -> bool:
 
 
 def assembled_route(raw: str) -> str:
-    """Returns the standard form of the plan that the grammar rules wrote, or only the refusal if it has one.
+    """Returns the plan that the grammar rules wrote, in standard form. If the rules wrote a refusal, returns
+    only the refusal.
 
     Raises:
         Discarded: the plan has more than six junctions, a part between two ``//`` names several kinds of
-            junction, or a clause of a road names no kind of element, or several.
+            junction, or a clause of a road does not name exactly one kind of element.
         RoadGPTError: the plan cannot be read, or demands something impossible.
     """
     if refusal := REFUSAL.search(raw):

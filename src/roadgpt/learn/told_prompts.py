@@ -19,15 +19,15 @@ ROADS = 5
 
 @dataclass(frozen=True, slots=True)
 class ToldPrompt:
-    """What somebody asks for in words, and what a road must measure to be what was meant."""
+    """A request in words, and its truth: what the measures of a road must be to fulfil the request."""
 
     text: str
     truth: Truth
 
 
 def told_prompts(path: Path) -> list[ToldPrompt]:
-    """Returns the prompts of a file of JSON lines such as ``{"id", "prompt", "truth"}``; prompts that must be
-    refused, which have no truth, are left out.
+    """Returns the prompts of a file of JSON lines such as ``{"id", "prompt", "truth"}``. Prompts without a
+    truth, which must be refused, are left out.
 
     Raises:
         LearnError: a line is not such a prompt.
@@ -45,7 +45,7 @@ def told_prompts(path: Path) -> list[ToldPrompt]:
 
 
 def is_right(brief: Brief, truth: Truth) -> bool:
-    """Returns whether roads made of a Brief all meet a truth; False if one cannot be made."""
+    """Returns whether all roads made from a Brief meet a truth; False if a road cannot be made."""
     try:
         world = world_for(brief, World())
         designs = [draft(brief, world, seed=seed) for seed in range(ROADS)]

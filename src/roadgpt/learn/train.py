@@ -63,11 +63,11 @@ class TrainingSettings:
     frozen_layers: int = 0
     """Number of encoder layers, from the lowest, that are not trained."""
     decoder_layers: int | None = None
-    """Number of decoder layers; if training starts from the installed reader, a multiple of its number. None
-    keeps that number, or takes 3 for a new network.
+    """Number of decoder layers. If training starts from an exported reader, give a multiple of the reader's
+    number of decoder layers, or None to keep this number. For a new network, None means 3.
     """
     encoder_layers: int | None = None
-    """Number of encoder layers; a multiple of the number of the installed reader. None keeps that number."""
+    """Number of encoder layers: a multiple of the exported reader's number, or None to keep this number."""
     feeders: int = 0
     """Number of processes that make the batches; 0 makes them in the training process itself."""
     ending: str = ""

@@ -72,8 +72,8 @@ def _counted(pairs: Iterable[Pair], has_groups: bool) -> _Counts:
 
 
 def filler_words(pairs: Iterable[Pair]) -> list[str]:
-    """Returns the filler words in alphabetical order: all function words, such as "and", and words in at
-    least 10 pairs that ask for no token; words of negation are left out.
+    """Returns the filler words in alphabetical order: all function words, such as "and", and all words that
+    occur in at least 10 pairs and ask for no token. Words of negation are left out.
     """
     counts = _counted(pairs, has_groups=False)
     meaning = {word for word, token in counts.both if counts.is_asked(word, token)}

@@ -5,8 +5,8 @@ MapDesign describes a whole map and a route through the map, or none; ``build_ma
 Route is a Road whose centre line follows the reference lines of its roads, one after another.
 ``route.network`` is the Network, with all roads, connecting roads, junctions and roundabouts.
 
-Most roads lead through no junctions. The functions that all roads are asked with are loaded at once (see
-``road_or_route``); what builds and describes networks is loaded when its name is first used.
+Most roads lead through no junctions. The functions of ``road_or_route``, which are used for all roads, are
+loaded at once. The modules that build and describe networks are loaded when a name in them is first used.
 """
 
 from importlib import import_module

@@ -27,9 +27,9 @@ class ArmDesign(FrozenFields):
     length: Length | None = None
     """Length in metres of a straight, level arm; None for ``STUB``; not for the arm that the route takes."""
     control: Control | None = None
-    """The sign or the light on this arm; None for what the junction's ``control`` implies."""
+    """The sign or the light on this arm; None for the one that follows from the junction's ``control``."""
     one_way: Literal["in", "out"] | None = None
-    """All traffic drives "in" to the junction or "out" of it; None for both; not for the arm taken."""
+    """One-way traffic: "in" to the junction or "out" of it; None for both ways; not for the arm taken."""
     segments: Annotated[tuple[Segment, ...], Field(max_length=MAX_SEGMENTS)] = ()
     """The segments of the arm out of the junction, also if its traffic drives in; empty for a straight, level
     arm; not with ``length`` and not for the arm that the route takes.
@@ -53,9 +53,9 @@ class ArmDesign(FrozenFields):
 
 
 def read_segments(what: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """Reads the segments of an arm as those of a road; returns the fields of an ArmDesign, the others as they
-    are, and remarks. ``what`` names the arm in remarks and errors. Raises UsageError if a segment cannot be
-    read, or the arm has ``segments``, which no file has.
+    """Reads the segments of an arm, as those of a road. Returns the fields of an ArmDesign, and remarks.
+    Fields other than the segments are returned unchanged. ``what`` names the arm in remarks and errors.
+    Raises UsageError if a segment cannot be read, or if ``raw`` has the field ``segments``.
     """
     own = {key: each for key, each in raw.items() if KEY.fullmatch(str(key))}
     fields = {key: each for key, each in raw.items() if key not in own}

@@ -27,8 +27,8 @@ class Builder:
         return self._last
 
     def add(self, road: Road, junction: int | None = None, number: int | None = None) -> int:
-        """Adds a road, which has a profile; returns its id: ``number``, or the next free one. ``junction`` is
-        the id of the junction of a connecting road.
+        """Adds a road that has a profile; returns the road's id: ``number``; for None, the next free id.
+        ``junction`` is the id of the junction to which a connecting road belongs; None for other roads.
         """
         number = self.number() if number is None else number
         self.roads[number] = NetworkRoad(number, road, junction)
@@ -92,7 +92,7 @@ class StubLanes:
         return len(self.widths)
 
     def inside(self, index: int) -> float:
-        """Returns the distance to the left edge of a lane, as ``edge`` is for the first one."""
+        """Returns the distance to the left edge of a lane, measured as ``edge`` is for the first lane."""
         return self.edge + sum(self.widths[:index])
 
 
@@ -102,7 +102,7 @@ def width_at(width: Width, s: float) -> float:
 
 
 def edges_at(profile: Profile, s: float) -> tuple[float, float]:
-    """Returns what ``Profile.edges`` does at one station, without the overhead of arrays."""
+    """Returns the offsets of ``Profile.edges`` at one station, without the overhead of arrays."""
     centre, (left, right), count = width_at(profile.offset, s), profile.begins, profile.count
     if profile.left_hand:
         count = count[::-1]
@@ -119,9 +119,10 @@ Change = tuple[float, float]
 def one_way(
     widths: Sequence[Change], length: float, offset: Change = (0.0, 0.0), between: Marking = "none"
 ) -> Profile:
-    """Returns the cross-section of a road with lanes on the right only; ``widths`` are those from left to
-    right. They and the ``offset`` of their left edge, positive to the left of the reference line, change
-    smoothly over ``length`` metres. ``between`` is the marking between lanes; the outer edges have none.
+    """Returns the cross-section of a road with lanes on the right only. ``widths`` are the lane widths from
+    left to right. ``offset`` is that of the first lane's left edge, positive to the left of the reference
+    line. Widths and offset change smoothly over ``length`` metres. ``between`` is the marking between lanes;
+    the outer edges have no marking.
     """
     return _one_way(tuple(_changing(each, length) for each in widths), _changing(offset, length), between)
 

@@ -68,10 +68,10 @@ def build_crossing(
     """Adds a junction and its connecting roads to a network that has the roads of all stubs; returns the
     junction.
 
-    ``node`` is the point in metres at which the reference lines would meet. The stubs are in
-    counter-clockwise order, and so are the distances in metres from the node to their contacts and their
-    signs or lights. ``kerb`` is the requested radius in metres, which is only stored: ``distances`` decide
-    how much room there is.
+    ``node`` is the point in metres at which the reference lines would meet. ``distances`` are those in metres
+    from the node to the contacts of the stubs, ``controls`` the signs or lights. All three sequences are in
+    counter-clockwise order. ``kerb`` is the requested radius in metres, which is only stored: ``distances``
+    decide how much room there is.
     """
     number = builder.number()
     connections = []

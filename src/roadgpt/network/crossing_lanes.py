@@ -1,10 +1,11 @@
 """Computes which lanes lead to which arms at a junction, for traffic on the right.
 
 Traffic that turns right to the rightmost arm uses the rightmost lane. Traffic that turns left to the leftmost
-arm uses the leftmost lane. If there is one arm between these two, all lanes lead to it, as far as it has
-lanes for them; if it has two more, they lead to its inner lanes, and traffic that turns to it uses the outer
-ones. Two or more arms between them divide the lanes. If there is no arm between them, the left and the right
-turn divide the lanes. There are two exceptions:
+arm uses the leftmost lane. If there is one arm between these two arms, all lanes lead to that arm; if the arm
+has fewer lanes, only the leftmost lanes do. If the arm has two lanes more, traffic straight on uses its
+middle lanes, and traffic that turns to the arm uses its leftmost and its rightmost lane. Two or more arms in
+between divide the lanes. If there is no arm in between, the left and the right turn divide the lanes. There
+are two exceptions:
 
 - If a lane would then lead to no arm, the lanes are divided so that no lane leads to two arms.
 - If an arm has more than two lanes and no arm leads straight on to it, several lanes turn to it side by side.
@@ -27,8 +28,8 @@ junction, the second that of the lane out of the junction; both count from 0 at 
 
 
 def lane_ways(stubs: Sequence[Stub], start: int) -> Iterator[tuple[int, LaneWay]]:
-    """Yields the index of each arm that traffic can reach from the arm ``start``, with the lanes that lead to
-    it: from right to left, as the stubs are in counter-clockwise order.
+    """Yields the index of each arm that traffic from the arm ``start`` can reach, with the lanes that lead to
+    this arm. The stubs are in counter-clockwise order, so the arms are yielded from right to left.
     """
     count = len(stubs)
     others = [(start + n) % count for n in range(1, count)]

@@ -162,8 +162,8 @@ PlaceDesign = JunctionDesign | RampDesign | LanesChangeDesign
 
 
 def ends_route(place: PlaceDesign) -> bool:
-    """Returns whether the car would turn back at a place onto the road on which it came; the route then ends
-    there.
+    """Returns whether the route ends at a place because the car would turn back there, onto the road on which
+    the car came.
     """
     return isinstance(place, JunctionDesign) and place.taken is None
 
@@ -283,8 +283,8 @@ def is_left_hand(data: Mapping[str, Any]) -> bool:
 
 
 def read_part(model: type[Part], what: str, raw: Any, fields: str) -> Part:
-    """Returns a part of a design, such as a junction, from parsed JSON. Raises UsageError, which names the
-    part, ``what``, and its ``fields``, if it cannot be read.
+    """Returns a part of a design, such as a junction, from parsed JSON. Raises UsageError if the part cannot
+    be read. The message names the part, ``what``, and, if ``raw`` is not an object, the ``fields``.
     """
     _check_object(what, raw, fields)
     try:

@@ -50,8 +50,8 @@ def edges_of_ground(route: Road, ground: Area, s: Array) -> Edges:
 
 
 def windows(passages: Sequence[Passage], length: float) -> list[tuple[float, float]]:
-    """Returns the first and last station in metres of each stretch of a route ``AROUND`` its junctions, which
-    are given as passages; stretches that overlap are one. ``length`` is that of the route in metres.
+    """Returns the stretches of a route within ``AROUND`` metres of its passages, each as its first and last
+    station in metres. Stretches that overlap are merged. ``length`` is that of the route in metres.
     """
     found: list[tuple[float, float]] = []
     for each in passages:

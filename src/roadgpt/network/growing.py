@@ -176,17 +176,18 @@ class _RouteGrowth:
 def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) -> list[Profile]:
     """Returns the cross-sections of the arms in the order of ``all_arms``.
 
-    The arm that the route takes has the cross-section ``after``. The first rule that applies to another arm
-    gives its number of lanes in each direction:
+    The arm that the route takes has the cross-section ``after``. For every other arm, the first rule that
+    applies gives the number of lanes in each direction. A one-way arm keeps only the lanes of its direction,
+    at least one. The rules are:
 
     - An arm of a roundabout has as many lanes as the ring.
-    - An arm opposite the arm that the route takes has as many lanes as the arm taken, if that arm has more
-      than two lanes in a direction, or more than one and the road of arrival is one-way. With fewer lanes
-      opposite, some lanes of the arm taken would lead nowhere. For the same reason it has as many lanes as
-      the road of arrival, if that road has more than two in a direction and no arm is straight ahead; but at
-      a fork not more than the arm taken.
+    - The arm opposite the arm taken has as many lanes as the arm taken, if the arm taken has more than two
+      lanes in a direction, or more than one and the road of arrival is one-way. With fewer, some lanes of the
+      arm taken would lead nowhere. For the same reason, the opposite arm has as many lanes as the road of
+      arrival, if that road has more than two in a direction and no arm is straight ahead; at a fork, not
+      more than the arm taken. If both numbers apply, the larger one counts.
     - An arm straight ahead has as many lanes as the road of arrival.
-    - Any other arm has one lane. A one-way arm has only the lanes of its direction, and at least one.
+    - Any other arm has one lane.
 
     Args:
         junction: The junction.
@@ -262,10 +263,10 @@ def contact_distances(
 ) -> list[float]:
     """Returns the distance in metres from the node of a junction to the contact of each arm.
 
-    ``directions`` are the headings of its arms out of the junction in radians, counter-clockwise from the
-    road of arrival, ``profiles`` their cross-sections. The road of arrival and one-way roads into the
-    junction end here, so their last widths count; of all others, the first ones. Raises UsageError if the
-    island of a roundabout is too small for its arms.
+    ``directions`` are the headings of the arms out of the junction in radians, counter-clockwise from the
+    road of arrival; ``profiles`` are the cross-sections of the arms. The road of arrival and one-way roads
+    into the junction end here, so the widths at their ends count. All other roads begin here, so the widths
+    at their starts count. Raises UsageError if the island of a roundabout is too small for its arms.
     """
     if junction.kind != "roundabout":
         ends_here = {0, *(n for n, arm in enumerate(junction.all_arms, 1) if arm.one_way == "in")}
@@ -343,8 +344,8 @@ def controls_of(junction: JunctionDesign) -> tuple[Control, ...]:
     - Otherwise every arm of a roundabout gives way; with "stop", the road of arrival has a stop sign instead.
     - Elsewhere, with "yield" or "stop", the road of arrival and the arm straight ahead have this sign, and
       the others have priority.
-    - Elsewhere, with "priority", the road of arrival has priority, and so has the arm straight ahead, or
-      without such an arm, the arm that the route takes. The others give way.
+    - Elsewhere, with "priority", the road of arrival and the arm straight ahead have priority. If no arm is
+      straight ahead, the arm that the route takes has priority instead. The others give way.
     - Elsewhere, with "none", no arm has a sign.
 
     The ``control`` of an arm replaces the sign or light of this arm.

@@ -31,8 +31,8 @@ class LaneAlong(NamedTuple):
 
     left_shoulder: Width
     left: Width
-    """The width of everything to the left of the lane as far as the shoulder: lanes, oncoming ones among
-    them, and the median.
+    """The width between the lane and the left shoulder: all lanes there, oncoming lanes included, and the
+    median.
     """
     offset: Width
     """The offset of the left edge of the lane from the reference line, positive to the left."""
@@ -47,9 +47,9 @@ Term = tuple[float, Width]
 
 
 def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
-    """Returns the lane that a route follows on a road, which leads in the direction of the route, with
-    traffic on the right. ``lanes`` are the indices of the lanes followed one after another, from 0 at the
-    centre line; each differs by 1 from the one before.
+    """Returns the lane that a route follows on a road. The road leads in the direction of the route, and
+    traffic drives on the right. ``lanes`` are the indices of the lanes that the route follows one after
+    another, counted from 0 at the centre line. Each index differs by 1 from the index before.
     """
     profile = road.profile
     assert profile is not None
@@ -89,7 +89,7 @@ def change_windows(length: float, count: int) -> list[tuple[float, float]]:
 
 
 def added(terms: Sequence[Term], length: float) -> Width:
-    """Returns the weighted sum of widths along a road of ``length`` metres: a number if all of them are."""
+    """Returns the weighted sum of widths along a road of ``length`` metres: a number if all are numbers."""
     numbers = [factor * width for factor, width in terms if not isinstance(width, CubicProfile)]
     if len(numbers) == len(terms):
         return sum(numbers)
@@ -105,7 +105,7 @@ def added(terms: Sequence[Term], length: float) -> Width:
 
 
 def cubics_at(width: Width, stations: Sequence[float]) -> list[Cubic]:
-    """Returns a width as a cubic for each of a few stations, a function of the distance from this station."""
+    """Returns the cubic of a width at each station, as a function of the distance from this station."""
     if not isinstance(width, CubicProfile):
         return [(float(width), 0.0, 0.0, 0.0)] * len(stations)
     cubics = as_cubics(width)

@@ -83,8 +83,8 @@ class LanesChangeDesign(FrozenFields):
     length: LaneLength = TAPER
     """Length in metres of the taper in which the lane ends or begins; not used for a lane change."""
     lanes: LanesDesign | None = None
-    """The lanes of the road behind this place; None for the lanes before it, less the lane that ends or plus
-    the lane that begins.
+    """The lanes of the road behind this place; None for the lanes of the road before it, less the lane that
+    ends or plus the lane that begins.
     """
 
     def mirrored(self) -> "LanesChangeDesign":
@@ -93,8 +93,8 @@ class LanesChangeDesign(FrozenFields):
 
 
 def narrow_part(taper: float, width: float) -> float:
-    """Returns the length in metres in which a lane that ends or begins is narrower than ``LEAST_WIDTH``. Over
-    ``taper`` metres, its width changes between 0 and ``width`` metres, which are ``LEAST_WIDTH`` or more, as
-    a cubic that is level at both ends.
+    """Returns the length in metres on which a lane that ends or begins is narrower than ``LEAST_WIDTH``. The
+    lane's width is a cubic that changes between 0 and ``width`` metres over ``taper`` metres and is level at
+    both ends. ``width`` is at least ``LEAST_WIDTH``.
     """
     return taper * (0.5 - math.sin(math.asin(1 - 2 * LEAST_WIDTH / width) / 3))

@@ -11,14 +11,14 @@ Ways = dict[int, int]
 
 
 def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]) -> list[Leg]:
-    """Returns the legs of a route along roads that follow each other, by their ids: one for each lane of a
-    road that the route uses.
+    """Returns the legs of a route: on each road, one leg for each lane that the route uses. ``roads`` are the
+    ids of roads that follow each other.
 
-    A route begins in the outermost lane from which it can go on (the rightmost one, with traffic on the
-    right). It changes lanes only where its lane does not lead to the next road or would prevent a required
-    lane change, and as late as possible: on the last road before the other lane is needed. ``shifts`` are the
-    required changes by road: the number of lanes to the left, negative to the right. Raises UsageError if two
-    roads are not joined, or a lane that the route needs cannot be reached.
+    A route begins in the outermost lane from which the route can go on (the rightmost one, with traffic on
+    the right). ``shifts`` are the required lane changes by road: the number of lanes to the left, negative to
+    the right. Otherwise the route changes lanes only where its lane does not lead to the next road or would
+    prevent a required change. Such a change is made as late as possible: on the last road before the new lane
+    is needed. Raises UsageError if two roads are not joined, or a lane that is needed cannot be reached.
     """
     ways = [_ways(network, one, two) for one, two in pairwise(roads)]
     fit = _fit(network, roads, ways, shifts)

@@ -74,7 +74,7 @@ class MapNode(FrozenFields):
     kerb: Annotated[float, Field(ge=1, le=100, allow_inf_nan=False)] = KERB
     """Radius in metres of the kerb between two neighbouring roads of a junction; not for roundabouts."""
     radius: Annotated[float, Field(ge=1, le=2000, allow_inf_nan=False)] | None = None
-    """Radius in metres of the island of a roundabout, or of a bend; None for 16 m or 20 m, respectively."""
+    """Radius in metres of the island of a roundabout (None for 16 m), or of a bend (None for 20 m)."""
 
     @property
     def is_junction(self) -> bool:

@@ -31,8 +31,8 @@ NO_TURN = 1e-6  # rad; a bend with a smaller turn has no curve
 
 
 def network_made_from(design: NetworkDesign | MapDesign, world: World) -> Route:
-    """Returns the route of a design with junctions or of a map, without ``Route.on_ground``; for errors see
-    ``build_route`` and ``build_map``.
+    """Returns the route of a design with junctions or a map, before ``Route.on_ground`` adds shoulders. For
+    errors see ``build_route`` and ``build_map``.
     """
     return build_map(design, world) if isinstance(design, MapDesign) else build_route(design, world)
 

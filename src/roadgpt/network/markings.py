@@ -95,8 +95,8 @@ def _of_road(network: Network, member: NetworkRoad) -> Iterator[PaintedStroke]:
 
 
 def between_crosswalks(network: Network, member: NetworkRoad) -> tuple[float, float]:
-    """Returns the stations in metres between which a road has lines between its lanes, and its median: from
-    one end to the other, but for crosswalks.
+    """Returns the first and last station in metres of the lines between a road's lanes, and of its median.
+    Lines and median reach from one end of the road to the other, but not across crosswalks.
     """
     ends = (RoadEnd(member.id, "start") in network.crossed, RoadEnd(member.id, "end") in network.crossed)
     first = min(CROSSED * ends[0], member.road.length)
@@ -163,9 +163,9 @@ def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedS
 
 def line_to_stop_at(network: Network, junction: Junction, arm: Arm) -> Array | None:
     """Returns points ``(n, 3)`` in metres along the middle of the line at which traffic from an arm stops or
-    gives way: ``STOP_LINE`` metres wide, from the middle of the road outwards if it lies across an arm.
+    gives way. The line is ``STOP_LINE`` metres wide. A line across an arm begins at mid-road.
 
-    None if the arm has priority or no sign, or if it is an arm of a roundabout without a road into the ring.
+    None if the arm has priority or no sign, or if it gives way to a ring to which it has no connecting road.
     """
     if arm.control in ("priority", "none"):
         return None
@@ -191,8 +191,8 @@ def road_of_line(network: Network, junction: Junction, arm: Arm) -> int:
 
 
 def line_across(network: Network, arm: Arm) -> tuple[float, float, float]:
-    """Returns the station in metres of the line across an arm, and the offsets in metres of its ends: of the
-    end at mid-road, and of the end at the edge of the lanes.
+    """Returns the station of the line across an arm, the offset of the line's end at mid-road, and the offset
+    of its end at the edge of the lanes, all in metres.
     """
     member, at_end = network.road(arm.end.road), arm.end.contact == "end"
     half = min(line_before(arm) + STOP_LINE / 2, member.road.length)

@@ -93,8 +93,8 @@ class NetworkRoad:
         return self.profile.side if contact == "end" else -self.profile.side
 
     def begin_towards(self, contact: Contact, s: float) -> float:
-        """Returns the offset in metres, at station ``s``, at which the lanes towards an end begin: that of
-        their edge nearest to the centre line.
+        """Returns the offset in metres, at station ``s``, of the inner edge of the lanes towards an end: the
+        edge nearest to the centre line.
         """
         offset, (left, right) = self.profile.offset, self.profile.begins
         line = float(self.profile.centre(s)) if isinstance(offset, CubicProfile) else offset
@@ -275,8 +275,8 @@ class Network:
         return self.road(end.road).ids_towards(OTHER_CONTACT[end.contact])
 
     def ends_of(self, leg: Leg) -> tuple[RoadEnd, RoadEnd]:
-        """Returns the ends of a road at which traffic in the lane of ``leg``, part of a route, enters and
-        leaves it.
+        """Returns two ends of a leg's road: the end at which traffic in the leg's lane enters the road, and
+        the end at which this traffic leaves the road.
         """
         start, end = RoadEnd(leg.road, "start"), RoadEnd(leg.road, "end")
         return (start, end) if self.road(leg.road).profile.leads_along(leg.lane) else (end, start)

@@ -44,14 +44,14 @@ def contact_distance(radius: float, lanes: int) -> float:
 
 def mouth_of(radius: float, directions: Sequence[float]) -> float:
     """Returns half the length in metres of every mouth along the edge of the island: at most ``MOUTH``, and
-    so short that ``BETWEEN`` metres of ring remain between two. ``directions`` as in ``smallest_radius``.
+    so short that ``BETWEEN`` metres of ring remain between mouths; ``directions`` as in ``smallest_radius``.
     """
     return min(MOUTH, (radius * _least_gap(directions) - BETWEEN) / 2)
 
 
 def smallest_radius(directions: Sequence[float]) -> float:
-    """Returns the smallest radius in metres of an island around which the mouths of all arms fit, from their
-    directions out of the centre in radians, counter-clockwise.
+    """Returns the smallest radius in metres of an island around which the mouths of all arms fit.
+    ``directions`` are those of the arms out of the centre in radians, counter-clockwise.
     """
     return (2 * SMALLEST_MOUTH + BETWEEN) / _least_gap(directions)
 
@@ -62,9 +62,9 @@ def _least_gap(directions: Sequence[float]) -> float:
 
 
 def around_length(radius: float, directions: Sequence[float], angle: float, lanes: int) -> float:
-    """Returns the length in metres of a way through a roundabout, from contact to contact. ``directions`` as
-    in ``smallest_radius``; ``angle`` is that in radians, counter-clockwise, from the arm of arrival to the
-    arm that is taken: 2 pi for the way back.
+    """Returns the length in metres of a way through a roundabout, from contact to contact. ``directions`` are
+    as in ``smallest_radius``. ``angle`` is the angle in radians, counter-clockwise, from the arm of arrival
+    to the arm that is taken; 2 pi for the way back.
     """
     half = mouth_of(radius, directions) / radius
     tangents = contact_distance(radius, lanes) - radius / math.cos(half), radius * math.tan(half)
@@ -84,7 +84,7 @@ def build_roundabout(
 ) -> Roundabout:
     """Adds a roundabout to a network that has the roads of all stubs; returns the roundabout.
 
-    ``centre`` is given in metres, and so is the radius of the island, at least ``smallest_radius``. The stubs
+    The ``centre`` and the ``radius`` of the island, at least ``smallest_radius``, are in metres. The stubs
     are in counter-clockwise order, and so are their signs or lights; each ends ``contact_distance`` from the
     centre. ``kerb`` is the requested radius in metres, which is only stored. Raises UsageError if a road has
     more lanes in one direction than the ring.

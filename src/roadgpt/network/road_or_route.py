@@ -1,7 +1,7 @@
 """Tells single roads and Routes apart, and makes a road from anything that describes one.
 
-The rooms that drive, judge and draw roads ask here. Importing this module loads nothing that builds or
-describes networks, and a single road never needs it.
+The packages that drive, judge and draw roads use these functions. Importing this module loads no module that
+builds or describes networks; a single road needs none of those modules.
 """
 
 from collections.abc import Mapping
@@ -37,7 +37,7 @@ def refuse_without_route(road: Road, what: str) -> None:
 
 
 def made_from(blueprint: "Blueprint", world: World, geometry: Geometry = "arcs") -> Road:
-    """Returns the road that a blueprint describes, with lanes and banked bends of a World if it has none.
+    """Returns the road that a blueprint describes. The World gives the lanes and banked bends that it lacks.
 
     Args:
         blueprint: A design with or without junctions, a map, or a road.

@@ -33,7 +33,7 @@ class Route(Road):
     shoulders until ``on_ground`` adds them.
 
     A network through which no route was asked for is a Route without legs; see ``has_no_route``. Nothing can
-    drive it. What needs a centre line all the same gets that of the network's first road.
+    drive such a Route. Its centre line is that of the network's first road outside junctions.
     """
 
     is_route: ClassVar[bool] = True

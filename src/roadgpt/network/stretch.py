@@ -62,8 +62,8 @@ def _from_level(knots: list[tuple[float, float]], distance: float) -> list[tuple
 
 
 def without_level_ends(road: Road, is_level: tuple[bool, bool]) -> Road:
-    """Returns a road, whose heights are given by grades, with the heights that it would have if ``road_of``
-    had not made the ends named by ``is_level`` level.
+    """Returns a road without the level ends that ``road_of`` made where ``is_level`` is true. The grade
+    beside a level end continues to the end of the road. The heights of ``road`` must be given by grades.
     """
     profile = road.elevation
     assert isinstance(profile, GradeProfile)
@@ -133,8 +133,8 @@ def joined_plans(roads: Sequence[Road]) -> PieceCurve:
 
 
 def joined_roads(roads: Sequence[Road]) -> Road:
-    """Returns one road made of roads that continue each other, with the cross-section of the road with the
-    fewest lanes in their direction; for errors see ``joined_grades``.
+    """Returns one road made of roads that continue each other. Its cross-section is that of the road with the
+    fewest lanes in the direction of the roads. For errors see ``joined_grades``.
     """
     if len(roads) == 1:
         return roads[0]

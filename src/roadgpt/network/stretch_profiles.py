@@ -51,9 +51,9 @@ def profiles_between(
     ``first`` are the lanes of the first road; the lengths of the roads and the width of the shoulders are in
     metres.
 
-    Raises UsageError if a road would have no lane or too many; the lanes of a road contradict the lane drop,
-    gain or change before it; a ramp on the left would cross oncoming lanes; or the ramp that the route takes
-    has oncoming traffic or more than one lane.
+    Raises UsageError in four cases: a road would have no lane or too many lanes; the lanes of a road
+    contradict the lane drop, gain or change before this road; a ramp on the left would cross oncoming lanes;
+    the ramp that the route takes has oncoming traffic or more than one lane.
     """
     lanes = [first]
     for number, place in enumerate(places, 1):

@@ -80,7 +80,7 @@ class NetworkSurface:
 
 
 def free_ends(network: Network, road: NetworkRoad) -> tuple[bool, bool]:
-    """Returns whether the start of a road lies at no junction, and whether its end lies at none."""
+    """Returns whether the start and whether the end of a road is free. A free end is at no junction."""
     return (
         RoadEnd(road.id, "start") not in network.junction_at,
         RoadEnd(road.id, "end") not in network.junction_at,

@@ -163,8 +163,8 @@ def driven_path(axes: Axes, drive: Drive) -> LineCollection:
 
 
 def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
-    """Draws a marker at a place, smaller for an incident that did not cause the failure, and the outline of
-    the car if the place comes from a drive.
+    """Draws a marker at a place and, if the place comes from a drive, the outline of the car. An incident
+    that did not cause the failure has a smaller marker and no outline.
     """
     if place.is_minor:
         axes.plot(place.x, place.y, place.sign, ms=MINOR, mfc=place.colour, mec="white", mew=0.8, zorder=9.5)
@@ -245,9 +245,9 @@ def _draw_key(figure: Figure, above: float, entries: list[KeyEntry]) -> None:
 
 @in_our_style
 def draw_fault(run: Run, reason: "FailureReason", more: str, path: Path) -> Path:
-    """Writes a picture of the place where a Run failed, with the reason in its header, to ``path``, whose
-    suffix gives the format. ``more`` is added to the reason, such as "fails every time (5 of 5 disturbed
-    drives)".
+    """Writes a picture of the place where a Run failed to ``path``; the suffix of ``path`` gives the format.
+    The header of the picture gives the reason. ``more`` is added to the reason, such as "fails every time (5
+    of 5 disturbed drives)".
     """
     assert run.road is not None
     s = run.road.sample(1.0)

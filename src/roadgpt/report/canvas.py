@@ -101,7 +101,7 @@ def inches_of(axes: Axes) -> tuple[float, float]:
 
 
 def note(axes: Axes, place: tuple[float, float], text: str, size: float = 9.5, zorder: float = 3) -> None:
-    """Writes text to the left of and below a place in the upper right corner, in fractions of the axes."""
+    """Writes text whose upper right corner is at ``place``, (x, y) in fractions of the axes."""
     axes.text(
         *place, text, transform=axes.transAxes, ha="right", va="top", size=size, color=SOFT,
         path_effects=HALO, zorder=zorder,
@@ -162,8 +162,8 @@ def _badge(run: Run) -> float:
 
 
 def origin(run: Run) -> str:
-    """Returns one line with the seed, number and length of the road, or "no route", the driver and the
-    simulator.
+    """Returns one line with the seed and number of the road, its length in metres (or "no route") and, if
+    there is a drive, the driver and the simulator.
     """
     seed = f"seed {run.request.seed}"
     said = [f"{seed}, road {run.index}"] if run.words else [seed] if run.drive is not None else []

@@ -16,8 +16,8 @@ LINES = 3  # of names, where they stand close together
 
 
 def shade_junctions(axes: Axes, road: Road, names: Literal["top", "foot"] | None = "top") -> None:
-    """Shades the stretches inside junctions on axes whose x is the distance along the road, and whose limits
-    of x are set already. ``names`` is where the names of the junctions are written; None writes none.
+    """Shades the stretches inside junctions. On the axes, x is the distance along the road; the limits of x
+    must be set already. ``names`` is where the names of the junctions are written; None writes none.
     """
     wide, high = inches_of(axes)
     low, top = axes.get_xlim()

@@ -65,8 +65,9 @@ class Labels:
         away: Array | None = None,
         is_minor: bool = False,
     ) -> bool:
-        """Labels a place (x, y) in metres, if it is in the frame, and returns whether there was room; only
-        minor labels, which have smaller letters and may be farther away, are left out for lack of it.
+        """Labels a place (x, y) in metres, if the place is in the frame. Minor labels have smaller letters
+        and may be farther away. A minor label without room is left out; the result is then False, otherwise
+        True.
 
         ``away`` is the preferred direction ``(2,)`` from the place to the label, of length 1.
         """

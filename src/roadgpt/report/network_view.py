@@ -39,8 +39,8 @@ STEP = 0.5  # m between the points of the edges of the route
 
 
 def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
-    """Draws the network of a route, and the lane of the route, if there is one, at so many metres
-    ``per_inch``.
+    """Draws a network and the lane of the route; a map without a route has no such lane. ``per_inch`` is the
+    number of metres per inch of the picture.
     """
     network = route.network
     surface = NetworkSurface.of(network)

@@ -91,7 +91,7 @@ def overview(folder: Path | str, formats: Sequence[Format] = PNG) -> list[Path]:
 
 
 def pages(folder: Path | str) -> Iterator[Figure]:
-    """Yields the pages of ``overview`` as figures; raises what it raises."""
+    """Yields the pages of ``overview`` as figures; raises the same errors as ``overview``."""
     folder = Path(folder)
     names = sorted(folder.glob("test.*.json"))
     if not names:
@@ -166,8 +166,8 @@ def _loaded(path: Path) -> Any:
 
 
 def page_of(entries: list[Thumbnail], about: tuple[str, str], part: str, size: float) -> Figure:
-    """Returns one page with the maps of roads, in rows. ``about`` is the description and the seed, ``part``
-    the page number and the number of pages, or empty, and ``size`` the side of the map in metres.
+    """Returns one page with the maps of roads, in rows. ``about`` is the description and the seed. ``part``
+    is the page number with the number of pages; it may be empty. ``size`` is the side of the map in metres.
     """
     count = len(entries)
     # a number of columns that gives the page about the shape of a sheet of paper

@@ -1,5 +1,5 @@
-"""Finds the places of a Run to mark in pictures: those of failures, other incidents and findings and, for a
-drive that passed, the place where the largest share of the car was outside its lane.
+"""Finds the places of a Run to mark in pictures: the places of failures, other incidents and findings. For a
+drive that passed, also finds the place where the largest share of the car was outside its lane.
 """
 
 import math
@@ -62,8 +62,8 @@ class MarkedPlace:
 
     @property
     def sign(self) -> str:
-        """The marker for matplotlib: a cross for a failure, an incident or a finding, a diamond for the place
-        where most of the car was outside in a drive that passed."""
+        """The marker for matplotlib: a cross for a failure, an incident or a finding. A diamond marks the
+        place where the largest share of the car was outside, in a drive that passed."""
         return "X" if self.colour == VERMILLION or self.is_minor else "d"
 
     @property
@@ -97,9 +97,9 @@ def places_of(run: Run) -> list[MarkedPlace]:
 
 
 def minor_places_of(run: Run) -> list[MarkedPlace]:
-    """Returns the places of all incidents on a route, in order of time, without the cause of the failure. An
-    incident less than 15 m from the previous one of its kind has no label of its own: that of the first one
-    gives the number of incidents and their stations.
+    """Returns the places of all incidents on a route, without the cause of the failure. Incidents of one kind
+    that follow each other within 15 m share one label, at the first incident; the label gives their number
+    and stations. The groups of incidents that share a label are in the order of their first incidents.
     """
     verdict = run.verdict
     incidents = () if verdict is None else verdict.incidents or ()
@@ -149,8 +149,8 @@ def _said(finding: Finding) -> str:
 def name_places(axes: Axes, places: Sequence[MarkedPlace], length: float, at_top: bool = False) -> None:
     """Labels places on axes whose x is the distance along a road of ``length`` metres.
 
-    Each label is next to the station of its place. The labels are staggered: each is farther from the bottom,
-    or from the top, of the axes than the one before.
+    Each label is next to the station of its place. The labels are staggered: each label is farther from the
+    bottom of the axes than the label before; with ``at_top``, farther from the top.
     """
     wide, high = inches_of(axes)
     for number, place in enumerate(places):

@@ -35,8 +35,9 @@ class Frame:
 
     @classmethod
     def around(cls, points: Array, margin: float, least: float, size: float) -> "Frame":
-        """Returns a frame that shows points ``(n, 2)`` with a margin, is at least ``least`` wide and high,
-        and stays on the map, a square with the side ``size``, if possible; all in metres.
+        """Returns a frame that shows points ``(n, 2)`` with a margin, and is at least ``least`` wide and
+        high. If possible, the frame ends at most 12 m outside the map, a square with the side ``size``. All
+        is in metres.
         """
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
         width, height = np.maximum(high - low, least)
@@ -62,8 +63,8 @@ class Frame:
 
 
 def show_from_above(axes: Axes, frame: Frame, steps: Sequence[float], most: int) -> None:
-    """Sets limits, labels and grid of axes that show a frame to scale; the lines of the grid are the first of
-    ``steps`` metres apart with which there are at most ``most`` cells across.
+    """Sets limits, labels and grid of axes that show a frame to scale. The cells of the grid have the first
+    size in ``steps``, in metres, for which at most ``most`` cells fit into the width of the frame.
     """
     axes.set(xlim=(frame.x0, frame.x1), ylim=(frame.y0, frame.y1), aspect="equal")
     axes.set_xlabel("x, metres east")
@@ -126,8 +127,8 @@ def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
 
 
 def is_far(road: Road, world: World, per_inch: float) -> bool:
-    """Returns whether lanes are so narrow in a picture with ``per_inch`` metres per inch that roads are drawn
-    as lines."""
+    """Returns whether roads are drawn as lines, because their lanes are too narrow in the picture. The
+    picture has ``per_inch`` metres per inch."""
     return float(world.profile_of(road).width(0.0)) / per_inch * POINTS < THINNEST_LANE
 
 

@@ -75,8 +75,8 @@ def _road_of(what: Any, world: World | None) -> tuple[Road, World]:
 
 @in_our_style
 def png_of(value: Any) -> bytes | None:
-    """Returns the bytes of a PNG file with a picture of a Road, a Design, a Run or a Campaign, of which the
-    first page of ``overview`` is shown; None if there is nothing to show.
+    """Returns the bytes of a PNG file with a picture of a Road, a Design, a Run or a Campaign; None if there
+    is nothing to show. The picture of a Campaign is the first page of ``overview``.
     """
     figure = _figure(value)
     return None if figure is None else encoded(figure, "png")

@@ -178,8 +178,8 @@ def _numbered(data: Mapping[str, Any]) -> list[tuple[int, Any]]:
 
 
 def misnumbered(what: str, numbers: Sequence[int]) -> tuple[str, ...]:
-    """Returns a remark if the numbers of ``what``, in the order in which they are taken, are not 1, 2, 3,
-    and so on; else none.
+    """Returns a remark if the numbers of ``what`` are not 1, 2, 3, and so on, in the order in which they are
+    taken; an empty tuple if they are.
     """
     if [*numbers] == [*range(1, len(numbers) + 1)]:
         return ()
@@ -221,7 +221,7 @@ def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
 
 
 def no_truths(what: str, data: Mapping[str, Any]) -> None:
-    """Raises UsageError, which names the data, if a value or an entry of a list in it is a Boolean."""
+    """Raises UsageError if a value, or an entry of a list, is a Boolean; the message names ``what``."""
     for name, value in data.items():
         values = value if isinstance(value, (list, tuple)) else (value,)
         if any(isinstance(each, bool) for each in values):

@@ -33,8 +33,9 @@ class VerticalCurve(NamedTuple):
 def vertical_curves(
     distances: Sequence[float], grades: Sequence[float], radii: Sequence[float | None]
 ) -> list[VerticalCurve]:
-    """Returns the vertical curves where grades change, in order, from the lengths in metres and the grades as
-    ratios of the segments, and the radii in metres of the curves at their starts; None for a default radius.
+    """Returns the vertical curves where grades change, in order. ``distances`` are the lengths of segments in
+    metres, and ``grades`` their grades as ratios. ``radii`` are the radii in metres of the curves at the
+    starts of the segments; None for a default radius.
 
     A curve whose radius is given has the length that this radius requires. It is shortened where it would
     overlap its neighbour or extend beyond the road.

@@ -50,8 +50,8 @@ class Land:
     @classmethod
     def beneath(cls, line: Array, reach: float | None, floor: float) -> "Land":
         """Returns the terrain beneath roads, which are given by points ``(n, 3)`` in metres, at most
-        ``LONGEST_STEP`` apart. Up to ``reach`` metres from them, it lies below them; with None, it is flat,
-        below all points and at most at height ``floor``.
+        ``LONGEST_STEP`` apart. Up to ``reach`` metres from the points, the terrain lies below the points.
+        With ``reach`` None, the terrain is flat, below all points and at most at height ``floor``.
         """
         low, high = line[:, :2].min(axis=0), line[:, :2].max(axis=0)
         low, high = np.minimum(low, (low + high - LEAST) / 2), np.maximum(high, (low + high + LEAST) / 2)

@@ -120,10 +120,10 @@ def lane_speed(
     """Returns the speeds in m/s of a car that starts from rest and drives in the middle of its lane.
 
     The car slows down for bends but not for crests, so that the check for abrupt crests is made at full
-    speed. The centre line is given at stations that are ``step`` metres apart by its curvature in 1/m,
-    ``(n,)``, its grade as a ratio and its superelevation in radians, positive where the surface falls to the
-    right; the middle of the lane by its offset in metres to the left. All but the curvature may be one value
-    for all stations.
+    speed. The arguments have values at stations ``step`` metres apart. ``curvature`` ``(n,)`` in 1/m and
+    ``grade``, a ratio, are those of the centre line. ``superelevation`` is in radians, positive where the
+    surface falls to the right. ``offset`` is that of the middle of the lane, in metres to the left. All but
+    the curvature may be one value for all stations.
     """
     bend = np.asarray(curvature, float)
     angle = np.broadcast_to(np.asarray(superelevation, float), bend.shape)

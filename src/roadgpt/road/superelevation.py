@@ -32,9 +32,9 @@ def superelevation(plan: PlanCurve, reach: float, speed: float, ratio: float | N
     """Returns the superelevation in radians as a function of the station: negative in left bends, because the
     surface falls to the inside.
 
-    ``reach`` is the distance in metres from the centre line to the farther edge of the carriageway, ``speed``
-    the design speed in m/s, ``ratio`` the superelevation of every bend; None for the value that CD 109 gives
-    for the radius of the bend.
+    ``reach`` is the distance in metres from the centre line to the farther edge of the carriageway. ``speed``
+    is the design speed in m/s. ``ratio`` is the superelevation of every bend as a ratio; with None, each bend
+    has the value that CD 109 gives for its radius.
     """
     if isinstance(plan, PieceCurve):
         knots = _of_pieces(plan, reach, speed, ratio)

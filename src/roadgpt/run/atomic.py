@@ -127,7 +127,7 @@ def missing(folder: Path) -> tuple[Path, ...]:
 
 
 def take_away(files: Iterable[Path], folders: Iterable[Path]) -> None:
-    """Removes the files, and then those of the folders that are empty; skips files that are in use."""
+    """Removes the files, and then the given folders that are empty; skips files that are in use."""
     for path in files:
         with suppress(OSError):  # Windows removes no file that is open
             path.unlink()

@@ -33,7 +33,7 @@ class Exporting:
 
     formats: tuple[str, ...]
     tell: Callable[[str], None]
-    """A function that is called with a message if a format cannot hold a road. Only that file is then
+    """A function that receives a message if a road cannot be exported to a format. Only that file is then
     missing."""
     draw: Draw | None = None
 

@@ -5,8 +5,8 @@ campaign/
   runs/0001/
     brief.json design.json road.json drive.npz verdict.json    the Run's values, each in its own format
     run.json               outcome, findings, seed, versions, and the full request
-    seconds.json           wall-clock times; they differ when a Run is repeated, as do the times in run.json
-                           if a language model was used; no other content differs
+    seconds.json           wall-clock times. When a Run is repeated, only these times differ (if a
+                           language model was used, also the times in run.json)
     error.txt              the traceback, if a simulator or driver failed
     *.png                  the pictures
 """

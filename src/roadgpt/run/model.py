@@ -140,7 +140,7 @@ class Run:
     trace: str = ""
     """The traceback of a simulator or a driver that failed; empty if none failed."""
     is_lost: bool = False
-    """True if the simulator itself failed; this is not written to disk."""
+    """True if the simulator itself failed; this field is not written to disk."""
     seconds: Seconds = Seconds()
 
     def __repr__(self) -> str:
@@ -204,7 +204,8 @@ def versions_of(setup: Setup) -> dict[str, str]:
     """Returns the versions of RoadGPT, Python and the libraries that affect the results, and the platform, so
     that differences between Runs can be explained.
 
-    With BeamNG, they include its settings, and its Python client, whose version determines that of BeamNG.
+    For drives in BeamNG, the result also has BeamNG's settings and the version of BeamNG's Python client.
+    The client's version determines the version of BeamNG.
     """
     found = {
         "roadgpt": __version__,

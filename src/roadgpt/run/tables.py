@@ -124,9 +124,9 @@ def write_settings(
 ) -> None:
     """Writes experiment_description.csv: the competition's columns in their order, then RoadGPT's.
 
-    ``theirs`` has values for the competition's columns; simulator, map size, tolerance and speed limit come
-    from the Request unless given there, and a column without a value stays empty. ``ours`` has values for
-    RoadGPT's own columns, which are written before the fields of the world.
+    ``theirs`` has values for the competition's columns. Simulator, map size, tolerance and speed limit come
+    from the Request if ``theirs`` lacks them; other columns without a value stay empty. ``ours`` has values
+    for RoadGPT's own columns, which are written before the fields of the world.
     """
     world = request.world
     known = {

@@ -1,5 +1,5 @@
-"""Serves test generators that run in other Python interpreters: does the competition's computations for
-them, and designs roads. Each request and each answer is one line of JSON.
+"""Serves test generators that run in other Python interpreters: computes what the competition computes, and
+designs roads. Each request and each answer is one line of JSON.
 
 The client, ``names/roadgpt_client.py``, starts this module as ``python -m roadgpt.sbft.answers``. If
 ``compete`` runs the generator in RoadGPT's own interpreter (no ``--python``), ``answer`` is called directly

@@ -1,6 +1,6 @@
-"""Gives RoadGPT what its client for other interpreters (``names/roadgpt_client.py``) already has: messages as
-JSON Lines, one JSON value per line, and the generator of which RoadGPT's own is a subclass. That file runs
-alone, on Python 3.8 and without RoadGPT, so RoadGPT imports from it and not the other way round.
+"""Imports two things from RoadGPT's client for other interpreters (``names/roadgpt_client.py``): messages as
+JSON Lines (one JSON value per line), and the base class of RoadGPT's own generator. The client runs on Python
+3.8 and without RoadGPT, so RoadGPT imports from the client; the reverse is not possible.
 """
 
 from typing import TYPE_CHECKING

@@ -246,8 +246,8 @@ def _died(status: int | None) -> str:
 
 
 def run_test(points: Any, index: int, request: Request, generating: float, is_test: bool) -> Run:
-    """Validates and drives one test, and returns its Run, which is invalid and without a road if the
-    generator submitted something that is not a test.
+    """Validates and drives one test, and returns the Run. If ``is_test`` is False, the generator submitted
+    something that is not a test: the Run is then invalid and has no road.
 
     ``points`` are control points ``(n, 2)`` in metres. The rules in the request must be the competition's.
     ``generating`` is the number of seconds that the generator took to make the test.

@@ -49,6 +49,6 @@ class Ending(Frozen):
 
     @property
     def is_of_a_generator(self) -> bool:
-        """Whether the generator was loaded before it ended; False also if the Python interpreter that should
-        run the generator cannot run generators."""
+        """Whether the generator was loaded before the end. The answer is also False if the chosen Python
+        interpreter cannot run generators."""
         return self.how not in UNBEGUN

@@ -64,7 +64,8 @@ class RoadSearch:
 
     def __init__(self, brief: Brief, words: str, seed: int, world: World, setup: Setup) -> None:
         """Begins a search among the roads that meet a description (``brief`` and ``words``) and the rules of
-        a setup. The world has the share of the car outside its lane above which a drive fails.
+        a setup. ``world.limits.oob_tolerance`` is the share of the car that may be outside its lane before a
+        drive fails.
 
         Raises:
             UsageError: a search cannot make such roads, for example because they have junctions.
@@ -111,7 +112,7 @@ class RoadSearch:
         distances: Sequence[float],
         outside: Sequence[float] | None = None,
     ) -> None:
-        """Receives the outcome of the last road; it is heard once, and further ones are ignored.
+        """Receives the outcome of the last road. Only the first call for each road has an effect.
 
         Args:
             outcome: "PASS" or "FAIL"; tests with another outcome, or with fewer than three records, are
@@ -119,8 +120,8 @@ class RoadSearch:
             steering: angle of the steering wheel in degrees at each record of the drive.
             distances: distance in metres from the car's middle to the edge of its lane at each record,
                 negative outside (``oob_distance`` of the competition).
-            outside: where the car was farthest outside, ``[x, y]`` in metres; None if this is not known, and
-                then the search learns less of where the car fails.
+            outside: where the car was farthest outside, ``[x, y]`` in metres; None if this is not known.
+                Without this place, the search learns less about where the car fails.
         """
         asked, self._asked = self._asked, None
         if asked is None or outcome not in ("PASS", "FAIL") or len(distances) < FEWEST_RECORDS:
@@ -144,8 +145,8 @@ class RoadSearch:
 class RoadGPTTestGenerator(ClientTestGenerator):
     """Submits roads that meet a description, one after another, until the budget is used up.
 
-    It is used as the client for other interpreters is, but designs the roads in its own process. So ``start``
-    raises the errors of ``roads``.
+    This class is used in the same way as the client for other interpreters, but designs the roads in the
+    generator's process. So ``start`` raises the errors of ``roads``.
     """
 
     description: str = USUAL

@@ -31,7 +31,8 @@ HEIGHT = -28.0  # m, of the ground of the competition's level
 
 
 def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, tuple[Path, ...]]:
-    """Creates the folder for results; if ``out`` is None, in ``results`` and with the competition's name.
+    """Creates the folder for results. If ``out`` is None, the folder is in ``results`` and has the
+    competition's name.
 
     Returns the folder, and all folders that were created on its path, the innermost first.
 

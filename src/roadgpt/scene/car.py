@@ -27,7 +27,7 @@ class Saloon:
     """The surface of the car in its rest position, and the points that rotate with each wheel."""
 
     mesh: Mesh
-    """The triangles of the car, whose attributes are their normals."""
+    """The triangles of the car; the attributes of each point are the components of its normal."""
     gloss: Array
     shade: Array
     """Fraction of the light, 0 to 1, that reaches each point; it is less than 1 near the ground and under the
@@ -36,8 +36,8 @@ class Saloon:
     """For each wheel: the slice of its points, the position of its hub, and whether it steers."""
 
     def placed(self, pose: Pose, eye: CameraPose) -> Mesh:
-        """Returns the mesh of a car at ``pose`` in world coordinates. The attributes of its points are the
-        light that they reflect to the camera ``eye``, an unused column, and their brightness.
+        """Returns the mesh of a car at ``pose`` in world coordinates. The three attributes of a point
+        are the light that the point reflects to the camera ``eye``, an unused number, and the brightness.
         """
         points, normals = self.mesh.points.copy(), self.mesh.attributes.copy()
         for part, hub, steers in self.wheels:

@@ -26,7 +26,7 @@ class Patch(NamedTuple):
 
 
 class Mesh(NamedTuple):
-    """Patches joined to one, for compiled code; the first four fields are those of a Patch."""
+    """Several patches in shared arrays, for compiled code; the first four fields are those of a Patch."""
 
     points: Array
     attributes: Array
@@ -50,7 +50,7 @@ class Mesh(NamedTuple):
 
 
 def joined(patches: list[Patch]) -> Patch:
-    """Returns one patch of several."""
+    """Returns one patch that holds the triangles of several patches."""
     starts = np.cumsum([0, *(len(patch.points) for patch in patches)])
     return Patch(
         np.concatenate([patch.points for patch in patches]),

@@ -49,8 +49,8 @@ def fine_noise(tiles: Tiles, tile: int, u: float, v: float, level: float) -> flo
 
 @inlined
 def share(x: float, low: float, high: float, wide: float) -> float:
-    """Returns the fraction (0 to 1) of an interval of width ``wide`` centred on x that lies between
-    ``low`` and ``high``."""
+    """Returns the fraction (0 to 1) of an interval that lies between ``low`` and ``high``. The interval has
+    the width ``wide`` and the centre x."""
     return max(min(x + wide / 2, high) - max(x - wide / 2, low), 0.0) / wide
 
 

@@ -34,7 +34,7 @@ class RenderBuffers(NamedTuple):
     ids: Numbers
     """Number of the triangle that each sample shows, same shape as ``depth``; -1 for the sky."""
     planes: Array
-    """Plane equations ``(n, PLANE)`` of the triangles that ``ids`` numbers."""
+    """Plane equations ``(n, PLANE)`` of the drawn triangles; the numbers in ``ids`` are indices of rows."""
     kinds: NDArray[np.int64]
     """Surface types ``(n,)`` of these triangles."""
     seen: Array
@@ -194,8 +194,8 @@ def _plane_equations(
 
 @compiled
 def draw(mesh: Mesh, eye: Array, buffers: RenderBuffers, count: int) -> int:
-    """Draws a mesh into the samples, and writes down the planes and kinds of the triangles that it draws;
-    returns ``count``, the number of triangles that earlier calls have drawn, plus the number drawn here.
+    """Draws a mesh into the samples, and stores the plane and the kind of each drawn triangle. ``count`` is
+    the number of triangles that earlier calls have drawn. Returns ``count`` plus the number drawn here.
 
     ``eye`` has the shape (13,): the camera's position, its axes to the right, downwards and forward, and its
     focal length in pixels.

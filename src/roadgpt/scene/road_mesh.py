@@ -28,8 +28,8 @@ POST_FROM_RIM = 0.6  # m from the outer edge of the shoulder
 
 
 def road_patches(road: Road, world: World, terrain: LitTerrain) -> list[Patch]:
-    """Returns the triangle patches of the road: its surface, with embankments and posts or, if the road has
-    no shoulders, with the slab of a floating road.
+    """Returns the triangle patches of the road: its surface, and what is around it. A road with shoulders has
+    embankments and posts; a road without shoulders has the slab of a floating road.
     """
     profile = world.profile_of(road)
     s = stations_between(road, profile.reach)
@@ -43,8 +43,8 @@ def road_patches(road: Road, world: World, terrain: LitTerrain) -> list[Patch]:
 def stations_between(road: Road, rim: float) -> Array:
     """Returns the stations ``(n,)`` in metres at which lines along the road need points.
 
-    The stations are at most ``LONGEST`` apart. Up to ``rim`` metres beside the centre line, a
-    polyline through them deviates from its curve by at most about ``CHORD``.
+    The stations are at most ``LONGEST`` apart. Take a curve at most ``rim`` metres beside the centre
+    line: a polyline with points at these stations deviates from the curve by at most about ``CHORD``.
     """
     s = stations(road, rim, CHORD)
     parts = np.maximum(1, np.ceil(np.diff(s) / LONGEST)).astype(int)

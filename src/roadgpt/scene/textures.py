@@ -39,8 +39,8 @@ def _shaped(rng: np.random.Generator, gain: Callable[[Array], Array]) -> Array:
 
 
 def mipmapped(picture: Array) -> Array:
-    """Returns the pixels of a picture ``(side, side, ...)``, followed by those of its copies of half, a
-    quarter, ... of the side, down to 1 pixel.
+    """Returns the pixels of a picture ``(side, side, ...)``, followed by the pixels of smaller and smaller
+    copies. Each copy has half the side of the copy before; the last copy is 1 pixel.
     """
     rest = picture.shape[2:]
     levels = [picture.reshape(-1, *rest)]

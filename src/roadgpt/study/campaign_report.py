@@ -45,8 +45,8 @@ TABLES = ("results.csv", "cells.csv")
 def write_store_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
     """Writes the report of a campaign into its folder and returns the path of the HTML page.
 
-    The report shows the ``command`` that repeats the campaign, unless it is empty, and what to try if no test
-    failed.
+    The report shows ``command``, which repeats the campaign, and ``next_steps``, the commands to try if no
+    test failed. An empty argument is not shown.
 
     Raises:
         UsageError: the folder holds no campaign, or the campaign has no finished test.

@@ -47,8 +47,8 @@ def work(
 ) -> list[Problem]:
     """Makes all roads of a study that do not exist yet.
 
-    Parts whose designer or reader asks a language model are made in this process, one after another; all
-    others on ``workers`` processes, or in this process if ``workers`` is 1.
+    This process makes the parts whose designer or reader asks a language model, one after another.
+    ``workers`` processes make all other parts; if ``workers`` is 1, this process makes them.
 
     Args:
         plan: the study.

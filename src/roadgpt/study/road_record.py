@@ -31,7 +31,8 @@ Array = NDArray[np.float64]
 MOST_COMPARED = 150  # roads of a part, each of which is compared with every other one
 DEPARTURES = ("out of lane", "fell")  # causes of failures by which the car left its lane
 STRAIGHT = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)
-"""A straight of 30 m that is measured if there is no road, to learn which criteria a description mentions."""
+"""Points of a straight of 30 m. If there is no road, this straight is measured instead of the road, to learn
+which criteria a description mentions."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +86,7 @@ class StudyPartRecord:
     part: StudyPart
     roads: tuple[RoadRecord, ...]
     home: str = ""
-    """The part's folder, relative to the report's folder; empty if they are the same."""
+    """The part's folder, relative to the report's folder; empty if both folders are the same."""
     problem: str = ""
     """The reason why roads are missing; empty if none is missing."""
     picture_format: str = ""
@@ -184,8 +185,9 @@ def _record_of(run: Run, part: StudyPart, features: Mapping[str, float]) -> Road
 
 
 def kept_of(run: Run, truth: Truth | None = None) -> dict[Criterion, bool]:
-    """Returns, for each criterion of a description, whether the road of a run meets it; all are False if no
-    road was made. The requirements are those of ``truth`` or, without it, those that the reader found."""
+    """Returns, for each criterion of a description, whether the road of a run meets it; every value is False
+    if no road was made. ``truth`` contains the requirements; if ``truth`` is None, the requirements that the
+    reader found are used. Without any requirements, the result is empty."""
     points = run.road.centreline() if run.road is not None else STRAIGHT
     is_road = run.road is not None and bool(np.isfinite(points).all()) and len(points) > 1
     points = points if is_road else STRAIGHT

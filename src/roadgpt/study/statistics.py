@@ -2,8 +2,8 @@
 where it provides them.
 
 scipy lacks Cochran and Armitage's trend test, Conover's pairwise comparisons with Holm's correction, and
-Krippendorff's alpha. For Fisher's exact test of large tables and Wilcoxon's test of tied ratings, it only
-offers approximations. The tests in ``tests/authorities`` compare each function with other libraries,
+Krippendorff's alpha. For Fisher's exact test of large tables and Wilcoxon's test of tied ratings, scipy
+offers only approximations. The tests in ``tests/authorities`` compare each function with other libraries,
 published examples or enumerations.
 
 Ratings are arrays ``(people, columns)`` of numbers; NaN marks a missing rating, and tests that need complete
@@ -185,8 +185,8 @@ def exact(table: ArrayLike) -> Exact:
     """Returns Fisher's exact test of a table of counts ``(rows, columns)``, as extended by Freeman and
     Halton.
 
-    p is the probability, among all tables with the same row and column totals, of a table that is at most as
-    probable as the given one. All tables are enumerated if the table has two rows or two columns and the
+    p sums the probabilities of all tables with the same row and column totals that are at most as probable
+    as the given table. All tables are enumerated if the table has two rows or two columns and the
     number of tables is small enough. Otherwise, tables are sampled at random with a fixed seed.
     ``scipy.stats.fisher_exact`` samples tables too, but treats probabilities that differ only by rounding
     errors as different.
@@ -296,8 +296,8 @@ def wilcoxon(one: ArrayLike, other: ArrayLike) -> Paired:
     """Returns Wilcoxon's two-sided signed-rank test of two columns ``(people,)``.
 
     People who gave both columns the same rating are left out. For up to 50 remaining people, p is exact, even
-    if differences are tied. The normal approximation can report a significant difference for five raters,
-    which the exact test cannot. For more than 50 people, scipy's approximation is used.
+    if differences are tied. For five raters, the normal approximation can report a significant difference;
+    the exact test cannot. For more than 50 people, scipy's approximation is used.
     """
     x, y = _complete(np.column_stack([np.ravel(one), np.ravel(other)])).T
     moved = (x - y)[x != y]

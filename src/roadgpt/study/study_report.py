@@ -157,8 +157,8 @@ def _different(parts: Sequence[StudyPartRecord]) -> str:
 def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
     """Writes the report of runs made by ``roadgpt run`` into their folder; returns the path of the HTML page.
 
-    The report shows the ``command`` that repeats the runs, unless it is empty, and what to try if no road
-    failed.
+    The report shows ``command``, which repeats the runs, and ``next_steps``, the commands to try if no road
+    failed. An empty argument is not shown.
 
     Raises:
         UsageError: the folder holds no finished run, or a run cannot be read.

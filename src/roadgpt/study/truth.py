@@ -101,8 +101,8 @@ class Truth(Frozen):
         None.
 
         The key ``sequence`` lists all turns of the road, so it also sets their number. If the key ``turns``
-        is 0, the road may still have slight bends: only an Outline with a range of exactly 0 turns excludes
-        them, and SLACK widens every range. Use the key ``turning`` to limit the bends.
+        is 0, the road may still have slight bends: an Outline excludes slight bends only if its range is
+        exactly 0 turns, but SLACK widens every range. Use the key ``turning`` to limit the bends.
         """
         asked = {CALLED.get(key, key): _asked(getattr(self, key)) for key in keys or self.given()}
         if "groups" in asked:

@@ -4,7 +4,8 @@ The kinds of incidents:
 
 - out of lane: as in ``verdict.oracle``; inside a junction, the lane is that of the route's connecting road;
 - wrong turn: more than 90 % of the car is outside its lane; its centre of gravity is beside the road of the
-  route and on another road; and its heading is within 30 degrees of the direction of that other road;
+  route, on a road that the route does not use; and its heading is within 30 degrees of the direction of this
+  unused road (outside junctions, of either direction);
 - wrong way: the car's centre of gravity is on the road of the route, and its heading differs by more than 90
   degrees from that of the route, for 1 s or longer;
 - off road: the outer edge of a tyre is outside the paved area of the network;

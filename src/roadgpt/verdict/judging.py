@@ -49,8 +49,8 @@ SBFT: dict[Cause | None, str] = {
 }
 
 FAILING: tuple[Cause, ...] = ("wrong turn", "wrong way", "stop line")
-"""The kinds of incidents that fail a test if nothing else failed; each is the cause then. A tyre off the
-road fails no test.
+"""The kinds of incidents that fail a test if nothing else failed. The kind of the first such incident is then
+the cause. A tyre off the road fails no test.
 """
 
 FAILED: dict[Cause, str] = {
@@ -182,7 +182,7 @@ def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
 
 
 def far_beyond(beyond: float) -> str:
-    """Returns in words how far a car was outside its lane: ``beyond`` metres beyond the marking, or on it."""
+    """Returns in words how far a car was outside its lane; ``beyond`` is in metres beyond the marking."""
     return f"{beyond:.2f} m beyond the marking" if beyond >= LEAST else "on the marking"
 
 

@@ -43,8 +43,8 @@ class LateralExtent(NamedTuple):
     It is corrected for the curvature of the lane under the box.
     """
     long: FloatArray
-    """The box's length and width are projected across the lane; this is half of the larger projection in
-    metres, ``(n,)``.
+    """Half of the larger projection in metres, ``(n,)``. The two projections are those of the box's length
+    and of the box's width across the lane.
     """
     short: FloatArray
     """Half of the smaller projection in metres, ``(n,)``."""

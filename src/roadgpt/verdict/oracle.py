@@ -71,8 +71,9 @@ def is_outside(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_
 
 
 def has_departed(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_]:
-    """Returns for each step whether the outer edge of a front tyre is beyond that of a lane marking; always
-    False if ``world.limits.lane_departure`` is not set.
+    """Returns for each step whether the outer edge of a front tyre is beyond the outer edge of a marking.
+
+    The result is False at every step if ``world.limits.lane_departure`` is not set.
     """
     if not world.limits.lane_departure:
         return np.zeros(len(drive), bool)

@@ -2,7 +2,7 @@
 
 All pictures, pages, tables and terminal output colour results by these levels. With the SBFT competition's
 tolerance of 0.95, a car may pass a test with nearly its whole body outside its lane. The levels distinguish
-such a PASS from that of a car that never left its lane.
+such a PASS from the PASS of a car that never left its lane.
 """
 
 import math

@@ -57,11 +57,11 @@ class Verdict:
     older version and the drive is missing.
     """
     at_s: float | None = None
-    """Station in metres where the car failed; None if it kept its lane."""
+    """Station in metres where the car failed; None if the car did not fail."""
     at_xy: tuple[float, float] | None = None
-    """Position (x, y) in metres where the car failed; None if it kept its lane."""
+    """Position (x, y) in metres where the car failed; None if the car did not fail."""
     at_time: float | None = None
-    """Time in seconds from the start to the failure; None if the car kept its lane."""
+    """Time in seconds from the start to the failure; None if the car did not fail."""
     side: Side | None = None
     """The side on which the car left its lane or fell; None for other results."""
     incidents: tuple[Incident, ...] | None = None

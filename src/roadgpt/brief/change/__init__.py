@@ -1,7 +1,7 @@
 """Reads a change request, such as "make the second turn wider", and returns it as an EditRequest.
 
-``read_request`` reads words with RoadGPT's neural network; ``plan.read_change_plan`` reads plans. Which turns
-and straights of a road a request refers to is found by ``design.edit``.
+``read_request`` reads words with RoadGPT's neural network; ``plan.read_change_plan`` reads plans.
+``design.edit`` finds the turns and straights of the road to which a request refers.
 """
 
 from dataclasses import replace
@@ -21,7 +21,8 @@ SHOWN = 60
 
 
 def checked_request(words: str | EditRequest) -> EditRequest:
-    """Returns a change request, read from its words if need be, whose changes can all be made at once.
+    """Returns a change request after checking that all its changes can be made at once. A request in words
+    is first read.
 
     Raises:
         EditError: the words cannot be read, as for ``read_request``; a change does not fit its place; or two
@@ -58,8 +59,9 @@ def read_request(words: str) -> EditRequest:
 
 
 def second_reading(request: EditRequest) -> EditRequest | None:
-    """Returns the second likeliest reading of a change request, with a doubt; None if none is likely, or if
-    it asks for changes of another sort.
+    """Returns the second likeliest reading of a change request, with a confidence of ``DOUBT`` or less.
+
+    Returns None if no second reading is likely, or if the second reading asks for other kinds of changes.
 
     Raises:
         EditError: two of its changes need separate requests.

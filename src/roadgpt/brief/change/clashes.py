@@ -40,7 +40,7 @@ def _is_by_distance(target: Target) -> bool:
 
 
 def clash(one: Change, other: Change) -> EditError:
-    """Returns the error that two changes cannot be made at once."""
+    """Returns the error for two changes that cannot be made at once."""
     return EditError(f"'{one.words}' and '{other.words}' need requests of their own; make one change first")
 
 

@@ -21,7 +21,7 @@ from roadgpt.errors import EditError
 
 TOKEN = re.compile(r"\s*(?:(half[12]|[a-z_]+)|(-?\d+(?:\.\d+)?)|(\.\.|[;:,()=+%-]))")
 SPACES = re.compile(r" (?=[(),=])|(?<=[(=]) ")
-"""Spaces between tokens that a place is written without."""
+"""Spaces between tokens that are removed from the text of a place."""
 KINDS = frozenset(get_args(Kind)) - {"straight", "turn"}
 NOUNS = ("turn", "straight", "start", "end", "road")
 OF_TURNS: dict[str, tuple[str, Any]] = {
@@ -38,9 +38,9 @@ OF_TARGETS = {
     "all": ("every", True),
     "middle": ("middle", True),
 }
-"""The same for words that describe places."""
+"""Words that describe places, each with the field that it sets and its value."""
 OF_NEW = {**OF_TURNS, "whole": ("is_whole", True)}
-"""The same for words that describe what is added."""
+"""Words that describe what is added, each with the field that it sets and its value."""
 NUMBERS = {"deg": "degrees", "len": "length", "r": "radius", "pct": "grade"}
 NEXT_TO = ("after", "before", "between", "on")
 """Positions, relative to other elements, at which a new element can be added."""
@@ -55,7 +55,7 @@ MOVES = ("after", "before", "between", *ENDS)
 """Positions to which a turn can be moved."""
 ALONE = ("straighten", "remove", "mirror", "reverse", "swap", "alternate")
 OF_ROAD = ("mirror", "reverse")
-"""Wishes of the whole road."""
+"""Changes that can concern the whole road."""
 WAYS = (*get_args(Way), *(f"{how}_{way}" for how in get_args(Steepness) for way in ("up", "down")))
 DOSES = {"slightly": SLIGHTLY, "much": MUCH}
 PAGE = "the page 'Plans' of the reference describes the language"

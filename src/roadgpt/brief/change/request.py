@@ -43,7 +43,7 @@ OF_SLOPE: frozenset[What] = frozenset({"slope", "climb"})
 REORDERS: tuple[What, ...] = ("swap", "move")
 """Changes that put turns in another order."""
 NUMBERING: tuple[What, ...] = ("add", "remove", "count", "straighten")
-"""Changes with which a road gets other turns and straights."""
+"""Changes that add or remove turns or straights."""
 HILLS = {"crest": 1, "dip": -1}
 """The kinds of hill that can be added, with the sign of their first slope."""
 
@@ -89,7 +89,7 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A place on the road: after, before or on something, or between two things.
+    """A place on the road: after, before or on something, between two things, or the start, middle or end.
 
     'from' and 'up_to' include the thing itself, as in 'from the third turn on'.
     """
@@ -115,7 +115,7 @@ class Change:
 
     what: What
     target: Target | None = None
-    """The places to change. None if the request names none; then the whole road is meant, or the places
+    """The places to change. With None, the request names no places and means the whole road, or the places
     mentioned before.
     """
     more: int = 0
@@ -135,7 +135,7 @@ class Change:
     steepness: Steepness | None = None
     """How steep the new slope is if ``way`` is "up" or "down"; None if the request does not say."""
     side: Side | None = None
-    """The new side; None for the opposite of the present one."""
+    """The new side; None for the opposite of the present side."""
     kind: Kind | None = None
     sharpness: Sharpness | None = None
     count: int = 1
@@ -168,17 +168,18 @@ class Change:
 
     @property
     def is_of_road(self) -> bool:
-        """Whether the change concerns the road as a whole, or a part of it, and no turn or straight."""
+        """Whether the change concerns the whole road or a part of the road, instead of turns or straights."""
         return self.target is not None and self.target.noun == "road"
 
     @property
     def is_state(self) -> bool:
-        """Whether the change asks for one value or direction, and for no limit and no difference."""
+        """Whether the change sets a value or a slope, instead of a limit or a difference."""
         return not self.bound and not self.more and (self.to is not None or self.way is not None)
 
     def aim(self, now: float) -> float | None:
-        """Returns the value that is asked for, directly, as a difference or as a factor of the present value
-        ``now``; None if the request gives no number.
+        """Returns the value that the change asks for; None if the request gives no number.
+
+        A difference or a factor is applied to the present value ``now``.
         """
         if self.to is not None:
             return self.to

@@ -97,7 +97,7 @@ EXAMPLES = (
 )
 
 ROAD = "road"
-"""The word with which a line of "along" begins that holds for a whole road."""
+"""The first word of a line of "along" that holds for a whole road."""
 ON_LINES = (
     " In your answer, what a plan has behind | is a line that begins with road, and what it has behind || is "
     'under "road"'

@@ -78,7 +78,7 @@ class Worker(QueueWorker):
         self._hear(self, None, b"")
 
     def ask_to_end(self) -> None:
-        """Asks the worker and all processes that it has started, as a simulator, to end; does not wait."""
+        """Asks the worker and the processes it has started, such as a simulator, to end; does not wait."""
         if self.is_ready and not self.works:
             with suppress(OSError, ValueError):
                 self._down.close()  # it sees the end of its input, and closes its simulator properly
@@ -87,7 +87,7 @@ class Worker(QueueWorker):
         self._asked = time.monotonic()
 
     def kill(self, fault: str = "") -> None:
-        """Ends the process and all that it has started; uses force if it does not end within a second."""
+        """Ends the worker's process and all processes it has started; after a second, by force."""
         self.fault = self.fault or fault
         children.ask_to_end(self._process)
         self._asked = self._asked or time.monotonic()

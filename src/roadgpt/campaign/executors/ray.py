@@ -75,8 +75,8 @@ class Ray(JobQueue[_Worker]):
         self._thread.start()
 
     def stop(self) -> None:
-        """Ends every worker, and a connection to Ray that this executor opened, with a cluster that it
-        started."""
+        """Ends every worker. If this executor opened the connection to Ray, closes the connection; this ends
+        a cluster that the executor started."""
         if self._stops.is_set():
             return
         self._stops.set()
@@ -237,9 +237,9 @@ class RayActor:
         return [(READY, pickled((ray.get_runtime_context().get_node_id(), f"{here}, {os.getpid()}")))]
 
     def work(self, orders: Sequence[JobMessage]) -> list[tuple[str, bytes]]:
-        """Runs jobs one after another; returns how each job ended, and its pickled value or error. Of several
-        jobs, the worker itself limits the time of each, and ends if one hangs; of one job, the sender
-        does."""
+        """Runs jobs one after another; returns how each job ended, and its pickled value or error. If there
+        are several jobs, this worker limits the time of each, and ends if a job hangs. If there is only one
+        job, the sender limits its time."""
         if len(orders) == 1:
             return [answer(orders[0], self._shared)]
         return [self._timed(order) for order in orders]

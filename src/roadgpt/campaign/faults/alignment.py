@@ -58,14 +58,14 @@ class Alignment:
         return [Bend(int(first), int(end) - 1) for first, end in pieces if side[first]]
 
     def widened(self, bend: Bend, factor: float) -> Self:
-        """Returns a copy with radius and length of a bend times ``factor``: it turns as many degrees as
-        before."""
+        """Returns a copy with radius and length of a bend times ``factor``; the bend turns as many
+        degrees as before."""
         curvature = self.curvature.copy()
         curvature[bend.first : bend.last + 1] /= factor
         return replace(self.shortened(bend, factor), curvature=curvature)
 
     def shortened(self, bend: Bend, factor: float) -> Self:
-        """Returns a copy with the length of a bend times ``factor``: below 1, it turns fewer degrees."""
+        """Returns a copy with the length of a bend times ``factor``; below 1, the bend turns less."""
         steps = self.steps.copy()
         steps[bend.first + 1 : bend.last + 1] *= factor
         return replace(self, steps=steps)

@@ -70,8 +70,7 @@ def smallest_change(
     Args:
         kept: a Run that passed.
         failure: a Run that failed.
-        brief: requirements that every road that is driven during the search must satisfy; None if there are
-            no requirements.
+        brief: requirements for every road that the search drives; None if there are no requirements.
         most: maximum number of drives.
 
     Raises:

@@ -26,7 +26,7 @@ class LocatedFailure:
     name: NumberedTest
     around: Surroundings
     system: str
-    """Text that identifies driver, simulator and world: failures that differ in it are never joined."""
+    """Text that identifies driver, simulator and world; failures with different texts are never joined."""
     manner: Manner
     station: float
     """Station of the failure, metres along the road."""
@@ -39,8 +39,8 @@ class LocatedFailure:
 def failures_of(folder: Path, most: int | None = None, cell: str = "") -> tuple[list[LocatedFailure], int]:
     """Returns the failures of a run, a folder of runs, or a campaign, cell by cell, and how many there are.
 
-    Failures that are not in the evenly spread sample of ``most``, or whose road is not stored or cannot be
-    built, are counted but not returned.
+    At most ``most`` failures are returned, evenly spread over all. The number also counts the failures left
+    out, and those whose road is not stored or cannot be built.
 
     Raises:
         UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.

@@ -2,8 +2,8 @@
 
 A fault is a set of failures that disappear with the same small change of the test. Failures are first grouped
 by the similarity of the road around them. Once ``remedy`` has driven some failures of each group with
-small changes, the groups are joined into faults. Then it drives further failures of each fault with the
-changes, ``AT_A_TIME`` failures at a time, until ``CHECKED`` failures of the fault have disappeared. After
+small changes, the groups are joined into faults. Then ``remedy`` drives further failures of each fault with
+the changes, ``AT_A_TIME`` failures at a time, until ``CHECKED`` failures of the fault have disappeared. After
 each time, the groups are joined again, with the new results.
 """
 
@@ -199,7 +199,7 @@ def _order(fault: Fault) -> tuple[bool, int, NumberedTest]:
 
 
 Tested = Mapping[NumberedTest, Removed]
-"""By name of a failure: with which small changes it disappears."""
+"""For each driven failure, by its name: which small changes make the failure disappear."""
 
 
 def _tested(folder: Path, known: Sequence[LocatedFailure]) -> Tested:

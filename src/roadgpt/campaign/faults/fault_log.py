@@ -77,9 +77,9 @@ def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
     """Returns the number of a fault and its analysis: why its typical failure happens, how often this failure
     happens again and, if ``task.minimise`` is set, the simplest road that reproduces the failure.
 
-    The failure analysed is the most typical one of ``task.names`` that fails again in at least half of the
-    disturbed drives; if there is none, the one that fails most often. A stored analysis of the same road and
-    the same number of drives is read instead.
+    The function analyses the most typical failure of ``task.names`` that recurs in at least half of the
+    disturbed drives. If none recurs so often, it analyses the failure that recurs most often. A stored
+    analysis of the same road with the same number of drives is read, and these drives are not repeated.
 
     Raises:
         UsageError: the run or a stored analysis cannot be read, or a plug-in is not installed.
@@ -124,8 +124,8 @@ def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
 
 
 def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
-    """Returns the stored analysis of a fault, of several the one that ``analyse`` would choose; None if there
-    is none. Raises UsageError if one cannot be read."""
+    """Returns the stored analysis of a fault; None if nothing is stored. If several failures were analysed,
+    returns the analysis that ``analyse`` would choose. Raises UsageError if a file cannot be read."""
     pages = [name for name in fault.names if page_of(folder / FOLDER, name).is_file()]
     runs = [(name, kept_run(folder, *name, has_drive=False)) for name in pages]
     found = [its for name, run in runs if (its := _read(page_of(folder / FOLDER, name), run, name))]
@@ -139,8 +139,8 @@ def simplest_of(folder: Path, name: NumberedTest) -> Path:
 
 
 def write_tables(faults: Sequence[Fault], looked: Mapping[int, FailureAnalysis], folder: Path) -> Path:
-    """Writes ``faults.csv``, whose path is returned, and ``failures.csv``; the same failures give the same
-    bytes. ``looked`` holds the analysis of each fault by its number.
+    """Writes ``faults.csv`` and ``failures.csv``; returns the path of ``faults.csv``. The same failures give
+    the same bytes. ``looked`` holds the analysis of each fault by its number.
 
     Raises:
         RoadGPTError: a file cannot be written.

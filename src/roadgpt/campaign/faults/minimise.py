@@ -82,8 +82,8 @@ class Trial:
 
     def fails(self, design: Design | None) -> Run | None:
         """Drives the road of a Design; returns the Run if the car fails for the same cause and to the same
-        side as in the original failure. Returns None if it does not, if the road is invalid even in the
-        middle of the map, or if all drives are used up.
+        side as in the original failure. Returns None if the car does not fail in this way. Also returns None,
+        without a drive, for a road that is invalid even in the middle of the map, or if no drives are left.
         """
         if design is None:
             return None

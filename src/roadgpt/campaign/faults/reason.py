@@ -54,8 +54,8 @@ class FailureReason:
     side: Literal["left", "right"] | None
     """Radius and side of the bend, as in ``Manner``."""
     entered: float
-    """Speed, m/s, where the bend begins, or where the car left its lane if that was earlier; the last speed
-    if the car stopped or was too late.
+    """Speed, m/s, at the beginning of the bend or at the lane departure, whichever came first. If the car
+    stopped or was too late: the last speed of the drive.
     """
     needed: float
     """Largest friction coefficient required to follow the middle of the lane at the speeds driven; 0 if the
@@ -132,8 +132,8 @@ def bend_at(road: Road, world: World, station: float) -> tuple[Array, float, flo
 def manner_of(
     road: Road, world: World, station: float, cause: Cause | None, left_to: Literal["left", "right"] | None
 ) -> Manner:
-    """Derives how a car failed without the drive: from the road, the station of the departure in metres, the
-    cause, and the side to which the car left its lane."""
+    """Derives how a car failed from the road, the station of the departure in metres, the cause, and the side
+    to which the car left its lane. The recorded drive is not needed."""
     if cause in ("stuck", "timeout"):
         return Manner("stopped" if cause == "stuck" else "late", None, None)
     _, bend, place = bend_at(road, world, station)

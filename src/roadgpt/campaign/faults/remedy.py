@@ -44,8 +44,8 @@ class FailurePlace(NamedTuple):
     bend: Bend | None
     """The bend at the departure; None if the road is straight there."""
     before: Bend | None
-    """The bend before ``bend``, or before the departure if ``bend`` is None; None if none ends within 40 m
-    before that.
+    """The last bend that ends less than 40 m before ``bend`` (before the departure if ``bend`` is None); None
+    if there is no such bend.
     """
     after: Bend | None
     """The bend after ``bend``; None if none begins within 40 m after the departure."""
@@ -126,7 +126,7 @@ def _remedies(percent: int, metres: int, flatter: float, grades: str) -> Iterato
 
 
 Removed = Mapping[str, bool | None]
-"""By name of the change: whether a failure disappears with it; None if the change does not apply."""
+"""For each change, by its name: whether it makes a failure disappear; None if the change does not apply."""
 REMEDIES = (*_remedies(15, 10, 0.5, "half"), *_remedies(30, 20, 0.0, "no"))
 """All changes that are tried, the small ones of all kinds before the larger ones."""
 KINDS = frozenset(remedy.kind for remedy in REMEDIES)
@@ -136,8 +136,8 @@ def remedies_of(run: Run, kinds: Collection[str] = KINDS) -> Removed:
     """Drives a failing Run's road with each change, and returns which changes make the failure disappear.
 
     If a small change removes the failure, the larger change of the same kind is not driven and counts as
-    removing the failure, too. A change may not apply, for example because there is no bend before the
-    failure; none applies to a road that has its own cross-section but no Design, because the cross-section is
+    removing the failure, too. Some changes do not apply, for example if there is no bend before the failure.
+    No change applies to a road with its own cross-section but no Design, because such a cross-section is
     given by station.
 
     Raises:
@@ -206,9 +206,9 @@ def _driven(run: Run, road: Road, world: World) -> Run:
 
 
 def try_remedies(folder: Path, failure: LocatedFailure) -> None:
-    """Drives the road of a failure with each small change and stores the results in the folder of its tests,
-    unless they are stored already. Raises the errors of ``remedies_of``, and RoadGPTError if a file cannot be
-    written."""
+    """Drives the road of a failure with each small change and stores the results in ``folder``. Does nothing
+    if the results are stored already. Raises the errors of ``remedies_of``, and RoadGPTError if a file cannot
+    be written."""
     if stored_remedies(folder, failure) is None:
         removed = remedies_of(kept_run(folder, *failure.name))
         path = page_of(folder / FOLDER / REMEDY_FOLDER, failure.name)

@@ -75,7 +75,7 @@ class LateDriver:
             self._driver.start(road, self._world, seed)
 
     def steer(self, view: View) -> Command:
-        """Returns the driver's command for the view of ``delay`` seconds ago, or else for the first view."""
+        """Returns the driver's command for the view of ``delay`` seconds ago; at first, the first view."""
         self._seen.append(view._replace(world=self._world))
         if len(self._seen) > round(self._delay / view.dt) + 1:
             self._seen.popleft()

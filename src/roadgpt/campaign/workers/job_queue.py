@@ -112,7 +112,7 @@ class JobQueue(ABC, Generic[W]):
         return [_finished_job(*each) for each in ended]
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """Returns the results of ``function`` for all items, in order; raises any error that it raises.
+        """Returns the results of ``function`` for all items, in order; raises any error of ``function``.
 
         Raises:
             RoadGPTError: three workers died while computing the same items, or no workers are left.

@@ -2,7 +2,7 @@
 
 A server may not support schemas, may silently ignore them, or may reject a parameter. There are three ways of
 asking for JSON: with a schema that the server enforces; as any JSON object, with the schema in the prompt; as
-plain text, from which the JSON is extracted. The provider tries one after another, beginning with the
+plain text, from which the JSON is extracted. The provider tries these ways in turn, beginning with the
 strictest, and remembers which parameters and formats the server accepts, so that each process has to find
 this out only once. The reply is always validated.
 """
@@ -83,8 +83,8 @@ forget = quirks_of.cache_clear
 
 
 class Conversation:
-    """The conversation of one campaign with a model: its most recent messages and, if the server stores the
-    conversation, its id there.
+    """The conversation of one campaign with a model: its most recent messages, and the conversation's id on a
+    server that stores conversations.
     """
 
     def __init__(self) -> None:
@@ -174,7 +174,8 @@ class OpenAI:
         """Returns the answer, in whatever format the server supports; raises the errors of ``Chat.ask``.
 
         If the server may have rejected the format of a request, or the answer is not usable, the question is
-        asked in the next looser format. Plain text is asked for once more if it does not give the JSON.
+        asked in the next looser format. If an answer in plain text lacks the JSON, the
+        question is asked once more in plain text.
         """
         before = self.spent
         answer, why = Answer(), ""

@@ -1,9 +1,9 @@
 """Requires room for a kerb between neighbouring arms of a junction, and for a car between two junctions.
 
-The kerb is the largest circular arc that is tangent to the edges of both arms at points no farther from the
-junction than where the arms begin. Its radius must be at least 1 m, the smallest that a design may ask for.
-Arms of different junctions must be at least a car's length (4.7 m) apart: along the road that joins them or,
-if no road does, in a straight line.
+The kerb is the largest circular arc that is tangent to the facing edges of both arms and lies inside the
+junction, before the arms begin. Its radius must be at least 1 m, the smallest that a design may ask for. Arms
+of different junctions must be at least a car's length (4.7 m) apart: along the road that joins them or, if no
+road does, in a straight line.
 """
 
 import math

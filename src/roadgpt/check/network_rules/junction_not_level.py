@@ -1,9 +1,9 @@
 """Requires the roads at a junction to lie in one plane.
 
-Where a connecting road begins or ends, its height must equal that of the arm within 1 mm. All ends of arms
-at the junction and all points of the connecting roads must lie within 1 mm of one plane. The grade of each
-road there must agree within 0.1 % with the slope of this plane in the direction of the road.
-Otherwise there would be steps where roads overlap inside a junction.
+At both ends of a connecting road, the heights of road and arm must agree within 1 mm. All ends of arms at the
+junction and all points of the connecting roads must lie within 1 mm of one plane. The grade of each road
+there must agree within 0.1 % with the slope of this plane in the direction of the road. Otherwise there would
+be steps where roads overlap inside a junction.
 """
 
 import math

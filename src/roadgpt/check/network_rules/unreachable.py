@@ -1,7 +1,7 @@
-"""Requires a connection from every lane into a junction, and one to every lane out of a junction.
+"""Requires a connection from every lane that enters a junction, and one to every lane that leaves it.
 
 A lane that ends at a junction without a connection would be a trap for traffic, and a lane that no connection
-reaches would stay empty. In a network of several roads, each must meet a junction or another road.
+reaches would stay empty. In a network of several roads, each road must meet a junction or another road.
 Source: OpenDRIVE 1.8, junctions: connections describe all ways through a junction.
 """
 

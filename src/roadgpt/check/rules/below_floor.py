@@ -14,7 +14,7 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def low_place(road: Road, world: World) -> tuple[float, str] | None:
-    """Returns the station in metres where the road is lowest, and what is wrong there; None if nothing is."""
+    """Returns the station in metres of the lowest place, and what is wrong there; None if the rule is met."""
     s, z = lowest(road.elevation, road.length)
     if z >= world.site.z_floor - ROUNDING:
         return None

@@ -27,9 +27,10 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def overlap_with_itself(road: Road, world: World) -> tuple[tuple[int, str] | None, int, float]:
-    """Returns the index of the first sample at which the road folds or overlaps an earlier part, with what is
-    wrong there, or None; the index of the sample at which two parts are nearest to each other; and the metres
-    between these: 0 if the road folds or overlaps itself, perhaps infinite above ``SPLINE_REACH``.
+    """Returns three values: the index of the first sample at which the road folds or overlaps an earlier
+    part, and what is wrong there (None: nothing is wrong); the index of the sample that is nearest to an
+    earlier part (0 if the road folds, or no parts are close); and the metres between these two parts. The
+    metres are 0 if the road folds or overlaps itself, and may be infinite above ``SPLINE_REACH``.
     """
     samples = road.sample()
     offsets = world.profile_of(road).edges(samples.s)

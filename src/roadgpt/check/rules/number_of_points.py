@@ -1,4 +1,4 @@
-"""Requires 2 to 500 control points, of which no two consecutive ones coincide in plan.
+"""Requires 2 to 500 control points; consecutive control points must not coincide in plan.
 
 Source: the SBFT competition's limits on ``road_points``. Its spline cannot pass through the same point twice
 in a row.

@@ -30,7 +30,7 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 def abrupt_place(road: Road, brief: Brief | None, world: World) -> tuple[float, str] | None:
     """Returns the station in metres of the crest or dip that exceeds its limit by the largest factor, and
-    what is wrong there; None if there is none.
+    what is wrong there; None if no crest or dip exceeds its limit.
     """
     begin, end, bend = vertical_bends(road)
     suspects = np.flatnonzero(np.abs(bend) * world.limits.speed_limit**2 > MOST * (1 + ROUNDING))

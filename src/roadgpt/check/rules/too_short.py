@@ -27,7 +27,7 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def shorter_than_allowed(length: float, world: World) -> Finding:
-    """Returns the Finding for a road of ``length`` metres, at most the World's ``min_length``."""
+    """Returns the Finding for a road whose ``length`` in metres is not above the World's ``min_length``."""
     wanted = f"a road is longer than {world.limits.min_length:g} m"
     return Finding("too_short", f"the road is {length:.1f} m long, and {wanted}")
 

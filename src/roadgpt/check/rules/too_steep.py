@@ -21,7 +21,7 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def steep_place(road: Road, world: World) -> tuple[float, str] | None:
-    """Returns the station in metres where the road is too steep, and what is wrong there; None if nothing is.
+    """Returns the station in metres where the road is too steep, and what is wrong; None if the rule is met.
     The station is the middle of the steepest 10 m or, if their mean grade satisfies the limit, the steepest
     point.
     """

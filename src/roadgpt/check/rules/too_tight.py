@@ -31,7 +31,7 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 def tight_place(road: Road, world: World) -> tuple[float, str] | None:
     """Returns the station in metres where the curve of the road is tightest, and what is wrong there; None if
-    nothing is.
+    the curve is nowhere too tight.
     """
     s, bend = tightest(road)
     if abs(bend) * world.limits.min_radius <= 1 + ROUNDING:

@@ -95,9 +95,9 @@ def work_to_the_end(
 ) -> None:
     """Runs the remaining tests of a campaign or a folder of runs and prints the results.
 
-    If ``given``, the values of the options, says so, writes a JUnit file and analyses the failures. ``chat``
-    has the settings of the language model if the user changed a limit; ``draw`` adds pictures and road files
-    to a folder of runs.
+    ``given`` holds the values of the options, which can request a JUnit file and an analysis of the failures.
+    ``chat`` has the settings of the language model if the user changed a limit. ``draw`` adds pictures and
+    road files to a folder of runs.
     """
     from roadgpt.campaign.lifecycle import work
 

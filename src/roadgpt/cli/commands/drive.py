@@ -144,12 +144,12 @@ def drive_again(
 ) -> None:
     """Repeats tests, writes a run folder for each, and warns if a result differs from the recorded one.
 
-    The names are a folder and numbers of its tests, or single tests, such as CAMPAIGN/c02/17. Without
-    ``out``, the run folders are written into ``again`` in the folder of the tests. ``driver`` is what the
-    user gave with ``--driver``. No pictures are drawn without ``formats``.
+    The names are a folder and numbers of tests in this folder, or single tests like CAMPAIGN/c02/17.
+    Without ``out``, the run folders are written into ``again`` in the folder of the tests. ``driver`` is
+    what the user gave with ``--driver``. No pictures are drawn without ``formats``.
 
     Raises:
-        UsageError: A name is wrong, or the driver is not that of the campaign.
+        UsageError: A name is wrong, or ``driver`` differs from the driver of the campaign.
     """
     from roadgpt.campaign.faults.failures import drivers_of
     from roadgpt.campaign.model import NumberedTest

@@ -48,7 +48,7 @@ class AnalysisOptions(NamedTuple):
     """Formats of the pictures; empty: no pictures are drawn."""
     is_quiet: bool = False
     groups: bool = False
-    """Whether to leave out the small changes that show which groups of failures are one fault."""
+    """Whether to analyse each group of failures without first finding out which groups are one fault."""
     is_apart: bool = False
     """Whether text is printed on standard error, because standard output is reserved for JSON."""
 

@@ -29,7 +29,7 @@ TRAINED_ON = ("train", "contrasts", "free")
 SPENT = tuple(
     f"data/outsiders/{name}.jsonl" for name in ("roads", "2026-11-26/descriptions", "2026-11-26/contrasts")
 )
-"""Files with prompts by outsiders, with which a reader has been judged before."""
+"""Files with prompts by outsiders; earlier evaluations of readers have already used these prompts."""
 HELD_BACK = ("validation", "contrasts_validation", "free_validation")
 """Folders of the descriptions with which readers are trained (TRAINED_ON) and calibrated (HELD_BACK)."""
 MEASURED = 600  # number of training pairs that are descriptions of measured roads

@@ -45,7 +45,8 @@ def command(folder: Path, opens: bool, junit: Path | None) -> None:
 
 def command_of(folder: Path) -> str:
     """Returns the command that repeats a campaign or a folder of runs; empty for runs without a description.
-    If options cannot express a campaign, such as one with several cells, returns the command that resumes it.
+    Options cannot express some campaigns, such as a campaign with several cells; for these, returns the
+    command that resumes the campaign.
     """
     from roadgpt.campaign.folder_record import open_record
     from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL

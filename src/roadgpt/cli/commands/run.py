@@ -67,8 +67,8 @@ def command(words: tuple[str, ...], as_json: bool, quiet: bool, verbose: bool, *
 
 
 def usual_values(words: str, roads: int, is_plan: bool = False) -> dict[str, Any]:
-    """Returns the values of the options of ``roadgpt run`` if a user gives only the description or the plan,
-    and the number of roads: all others have their configured or default values.
+    """Returns the option values of ``roadgpt run`` for a user who gives only the number of roads and a
+    description or plan (``words``). All other options have their configured or default values.
 
     Raises:
         UsageError: A setting cannot be used.
@@ -96,8 +96,8 @@ def carry_out(
 ) -> None:
     """Interprets the description, makes its roads, and prints each road when it is finished.
 
-    The keyword arguments are the values of the options. Without ``seed``, it is that of the runs in ``out``
-    or, if there are none, a random one. ``route`` is empty for a random one.
+    The keyword arguments are the values of the options. If ``seed`` is None, the runs in ``out``
+    determine the seed; without such runs, the seed is random. An empty ``route`` means a random route.
 
     Raises:
         RoadGPTError: The description, a plug-in or the folder cannot be used, or nothing could be designed.

@@ -42,8 +42,8 @@ class ChatDesigner:
     ) -> Design | NetworkDesign:
         """Returns the best Design of all rounds, or NetworkDesign for a network, even if it is not valid.
 
-        It should not be like any of the earlier designs; for networks, they are ignored. The seed determines
-        the start that is suggested to the model.
+        The road should differ from all ``earlier`` designs; for networks, these are ignored. The seed
+        determines the start that is suggested to the model.
 
         Raises:
             DesignError: no answer was a road, the Brief asks for a map of roads, or the settings ask for a

@@ -31,8 +31,8 @@ class Planner:
     ) -> "AnyDesign":
         """Returns a valid Design that meets the Brief; a NetworkDesign or a MapDesign for a network.
 
-        It differs from the earlier designs as far as possible; for networks, they are ignored. Of the notes
-        only their number matters, as it changes the seed.
+        The road differs from the earlier designs as far as possible; for networks, these are ignored. Only
+        the number of notes matters, because this number changes the seed.
 
         Raises:
             DesignError: no draft was accepted; the message says which requirement failed, and what to do.

@@ -71,12 +71,12 @@ def candidates_of(
 ) -> tuple[ChangeCandidates, ...]:
     """Returns the ways to make each change of a request on a road with these elements and measurements.
 
-    What already has the value that one of the changes asks for is left out of the others: "everything uphill,
-    the first straight level" leaves a level first straight alone.
+    If the road already is as one change asks, other changes of the same property leave the elements of that
+    change alone: "everything uphill, the first straight level" keeps a first straight that is level.
 
     Raises:
-        EditError: no road can have the requested values, or a change names a stretch of the road, of which a
-            part already is as another change asks.
+        EditError: no road can have the requested values, or a change of a stretch of the road would alter a
+            part of this stretch that already is as another change asks.
     """
     ways = [_ways(placed, elements, found, world, number) for number, placed in enumerate(changes, 1)]
     told = [

@@ -63,9 +63,9 @@ def edited_by_chat(
 ) -> Look:
     """Returns the road as a language model changed it.
 
-    Only the segments with the numbers ``allowed``, from 1, may change; if that is None, those that the model
-    names. The Look has the elements measured on the changed road, or none if their names are not those of
-    ``elements``.
+    Only the segments with the numbers ``allowed``, counted from 1, may change; if ``allowed`` is None, the
+    segments that the model lists may change. The Look has the elements measured on the changed road; if their
+    names differ from those of ``elements``, it has none.
 
     Raises:
         EditError: no answer was a valid road that differs from the old one.

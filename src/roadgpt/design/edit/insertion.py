@@ -65,8 +65,8 @@ class Insert:
     before: str
     elements: RoadElements
     split: int | None = None
-    """Number of segments of that element that stay in front of the new ones, or ``HALVED``; None if it is not
-    split.
+    """Number of segments of the element ``before`` that stay in front of the new elements. ``HALVED`` splits
+    the longest segment in half; None does not split the element.
     """
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
@@ -92,8 +92,8 @@ class Insert:
 def insertion_candidates(
     placed: PlacedChange, elements: RoadElements, world: World, number: int
 ) -> tuple[EditCandidate, ...]:
-    """Returns all candidates that add what a change asks for; ``number`` is its number in the request, which
-    names new elements.
+    """Returns all candidates that add what a change asks for; ``number`` is the number of the change in the
+    request; the names of new elements contain it.
 
     Raises:
         EditError: the place does not exist, turns of this kind or number cannot be added, or no turn or

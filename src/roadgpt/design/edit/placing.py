@@ -19,7 +19,7 @@ RELATED: Mapping[What, frozenset[What]] = {
     "length": frozenset({"angle", "radius", "shape", "straighten"}),
     "slope": frozenset({"climb"}),
 }
-"""The changes that also change another property."""
+"""For each property, the changes of other properties that also change this property."""
 
 
 class PlacedChange(NamedTuple):
@@ -35,13 +35,14 @@ class PlacedChange(NamedTuple):
     stop: RoadElement | None = None
     """The second element if something is added between two; else None."""
     stretch: RoadStretch | None = None
-    """The stretch of the road if it is named by a distance or as a half, and its slope changes; else None."""
+    """The stretch of the road whose slope changes, if named by a distance or as a half; else None."""
 
     def without(self, others: Sequence["PlacedChange"]) -> "PlacedChange":
-        """Returns the change without the elements that one of the other changes leaves as they are.
+        """Returns the change without the elements that ``others`` keep as they are. Another change counts if
+        it is of the same property and concerns only some of the elements of this change.
 
         Raises:
-            EditError: the change is of a stretch of the road, of which a part would be left out.
+            EditError: the change concerns a stretch of the road, and a part of the stretch would be left out.
         """
         own = self.elements
         for other in others if self.change.what != "length" or not self.change.is_of_road else ():

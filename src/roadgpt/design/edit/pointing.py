@@ -95,7 +95,7 @@ def _half(elements: RoadElements, half: int) -> list[RoadElement]:
 
 
 def around_middle(gaps: Sequence[RoadElement], elements: RoadElements) -> RoadElement:
-    """Returns the gap that holds the middle of the road, or else the one nearest to it."""
+    """Returns the gap that holds the middle of the road, or else the gap nearest to the middle."""
     whole = sum(element.length for element in elements)
 
     def away(gap: RoadElement) -> float:
@@ -214,7 +214,7 @@ def _placed(
 
 
 def named(target: Target) -> Target:
-    """Returns the target; one without a noun, as in "after the second", is a turn."""
+    """Returns the target; if it has no noun, as in "after the second", its noun becomes "turn"."""
     return replace(target, noun="turn") if target.noun is None else target
 
 

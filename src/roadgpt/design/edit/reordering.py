@@ -50,7 +50,7 @@ class Move:
 
     names: tuple[str, ...]
     after: str
-    """The name of the turn behind which they come; empty for the beginning of the road."""
+    """The name of the turn behind which the moved turns come; empty for the beginning of the road."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements in their new order."""
@@ -79,7 +79,7 @@ def move_of(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate
 
     Raises:
         EditError: something other than a turn is to be moved, a turn is to be moved next to itself, or the
-            request names two places against the driving order.
+            second of two places named in the request does not lie behind the first.
     """
     moved = [element.name for element in placed.elements]
     place = placed.change.place

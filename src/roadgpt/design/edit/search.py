@@ -1,11 +1,11 @@
 """Makes all changes of a request at once. Main function: ``made``.
 
-Each change has one or more candidates. Combinations of one candidate of each change are tried, those of
-preferred candidates first. The steps of the candidates are applied to the elements of the road. Then
+Each change has one or more candidates. Combinations of one candidate per change are tried; combinations of
+preferred candidates come first. The steps of the candidates are applied to the elements of the road. Then
 ``design.fit`` changes the elements that the request names until the road is valid and its measurements are as
 requested; all other elements are frozen. If that fails and the geometry is ``arcs``, the other elements may
-change as well. The start stays the same, unless the road would leave the map: then the road is shifted or
-rotated.
+change as well. The start moves if the road is reversed or mirrored, or if elements are added in front of it.
+If the road would leave the map, the road is shifted or rotated.
 """
 
 from collections.abc import Iterator, Sequence
@@ -53,7 +53,7 @@ def made(
     world: World,
     geometry: Geometry,
 ) -> tuple[Look, Design]:
-    """Returns the road with all changes, and its design before elements changed that no change names.
+    """Returns the road with all changes, and a design in which only the elements named in them changed.
 
     A change without candidates is not needed; ``elements`` are those of the road before the edit.
 

@@ -33,7 +33,7 @@ class SlopeAim(NamedTuple):
     room: Range
     wide_room: Range
     least: tuple[float, float]
-    """The least grade of each segment of a longer stretch, and another one if the first cannot be built."""
+    """Two least grades for the segments of a longer stretch; the second is tried if the first fails."""
     most: float
 
 
@@ -62,7 +62,7 @@ class SlopeOfAll:
     sign: int = 0
     """1 for uphill, -1 for downhill, 0 if each segment keeps its sign."""
     only: Way | None = None
-    """The segments that change: those uphill, downhill or level before; None for all."""
+    """The slope that segments must have before the step in order to change; None: all segments change."""
     stretch: RoadStretch | None = None
     """The stretch of the road in which segments change; None for the whole road."""
 
@@ -92,8 +92,8 @@ class SlopeOfAll:
 def slope_candidates(
     change: Change, elements: Sequence[RoadElement], is_of_parts: bool, world: World
 ) -> tuple[EditCandidate, ...]:
-    """Returns the candidates that change the slopes of many elements at once, or of those parts of them that
-    climb, fall or are level.
+    """Returns the candidates that change the slopes of many elements at once. If ``is_of_parts``, only
+    segments with the slope that the target names (climbing, falling or level) change.
     """
     is_bounded = bool(change.bound and elements)
     steps = [_bounded(change, elements)] if is_bounded else _slopes(change, elements, world)
@@ -237,8 +237,8 @@ def _slopes(change: Change, elements: Sequence[RoadElement], world: World) -> li
 def climb_step(change: Change, elements: Sequence[RoadElement], world: World) -> SlopeOfAll:
     """Returns the step that changes how many metres some elements climb in total.
 
-    If all segments already climb (or fall) as required, their grades are scaled, unless one would become too
-    steep. Otherwise the grades become equal.
+    The grades are scaled if all segments already climb (or fall) as required and none becomes too steep.
+    Otherwise the grades become equal.
 
     Raises:
         EditError: the change gives no climb in metres or only a limit, or the required grade is steeper than

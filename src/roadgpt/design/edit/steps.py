@@ -67,8 +67,8 @@ class Wanted(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Adjust:
-    """Gives one element new values, whose ranges become its requirement; a value stays as it is if the field
-    for it is None.
+    """Gives one element new values. The ranges of these values become the requirement of the element. A field
+    that is None leaves its value unchanged.
     """
 
     element: RoadElement

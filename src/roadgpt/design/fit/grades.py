@@ -97,9 +97,9 @@ def graded(
 ) -> Design:
     """Returns the design with inclines and parabolas for which the measured grades are as required.
 
-    If no such design obeys the rule ``too_abrupt``, the last one with the required grades is returned; if
-    there is none, the first that was tried. The plan and the start stay the same. ``before`` is the road
-    before an edit, and None for a proposal.
+    If all such designs violate the rule ``too_abrupt``, the last of them is returned. If no design has the
+    required grades, the first one tried is returned. The plan and the start stay the same. ``before`` is the
+    road before an edit, and None for a proposal.
     """
     slopes = _slopes_of_edit(elements, world) if before else _slopes_of_proposal(elements, outline, world)
     lengths, inclines = [s.distance for s in design.segments], [s.incline for s in design.segments]

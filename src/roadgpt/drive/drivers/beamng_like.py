@@ -43,9 +43,9 @@ class BeamngLike:
     plans for a dry road (``assumed_friction``), and its planned speed takes superelevation into account.
 
     No recording has a junction. Inside junctions and roundabouts the driver drives as people do
-    (``roadgpt.drive.turning``): the middle of the car keeps 1.5 m from both edges of the lane, the car is as
-    fast as people drive on a line of the same radius, and brakes for it with at most 3.4 m/s^2; and it stops
-    at stop signs.
+    (``roadgpt.drive.turning``). The middle of the car keeps at least 1.5 m from both edges of a lane that is
+    3 m wide or wider. The car is at most as fast as people are on a line of the same radius, and brakes
+    for this speed with at most 3.4 m/s^2. The car stops at stop signs.
 
     Args:
         cut: largest shift towards the inside of a bend, in metres, at a speed limit of 70 km/h.
@@ -62,10 +62,10 @@ class BeamngLike:
         compensation: steering angle added per lateral acceleration, in rad per m/s^2.
         throttle: throttle per m/s of speed error.
         brake: brake per m/s of speed error.
-        edge_room: distance in metres that the outer wheels (the right ones; with traffic on the left, the
-            left ones) keep from the outer edge of the carriageway where there is no shoulder (a floating mesh
-            road). On a one-way road, the other wheels keep the same distance from the other edge. With None
-            the driver ignores the edges and may fall off.
+        edge_room: distance in metres between the outer wheels and the outer edge of a carriageway without a
+            shoulder (a floating mesh road). The outer wheels are the right wheels, or the left wheels with
+            traffic on the left. On a one-way road, the inner wheels keep the same distance from the inner
+            edge. With None the driver ignores the edges and may fall off.
         assumed_friction: friction that the driver plans for; None for the friction of the world.
         wheelbase: wheelbase in metres.
     """

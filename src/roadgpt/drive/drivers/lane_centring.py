@@ -33,8 +33,8 @@ class LaneCentring:
     no particular car, and was not compared with any car. docs/explanation/drivers.md says where each
     value comes from.
 
-    The camera sees the middle of the lane up to ``sight`` metres ahead, as far as it lies within ``aside``
-    metres to either side of the car's axis and in front of any crest. A tight bend leaves the image early,
+    The camera sees the middle of the lane up to ``sight`` metres ahead. The view ends earlier at a crest, or
+    where the middle is more than ``aside`` metres from the car's axis. A tight bend leaves the image early,
     so the car slows down for it late. It then needs more lateral acceleration than its steering gives, and
     leaves its lane on the outside of the bend.
 
@@ -47,8 +47,8 @@ class LaneCentring:
         strength: largest lateral acceleration that the steering gives, in m/s^2.
         jerk: fastest change of the lateral acceleration, in m/s^3.
         aim: lateral acceleration to which the cruise control slows down for a bend that it sees, in m/s^2.
-        slowest: speed below which it does not slow down for bends, in m/s.
-        braking: deceleration with which it plans to slow down, in m/s^2.
+        slowest: speed below which the cruise control does not slow down for bends, in m/s.
+        braking: deceleration with which the cruise control plans to slow down, in m/s^2.
         hardest: largest deceleration, in m/s^2.
         acceleration: largest acceleration, in m/s^2.
         lag: time from the image to the steering, in seconds.

@@ -38,7 +38,7 @@ class Reference:
         gain: steering angle per lateral error at the point ahead, in rad per metre.
         ahead: distance in metres to the point ahead while the car is at rest; while the car moves, the
             distance is ``ahead + headway * speed``.
-        headway: increase of this distance with speed, in metres per m/s.
+        headway: increase with speed of the distance to the point ahead, in metres per m/s.
         lag: steering delay in seconds. The driver steers for the curvature that the car will reach after this
             delay.
     """

@@ -22,8 +22,8 @@ def driver_of(spec: str) -> Any:
     """Returns the driver that a user named: RoadGPT's own drivers run in this process, any other in a
     separate process.
 
-    If a driver's file is named only in a stored file (of a run, a campaign or a plan), it is run only if the
-    user agrees (see ``drive.permission``).
+    If only a stored file (of a run, a campaign or a plan) names a driver's file, the driver runs only after
+    the user has agreed (see ``drive.permission``).
 
     Args:
         spec: the name of a driver plug-in, or PATH.py:CLASS.

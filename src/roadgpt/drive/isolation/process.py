@@ -37,7 +37,7 @@ class DriverProcess:
         """Starts the process.
 
         Raises:
-            OSError: the system cannot start it.
+            OSError: the system cannot start the process.
         """
         self._process = children.python("roadgpt.drive.isolation.child", stderr=None)
         assert self._process.stdin is not None
@@ -53,8 +53,8 @@ class DriverProcess:
         threading.Thread(target=self._watch, name="roadgpt-driver", daemon=True).start()
 
     def ask(self, seconds: float, what: str, *given: Any) -> dict[str, Any]:
-        """Calls the method ``what`` of the object that holds the driver in its process, and returns the
-        answer.
+        """Calls the method ``what`` in the driver's process, on the object that holds the driver, and
+        returns the answer.
 
         After an error in that process, the keys of the answer are ``said`` (the message), ``is_users``
         (whether to raise a UsageError) and ``trace`` (the traceback).
@@ -163,7 +163,7 @@ def take() -> DriverProcess:
 def give_back(process: DriverProcess) -> None:
     """Discards the driver of a process, and keeps the process for another driver.
 
-    If there are MOST_IDLE idle processes already, which is the maximum, the process is ended instead.
+    If MOST_IDLE other processes (the maximum) are idle already, the process is ended instead.
     """
     if not process.is_alive:
         process.end()

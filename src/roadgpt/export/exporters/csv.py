@@ -19,10 +19,10 @@ class Csv:
     """Comma-separated tables of the road (a row per metre, with heading, curvature, grade and widths) and of
     the drive.
 
-    If the road does not have the default cross-section (one lane of constant width in each direction, level),
-    the table also contains the superelevation, and the offset of the outer edge of each lane and shoulder.
-    Lanes are numbered as in OpenDRIVE. For a route through a network, the table
-    contains only the route.
+    The default cross-section is level and has one lane of constant width in each direction. For any other
+    cross-section, the table also contains the superelevation, and the offset of the outer edge of each lane
+    and shoulder. Lanes are numbered as in OpenDRIVE. For a route through a network, the table contains only
+    the route.
     """
 
     name = "csv"

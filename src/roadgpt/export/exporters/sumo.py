@@ -110,7 +110,7 @@ def speed_zones(road: Road, world: World) -> list[SpeedZone]:
     """Divides the road into consecutive zones. The speed limit of a zone is the lowest speed of a calm driver
     within the zone, rounded down to a multiple of 5 km/h, but at least 5 km/h.
 
-    A zone is at least SHORTEST metres long, unless the whole road is shorter. Cars in SUMO brake in time for
+    A zone is at least SHORTEST metres long; a shorter road is a single zone. Cars in SUMO brake in time for
     the speed limit of the next zone, so they drive bends at a suitable speed.
     """
     count = max(1, int(road.length / SHORTEST))

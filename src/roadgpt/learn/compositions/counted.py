@@ -29,8 +29,8 @@ def numbered_sides(voice: Voice) -> Composition:
 
 
 def numbered_kinds(voice: Voice) -> Composition:
-    """Returns a description of three to seven turns in which some turns, given by number, have a property
-    of their own: for example, they are hairpins.
+    """Returns a description of three to seven turns in which some turns, named by number or ordinal,
+    have a property that the other turns lack: for example, they are hairpins.
 
     Sometimes all turns go in the same direction.
     """

@@ -18,9 +18,9 @@ CLASHES = {
     "sharpness": {"deg", "r", "sharpness", "hairpin"},
     "slope": {"slope"},
 }
-"""What may not have been told if another property is told."""
+"""Maps each property to the properties that exclude it, if they have been told before."""
 LOOSE = r"[:,(] ?\{sides|^\{sides"
-"""What the phrases have in which any words can stand for the sides, as in "4 turns: {sides}"."""
+"""Pattern of the phrases in which any words can stand for the sides, as in "4 turns: {sides}"."""
 
 
 def listed(voice: Voice) -> Composition:

@@ -14,7 +14,7 @@ PHRASES: dict[str, dict[str, Any]] = phrases_of("lists")
 {x} in the dative in German, and with "di" in Italian.
 """
 MOST_FIGURES = 12
-"""A description has no more numbers with units, because a network reads no more."""
+"""The largest count of numbers with units in a description; a network reads no more numbers."""
 UNITS = {"deg": "degrees", "r": "metres", "len": "metres"}
 FIGURES = {"deg": (25, 120), "r": (25, 60), "len": (25, 90)}
 HALF = re.compile("half|Hälfte|moitié|mitad|metà")
@@ -22,7 +22,7 @@ ONE_OR_MANY = re.compile(r"\[([^|\]]*)\|([^\]]*)\]")
 
 
 class PlaceInList(NamedTuple):
-    """Some turns of the list: their name, the same behind a preposition, and their indices from 0."""
+    """Some turns of the list: their name, the name's form behind a preposition, and their indices from 0."""
 
     name: str
     oblique: str
@@ -36,7 +36,7 @@ class TurnList:
 
     Attributes:
         turns: the turns in driving order.
-        straights: the plan of the straight before each turn, and behind the last one; "" where there is none.
+        straights: the plans of the straights before each turn and after the last turn; "" for no straight.
         room: how many more numbers with units may be said.
     """
 
@@ -77,7 +77,7 @@ class TurnList:
         return "; ".join(parts + ([clauses(run)] if run else []))
 
     def say(self, key: str, is_one: bool = False, like: str = "", /, **named: str) -> str:
-        """Returns a random phrase with its placeholders filled in; one that matches ``like``."""
+        """Returns a random phrase that matches the pattern ``like``, with its placeholders filled in."""
         phrase = self.voice.pick([each for each in self.phrases[key] if re.search(like, each)])
         phrase = ONE_OR_MANY.sub(lambda ways: ways[1] if is_one else ways[2], phrase)
         return str(phrase.format(n=self.voice.number(self.number), noun=self.nouns, noun1=self.noun, **named))
@@ -87,8 +87,8 @@ class TurnList:
         return f"{self.voice.number(value)}{self.units[what]}"
 
     def draw(self, key: str, number: int = 1) -> list[int]:
-        """Returns random angles ("deg"), radii ("r") or lengths ("len"), no two alike, and adds their
-        number to that of the numbers drawn.
+        """Returns random angles ("deg"), radii ("r") or lengths ("len"), no two alike, and subtracts
+        their number from ``room``.
         """
         low, high = FIGURES[key]
         if self.voice.spells:
@@ -108,7 +108,7 @@ class TurnList:
         return names[0] if len(names) == 1 else f"{', '.join(names[:-1])}{and_}{names[-1]}"
 
     def pool(self, key: str) -> list[int]:
-        """Returns a few values to choose from, so that some of a row repeat."""
+        """Returns two to six values to choose from, so that some numbers of a row are equal."""
         room = self.room
         values = self.draw(key, self.voice.whole(2, 6))
         self.room = room
@@ -120,7 +120,7 @@ class TurnList:
         return {"gap": self.say("gap", L=length), "L": length}
 
     def neighbours(self, at: int) -> dict[str, str]:
-        """Returns the names of the turns before and behind a straight, by the index of the turn behind it."""
+        """Returns the names of the turns ``at - 1`` and ``at``, before and after a straight."""
         if self.voice.chance(0.25):
             way = self.voice.pick(self.phrases["numbered"])
             names = [way.format(noun1=self.noun, k=self.voice.number(index + 1)) for index in (at - 1, at)]
@@ -144,7 +144,7 @@ class TurnList:
         return [at for at, turn in enumerate(self.turns) if turn.mods.get("side") == side]
 
     def place(self, name: str, at: Sequence[int]) -> PlaceInList:
-        """Returns a place with the form that its name has behind a preposition."""
+        """Returns a place; the form of the name behind a preposition is derived from ``name``."""
         other = name
         for pattern, new in self.phrases["oblique"]:
             other = re.sub(pattern, new, other)
@@ -158,7 +158,7 @@ class TurnList:
         return name if is_bare else self.say("short", i=name)
 
     def one(self, at: int) -> PlaceInList:
-        """Returns a name for one turn: by ordinal, by number, or by ordinal among those of its side."""
+        """Returns a name for one turn: by ordinal, by number, or by ordinal among the turns to its side."""
         side = self.turns[at].mods.get("side")
         if side and self.voice.chance(0.2):
             its = self.of_side(side)

@@ -131,8 +131,8 @@ class Voice:
 
     def framed(self, text: str, plan: str, may_slope: bool = True) -> Composition:
         """Returns text and plan as a composition, often with an opening such as 'give me' before the text,
-        and sometimes with a purpose or a requirement for the whole road: about slope only if it
-        ``may_slope``.
+        and sometimes with a purpose or a requirement for the whole road. ``may_slope`` allows
+        requirements about slope.
         """
         if text.split()[0].strip(":;,").lower() not in BEGIN:
             text = self.say("openings") + text

@@ -32,8 +32,8 @@ def encoder() -> Any:
 
 
 def write_film(frames: Iterable[Frame], path: Path, fps: int, about: str = "") -> None:
-    """Writes frames, whose width and height are even numbers of pixels, into a file with a title; the file
-    appears only when it is complete.
+    """Writes frames into a file with the title ``about``; the file appears only when it is complete. The
+    width and height of the frames must be even numbers of pixels.
 
     Raises:
         UsageError: as for ``encoder``.

@@ -63,8 +63,8 @@ in_page_style = rc_context(_style())
 def new_chart(
     width: float, height: float, left: float, right: float, bottom: float, top: float
 ) -> tuple[Figure, Axes]:
-    """Returns a figure and its axes; all is in px, and the last four are distances from the borders of the
-    figure.
+    """Returns a figure of ``width`` by ``height`` and its axes. The last four arguments are the distances of
+    the axes from the borders of the figure; all lengths are in px.
     """
     figure = Figure(figsize=(width / POINTS, height / POINTS), dpi=POINTS)
     FigureCanvasSVG(figure)
@@ -74,7 +74,7 @@ def new_chart(
 
 
 def round_ticks(axis: Axis, most: int, is_count: bool = False) -> None:
-    """Sets ticks at round, or at whole, numbers, with no more than ``most`` intervals between them."""
+    """Sets ticks at round numbers, or whole numbers for counts, with at most ``most`` intervals."""
     axis.set_major_locator(MaxNLocator(most, steps=STEPS, integer=is_count, min_n_ticks=1))
     axis.set_major_formatter(FuncFormatter(lambda value, _: tick_text(value)))
 
@@ -91,9 +91,9 @@ def columns_of(names: list[str], width: float) -> int:
 
 
 def embedded(figure: Figure, label: str) -> str:
-    """Returns a figure, made by ``new_chart`` within ``in_page_style``, as an ``svg`` element; the same
-    figure and label give the same text. Colours of ``palette`` become the page's CSS variables, and text uses
-    the page's font. ``label`` says what the chart shows, for screen readers.
+    """Returns a figure as an ``svg`` element; ``new_chart`` must have made the figure within
+    ``in_page_style``. The same figure and label give the same text. Colours of ``palette`` become the page's
+    CSS variables, and text uses the page's font. ``label`` says what the chart shows, for screen readers.
     """
     data = io.BytesIO()
     with rc_context({"svg.hashsalt": label}):  # else two charts of a page could have the same ids

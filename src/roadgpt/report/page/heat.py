@@ -48,8 +48,8 @@ def heat(
     downwards: bool = False,
 ) -> str:
     """Returns a picture of a matrix ``(rows, columns)`` as SVG; cells that are NaN or 0 are left empty. Row 0
-    is at the bottom, or, with ``downwards``, at the top, as in a distance matrix. ``meaning`` is the title of
-    the colour scale, and ``label`` says what the picture shows, for screen readers.
+    is at the bottom; with ``downwards``, row 0 is at the top, as in a distance matrix. ``meaning`` is the
+    title of the colour scale, and ``label`` says what the picture shows, for screen readers.
     """
     figure, axes = new_chart(LEFT + SIDE + BAR, TOP + SIDE + BOTTOM, LEFT, BAR, BOTTOM, TOP)
     axes.set_facecolor(palette()["wash"])

@@ -118,7 +118,7 @@ class Page:
     """One line under the title."""
 
     def facts(self) -> list[tuple[str, str]]:
-        """Returns the entries of ``card``; what is called a command is a ShellCommand."""
+        """Returns the entries of ``card``; values of names that begin with "command" are ShellCommands."""
         return [
             (name, ShellCommand(value) if name.startswith("command") else value)
             for name, value in self.card.items()
@@ -145,7 +145,7 @@ def spelled(
     command: Callable[[str], str],
     link: Callable[[TableCell], str],
 ) -> str:
-    """Returns a line of text in a markup language, in which each kind of piece is written by a function."""
+    """Returns a line in a markup language; ``words``, ``command`` and ``link`` each write a kind of piece."""
 
     def written(piece: str | TableCell) -> str:
         if isinstance(piece, ShellCommand):  # before str, which it is, too

@@ -1,4 +1,4 @@
-"""Writes SVG elements for small pictures, of which a page may contain hundreds.
+"""Writes SVG elements for small pictures; a page may contain hundreds of such pictures.
 
 Charts with axes are drawn by matplotlib (``page.chart``). For a gallery of a hundred linked roads, matplotlib
 would take 1.6 s and write 1.8 times the bytes, without the titles that appear when the pointer is on a road.

@@ -20,7 +20,7 @@ def road_columns(
     in metres and radians, the curvature is in 1/m, and the grade is a ratio.
 
     ``reach`` is the largest offset of any line that is drawn along the road; None: the profile's ``reach``.
-    ``median`` is the stations between which grass grows on the profile's median; None: on the whole road.
+    ``median`` is the first and the last station of grass on the profile's median; None: the whole road.
 
     Raises:
         UsageError: A number of the road is not finite.

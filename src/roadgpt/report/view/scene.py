@@ -43,7 +43,7 @@ SCALE = {"mostly": MOSTLY, "colours": [SEVERE[name] for name in SEVERITIES[1:]],
 page says "mostly".
 """
 OF_FIRST_ROAD = "; height and curvature are those of the first road of the map"
-"""What a page says of a map without a route."""
+"""Text that the page adds for a map without a route."""
 
 
 def scene(run: Run) -> dict[str, Any]:

@@ -19,7 +19,7 @@ SHORTEST = 1e-6  # m between two stations
 
 
 def combined(parts: Sequence[tuple[float, CubicProfile]], start: float, end: float) -> list[Row]:
-    """Returns the sum of piecewise cubics, each after its factor, between two stations in metres, as rows."""
+    """Returns the sum of cubics, each times its factor, between two stations in metres, as rows."""
     inner = {s for _, each in parts for s in each.stations if start < s < end}
     stations = [start, *sorted(inner)]
     table = np.zeros((len(stations), 4))
@@ -40,8 +40,8 @@ def constant(s: float, value: float) -> Row:
 
 
 def limited(rows: Sequence[Row], end: float, low: float, high: float) -> list[Row]:
-    """Returns the rows, of which the last ends at station ``end`` in metres, with their values clamped to the
-    range from ``low`` to ``high``. The result is exact: a row is cut where its cubic crosses a limit.
+    """Returns the rows with their values clamped to the range from ``low`` to ``high``. The last row ends at
+    station ``end`` in metres. The result is exact: a row is cut where its cubic crosses a limit.
     """
     out: list[Row] = []
     ends = [*(s for s, _ in rows[1:]), end]
@@ -72,8 +72,8 @@ def _cuts(row: Row, end: float, low: float, high: float) -> list[tuple[float, fl
 
 
 def closed(rows: Sequence[Row], length: float) -> CubicProfile:
-    """Converts the rows to a CubicProfile of a road of ``length`` metres, beyond whose end it keeps its last
-    value. A constant row that repeats the one before is left out.
+    """Converts the rows to a CubicProfile of a road of ``length`` metres. Beyond the end of the road, the
+    profile keeps its last value. A constant row that repeats the row before is left out.
     """
     kept: list[Row] = []
     for row in rows:

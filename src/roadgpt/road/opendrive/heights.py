@@ -49,9 +49,9 @@ def jumps(profile: CubicProfile, length: float) -> str | None:
 
 
 def edge_heights(heights: CubicProfile, lanes: Lanes) -> CubicProfile:
-    """Returns the heights of the inner edge of the driving lanes, from those of the reference line, as
-    functions of the station in the file. They differ only where the road has superelevation and the edge is
-    not this line.
+    """Returns the heights of the inner edge of the driving lanes, as functions of the station in the file.
+    ``heights`` are those of the reference line. The edge has other heights than this line only where the road
+    has superelevation and the edge lies beside this line.
     """
     if lanes.angle is None or not any(any(cubic) for cubic in lanes.angle.coefficients):
         return heights
@@ -89,11 +89,11 @@ def _edge_height(heights: CubicProfile, lanes: Lanes, s: Array) -> tuple[Array, 
 
 
 def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfile:
-    """Converts cubic functions of the station in the file to functions of the station on the Road, which
-    differ where the centre line is longer or shorter than the reference line.
+    """Converts cubic functions of the station in the file to functions of the station on the Road. The two
+    stations differ where the centre line is longer or shorter than the reference line.
 
-    ``s`` are increasing stations of the file in metres, ``stations`` those of the Road that correspond to
-    them; in between, the conversion is linear.
+    ``s`` are increasing stations of the file in metres, ``stations`` the corresponding stations of the Road.
+    In between, the conversion is linear.
     """
     cuts = np.array(profile.stations)
     behind = np.clip(np.searchsorted(s, cuts), 1, len(s) - 1)

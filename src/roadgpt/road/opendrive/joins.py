@@ -54,7 +54,7 @@ class SampledLine:
 
 def bridged(line: SampledLine) -> SampledLine | None:
     """Returns the line without the poses close to places where elements do not meet exactly; None if the
-    others are too far apart to be joined by clothoids.
+    remaining poses are too far apart to be joined by clothoids.
     """
     kept = _thinned(line.s, _away_from_joins(line))
     if np.diff(line.s[kept]).max() > WIDEST:
@@ -67,8 +67,8 @@ def bridged(line: SampledLine) -> SampledLine | None:
 
 
 def turns_back(line: SampledLine) -> tuple[float, float] | None:
-    """Returns the station (m) and angle (rad) of a kink after which the line runs backwards; None without
-    one.
+    """Returns the station (m) and angle (rad) of a kink after which the line runs backwards; None if
+    there is no such kink.
     """
     kept = bridged(line)
     for i in np.flatnonzero(np.abs(line.kinks) > BACK):

@@ -211,8 +211,8 @@ def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:
 
 
 def speed_limits(road: Element, driven: Sequence[Element]) -> list[float]:
-    """Returns all speed limits in m/s, in driving order, of the driven lane, which is given for each lane
-    section; those of the road if the lane has none.
+    """Returns all speed limits of the driven lane in m/s, in driving order; those of the road if the lane has
+    none. ``driven`` has the XML element of this lane from each lane section.
     """
     of_lane = [node for lane in driven for node in lane.findall("speed")]
     return _speeds(of_lane) or _speeds(road.findall("type/speed"))

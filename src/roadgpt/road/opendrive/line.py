@@ -139,8 +139,8 @@ def _strays(element: GeometryElement, count: int) -> bool:
 
 
 def fitted(line: SampledLine) -> tuple[PieceCurve, Array, Array] | None:
-    """Returns a curve of clothoids through the poses except those near gaps between elements, and the
-    stations of the remaining poses in the file and on the curve, in metres; None if clothoids cannot follow
+    """Returns a curve of clothoids through the poses, and the stations in metres of these poses, in the file
+    and on the curve. Poses near gaps between elements are left out. Returns None if clothoids cannot follow
     the line.
     """
     kept = bridged(line)

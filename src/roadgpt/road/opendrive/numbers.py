@@ -14,9 +14,9 @@ LARGEST = 1e12  # of any number; beyond it, sums are no longer exact to a metre
 
 
 def number(node: Element, name: str, missing: float | None = None) -> float:
-    """Returns an attribute of an element as a finite number; ``missing`` if there is none, unless that is
-    None. Raises UsageError if it is required and missing, not a number, not finite, or has an absolute value
-    above 1e12.
+    """Returns an attribute of an element as a finite number; ``missing`` if there is no such attribute. If
+    ``missing`` is None, the attribute is required. Raises UsageError if a required attribute is missing, or
+    if the attribute is not a number, not finite, or has an absolute value above 1e12.
     """
     text = node.get(name)
     if text is None:
@@ -34,8 +34,8 @@ def number(node: Element, name: str, missing: float | None = None) -> float:
 def cubics(nodes: Iterable[Element], station: str, start: float = 0.0) -> CubicProfile | None:
     """Returns the cubic polynomials that the elements define by a, b, c and d; None if there are no elements.
 
-    Each cubic applies from its ``station`` attribute, to which ``start`` metres are added, to the station of
-    the next cubic. Before the first station, the value is that of the first cubic at this station.
+    The station of a cubic is its attribute named ``station``, plus ``start`` metres. Each cubic applies from
+    its station to that of the next cubic. Before the first station, the value is that at the first station.
     """
     rows: list[tuple[float, Cubic]] = []
     for node in nodes:

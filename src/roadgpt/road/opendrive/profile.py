@@ -86,8 +86,8 @@ class FileProfile:
         return [part.node for part in self.right[self.driven].parts]
 
     def carried(self, carry: Carry, turned: Carry) -> Profile:
-        """Returns the cross-section as a function of the station on the Road, to which ``carry`` converts the
-        widths, and ``turned`` the superelevation.
+        """Returns the cross-section as a function of the station on the Road. ``carry`` converts the widths,
+        and ``turned`` converts the superelevation.
         """
         right, left = (
             tuple(Lane(slot.kind, _plain(carry(slot.width)), slot.marking) for slot in slots)
@@ -123,7 +123,7 @@ class _SectionSide(NamedTuple):
 
 def read_profile(road: Element, lanes: Lanes) -> FileProfile:
     """Returns the cross-section of a road. Beyond its end, widths and superelevation keep their last values.
-    Raises UsageError if one of them consists of too many cubics.
+    Raises UsageError if a width or the superelevation consists of too many cubics.
     """
     spans = lanes.spans()
     left_sides, remarks = _oncoming(spans)
@@ -259,7 +259,7 @@ def _joined_lane(
 
 
 def checked(cubics: CubicProfile) -> CubicProfile:
-    """Returns the cubics unchanged. Raises UsageError if they are more than a RoadGPT road file can hold."""
+    """Returns the cubics unchanged. Raises UsageError if there are more than a RoadGPT road file can hold."""
     if len(cubics.stations) > MOST_ROWS:
         raise UsageError(
             f"one of its lanes has more than {MOST_ROWS:,} widths; cut out the part that you need"
@@ -353,8 +353,8 @@ def has_marks(road: Element) -> bool:
 
 
 def marking(lanes: Iterable[MarkedLane]) -> tuple[Marking, bool]:
-    """Returns the marking at the outer edge of a lane, which is given for each lane section, and whether it
-    changes along the road. If it does, the one with the largest total length is returned.
+    """Returns the marking at the outer edge of a lane, and whether the marking changes along the road. If so,
+    the marking with the largest total length is returned. ``lanes`` is the lane in each lane section.
     """
     lengths: dict[Marking, float] = {}
     for span, lane in lanes:

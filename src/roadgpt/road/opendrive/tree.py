@@ -62,9 +62,9 @@ def is_driven(lane: Element) -> bool:
 
 
 def read_tree(path: Path, wanted: str | None) -> Choice:
-    """Returns the road with the id ``wanted``, and information about the other contents of the file. If it is
-    None, roads with a driving lane are preferred, then roads outside junctions, then longer roads. Raises
-    UsageError if the file cannot be read, is not OpenDRIVE, is too large, or has no such road.
+    """Returns the road with the id ``wanted``, and information about the other contents of the file. If
+    ``wanted`` is None, roads with a driving lane are preferred, then roads outside junctions, then longer
+    roads. Raises UsageError if the file cannot be read, is not OpenDRIVE, is too large, or has no such road.
     """
     reader = _RoadSelector(wanted)
     parser = expat.ParserCreate()

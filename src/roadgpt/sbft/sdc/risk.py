@@ -4,8 +4,8 @@ In the competition, BeamNG's AI drives with a risk factor of 1.5 at up to 120 km
 half of the car is outside its lane. RoadGPT's driver ``beamng_like`` imitates BeamNG's AI. No drive is
 simulated; only the line that this driver plans is computed. The distance between this line and the middle of
 the lane predicts recorded failures at least as well as a simulated drive does (docs/reference/benchmarks.md),
-and computing it takes a fortieth of the time. If outcomes of tests are known, all features are weighted by
-logistic regression; else only this distance is used.
+and computing it takes a fortieth of the time. If outcomes of tests are known, logistic regression weights all
+features. Otherwise the score is only this distance.
 """
 
 import logging

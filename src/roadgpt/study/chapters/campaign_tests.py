@@ -204,9 +204,9 @@ class Side(NamedTuple):
 
 
 def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
-    """Returns the pairs of roads that differ least: up to 30 if there is one campaign cell, else up to 10 per
-    cell. The test on one road of a pair passed, that on the other failed; ``campaign.boundary_pairs``
-    measures the difference."""
+    """Returns the pairs of a road with a passed test and a road with a failed test that differ least: up to
+    30 pairs for one campaign cell, otherwise up to 10 pairs per cell. ``campaign.boundary_pairs`` measures
+    the difference."""
     out = []
     for each in cells:
         some = (each.name, MOST_SEARCHED // len(cells))

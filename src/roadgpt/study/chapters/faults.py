@@ -82,8 +82,8 @@ def fault_summaries(folder: Path, found: Faults) -> list[FaultSummary]:
 
 
 def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
-    """Returns the first sentences of a report: the number of faults and, for faults whose tests were driven
-    again, how many occurred in at least half of these drives."""
+    """Returns the first sentences of a report: the number of faults and, if ``roadgpt faults`` has repeated
+    tests, the number of faults whose repeated test failed in at least half of the drives."""
     if not found.failures:
         return ["No road failed."]
     measured = [each.looked.stability.is_stable for each in summaries if each.looked]

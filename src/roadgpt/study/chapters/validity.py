@@ -79,7 +79,7 @@ class Kind(NamedTuple):
     name: str = ""
     """Name of the rule set; empty for drives."""
     of: str = ""
-    """Property of the roads of the total; empty for all roads."""
+    """Property of the roads that are counted in the total, such as "is_driven"; empty: all roads."""
 
 
 STRICT = Kind("is_valid", "strict", "strict rules")
@@ -105,8 +105,8 @@ THESIS_LEFT = Source(
 
 
 def chi_squared_blocks(source: Source, hit: str, miss: str, name: str) -> list[Block]:
-    """Returns the contingency table, with the column heads ``hit`` and ``miss``, expected counts and the
-    chi-squared terms of its cells, and a paragraph with the test results."""
+    """Returns a table and a paragraph with the test results. The table has the counts in the columns ``hit``
+    and ``miss``, the expected counts, and the chi-squared terms."""
     found = chi_squared(source.table())
     return [_table(source, found, hit, miss, name), _verdict(source, found, hit, miss)]
 

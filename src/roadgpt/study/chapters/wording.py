@@ -10,7 +10,7 @@ from roadgpt.study.statistics import Interval, clopper_pearson, wilson
 
 MOST_NAMED = 100  # lines of a list
 SHARE_HEADS = ("of", "share", "Clopper-Pearson 95 %", "Wilson 95 %")
-"""Table headings of the cells that ``share_cells`` returns, without the first."""
+"""Table headings of the second to the fifth cell that ``share_cells`` returns."""
 
 
 def p_value(p: float) -> str:
@@ -84,9 +84,10 @@ def folded(title: str, lines: Sequence[Block]) -> list[Block]:
 
 
 def near_and_far(near: tuple[float, str] | None, far: tuple[float, str] | None) -> list[str]:
-    """Returns a sentence on the passed drive that came closest to failing, and one on the failed drive in
-    which the car went farthest out of its lane. Each is given by its margin in metres (negative if it failed)
-    and its name; None if there is none. ``far`` is None, too, if drives end where the car leaves its lane."""
+    """Returns a sentence on the passed drive that came closest to failing (``near``), and a sentence on the
+    failed drive in which the car went farthest out of its lane (``far``). Each drive is a margin in metres,
+    negative for a failed drive, and a name. None: no sentence. If drives end where the car leaves its lane,
+    pass None for ``far``."""
     out = []
     if near is not None:
         out.append(

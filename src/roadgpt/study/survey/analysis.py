@@ -43,8 +43,8 @@ MADE_UP = "SYNTHETIC: made-up raters. Nobody was asked; this tries out the analy
 def load_answers(
     folder: Path | str, number: int | None = None, seed: int = 0, agreement: float = 0.8
 ) -> Answers:
-    """Returns the answers that people gave to a survey or, if a ``number`` of raters is given, the answers
-    of simulated raters (see ``synthetic``). Then the file with people's answers is not opened.
+    """Returns the answers that people gave to a survey. If ``number`` is given, returns the answers of this
+    number of simulated raters instead (see ``synthetic``), and does not open the file of people's answers.
 
     Raises:
         UsageError: there is no survey, or nobody has answered yet.
@@ -73,8 +73,8 @@ def analyse(answers: Answers, out: Path | str, command: str = "") -> Path:
     which is created if it does not exist, and returns the path of the HTML page.
 
     Raises:
-        UsageError: the folder contains an analysis of simulated raters and the answers are those of people,
-            or the other way round.
+        UsageError: people gave the answers and the folder contains an analysis of simulated raters, or the
+            answers are simulated and the folder contains an analysis of people's answers.
         RoadGPTError: a file cannot be written.
     """
     out = Path(out)

@@ -94,8 +94,8 @@ class Answers:
 def answers_of_raters(
     survey: Survey, given: Mapping[str, Mapping[str, str]], source: Source, invited: int, withdrawn: int = 0
 ) -> Answers:
-    """Returns the answers of several raters as table rows; ``given`` holds their answers by question, under
-    the digests that identify the raters."""
+    """Returns the answers of several raters as table rows; ``given`` maps each rater's digest to the
+    rater's answers by question."""
     rows = [row for digest in sorted(given) for row in _rows(survey, digest, given[digest], source)]
     return Answers(survey, source, tuple(rows), invited, len(given), withdrawn)
 

@@ -25,13 +25,13 @@ Tell = Callable[[str], None]
 PLACES = ("top", "bottom")
 CAMERAS = {"chase": "film from behind the car", "bonnet": "film from the hood camera"}
 MATCH = {OVERALL: "general"} | {CRITERIA[name]: name for name in ("turns", "incline", "order")}
-"""For each criterion of a road and its description, the measured criterion of ``study.criteria``."""
+"""Maps the criteria for a road and its description to the measured criteria of ``study.criteria``."""
 ALIKE = MATCH | {CRITERIA["order"]: "sequence", CRITERIA["length"]: "length"}
-"""For each criterion of two roads, the measured criterion of ``study.similarity``."""
+"""Maps the criteria for two roads to the measured criteria of ``study.similarity``."""
 
 
 def make_survey(plan: SurveyPlan, base: Path, out: Path | str, tell: Tell = lambda _: None) -> Survey:
-    """Makes the folder ``out`` of a survey; a survey in it is replaced if nobody has been invited to it yet.
+    """Makes the folder ``out`` of a survey. An earlier survey in ``out`` is replaced if it was never served.
 
     Existing films are kept, so that an interrupted call can be repeated without filming again. Paths of runs
     in the plan are relative to ``base``; ``tell`` is called with a sentence before every step.

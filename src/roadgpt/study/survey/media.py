@@ -126,8 +126,8 @@ def can_film() -> bool:
 
 
 def make_film(runs: Sequence[Run], path: Path, view: str) -> None:
-    """Writes an MP4 film of one run's drive, or of two drives in a split screen, which ends before the
-    outcome is visible; ``view`` is the camera, "chase" or "bonnet" (the hood camera)."""
+    """Writes an MP4 film of one run's drive, or of two drives in a split screen. The film ends before the
+    outcome is visible. ``view`` is the camera: "chase" or "bonnet" (the hood camera)."""
     longest = max(run.drive.duration for run in runs if run.drive is not None)
     settings = Settings(seconds=max(longest - BEFORE_THE_END, BEFORE_THE_END))
     if len(runs) == 1:

@@ -186,7 +186,7 @@ def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pa
         asks: who conducts the survey.
         contact: where raters can send questions.
         seed: seed of the random selection; the same seed selects the same roads.
-        pairs: greatest number of descriptions with two roads.
+        pairs: greatest number of descriptions for which raters compare two roads.
 
     Raises:
         UsageError: there is no folder of runs with a valid road.

@@ -2,8 +2,8 @@
 papers.
 
 A bar of ratings shows all answers about one road, or one pair of roads, for one criterion. The middle of the
-third answer is at 0, so the part of the bar to the right of 0 is in favour of the road, or of the two roads
-being similar.
+third answer is at 0. The part of the bar to the right of 0 therefore shows favourable answers: the road
+matches the description, or the two roads are similar.
 """
 
 from collections.abc import Sequence

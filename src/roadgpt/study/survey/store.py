@@ -125,8 +125,8 @@ class AnswerStore:
             )
 
     def save(self, rater: Rater, answers: Mapping[str, str]) -> bool:
-        """Saves either all answers by question or none; an empty answer deletes the earlier one. Returns
-        True if they are on the disk, False if the rater has not agreed or has withdrawn."""
+        """Saves a rater's answers by question, all or none; an empty answer deletes the earlier answer.
+        Returns True if the answers are on the disk, False if the rater has not agreed or has withdrawn."""
         with self._writing() as file:
             state = file.execute("SELECT state FROM raters WHERE digest = ?", (rater.digest,)).fetchone()
             if state != ("agreed",):

@@ -227,8 +227,8 @@ class Survey(Frozen):
 
         The page about the rater comes first, then the roads in random order, then the pairs of roads in
         random order, then the last page. The attention check is placed at random among the roads, or among
-        the pairs if there are no roads. If there are two or more roads (or pairs), the attention check is
-        neither before the first nor after the last.
+        the pairs if there are no roads. If there are two or more roads (or pairs), at least one precedes
+        the attention check and at least one follows.
 
         Args:
             digest: digest of the rater's token, hexadecimal.

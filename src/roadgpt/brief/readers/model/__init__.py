@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 WEIGHTS = Path(__file__).parent / "weights"
 MEANINGS = "meanings.txt"
-"""The file with what words usually ask for: in each line a word and tokens of plans."""
+"""The file with the meanings of words: each line has a word and the plan tokens that it usually asks for."""
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
 NEVER = 2.0  # a probability that no refusal reaches
@@ -56,7 +56,7 @@ CERTAIN = 0.8  # the probability of a refusal from which no other reading is tak
 SECOND = "_2"
 """What follows 'encoder' and 'decoder' in the names of the second network's files."""
 ROUTES = "_routes"
-"""The same for the network that reads routes and maps."""
+"""What follows 'encoder' and 'decoder' in the file names of the network that reads routes and maps."""
 TOO_MUCH = "no more than 12 turns and 1500 m are sure to fit on a map of 250 m; ask for less or a larger map"
 
 TOO_MANY_TURNS = "!impossible turns"

@@ -1,6 +1,6 @@
 """Reads a change request with the networks that read descriptions of single roads.
 
-To reverse the road and to swap two turns, the networks have no words: rules read such requests.
+Rules read the requests to reverse the road or to swap two turns; the networks have no tokens for these.
 """
 
 import re
@@ -17,7 +17,7 @@ from roadgpt.errors import BriefError
 
 REVERSED = "road: reverse"
 CERTAIN = 0.97
-"""The confidence in a request that is read by its words: to reverse the road, or to swap two turns."""
+"""The confidence in a request that rules read: to reverse the road, or to swap two turns."""
 ALMOST = 2.0  # difference of score
 DENIAL = re.compile(
     r"(?:please )?(?:do not|don'?t|never) [^,;:.]*[.!]*"
@@ -97,18 +97,18 @@ MORE = re.compile(
     r"sharp|hairpins?|second last|vorletzt\w*|for|directions?|sides?|richtung\w*|sens|sentido\w*|"
     r"radi\w+|raggi\w*|rayon\w*|angle\w*|winkel\w*|angul\w*|angol\w*|slope\w*|grade\w*|not|nicht|pas|no|non)\b"
 )
-"""Words with which something other than the places of two turns is exchanged, or nothing."""
+"""Words that show that a request does not just swap the places of two turns."""
 STAYS = re.compile(
     r" [,;.] (?:and |but |und |aber |et |mais |y |pero |e |ma )?[^,;.]*\b(?:stays?|keep|kept|remains?|"
     r"unchanged|untouched|bleib\w*|unverandert|reste(?:nt)?|inchange\w*|qued\w+|igual|sin cambi\w+|"
     r"rest(?:a|ano)|invariat\w)\b[^,;.]*(?: , wie [^,;.]*)?(?: \.)?$"
 )
-"""What stays as it is, said at the end."""
+"""A phrase at the end of a request that says what stays as it is."""
 MOST_WORDS = 12  # words of a request at most
 
 
 class ChangeReading(NamedTuple):
-    """The network's reading of a change request."""
+    """The reading of a change request, by the networks or by rules."""
 
     plan: str
     """A plan of changes, or a refusal."""

@@ -1,4 +1,4 @@
-"""Recognises a closed circuit, which is not built, by its words; the network often passes them over."""
+"""Recognises words for a closed circuit, which RoadGPT does not build; the network often overlooks them."""
 
 import re
 
@@ -22,13 +22,13 @@ NOT_ASKED = re.compile(
     r"|lieu|presque|comme|partie|portion|morceau|cote|sur|casi|como|parte|tramo|trozo|vez|junto|en"
     r"|quasi|come|tratto|pezzo|invece|accanto|su)(?: [\w'-]+){0,3} $"
 )
-"""Words before such a phrase with which it is no wish: "instead of a closed loop", "part of a circuit"."""
+"""Words before such a phrase that show that it is no wish: "instead of a closed loop"."""
 
 
 def asks_for_a_closed_loop(words: str, line: str) -> bool:
     """Returns whether the words ask for a road that ends where it starts, and do not deny it.
 
-    The roads of a map, which the plan ``line`` tells, may be closed loops.
+    False if the plan ``line`` asks for a map, because the roads of a map may be closed loops.
     """
     if is_map(line):
         return False

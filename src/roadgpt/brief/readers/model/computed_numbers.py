@@ -1,4 +1,4 @@
-"""Numbers that a text tells by other numbers of the text, as sums and multiples of slots in a plan.
+"""Numbers that a text gives relative to its other numbers: sums and multiples of slots in a plan.
 
 In "a straight of 40 m, a bend, and a straight twice as long", the network writes ``len= [1] x 2`` for the
 last straight; in "each 15 degrees more than the one before", it writes ``deg= [1] + [2] x 2`` for the third
@@ -17,7 +17,7 @@ FACTORS = ("2", "0.5", "3", "1.5", "0.333", "4", "0.25", "0.75", "0.667", "2.5",
 KEYS = frozenset(["deg=", "r=", "len=", "pct=", "climb="])
 """The keys of plans whose numbers may be computed."""
 ONE = frozenset(["pct=", "climb="])
-"""The keys of numbers that may differ by 1 from another one, "a percent steeper", without a figure."""
+"""The keys of numbers that may differ by 1 from another number without a figure: "a percent steeper"."""
 STEPS = ("2", "3", "4", "5", "6", "7", "8")
 """How often a difference can be added or subtracted, if more than once."""
 SIGNS = ("+", "-")
@@ -29,7 +29,7 @@ MULTIPLE = re.compile(
     r"|medi[oa]|dobl|veces|tercer|terci|cuart|doppi|divis|dimezz|meta\b|mezz|volte|terz"
     r")"
 )
-"""Words that can tell a figure as a multiple of another one, in texts without accents."""
+"""Words that can give a number as a multiple of another number, in texts without accents."""
 DIFFERENCE = re.compile(
     r"[+=]|\b(?:"
     r"more|less|fewer|further|farther|add|plus|minus|off|each|every|step|increas|decreas|grow"
@@ -43,7 +43,7 @@ DIFFERENCE = re.compile(
     r"|scend|partir|bout"
     r")"
 )
-"""Words that can tell a figure by its difference from another one, in texts without accents."""
+"""Words that can give a number by its difference from another number, in texts without accents."""
 SHAPE = re.compile(
     r"(?:"
     r"right.angle|square|quarter|half.(?:circle|turn)|viertelkreis|cuarto de|quart de"
@@ -58,7 +58,7 @@ DIGITS = re.compile(r"(?<![\w.])\d+(?![\w.])")
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """How the words of a text may tell figures by other figures."""
+    """Whether a text may give numbers relative to other numbers: by a factor, or by a difference."""
 
     by_factor: bool = False
     by_difference: bool = False
@@ -67,7 +67,7 @@ class Compared:
 
     @classmethod
     def of(cls, text: str) -> "Compared":
-        """Returns what a text allows; it must be in lower case and without accents."""
+        """Returns what the words of a text allow; the text must be in lower case and without accents."""
         plain = frozenset([*DIGITS.findall(text), *(ROUND if SHAPE.search(text) else ())])
         return cls(MULTIPLE.search(text) is not None, DIFFERENCE.search(text) is not None, plain)
 
@@ -77,8 +77,7 @@ def computed(
 ) -> list[str] | None:
     """Returns the tokens for a value that is computed from numbers of the text; None if there is no way.
 
-    ``said`` has the tokens of the numbers from which it may be computed, the likelier ones first. Multiples
-    are preferred to sums.
+    ``said`` has the tokens of these numbers, the likelier ones first. Multiples are preferred to sums.
     """
     ways: list[Iterator[tuple[float, list[str]]]] = []
     if compared.by_factor:

@@ -27,7 +27,7 @@ def features(
     text: SlottedText,
     seen: tuple[SlottedText, Sequence[str]] | None = None,
 ) -> dict[str, float]:
-    """Returns the inputs of the confidence model by name, the unlikely ones on a logarithmic scale.
+    """Returns the inputs of the confidence model by name; all but ``agreement`` and ``has`` are logarithms.
 
     ``seen`` is the text that the networks read and the tokens that they wrote, if they differ from ``text``
     and from the tokens of ``draft``.
@@ -37,11 +37,11 @@ def features(
     - ``sceptic``: how unlikely the plan is for the text itself and the network that doubts it most.
     - ``agreement``: the share of the variants and networks whose likeliest plan this is.
     - ``numbers``: how many numbers of the text the plan lacks.
-    - ``words``, ``tokens``: how long the text and the plan are. A long plan is less likely than a short one
-      that is as often right.
-    - ``has TOKEN``: 1 for each token of the plan; left and right are one. What some tokens stand for, such as
-      a fall or a number of turns, is misread more often than the probability says, and that of others, such
-      as a hairpin, less.
+    - ``words``, ``tokens``: how long the text and the plan are. A long plan is less likely than a short
+      plan that is right equally often.
+    - ``has TOKEN``: 1 for each token of the plan except slots; left and right count as the same token. The
+      networks misread some tokens, such as a fall or a number of turns, more often than the probability says.
+      They misread other tokens, such as a hairpin, less often.
     """
     read, tokens = seen or (text, draft.tokens)
     sceptic = max(-float(each.chances_of([read], tokens, read)[0].sum()) for each in networks)

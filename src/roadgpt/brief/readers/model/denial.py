@@ -22,7 +22,7 @@ DENIAL = rf"(?:{WITHOUT}|{NOT})"
 DENIED = re.compile(rf"(?:\b{DENIAL}|n['’]t)\b[^.,;:!?]*$")
 
 ENDS = frozenset([*".,;:!?()", "but", "aber", "sondern", "dafur", "mais", "pero", "sino", "ma"])
-"""What ends the words that a negation reaches."""
+"""Marks and words at which the reach of a negation ends."""
 TAKEN_BACK = re.compile(
     r"\bno ,|\bnein ,|\bnot\b(?! more\b(?! than))|\brather\b|\binstead\b|\bsondern\b|\bmake that\b|"
     r"\btoo many\b|\? (?:no|non|nein)\b"
@@ -32,7 +32,7 @@ CORRECTED = re.compile(
     r"\b(?:sorry|i mean|wait|oops|correction|actually|pardon|ich meine|entschuldigung|quatsch|besser gesagt|"
     r"je veux dire|ou plutot|perdon|quiero decir|mejor dicho|scusa\w*|anzi|volevo dire)\b"
 )
-"""Words with which something said before is replaced."""
+"""Words that announce a correction of something said before."""
 
 
 def places_reached(words: Sequence[str], at: int, most: int) -> range:

@@ -72,14 +72,13 @@ def scored_by(
 ) -> tuple[Ensemble, tuple[ScoredPlan, ...]]:
     """Returns the networks chosen for a description, and the plans that they wrote, the likeliest first.
 
-    ``routes`` reads the description if a word may mention a junction, ramp, lane or map. It is chosen in any
-    of these cases:
+    ``routes`` reads the description if a word may mention a junction, ramp, lane or map. A network plan is a
+    route, a map, or a plan with words that ``roads`` does not know. ``routes`` is chosen in these cases:
 
-    - Its plan is a route or a map, or has words that ``roads`` does not know, and has a confidence of at
-      least ``GUESS``. The confidence of ``roads`` is then ignored, because ``roads`` may be sure that
-      "crossroads, sharp left" is a bend.
-    - Its plan is such a one, and the text asks for a map, or has a noun that can only mean a junction.
-    - Its plan is such a one, and ``roads`` has no plan of higher confidence.
+    - It writes a network plan with a confidence of at least ``GUESS``. The confidence of ``roads`` is then
+      ignored, because ``roads`` may be sure that "crossroads, sharp left" is a bend.
+    - It writes a network plan, and the text asks for a map, or has a noun that can only mean a junction.
+    - It writes a network plan, and ``roads`` has no plan of higher confidence.
     - It refuses the description, and the confidence of ``roads`` in a plan is less than ``SURE``.
     - ``roads`` names a junction or the like beside the road, or as the cause of a refusal. ``routes`` then
       reads the description whatever its words are.
@@ -87,7 +86,7 @@ def scored_by(
     Otherwise ``roads`` is chosen.
 
     ``refuse_from`` is the smallest probability of a refusal at which a refusal is allowed as a plan; None
-    takes what was fitted to the networks.
+    takes the value that was fitted to the networks.
     """
     text = slotted(words)
     read = routes.scored(words, refuse_from) if routes and may_tell_a_route(words) else ()

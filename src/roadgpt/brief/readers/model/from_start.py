@@ -29,7 +29,7 @@ OF_ALL = re.compile(
 """Words that say that several distances are counted from the start."""
 AT = re.compile(rf"\b(?:at|bei|a)(?: (?:m|metre|meter))? {MEASURE}")
 STATION = re.compile(r"\b(?:at|bei) \d+(?:[.,]\d+)? ?(?:m|met\w+)\b")
-"""A place on the road in English or German. Two of them count from the start, even if nothing says so."""
+"""A place on the road in English or German. Two such places count from the start, even if no word says so."""
 FROM_ELSEWHERE = re.compile(
     r"\b(?:further|farther|another|more|later|next|onwards?|apart|weiter\w*|spater|nachste\w*|danach|davon|"
     r"plus loin|encore|suivante?|mas (?:adelante|alla)|otros|siguiente|piu avanti|altri|altre)\b|"

@@ -1,4 +1,4 @@
-"""Gives the junctions of a map signs and lights of their own, where the words count them.
+"""Gives the junctions of a map signs and lights of their own, where the words count such junctions.
 
 The neural network writes one sign for all junctions of a map. For "six junctions, two with lights", the
 number before "with lights" says that only two of them have lights.
@@ -42,8 +42,8 @@ OF_ANY_KIND: tuple[MapJunctionKind, ...] = ("crossroads", "junction")
 def with_counted_signs(brief: Brief, text: SlottedText) -> Brief:
     """Returns the Brief of a map with signs and lights at as many of its junctions as the words say.
 
-    The Brief is returned unchanged if it has no map, if some of its junctions have signs of their own, or if
-    the words do not say which junctions have which sign.
+    The Brief is returned unchanged if it has no map, if its junctions already have the signs that the words
+    count, or if the words do not say which junctions have which sign.
     """
     asked = brief.map
     if asked is None:
@@ -70,7 +70,7 @@ def with_counted_signs(brief: Brief, text: SlottedText) -> Brief:
 
 
 def has_unlimited_signs(brief: Brief, text: SlottedText) -> bool:
-    """Returns whether a map has a sign at all junctions, or at none, that the words limit to some of them."""
+    """Returns whether words limit a sign to some junctions, but no junctions have signs of their own."""
     asked = brief.map
     if asked is None:
         return False

@@ -77,11 +77,11 @@ ACROSS = re.compile(
 WIDE = re.compile(
     r"\b(?:wide|width|side|square|breit\w*|seite\w*|quadrat\w*|larg\w+|cote|carre\w*|anch\w+|lad[oi])\b"
 )
-"""Words with which the number of blocks may be that of one side of a grid."""
+"""Words that show that a number of blocks may count only one side of a grid."""
 IN_ALL = r"in all|in total|all told|altogether|insgesamt|en tout|au total|en total|in tutto|in totale"
 ONE_OF_THESE = rf"\b(?:(?:{ONE}) {OF_THESE}|{OF_THESE} (?:{ONE})) (?:\w+ ){{0,3}}?"
 IS_TOTAL = re.compile(rf"\b(?:{IN_ALL})\b|\b{OF_THESE}\b|\binsgesamt \d+\b")
-"""Words with which a number of junctions is that of all of them."""
+"""Words that show that a number of junctions counts all junctions of the map."""
 ALL_KINDS = re.compile(
     rf"(?<!more )(?<!other )(?<!further )\b(\d+) (?:\w+ )?(?:(?:{ANY_KIND})\b|"
     rf"(?:{CROSSING_NOUNS})(?: ,)? (?:(?:{IN_ALL})\b|(?:\d+ )?{OF_THESE}\b))"
@@ -97,7 +97,7 @@ OF_JUNCTIONS = re.compile(
 OTHERS = re.compile(
     r"\b(?:more|others?|further|another|each|per|weitere[nrs]?|noch|andere[nrs]?|je|autres?|otr[oa]s?|altr[eio])\b"
 )
-"""Words with which the number before a noun may not be the number of all."""
+"""Words that show that the number before a noun may count only some of the junctions."""
 MAIN_STREET = re.compile(
     r"\b(?:(?:main|through|high) (?:street|road)|(?:haupt|durchgangs)stra(?:ss|ß)e|"
     r"rue principale|grand - rue|calle (?:principal|mayor)|(?:strada|via) principale)\b"
@@ -180,7 +180,7 @@ def _off_main_street(said: str, dead_ends: Sequence[str]) -> dict[str, object] |
 
 
 def counted_kinds(junctions: tuple[JunctionCount, ...], said: str) -> tuple[JunctionCount, ...]:
-    """Returns the junctions of a map, with the number before the only plural noun of each kind."""
+    """Returns the junctions of a map; each kind gets the number before its plural noun, if this is clear."""
     if OTHERS.search(said) or TAKEN_BACK.search(said):
         return junctions
     out, once = [], _without_repeated(junctions, said)

@@ -57,8 +57,8 @@ class Number:
     is_bare: bool = True
     factor: float = 1.0
     spread: float = 0
-    """Tolerance: 1 for "four turns, plus or minus one", which accepts 3 to 5 turns. That of a measure has the
-    unit of its value."""
+    """Tolerance: 1 for "four turns, plus or minus one", which accepts 3 to 5 turns. For a measure, the
+    tolerance has the unit of the value."""
 
 
 def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
@@ -159,7 +159,7 @@ def is_radius(tokens: Sequence[str], number: Number) -> bool:
 def as_grade(number: Number, tokens: Sequence[str]) -> None:
     """Converts degrees to percent if the words next to the number show that it is a slope.
 
-    Only a number close to a word for a slope is one; "climbs 30 degrees to the left" remains a turn.
+    Only a number close to a word for a slope is a slope; "climbs 30 degrees to the left" remains a turn.
     """
     if number.unit == "degrees" and number.value <= STEEPEST and _is_tilt(number, tokens):
         number.value, number.unit = round(100 * tan(radians(number.value)), 1), "percent"

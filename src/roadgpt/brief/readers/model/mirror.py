@@ -36,7 +36,7 @@ A_WAY = re.compile(
     r"\btout droit\b|\bleave(?= the round)",
     re.I,
 )
-"""Phrases in which "right" is certainly a side, and "droit" certainly none."""
+"""Phrases in which "right" certainly means a side, and "droit" certainly means straight on."""
 ONE_SIDED = re.compile(r"hand traffic|driv\w* on the|(?:links|rechts)verkehr|rechts vor", re.I)
 """Phrases that say on which side of the road to drive."""
 UNSAFE_ON_ROUTES = re.compile(

@@ -60,9 +60,9 @@ class NumberWords:
     """How a language puts numbers together."""
 
     sizes: Mapping[int, str]
-    """The words for a thousand and for a hundred, as a pattern, the larger first."""
+    """The patterns of the words for 1000 and for 100, by the number, the larger number first."""
     joint: str
-    """A pattern for what may stand between them and the rest."""
+    """The pattern of what may stand between such a word and the rest of the number, such as "and"."""
 
 
 COMPOSITIONS: Mapping[str, NumberWords] = {

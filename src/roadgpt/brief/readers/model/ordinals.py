@@ -1,6 +1,6 @@
-"""Finds which things of a row words name by their places: "the first and the last", "the first two", "all but
-the third", in five languages. The texts are those that the networks read: lower case, no accents, a space on
-each side of a punctuation mark.
+"""Finds the places in a row that words name: "the first and the last", "the first two", "all but the third",
+in five languages. The texts are those that the networks read: lower case, no accents, a space on each side
+of a punctuation mark.
 """
 
 import re
@@ -42,7 +42,7 @@ OTHERS = (
     rf"(?:(?:{DETERMINER} )+(?:\d+ )?{REST}(?: \d+)?|"
     r"(?:\d+ )?(?:others|rest|remaining|autres|otr[ao]s|demas|altr[ie]|ubrigen|anderen|restlichen)(?: \d+)?)"
 )
-"""All those things of a row that are not named; "otra" and "autre" alone mean one more."""
+"""Phrases for all things of a row that are not named; "otra" and "autre" alone mean one more."""
 EXCEPT = (
     r"(?:but(?: for)?|except(?: for)?|apart from|save(?: for)?|bis auf|au(?:ss|ß)er|abgesehen von|sauf|"
     r"hormis|excepte|a part|a l ' exception d(?:es?|u| ')|salvo|menos|excepto|tranne|eccetto|meno|a parte)"
@@ -77,8 +77,8 @@ def places_in(said: str, number: int) -> frozenset[int] | None:
         number: how many things the row has.
 
     Returns:
-        The places; None if the row is too short for them, or if a word has no place in it, such as "middle"
-        in a row of four, or a plural without a number.
+        The places; None if the row is too short, if "middle" is said of an even number of things, or if a
+        plural such as "les premiers" has no number.
     """
     out = set[int]()
     for before, ordinal, behind in _ITEM.findall(said):

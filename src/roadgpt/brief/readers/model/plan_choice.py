@@ -1,4 +1,4 @@
-"""Chooses among the plans that the networks wrote, and makes a Brief of one."""
+"""Chooses among the plans that the networks wrote, and makes a Brief of the chosen plan."""
 
 import re
 from collections.abc import Sequence
@@ -27,14 +27,14 @@ COUNT = re.compile(
 )
 OF_PART = ("first", "last", "other", "ersten", "letzten", "anderen", "les", "las", "los", "le")
 ANY_COUNT = re.compile(rf"{''.join(f'(?<!{word} )' for word in OF_PART)}\b(\d+) (?:\w+ )?{NOUN}\b")
-"""A number of turns that are not a part of others."""
+"""A number of turns; a number behind a word such as "first" counts only a part, and does not match."""
 
 
 def most_plausible(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan:
     """Returns the likeliest plan, but prefers plans that match the text and do not contradict themselves.
 
-    If the likeliest plan is a route or a map that contradicts itself, returns the likeliest one that does
-    not, if that is nearly as likely.
+    If the likeliest plan is a route or a map that contradicts itself, a plan without a contradiction is
+    returned in its place, if such a plan is nearly as likely.
     """
     first = found[0] if found[0].is_refusal else _with_all_numbers(found, text) or found[0]
     found = (first, *(draft for draft in found if draft is not first))

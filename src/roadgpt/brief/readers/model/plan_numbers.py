@@ -46,7 +46,7 @@ HILLY = re.compile(
 @dataclass(frozen=True, slots=True)
 class Evidence:
     """The numbers that a description can imply: angles ("right angle"), a grade ("mountain road"), a number
-    of hills ("rolling"), and figures that it tells by others ("twice as long").
+    of hills ("rolling"), and numbers relative to other numbers ("twice as long").
     """
 
     angles: bool = True

@@ -24,7 +24,7 @@ SHARED = re.compile(
     r"ciascuna)\b|\b(?:roundabouts|ronds - points|giratoires|rotatorie|rotonde|glorietas|rotondas) "
     r"(?:of|de|di) \[unused"
 )
-"""Words near the only diameter of a text with which it is that of all roundabouts."""
+"""Words near the only diameter of a text that make it the diameter of all roundabouts."""
 CORRECTED = re.compile(
     r"^metres(?: \w+){0,3} [,.;:-] (?:no|nein|non|sorry|pardon|scusa|perdon) (?:[,.;:!]|\[unused)"
 )
@@ -33,7 +33,7 @@ EXCEPT = word_set(
     "but save except excepting excluding bar ausser außer auf sauf excepte hormis salvo menos excepto tranne",
     "eccetto meno",
 )
-"""Words for an exception; "auf" is that of "bis auf"."""
+"""Words for an exception; "auf" stands for "bis auf"."""
 REACH = 4
 """The largest number of words between a length and a word such as "across"."""
 LEAST, MORE, FEW = 28.0, 8.0, 4
@@ -47,9 +47,9 @@ def with_ring_sizes(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]
     """Returns the tokens of a plan with the size words of its roundabouts, such as "mini", that follow from
     the outer diameters in the text.
 
-    Size words are changed only if the number of outer diameters in the text equals the number of roundabouts
-    without a radius in the plan, or the number of those among them that have a size word. The plan of a map
-    is returned unchanged.
+    Size words are changed only if each roundabout without a radius in the plan, or each of these with a size
+    word, has an outer diameter in the text. One diameter may be given for all of them. The plan of a map is
+    returned unchanged.
     """
     out = list(tokens)
     for place, _, size in reversed(_sized_rings(tokens, text)):
@@ -83,7 +83,8 @@ def with_diameters(brief: Brief, tokens: Sequence[str], text: SlottedText) -> Br
 
 def least_diameter(ring: JunctionClause, roads: Sequence[Brief]) -> float:
     """Returns the least outer diameter in metres at which every draft of a roundabout has room for its arms
-    and lanes, and for those of the roads before and behind it. Of a smaller one, only the size word is kept.
+    and lanes, and for the lanes of the roads before and behind the roundabout. If the text gives a smaller
+    diameter, only the size word is kept.
     """
     arms = max(span(ring.arms).lo, span(ring.exit).lo + 1)
     lanes = [ring.lanes, *(each for road in roads for each in (road.lanes, road.against))]

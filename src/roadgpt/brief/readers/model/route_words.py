@@ -94,8 +94,8 @@ COMPANIONS = word_set(
     "intersección cuadrícula",
     "bracci rami uscite isolati strada strade via vie cartello corsia corsie intersezione griglia",
 )
-"""Words beside which another word already says what is meant, such as "junction" in "T-junction" or "arms" in
-"four arms": the plan stays the same without them."""
+"""Words that add nothing to another word beside them, such as "junction" in "T-junction" or "arms" in "four
+arms": the plan stays the same without these words."""
 ONLY_A_MAP = re.compile(
     r"\b(?:map only|(?:only|just) (?:a|the) map|maps? (?:without|with no) (?:a |any )?routes?|"
     r"nur (?:eine |die )?karte|karten? ohne (?:route|strecke)|"

@@ -21,7 +21,7 @@ SIDE_STREET = re.compile(
     r"\b(?:de|desde) (?:una|la|mi) (?:calle|carretera|via) (?:lateral|secundaria)|"
     r"\bda(?:lla| una) (?:strada|via|stradina) (?:laterale|secondaria)"
 )
-"""Phrases for a route that begins on a side street, which ends at the next junction, a T-junction."""
+"""Phrases for a route that begins on a side street; the street ends at the next junction, a T-junction."""
 EXIT = r"(?:exit|off - ramp|off ramp|slip road|ausfahrt|abfahrt|sortie|salida|uscita|svincolo)"
 SIDES: tuple[Side, ...] = ("left", "right")
 ENGLISH = frozenset(["left", "right"])
@@ -63,15 +63,14 @@ OFF_A_ROAD = re.compile(
 
 
 def with_sides_of_side_roads(brief: Brief, text: SlottedText, words: str) -> Brief:
-    """Returns the Brief of a route with the ways on at its T-junctions as far as the words tell them.
+    """Returns the Brief of a route with the ways on at its T-junctions, where the words tell these ways.
 
-    The side roads that the route passes are on the sides that the words tell by their places. A street that
-    the words number is taken. A street that is taken behind others on its side, which the route passes,
-    leaves a road that goes straight on, as theirs does.
-
-    A T-junction that the route passes gets its side road on the side that is named, if the words name as many
-    sides as there are such T-junctions and the plan uses no side. At the only T-junction, where the route
-    turns "off the main road", that road goes straight on.
+    - The side roads that the route passes get the sides that the words give for their places in the row.
+    - If the words number the street that the route takes, the route takes this street.
+    - If the route passes a street and takes the next on the same side, the road goes straight on there.
+    - The T-junctions that the route passes get the sides that the words name, if the words name as many sides
+      as there are such T-junctions and the plan uses no side.
+    - If the route turns "off the main road" at the only T-junction, the main road goes straight on.
     """
     brief = _on_told_sides(_into_numbered(_as_many_as_passed(brief, text), text), text)
     brief = _with_ways(brief, _taken_behind_others(brief.junctions))

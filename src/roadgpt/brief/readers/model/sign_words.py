@@ -61,13 +61,13 @@ EVERY_STREET = re.compile(
     rf"\b{ALL} (?:the |of the |die |les |las |los |le )?(?:roads?|streets?|stra(?:ss|ß)en?|wege?|routes?|"
     r"rues?|calles?|carreteras?|strad[ae]|vie)\b"
 )
-"""Words for all streets, which say nothing of the signs at all junctions."""
+"""Words for all streets; such words do not mean that all junctions have a sign."""
 LEAST = re.compile(r"\b(?:at least|mindestens|au moins|al menos|por lo menos|almeno)$")
 MOST = re.compile(
     r"\b(?:at most|no more than|up to|hochstens|maximal|bis zu|au plus|como mucho|a lo sumo|al massimo)$"
 )
 NO_NUMBER = re.compile(rf"(?<!, )\b(?:{EXCEPT}(?: (?:{AT}|the))?|x|by|mal|sur|por|per)$")
-"""Words before a number with which it does not count the junctions that have a sign."""
+"""Words before a number that show that the number does not count the junctions with a sign."""
 OTHERS_HAVE_NONE = re.compile(rf"\b{REST}\b(?: \w+){{0,3}} {DENIAL}\b[^.;]*")
 
 LIMITED = (
@@ -107,8 +107,8 @@ class SignsInWords:
 def signs_in_words(said: str) -> SignsInWords:
     """Returns what words say about the signs at a number of junctions of a map.
 
-    A sign is left out if the words give no number of its junctions, or several. Nothing is found in words
-    that take something back. The words are those that ``said_of`` returns.
+    ``counted`` has only signs for which the words give exactly one number of junctions. The result is empty
+    if the words take something back. The argument ``said`` is a result of ``said_of``.
     """
     if TAKEN_BACK.search(said):
         return SignsInWords()

@@ -65,7 +65,7 @@ CHANGE = "[unused13]"
 MIXED = re.compile(r"(\d)([½¼¾])")
 """A whole number with a fraction behind it, as in "1½"."""
 ORDINAL_SIGN = re.compile(r"(?<=\d)(?:e|\.?ª)(?!\w)")
-"""What makes an ordinal of a number right before it: "4e" in French, "4ª" in Spanish and Italian."""
+"""Letters that make an ordinal of the number before them: "4e" in French, "4ª" in Spanish and Italian."""
 BARE_POINT = re.compile(r"(?<![\w.])\.(?=\d)")
 MILLION = 1e6
 THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")

@@ -73,7 +73,7 @@ class VariantPlans:
         return sum(self.plans[self.best].log_chances) > SURE
 
     def score(self, key: str) -> float:
-        """Returns the score of a plan, also of one that was not written for this variant."""
+        """Returns the score of a plan, also of a plan that was not written for this variant."""
         scores = {key: plan.score for key, plan in self.plans.items()}
         return scores[key] if key in scores else min(scores.values()) - UNSEEN
 

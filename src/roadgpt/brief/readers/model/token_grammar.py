@@ -30,17 +30,17 @@ def _nothing(token: str) -> Stack:
 
 
 def one_of(*tokens: str, may_be_empty: bool = False) -> Symbol:
-    """Returns one of several tokens; without any, nothing can stand there."""
+    """Returns the symbol for one of several tokens; without tokens, nothing can stand in its place."""
     return Symbol(lambda: tokens, _nothing, may_be_empty)
 
 
 def sequel(head: Symbol, *rest: Symbol, is_open: bool = False) -> Symbol:
-    """Returns a sequence of symbols; with ``is_open``, the whole sequence may be left out."""
+    """Returns the symbol for a sequence of symbols; with ``is_open``, the sequence may be left out."""
     return Symbol(head.first, lambda token: (*head.after(token), *rest), is_open)
 
 
 def any_of(*ways: Symbol) -> Symbol:
-    """Returns one of several symbols."""
+    """Returns the symbol for a choice between several symbols."""
 
     def after(token: str) -> Stack:
         return next(way.after(token) for way in ways if token in way.first())
@@ -49,7 +49,7 @@ def any_of(*ways: Symbol) -> Symbol:
 
 
 def in_order(*parts: Symbol, least: int = 0) -> Symbol:
-    """Returns at least ``least`` of several symbols, each at most once and in the given order."""
+    """Returns the symbol for ``least`` or more of several symbols, each at most once, in the given order."""
 
     def after(token: str) -> Stack:
         index = next(index for index, part in enumerate(parts) if token in part.first())
@@ -60,7 +60,7 @@ def in_order(*parts: Symbol, least: int = 0) -> Symbol:
 
 
 def list_tail(joint: str, item: Symbol, most: int) -> Symbol:
-    """Returns at most ``most`` further items of a list, each after a separator such as ';'."""
+    """Returns the symbol for at most ``most`` further items of a list, each after a separator such as ';'."""
     rest = later(lambda: list_tail(joint, item, most - 1), may_be_empty=True)
     return sequel(one_of(joint) if most else one_of(), item, rest, is_open=True)
 

@@ -12,7 +12,7 @@ from roadgpt.brief.readers.model.numerals import SIZES, number_word, numbers_in_
 from roadgpt.brief.readers.model.units import ONES, SHARE_FILLERS, SHARES
 
 FAR = 100
-"""A unit of at least this many metres means one such unit if it has no number, as in "mile and a half"."""
+"""A unit of this many metres or more, without a number, means one unit, as in "mile and a half"."""
 DENOMINATORS = ("2", "3", "4", "5", "8", "10")
 """What may stand below the stroke of a fraction of a unit: "3/4 mile"."""
 SHARE = re.compile(r"0[.,]\d+")
@@ -25,11 +25,11 @@ OF_A_CIRCLE = frozenset(
     {"circle", "loop", "kreis", "kehre", "drehung", "cercle", "tour", "boucle", "vuelta", "circulo", "giro"}
     | {"cerchio", "hour", "minute", "hora", "ora", "heure", "stunde", "-"}
 )
-"""Words behind a fraction that is not one of the unit before it: "two kilometres and a half turn"."""
+"""Words that show that a fraction is no part of the unit before it: "two kilometres and a half turn"."""
 POINTS = frozenset({"point", "komma", "virgule", "coma", "virgola"})
 """The words between a whole number and its decimals."""
 MOST_WORDS = 3
-"""The most words of decimals, a hyphen included."""
+"""The largest number of words that decimals have; a hyphen counts as a word."""
 
 
 def unit_fraction(tokens: list[str], at: int) -> Number | None:
@@ -127,7 +127,7 @@ def _before_unit(value: float, tokens: list[str], at: int, last: int) -> Number 
 
 
 def with_decimals(number: Number, tokens: Sequence[str]) -> Number:
-    """Returns a number with the decimals in words behind it, if it has any and a unit follows."""
+    """Returns a number with the decimals that follow in words; unchanged without decimals and a unit."""
     if not number.is_bare or number.unit or number.value != int(number.value):
         return number
     if tokens[number.last + 1 : number.last + 2] == [] or tokens[number.last + 1] not in POINTS:
@@ -147,7 +147,7 @@ def with_decimals(number: Number, tokens: Sequence[str]) -> Number:
 
 
 def one_with_decimals(tokens: Sequence[str], at: int) -> Number | None:
-    """Reads "one point five" and "due virgola cinque": such words are numbers only with decimals."""
+    """Reads "one point five" and "due virgola cinque": "one" and "due" are numbers only with decimals."""
     value = 1 if tokens[at] in ONES else number_word(tokens[at])
     found = with_decimals(Number(float(value), at, at), tokens) if value else None
     return found if found is not None and found.last > at else None

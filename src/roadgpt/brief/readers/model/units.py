@@ -101,8 +101,8 @@ VAGUE_SETS: dict[tuple[str, ...], tuple[int, int]] = {
     }.items()
     for key in keys.split("|")
 }
-"""Words before a unit for roughly so many of it ("a few hundred metres"), with the least and the greatest
-number that they mean.
+"""Words for a vague number of units ("a few hundred metres"), with the least and the greatest number that
+the words mean.
 """
 ORDINALS = frozenset(["st", "nd", "rd", "th", "er", "ere", "eme", "e", "a", "o", "nde", "ste", "te"])
 FUNCTION_WORDS: dict[str, frozenset[str]] = {

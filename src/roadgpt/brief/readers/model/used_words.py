@@ -54,7 +54,7 @@ def unused_words(
 ) -> tuple[str, ...]:
     """Returns the words that the plan does not depend on, and the numbers that the plan lacks.
 
-    They are spelled as in the text, each once, in text order. Of the function words in ``fillers`` none is
+    The words are spelled as in the text, each once, in text order. Function words in ``fillers`` are never
     reported.
     """
     idle = _idle(network, text, tokens, fillers)
@@ -78,7 +78,7 @@ def left_out(tokens: Sequence[str], text: SlottedText) -> list[int]:
 
 
 def lost(tokens: Sequence[str], text: SlottedText) -> set[int]:
-    """Returns the indices of the numbers of a text that its plan does not use, also not as the size of a
+    """Returns the indices of the numbers of a text that its plan uses neither as numbers nor as the size of a
     roundabout.
     """
     missing = {*left_out(tokens, text)}
@@ -93,7 +93,7 @@ def passes_over(unused: Sequence[str], text: SlottedText) -> bool:
     """Returns whether one of the unused words is a measured number of the text, such as "40 m".
 
     Counts and words such as "not" are no sign of a wrong reading: another word often says the same ("five
-    turns: left, left, ..."), and readings without effect of such a word were right as often as others.
+    turns: left, left, ..."), and readings that ignore such a word were right as often as others.
     """
     numbers = {w.written for w in text.words if w.text.startswith("[unused")}
     return any(word in numbers for word in unused)
@@ -166,9 +166,9 @@ def understood(
     """Returns the places (indices) of the words in ``places`` that the plan takes into account after all.
 
     A word counts if it usually asks for a token that occurs in the plan at least as often as the word occurs
-    in the text. A number counts if the plan has it, as many turns (of a kind, or to a side), straights or
-    junctions, or a junction of as many roads. A negation and the words that it denies are added if the plan
-    lacks what these words ask for.
+    in the text. A number counts if it is in the plan, or if the plan has this number of turns (of a kind or
+    to a side), straights or junctions, or a junction where this number of roads meets. A negation and the
+    words that it denies are added if the plan lacks what these words ask for.
     """
     there = with_groups(tokens)
     words = [word.text for word in text.words]

@@ -55,8 +55,8 @@ def warn_if_untested(version: str) -> None:
 
 
 def mismatch_advice(game: str, client: str, version: str) -> str:
-    """Returns advice for a user whose BeamNG uses the protocol ``game``, and whose beamngpy, of this
-    ``version``, uses the protocol ``client``.
+    """Returns advice for a user whose BeamNG and beamngpy use different protocols. BeamNG uses the protocol
+    ``game``; beamngpy has this ``version`` and uses the protocol ``client``.
     """
     theirs = [pair for pair in VERSION_PAIRS if pair.protocol == game]
     ours = [pair for pair in VERSION_PAIRS if pair.protocol == client]

@@ -82,8 +82,7 @@ class BeamngProcess:
         """Waits until BeamNG listens on its port.
 
         Raises:
-            SimulatorError: BeamNG ended, or did not listen within ``patience`` seconds; in the second case it
-                is killed.
+            SimulatorError: BeamNG ended, or was killed because it did not listen within ``patience`` seconds.
         """
         due = time.monotonic() + patience
         while not is_taken(self.host, self.port):
@@ -106,7 +105,7 @@ class BeamngProcess:
         children.end(self.process, GRACE)
 
     def end(self) -> None:
-        """Waits for BeamNG to end after it was asked to quit; kills it if it does not."""
+        """Waits until BeamNG has obeyed a request to quit; kills BeamNG if it does not end in time."""
         with suppress(subprocess.TimeoutExpired):
             self.process.wait(GRACE)
         self.kill()

@@ -58,8 +58,8 @@ class Session:
         """Radians of the front wheels per unit of steering input; negative if a positive input steers to the
         right."""
         self.reported_gain: float | None = None
-        """The same for the steering input that BeamNG reports, whose sign may differ from that of the input
-        sent."""
+        """Radians of the front wheels per unit of the steering input that BeamNG reports. BeamNG may report
+        the opposite sign of the input that was sent."""
         self.vehicle: Any = None
         self.watchdog = Watchdog(self._sockets, self._kill)
         self._slot: slots.Slot | None = None

@@ -33,8 +33,8 @@ class Slot:
         self.port, self.user, self._lock = port, user, lock
 
     def note(self, pid: int) -> None:
-        """Stores the id of the process that listens on the port, so that a later worker can find and end
-        that process if this worker is killed.
+        """Stores the id of the process that listens on the port. If this worker is killed, a later worker can
+        find and end that process.
         """
         self._lock.seek(0)
         self._lock.truncate()

@@ -122,10 +122,10 @@ class CarSample(NamedTuple):
     steer: float
     """Steering input, -1 to 1, as BeamNG reports it."""
     throttle: float
-    """0 to 1, as is ``brake``."""
+    """Throttle, 0 to 1; ``brake`` has the same range."""
     brake: float
     s: float = math.nan
-    """Station in metres; the drive sets ``s``, ``t`` and ``outside``, which are NaN before."""
+    """Station in metres. The fields ``s``, ``t`` and ``outside`` are NaN until the drive sets them."""
     t: float = math.nan
     """Offset from the centre line in metres."""
     outside: float = math.nan

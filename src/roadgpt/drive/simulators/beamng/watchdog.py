@@ -27,8 +27,8 @@ class Watchdog:
         """Watches nothing yet.
 
         Args:
-            sockets: returns the sockets that a call may be blocked on at present.
-            kill: ends the BeamNG process, if RoadGPT started it.
+            sockets: function that returns the sockets on which a call may be blocked at present.
+            kill: function that ends the BeamNG process, if RoadGPT started this process.
         """
         self._sockets, self._kill = sockets, kill
         self._due: float | None = None

@@ -33,8 +33,8 @@ def slip_valve(opening: float, slip: float, limit: float, dt: float) -> float:
 def expected_yaw_rate(
     car: Any, friction: float, speed: float, steer: float, before: float, dt: float
 ) -> float:
-    """Returns the yaw rate in rad/s that the ESC expects for the steering angle, limited by the friction and
-    delayed by a lag; ``before`` is the value one time step earlier."""
+    """Returns the yaw rate in rad/s that the ESC expects for the steering angle. The friction limits this yaw
+    rate, and a lag delays it; ``before`` is the value one time step earlier."""
     wanted = speed * math.tan(steer) / (car.wheelbase + car.esc_understeer_gradient * speed * speed)
     most = FRICTION_USED * friction * 9.81 / max(speed, 1.0)
     wanted = min(max(wanted, -most), most)

@@ -1,9 +1,9 @@
 """Computes the forces of the road on one tyre.
 
-The model is the Magic Formula with the similarity method: the longitudinal and the lateral force each have
-a pure-slip curve, and under combined slip they share the friction ellipse according to the direction of the
-normalised slip. Slips build up over a relaxation length. Source: H. B. Pacejka, Tyre and Vehicle Dynamics,
-3rd ed., sections 4.3.1, 7.2 and 8.6 (low speeds).
+The model is the Magic Formula with the similarity method. The longitudinal and the lateral force each have
+a pure-slip curve. Under combined slip, the direction of the normalised slip determines how the two forces
+share the friction ellipse. Slips build up over a relaxation length. Source: H. B. Pacejka, Tyre and Vehicle
+Dynamics, 3rd ed., sections 4.3.1, 7.2 and 8.6 (low speeds).
 """
 
 import math

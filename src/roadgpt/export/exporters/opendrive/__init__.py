@@ -1,5 +1,5 @@
-"""Exports roads and networks as ASAM OpenDRIVE 1.8. Except for the boundaries of junctions, only elements
-that version 1.7 also defines are written.
+"""Exports roads and networks as ASAM OpenDRIVE 1.8. Version 1.7 also defines all elements that are
+written, except the boundaries of junctions.
 
 Source: ASAM OpenDRIVE 1.8.1, user guide and XML schema.
 """

@@ -201,9 +201,9 @@ def bounds_of(
 ) -> tuple[float, float, float, float]:
     """Returns the box around all lanes: smallest x, smallest y, largest x and largest y, in metres.
 
-    No lane lies outside the box. If no bend has a radius below 6 m, and all widths and lane offsets are
-    constant, the box is too large by at most 2.1 cm, plus 0.35 cm for each metre of the greatest distance in
-    ``sides``, which has the result of ``reaches`` for each road.
+    ``sides`` has the result of ``reaches`` for each road. No lane lies outside the box. The box is too large
+    by at most 2.1 cm, plus 0.35 cm for each metre of the greatest distance in ``sides``. This limit holds if
+    no bend has a radius below 6 m, and all widths and lane offsets are constant.
     """
     starts = [start for own in roads for start in own]
     left, right = np.repeat(np.array(sides), [len(own) for own in roads], axis=0).T

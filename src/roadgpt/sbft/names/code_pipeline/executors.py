@@ -61,8 +61,8 @@ class SharedCounter:
 class Budget:
     """A budget: seconds of wall time, a number of tests, or both.
 
-    If only the number of tests is limited, the remaining time is computed as 35 s per remaining test, which
-    is how long a test takes in the competition. So a generator that plans by the remaining time behaves as it
+    If only the number of tests is limited, the remaining time is computed as 35 s per remaining test, the
+    usual duration of a test in the competition. So a generator that plans by the remaining time behaves as it
     would in the competition.
     """
 

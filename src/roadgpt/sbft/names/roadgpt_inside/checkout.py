@@ -1,5 +1,5 @@
-"""Imports the modules that have the competition's module names: those that RoadGPT provides, and all others
-from a checkout of the competition's code.
+"""Imports modules by the competition's names: RoadGPT's version of a module if there is one, otherwise the
+module in a checkout of the competition's code.
 
 A class or function that is missing in RoadGPT's module is taken from the module of the same name in the
 checkout. Most of the missing classes and functions control BeamNG or the DAVE-2 network; generators do not

@@ -1,4 +1,4 @@
-"""The class that draws pictures of roads, under the name of module by which generators import it. The Python
+"""The class that draws pictures of roads; generators import the class from a module of this name. The Python
 interpreter that runs the test generator must have matplotlib.
 """
 

@@ -28,13 +28,13 @@ class OutOfBoundsMonitor:
 
         Args:
             wrt: the lane or the road, as in ``oob_percentage``.
-            oob_bb: True if the car counts as outside as in ``is_oob_bb``, False if as in ``is_oob``.
+            oob_bb: True: ``is_oob_bb`` decides whether the car is outside; False: ``is_oob`` decides.
 
         Returns:
-            Five values: whether the car is outside, the number of times that it has left the lane, the
-            largest fraction of the car that has been outside since it last left the lane (NaN if ``oob_bb``
-            is False), the distance to the lane edge in metres (negative outside), and the fraction of the car
-            that is outside now.
+            Five values: whether the car is outside; how many times the car has left the lane; the largest
+            fraction of the car that has been outside the right lane since the car last left its lane (NaN if
+            ``oob_bb`` is False); the distance to the edge in metres (negative outside); and the fraction of
+            the car that is outside now.
         """
         is_oob = self.is_oob_bb(wrt) if oob_bb else self.is_oob(wrt)
         if oob_bb:
