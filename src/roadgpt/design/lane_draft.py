@@ -40,7 +40,7 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
 
     ``room`` is the length in metres that is available for the acceleration or deceleration lane with its
     taper. If no length is required, the lane is made to fit, but is at least 20 m long without its taper. If
-    no taper is required, the taper is shorter than usual where the lane would otherwise not fit.
+    no length of the taper is required, it is shorter than usual where the lane would otherwise not fit.
     """
     assert asked.kind in RAMPS
     wide = LEAST_BESIDE_RAMP + SLACK if asked.length is None else _length(asked.length)

@@ -68,8 +68,8 @@ def _at(s: Array, line: Complex, stations: Array) -> Complex:
 def nearest(shape: PlanShape, others: PlanShape, by_metres: bool) -> float:
     """Returns the distance in metres to the nearest of other shapes; infinite if it is 5.5 m or more.
 
-    If no shape is nearer than that at equal fractions of the length and ``by_metres`` is True, roads are also
-    compared at equal distances from the start, as far as the shorter road goes.
+    Shapes are compared at equal fractions of their lengths. If none is nearer than 5.5 m and ``by_metres`` is
+    True, they are also compared at equal distances from the start, up to the end of the shorter road.
     """
     least = float(apart(shape, others).min(initial=inf))
     if by_metres and least >= ENOUGH:

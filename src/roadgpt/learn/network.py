@@ -163,9 +163,9 @@ class ReaderNetwork(nn.Module):
         return [layer.across.keys(memory) for layer in self.decoder]
 
     def write(self, tokens: Tensor, memory: Tensor, seen: Tensor) -> Tensor:
-        """Returns, for each token of complete plans (batch, length), the scores of the token that follows,
-        (batch, length, tokens). ``memory`` is the encoded descriptions, (batch, pieces, width), and ``seen``
-        their mask, which is added to the attention scores.
+        """Returns the score of every possible next token, of shape (batch, length, tokens), at each position
+        of complete plans of shape (batch, length). ``memory`` is the encoded descriptions, of shape (batch,
+        pieces, width), and ``seen`` their mask, which is added to the attention scores.
         """
         length = tokens.shape[1]
         x = self.dropout(self.tokens(tokens) + self.plan_places.weight[:length])

@@ -89,7 +89,9 @@ def change_windows(length: float, count: int) -> list[tuple[float, float]]:
 
 
 def added(terms: Sequence[Term], length: float) -> Width:
-    """Returns the weighted sum of widths along a road of ``length`` metres: a number if all are numbers."""
+    """Returns the weighted sum of lane widths along a road of ``length`` metres. If every width is a number,
+    the sum is a number, too.
+    """
     numbers = [factor * width for factor, width in terms if not isinstance(width, CubicProfile)]
     if len(numbers) == len(terms):
         return sum(numbers)

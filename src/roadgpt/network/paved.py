@@ -107,8 +107,9 @@ def ribbon(road: Road) -> "Polygon":
 def ribbons(roads: Sequence[Road]) -> NDArray[np.object_]:
     """Returns one polygon for each road: its carriageway, beginning with the right edge.
 
-    Both ends of the line between the directions are corners of the polygon, because lanes of other roads may
-    have a corner there. Without them, rounding would leave a gap between the end of the road and such a lane.
+    The line that separates the two directions of traffic has a corner of the polygon at each end, because
+    lanes of other roads may have a corner there. Without these corners, rounding would leave a gap between
+    the end of the road and such a lane.
     """
     import shapely
 

@@ -68,8 +68,8 @@ def write_run(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
 
 
 def write_run_folder(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
-    """Writes the Run's own folder and returns it. Without its test file, the Run does not count as finished
-    yet.
+    """Writes the Run's own folder, except the test file, and returns the folder. Until the test file exists,
+    the Run does not count as finished.
     """
     folder = run_folder(campaign, run.index)
     refuse_links(campaign / RUNS, folder)

@@ -147,9 +147,9 @@ OPTIONS = (
 def sdc_command(port: int, host: str, quiet: bool) -> None:
     """Start a gRPC server that selects and ranks tests by how likely the car is to leave its lane.
 
-    The likelihood is estimated from how far the line that RoadGPT's default driver plans to drive is from the
-    middle of the lane. Nothing is driven. Once the client has sent enough outcomes, the estimate is
-    fitted to them and also uses the curvature of the roads. Ctrl-C ends the service.
+    The likelihood is estimated from the distance between the middle of the lane and the line that RoadGPT's
+    default driver plans to drive. Nothing is driven. Once the client has sent enough outcomes, the estimate
+    is fitted to them and also uses the curvature of the roads. Ctrl-C ends the service.
 
     \b
     roadgpt compete sdc --port 4545

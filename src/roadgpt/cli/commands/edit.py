@@ -73,8 +73,7 @@ def edit_road(
     """Changes a road as requested, checks and drives it, writes and prints its run, and returns its folder.
 
     ``road`` is a run, a test of a campaign, or a file with a design; ``world`` is used only for a file.
-    ``driver`` is what the user gave with ``--driver``. The changed road is driven if ``drives`` is True and
-    the original run was not made with ``--no-drive``.
+    ``driver`` comes from ``--driver``. Nothing is driven if ``drives`` is False or the run was not driven.
 
     Raises:
         RoadGPTError: The request or the road cannot be used; nothing is written.

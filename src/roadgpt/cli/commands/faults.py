@@ -26,8 +26,8 @@ DRIVES = whole(1, 1000, "drives")
 MINIMISE = "For each fault, also find the simplest road on which it still occurs"
 DISTURB = "Number of further drives for each fault, with small disturbances"
 GROUPS = (
-    "Analyse each group of similar failures; do not find out which groups are one fault (up to 16 drives for "
-    "each failure that is tried)."
+    "Analyse each group of similar failures on its own, without finding out which groups are one fault. This "
+    "saves up to 16 drives for each failure that is tried."
 )
 _failures = partial(Option, heading=Heading.FAILURES)
 FAULT_OPTIONS = (
@@ -203,10 +203,11 @@ def command(
     Failures form a group if the 60 m of road around the lane departures are alike. Some failures of each
     group are driven with small changes, such as a 15 % larger radius of the bend. If the failures of several
     groups disappear with the same change, these groups are one fault. Further failures of the fault are then
-    driven with this change; those that remain no longer count as part of the fault. The most
-    typical failure of each fault is driven again several times with slightly varied friction, start position
-    and perception delay; the share of drives that fail again is reported. DIR/faults gets a picture and a
-    sentence for each fault, faults.csv with a line per fault, and failures.csv with a line per failure.
+    driven with this change; a failure that still occurs with it no longer counts as part of the fault. The
+    most typical failure of each fault is driven again several times with slightly varied friction, start
+    position and perception delay; the share of drives that fail again is reported. DIR/faults gets a
+    picture and a sentence for each fault, faults.csv with a line per fault, and failures.csv with a line per
+    failure.
     Finished work is not repeated, so Ctrl-C loses nothing.
 
     \b

@@ -86,11 +86,11 @@ OF_EXPORT = (
            "for single roads.", folder),
     Option("--routes", "Folder of a training run with --routes; its neural network reads routes and maps.",
            folder),
-    Option("--only", "Which network of the installed reader CHECKPOINT replaces; with 'both', CHECKPOINT and "
-           "--second replace the two for single roads. The others stay as they are.",
+    Option("--only", "The network that CHECKPOINT replaces in the installed reader; with 'both', CHECKPOINT "
+           "and --second replace the two networks for single roads. The others stay as they are.",
            click.Choice((*NETWORKS_OF_READER, BOTH))),
-    Option("--prompts", "File with prompts and truths, to which the confidence for single roads is fitted; "
-           "repeat the option for more files.", default=SPENT, multiple=True),
+    Option("--prompts", "File with prompts and truths. They calibrate the confidence that the reader reports "
+           "for single roads. Repeat the option for more files.", default=SPENT, multiple=True),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
     options.seed("Seed of the chats.", 1),
 )

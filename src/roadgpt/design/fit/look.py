@@ -1,4 +1,6 @@
-"""Defines what is required of a road, and a Look: a design with its built road, which says what is wrong."""
+"""Defines what is required of a road, and the class Look: a design together with the road built from it. A
+Look says what is wrong with the road.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,5 +1,5 @@
-"""Composes descriptions whose turns are numbered, repeated, separated by straights, or counted separately for
-left and right, in English, and lists of turns in five languages.
+"""Composes English descriptions whose turns are numbered, repeated, separated by straights, or counted
+separately for left and right. Also composes lists of turns, in five languages.
 
 The grammars of ``learn.generator`` describe a road feature by feature. Here, one sentence refers to many
 features at once ("six bends, 30 m of straight between any two", "turns 2 and 4 go left, the others right"),

@@ -29,16 +29,17 @@ def features(
 ) -> dict[str, float]:
     """Returns the inputs of the confidence model by name; all but ``agreement`` and ``has`` are logarithms.
 
-    ``seen`` is the text that the networks read and the tokens that they wrote, if they differ from ``text``
-    and from the tokens of ``draft``.
+    ``seen`` is a pair: the text that the networks read, and the tokens that they wrote. It is needed only if
+    these differ from ``text`` and the tokens of ``draft``.
 
-    - ``all``, ``worst``: how unlikely the plan is, and its unlikeliest token, for the variant of the text in
-      which the plan scores highest.
-    - ``sceptic``: how unlikely the plan is for the text itself and the network that doubts it most.
+    - ``all``: how unlikely the plan is; ``worst``: how unlikely its unlikeliest token is. Both are for the
+      variant of the text for which the plan scores highest.
+    - ``sceptic``: how unlikely the plan is for the unvaried text, according to the network that gives it the
+      lowest probability.
     - ``agreement``: the share of the variants and networks whose likeliest plan this is.
     - ``numbers``: how many numbers of the text the plan lacks.
-    - ``words``, ``tokens``: how long the text and the plan are. A long plan is less likely than a short
-      plan that is right equally often.
+    - ``words``, ``tokens``: how long the text and the plan are. The networks give a long plan a lower
+      probability than a short plan, even if both are right equally often.
     - ``has TOKEN``: 1 for each token of the plan except slots; left and right count as the same token. The
       networks misread some tokens, such as a fall or a number of turns, more often than the probability says.
       They misread other tokens, such as a hairpin, less often.

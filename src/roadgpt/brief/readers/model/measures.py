@@ -1,6 +1,6 @@
 """Finds the unit of each number in a description, even if the unit does not directly follow the number.
 
-A slope in degrees becomes one in percent: "a slope of 4 degrees" is 7 percent, not a turn.
+Slopes in degrees are converted to percent: "a slope of 4 degrees" is read as 7 percent, and not as a turn.
 """
 
 from collections.abc import Sequence

@@ -171,7 +171,9 @@ def numbers_in_words(key: tuple[str, ...]) -> Mapping[str, int]:
 
 @cache
 def number_word(word: str) -> int:
-    """Returns the number that one word means in the first language in which it means one; 0 if in none."""
+    """Returns the number that a word stands for, in the first language in which the word is a number; 0 if
+    there is no such language.
+    """
     return next(iter(numbers_in_words((word,)).values()), 0)
 
 
