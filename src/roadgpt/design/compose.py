@@ -85,13 +85,14 @@ def _evened(elements: list[Element], wishes: Sequence[Feature]) -> list[Element]
     number for its grade, so that "the first half climbs at 5 percent, the second falls at 5" comes out even,
     or if they have equal heights.
     """
-    free = [i for i, element in enumerate(elements) if element.is_elastic]
+    free = [element.length for element in elements if element.is_elastic]
     open_wishes = [wish for wish in wishes if not wish.length or wish.length.hi == inf]
     have_grades = all(wish.grade and wish.grade.number is not None for wish in open_wishes)
     heights = {abs(wish.climb.number or 0.0) if wish.climb else 0.0 for wish in open_wishes}
-    if len(free) != len(open_wishes) or not (have_grades or (len(heights) == 1 and all(heights))):
+    are_alike = have_grades or (len(heights) == 1 and all(heights))
+    if not free or len(free) != len(open_wishes) or not are_alike:
         return elements
-    length = sum(elements[i].length for i in free) / max(len(free), 1)
+    length = sum(free) / len(free)
     return [element._replace(straight=length) if element.is_elastic else element for element in elements]
 
 
