@@ -138,7 +138,27 @@ def test_the_network_has_a_token_for_every_word_of_changes() -> None:
     }
     words |= {f"{word}(" for word in (*language.POSITIONS, "but")}
     words |= {f"{word}=" for word in language.NUMBERS}
-    assert words - {*TOKENS} == {"reverse", "swap"}  # rules read these
+    assert words - {*TOKENS} == {"reverse", "swap"}  # both are the token "order"
+
+
+@pytest.mark.parametrize(
+    ("line", "tokens"),
+    [
+        ("road: reverse", "road : order"),
+        ("turn 1,-1: swap", "turn 1 - 1 : order"),
+        ("straight all but(straight 1,-1): swap", "straight all but( straight 1 - 1 ) : order"),
+        ("turn 2: angle more; turn 1,3: swap", "turn 2 : angle more ; turn 1 3 : order"),
+        ("turn 2: mirror; road: reverse", "turn 2 : mirror ; road : order"),
+    ],
+)
+def test_the_token_for_order_reverses_a_road_and_swaps_what_lies_on_it(line: str, tokens: str) -> None:
+    found = tokens_of(line, ())
+    assert found == tokens.split()
+    assert plan_of(found, ()).replace(" ", "") == line.replace(" ", "")
+
+
+def test_a_contradiction_about_the_order_keeps_its_name() -> None:
+    assert plan_of(tokens_of("!contradiction order", ()) or (), ()) == "!contradiction order"
 
 
 def test_a_cause_that_is_written_twice_is_said_once() -> None:

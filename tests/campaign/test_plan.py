@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from campaign.test_store import BRIEFS
+from roadgpt.brief.plan import read_plan as read_plan_of_road
 from roadgpt.campaign.model import CellBudget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.plan_file import PlanTable, WorldTable, read_plan
@@ -19,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
     [
         ("tets = 5", "'tets' is not a key of a campaign; did you mean 'tests'?"),
         ("[world]\nfrction = 1", "'world.frction' is not a key of a campaign; did you mean 'friction'?"),
+        ("[world]\nsholder = 1", "'world.sholder' is not a key of a campaign; did you mean 'shoulder'?"),
         ("[chat]\nmodl = 'x'", "'chat.modl' is not a key of a campaign; did you mean 'model'?"),
         ("qqq = 1", "'qqq' is not a key of a campaign; keys are prompts, designers"),
         ("tests = 0", "tests: 0 is not possible; give 1 or more"),
@@ -137,3 +139,18 @@ def test_parts_that_are_not_installed_are_told(shelf: str) -> None:
     plan = Plan(prompts=("two hairpins",), budget=CellBudget(tests=3)).model_copy(update={shelf: ("nobody",)})
     with pytest.raises(PartError, match=f"no {shelf[:-1]} called 'nobody'"):
         plan.check()
+
+
+@pytest.mark.parametrize("key", ["shoulder", "verge"])
+def test_the_shoulder_is_given_by_its_present_or_its_earlier_name(tmp_path: Path, key: str) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text(f"prompts = ['a straight']\ntests = 1\n[world]\n{key} = 2\n")
+    assert read_plan(path).plan.world.section.shoulder == 2
+
+
+@pytest.mark.parametrize(("given", "used"), [("", "2+2"), ("[world]\nlanes = '1+1'", "1+1")])
+def test_words_set_the_lanes_unless_the_file_does(tmp_path: Path, given: str, used: str) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text(f"prompts = ['two lanes each way']\ntests = 1\n{given}\n")
+    brief = read_plan_of_road("turn | lanes=2 against=2")
+    assert read_plan(path).plan.world.with_lanes_of(brief).section.lanes == used

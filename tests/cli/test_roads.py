@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -248,3 +249,27 @@ def test_show_of_what_is_no_run() -> None:
     result = invoke("show", "folder")
     assert result.exit_code == 2
     assert result.stderr.startswith("roadgpt: there is no run in folder")
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ((), ""),
+        (("--lanes", "1+1"), "the road has lanes of its own; --lanes has no effect on it"),
+        (
+            ("--lane-width", "4", "--shoulder", "3"),
+            "the road has lanes of its own; --lane-width, --shoulder have no effect on it",
+        ),
+    ],
+)
+def test_lane_options_that_a_road_overrules_are_told_even_as_defaults(
+    given: Sequence[str], said: str
+) -> None:
+    made = invoke(
+        "run", "--plan", "turn left 60", "--lanes", "2+1", "-n", "1", "--no-drive", "--no-plot", "--out", "r"
+    )
+    assert made.exit_code == 0
+    checked = invoke("check", "r/runs/0001/road.json", *given)
+    assert checked.exit_code == 0
+    assert ("lanes of its own" in checked.output) == bool(said)
+    assert said in checked.output

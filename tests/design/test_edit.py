@@ -383,8 +383,27 @@ def test_two_turns_change_places_with_all_their_values() -> None:
                 assert now.radius == pytest.approx(was.radius, rel=0.15)
             checked += 1
     assert checked >= 3
-    with pytest.raises(EditError, match="two turns can change places"):
+    with pytest.raises(EditError, match="two turns, or two straights, can change places"):
         changed("h05", "road: swap")
+
+
+def test_two_straights_change_places_and_the_turns_stay() -> None:
+    parts = [(30, 0, 0), (30, 60, 0), (70, 0, 4), (30, -50, 0), (40, 0, -3), (30, 40, 0), (50, 0, 0)]
+    segments = tuple(
+        Segment(
+            distance=d, direction="left" if t > 0 else "right" if t else "straight", turn_degrees=t, incline=g
+        )
+        for d, t, g in parts
+    )
+    design = Design(starting_point=(60, 40, 10), theta=45, segments=segments)
+    after = edited(design, "straight 2,3: swap")
+    now = [(s.distance, s.turn_degrees, s.incline) for s in after.design.segments]
+    assert now == [parts[i] for i in (0, 1, 4, 3, 2, 5, 6)]
+    assert "straight 2 and straight 3 have changed places; they are named as before" in after.changes
+    again = edited(after.design, "straight 2,3: swap")
+    assert again.design.segments == design.segments
+    with pytest.raises(EditError, match="two turns, or two straights, can change places"):
+        edited(design, "straight all: swap")
 
 
 def test_only_the_part_that_climbs_becomes_steeper() -> None:

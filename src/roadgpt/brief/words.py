@@ -256,7 +256,7 @@ def table() -> str:
 OTHER_TURNS = (
     ("kink", "1", "15 to 30", "40 or more"),
     ("dogleg", "1", "60 to 120", "-"),
-    ("spiral", "3 or more, all to the left unless a side is given", "25 to 120", "-"),
+    ("spiral, corkscrew", "3 or more; to one side only if a side is given", "30 to 120", "0 to 30"),
     ("a couple of, a pair of", "2", "-", "-"),
     ("some, multiple", "2 or more", "-", "-"),
     ("a few, a handful of", "3 to 5", "-", "-"),

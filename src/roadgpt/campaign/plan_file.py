@@ -9,7 +9,15 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import (
+    AfterValidator,
+    AliasChoices,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+)
 
 from roadgpt.campaign.model import MOST_TESTS, PATIENCE, WITH_GOAL, WITHOUT_GOAL, CellBudget, Goal
 from roadgpt.campaign.plan import Plan, Seed
@@ -69,7 +77,8 @@ class WorldTable(_Strict):
     lane_width_end: Annotated[float, Field(ge=2, le=10)] | None = None
     bank: Percentage = "none"
     """Superelevation of bends: ``"none"``, ``"auto"`` for the values of CD 109, or a number in percent."""
-    verge: NotNegative = 3.0
+    shoulder: Annotated[NotNegative, Field(validation_alias=AliasChoices("shoulder", "verge"))] = 3.0
+    """Width of the shoulder; ``verge`` is its earlier name."""
     friction: Annotated[float, Field(gt=0, le=2)] = 1.0
     speed_limit_kmh: Annotated[float, Field(ge=5, le=300)] = 70.0
     oob_tolerance: Annotated[float, Field(gt=0, le=1)] = 0.95
@@ -78,10 +87,10 @@ class WorldTable(_Strict):
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
 
     def world(self) -> World:
-        """Returns the World with these values; friction and map size stay unset if the file does not give
-        them.
+        """Returns the World with these values; lanes, friction and map size stay unset if the file does not
+        give them, so that prompts can set them.
         """
-        open_ = {"friction", "map_size"} - self.model_fields_set
+        open_ = {"lanes", "friction", "map_size"} - self.model_fields_set
         values = self.model_dump(exclude={"speed_limit_kmh", *open_})
         bank = self.bank / 100 if isinstance(self.bank, float) else self.bank
         return World().changed(**values | {"speed_limit": self.speed_limit_kmh / 3.6, "bank": bank})

@@ -9,7 +9,9 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadgpt.cli.options import WORLD
+import click
+
+from roadgpt.cli.options import WORLD, typed
 from roadgpt.cli.result_row import Row, unreadable
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
@@ -171,7 +173,8 @@ def blueprint_of(file: str, world: "World") -> tuple["Blueprint", tuple[str, ...
     """Returns the design or the road in a file, and remarks on assumptions made in reading it.
 
     ``world`` is the World that the options describe. If the file defines lanes, lane options have no effect;
-    a remark then names the lane options that differ from their defaults. ``file`` may be the folder of a run.
+    a remark then names those that were typed, or differ from their defaults. ``file`` may be the folder of a
+    run.
 
     Raises:
         UsageError: The file holds no road, or the folder is not that of a run.
@@ -191,9 +194,12 @@ def blueprint_of(file: str, world: "World") -> tuple["Blueprint", tuple[str, ...
     if not isinstance(blueprint, Road) or blueprint.profile is None:
         return blueprint, remarks
     values, usual = world.values(), World().values()
+    context = click.get_current_context(silent=True)
+    told = typed(context) if context else set()
     of_lanes = [each for each in WORLD if each.field in LANES]
-    given = [each.flag for each in of_lanes if values[each.field] != usual[each.field]]
-    own = f"the road has lanes of its own; {', '.join(given)} has no effect on it"
+    given = [each.flag for each in of_lanes if each.field in told or values[each.field] != usual[each.field]]
+    verb = "has" if len(given) == 1 else "have"
+    own = f"the road has lanes of its own; {', '.join(given)} {verb} no effect on it"
     return blueprint, (*remarks, own) if given else remarks
 
 

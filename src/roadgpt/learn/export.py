@@ -11,7 +11,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from roadgpt.brief.readers.model import MEANINGS, ROUTES, SECOND, ModelReader
+from roadgpt.brief.readers.model import ROUTES, SECOND, ModelReader
 from roadgpt.brief.readers.model.vocabulary import OF_ROADS
 from roadgpt.errors import LearnError
 from roadgpt.learn.calibrate import calibrated, calibrated_routes
@@ -119,7 +119,7 @@ def export_checkpoints(
     folder: Path,
     held_back: Sequence[Pair],
     fillers: Sequence[str],
-    meanings: Mapping[str, Sequence[str]],
+    meanings: Mapping[str, Mapping[str, Sequence[str]]],
     kept: Path | None = None,
     prompts: Sequence[ToldPrompt] = (),
 ) -> None:
@@ -131,7 +131,7 @@ def export_checkpoints(
         folder: where the files are written.
         held_back: pairs that the networks were not trained on, for the calibration.
         fillers: see ``word_meanings.filler_words``.
-        meanings: see ``word_meanings.word_meanings``.
+        meanings: for each file, what words mean; see ``word_meanings.word_meanings``.
         kept: the folder of an exported reader, which supplies the networks that are not in ``checkpoints``,
             and their calibration; None if ``checkpoints`` has all networks.
         prompts: see ``calibrated``.
@@ -148,8 +148,9 @@ def export_checkpoints(
         pieces = read_vocabulary(checkpoints[name] / "pieces.txt")
         (folder / "pieces.txt").write_text("\n".join(pieces), encoding="utf-8")
     (folder / "words.txt").write_text("\n".join(fillers), encoding="utf-8")
-    rows = [" ".join([word, *tokens]) for word, tokens in meanings.items()]
-    (folder / MEANINGS).write_text("\n".join(rows), encoding="utf-8")
+    for name, of_words in meanings.items():
+        rows = [" ".join([word, *tokens]) for word, tokens in of_words.items()]
+        (folder / name).write_text("\n".join(rows), encoding="utf-8")
     names = [name for name in ("", SECOND, ROUTES) if name in checkpoints or kept]
     share_embedding([folder / f"encoder{name}.onnx" for name in names])
     settings = _settings(folder, checkpoints, held_back, kept, prompts)

@@ -82,15 +82,16 @@ def filler_words(pairs: Iterable[Pair]) -> list[str]:
     return sorted((frequent | {*plain(joints).split()}) - NEGATORS)
 
 
-def word_meanings(pairs: Iterable[Pair]) -> dict[str, list[str]]:
-    """Returns for each word the tokens that it usually asks for, the token with the largest lift first;
-    change requests and refusals are not counted.
+def word_meanings(pairs: Iterable[Pair], of_changes: bool = False) -> dict[str, list[str]]:
+    """Returns for each word the tokens that it usually asks for in descriptions, or ``of_changes`` in change
+    requests, the token with the largest lift first; refusals are not counted.
 
     Tokens with less than half of the word's largest lift are left out: "priority" often occurs with
     crossroads, but does not ask for crossroads. A group of tokens is returned only for a word that asks for
     no single token. Words of negation have no entry.
     """
-    counts = _counted((p for p in pairs if not p.is_change and not p.is_refusal), has_groups=True)
+    told = (pair for pair in pairs if pair.is_change == of_changes and not pair.is_refusal)
+    counts = _counted(told, has_groups=not of_changes)
     lifts: dict[str, dict[str, float]] = {}
     for word, token in counts.both:
         if counts.is_asked(word, token) and token not in STRUCTURE and word not in NEGATORS:

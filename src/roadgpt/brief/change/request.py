@@ -20,7 +20,7 @@ What = Literal[
     "count",  # so many turns, in all or of one kind
     "move",  # a turn to another place
     "mirror",
-    "swap",  # two turns change places
+    "swap",  # two turns, or two straights, change places
     "reverse",  # the whole road, from its end to its start
     "alternate",
 ]
@@ -41,7 +41,7 @@ SUPERLATIVES: dict[str, tuple[Measure, int]] = {
 HALVES = {"half1": 1, "half2": 2}
 OF_SLOPE: frozenset[What] = frozenset({"slope", "climb"})
 REORDERS: tuple[What, ...] = ("swap", "move")
-"""Changes that put turns in another order."""
+"""Changes that put turns or straights in another order."""
 NUMBERING: tuple[What, ...] = ("add", "remove", "count", "straighten")
 """Changes that add or remove turns or straights."""
 HILLS = {"crest": 1, "dip": -1}

@@ -170,7 +170,7 @@ def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis
             yield f"{'':>{wide + 26}}simplest: {its.simplest}"
     stable = sum(its.stability.is_stable for its in looked.values())
     yield found.headline
-    what = plural(len(found.them), "fault" if found.distinct == len(found.them) else "fault or group")
+    what = plural(len(found.them), "fault") + ("" if found.distinct == len(found.them) else " or groups")
     yield f"{stable:,} of {what} fail again in at least half of the drives"
     if looked:
         yield f"look at one: {shlex.join(['roadgpt', 'view', f'{place}/{looked[1].name}'])}"

@@ -212,7 +212,7 @@ def export(
         from roadgpt.learn.export import export_checkpoints
     except ImportError as error:
         raise LearnError(EXTRA) from error
-    from roadgpt.brief.readers.model import ROUTES, SECOND, WEIGHTS
+    from roadgpt.brief.readers.model import MEANINGS, MEANINGS_OF_CHANGES, ROUTES, SECOND, WEIGHTS
     from roadgpt.learn.data import is_for_roads_only
     from roadgpt.learn.told_prompts import told_prompts
     from roadgpt.learn.word_meanings import filler_words, word_meanings
@@ -220,7 +220,11 @@ def export(
     told = _all_pairs(hand, HELD_BACK, changes, networks, "validation")
     held_back = [pair for pair in told if not is_for_roads_only(pair)]
     trained_on = _all_pairs(hand, TRAINED_ON, changes, networks, "train")
-    words = filler_words(trained_on), word_meanings(trained_on)
+    meanings = {
+        MEANINGS: word_meanings(trained_on),
+        MEANINGS_OF_CHANGES: word_meanings(trained_on, of_changes=True),
+    }
+    words = filler_words(trained_on), meanings
     endings = dict(zip(NETWORKS_OF_READER, ("", SECOND, ROUTES), strict=True))
     first = endings.get(only or "first", "")
     found = {first: checkpoint, **({} if only in NETWORKS_OF_READER else {SECOND: second, ROUTES: routes})}

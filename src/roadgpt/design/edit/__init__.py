@@ -1,7 +1,7 @@
 """Edits a Design as a change request asks, and leaves the rest unchanged. Main function: ``edit``.
 
-    words --checked_request--> EditRequest --placed--> PlacedChanges --candidates_of--> ChangeCandidates
-          --made--> Look --sentences--> Edited
+    words --checked_request--> EditRequest --placed, settled--> PlacedChanges
+          --candidates_of--> ChangeCandidates --made--> Look --sentences--> Edited
 
 A Look is a Design with the road that was built from it, the findings of the rules, and measurements.
 Turns and straights are those that ``check.measures`` finds on the finished road. They are numbered as on the
@@ -19,6 +19,7 @@ from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.design.differences import grades_changed, sentences
 from roadgpt.design.edit.candidates import candidates_of
 from roadgpt.design.edit.chatting import edited_by_chat
+from roadgpt.design.edit.opposites import settled
 from roadgpt.design.edit.placing import placed
 from roadgpt.design.edit.search import made
 from roadgpt.design.road_elements import elements_on_road
@@ -84,7 +85,7 @@ def edit(
 def _edited(design: Design, request: EditRequest, world: World, geometry: Geometry) -> Edited:
     """Returns the Design with the changes of a request that was read."""
     elements, found = elements_on_road(design, geometry)
-    changes = placed(request.changes, elements)
+    changes = settled(placed(request.changes, elements))
     if len(changes) > MOST_CHANGES:
         raise EditError(f"{len(changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer")
     proposed = candidates_of(changes, elements, found, world)

@@ -6,15 +6,15 @@ wider ranges, or lets more elements change.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from math import inf
 from typing import NamedTuple
 
-from roadgpt.brief.change.request import REORDERS, Change, What
+from roadgpt.brief.change.request import REORDERS, Change
 from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import Measures, way
+from roadgpt.design.edit.agreement import agreed
 from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
 from roadgpt.design.edit.lengths import length_steps, road_length_candidates
 from roadgpt.design.edit.placing import PlacedChange
@@ -92,9 +92,7 @@ def candidates_of(
         own = placed.without(idle)
         if own.elements is not placed.elements:
             ways[number - 1] = _ways(own, elements, found, world, number)
-    if {"angle", "radius"} <= {placed.change.what for placed in changes}:
-        ways = _agreed([placed.change for placed in changes], ways)
-    return tuple(map(ChangeCandidates, changes, ways, told))
+    return tuple(map(ChangeCandidates, changes, agreed(changes, ways), told))
 
 
 def _ways(
@@ -126,29 +124,6 @@ def _ways(
             return stretch_candidates(placed.change, elements, placed.stretch, world)
         case _:
             return _change_candidates(placed.change, placed.elements, found, world)
-
-
-def _agreed(
-    changes: Sequence[Change], ways: Sequence[Sequence[EditCandidate]]
-) -> list[tuple[EditCandidate, ...]]:
-    """Returns the candidates of all changes; of the angle and the radius that two of them give a turn, each
-    sets only its own.
-    """
-    said: dict[What, set[str]] = {"angle": set(), "radius": set()}
-    for change, its in zip(changes, ways, strict=True):
-        if change.what in said and its and (change.to or change.by or change.times):
-            said[change.what] |= {step.element.name for step in its[0] if isinstance(step, Adjust)}
-    both = said["angle"] & said["radius"]
-
-    def own(step: EditStep, what: What) -> EditStep:
-        if not isinstance(step, Adjust) or step.element.name not in both or what not in said:
-            return step
-        return replace(step, radius=None) if what == "angle" else replace(step, degrees=None)
-
-    return [
-        tuple(tuple(own(step, change.what) for step in way) for way in its)
-        for change, its in zip(changes, ways, strict=True)
-    ]
 
 
 def _change_candidates(

@@ -44,12 +44,12 @@ def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElem
     return _spared(target, chosen, elements) if target.numbers else chosen  # 'turns 1 to 4 except turn 2'
 
 
-def turns(elements: RoadElements) -> list[RoadElement]:
+def turns(elements: Sequence[RoadElement]) -> list[RoadElement]:
     """Returns all turns."""
     return [element for element in elements if element.is_turn]
 
 
-def straights(elements: RoadElements) -> list[RoadElement]:
+def straights(elements: Sequence[RoadElement]) -> list[RoadElement]:
     """Returns all straights that are long enough to be measured as straights."""
     return [element for element in elements if not element.is_turn and element.seen is not None]
 

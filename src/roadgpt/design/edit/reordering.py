@@ -1,9 +1,12 @@
-"""Reorders the elements of a road: reverses the whole road, moves turns, or lets two change places."""
+"""Reorders the elements of a road: reverses the whole road, moves turns, or lets two turns or two straights
+change places.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from roadgpt.design.edit.placing import PlacedChange
+from roadgpt.design.edit.pointing import straights, turns
 from roadgpt.design.edit.steps import EditCandidate
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
@@ -29,7 +32,7 @@ class Reverse:
 
 @dataclass(frozen=True, slots=True)
 class Swap:
-    """Lets two elements change places; each keeps its angle, radius, side and grade."""
+    """Lets two elements change places; each keeps its length, angle, radius, side and grade."""
 
     one: str
     other: str
@@ -64,13 +67,15 @@ class Move:
 
 
 def swap_of(chosen: Sequence[RoadElement]) -> Swap:
-    """Returns the step that lets two turns change places.
+    """Returns the step that lets two turns, or two straights, change places.
 
     Raises:
-        EditError: the chosen elements are not two turns.
+        EditError: the chosen elements are not two turns or two straights.
     """
-    if len(chosen) != 2 or not all(element.is_turn for element in chosen):
-        raise EditError("two turns can change places; name two, for example: swap turns 1 and 3")
+    if len(chosen) != 2 or chosen[0].is_turn != chosen[1].is_turn:
+        raise EditError(
+            "two turns, or two straights, can change places; name two, for example: swap turns 1 and 3"
+        )
     return Swap(chosen[0].name, chosen[1].name)
 
 
@@ -110,18 +115,21 @@ def move_of(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate
 
 def reordering_sentence(placed: PlacedChange, elements: RoadElements) -> str:
     """Returns a sentence on a change that only reorders elements."""
-    names = _turn_names(elements)
     match placed.change.what:
         case "reverse":
             return REVERSED
         case "move":
+            names = _turn_names(elements)
             numbers = [str(names.index(element.name) + 1) for element in placed.elements]
             moved = f"turn {numbers[0]} has" if len(numbers) == 1 else f"turns {' and '.join(numbers)} have"
             return f"{moved} moved; the turns are named as before"
         case _:
-            one, other = (names.index(element.name) + 1 for element in placed.elements)
-            return f"turn {one} and turn {other} have changed places; they are named as before"
+            is_of_turns = placed.elements[0].is_turn
+            alike = turns(elements) if is_of_turns else straights(elements)
+            one, other = (alike.index(element) + 1 for element in placed.elements)
+            noun = "turn" if is_of_turns else "straight"
+            return f"{noun} {one} and {noun} {other} have changed places; they are named as before"
 
 
 def _turn_names(elements: Sequence[RoadElement]) -> tuple[str, ...]:
-    return tuple(element.name for element in elements if element.is_turn)
+    return tuple(element.name for element in turns(elements))

@@ -49,6 +49,8 @@ if TYPE_CHECKING:
 WEIGHTS = Path(__file__).parent / "weights"
 MEANINGS = "meanings.txt"
 """The file with the meanings of words: each line has a word and the plan tokens that it usually asks for."""
+MEANINGS_OF_CHANGES = "meanings_of_changes.txt"
+"""The file with the meanings of words in change requests."""
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
 NEVER = 2.0  # a probability that no refusal reaches
@@ -293,15 +295,12 @@ class ModelReader:
         there = [name for name in names if (self.folder / f"encoder{name}.onnx").is_file()]
         networks = tuple(NeuralNetwork(self.folder, name) for name in there)
         weights = settings.get("confidence", {"bias": 0.0})
-        return Ensemble(networks, settings.get("refuse_from", 0.5), weights, fillers, self._meanings)
+        meanings, of_changes = (read_meanings(self.folder / name) for name in (MEANINGS, MEANINGS_OF_CHANGES))
+        return Ensemble(networks, settings.get("refuse_from", 0.5), weights, fillers, meanings, of_changes)
 
     @cached_property
     def _fillers(self) -> frozenset[str]:
         return frozenset(read_text(self.folder / "words.txt").split("\n"))
-
-    @cached_property
-    def _meanings(self) -> dict[str, tuple[str, ...]]:
-        return read_meanings(self.folder / MEANINGS)
 
     @cached_property
     def _settings(self) -> dict[str, Any]:

@@ -26,6 +26,7 @@ from roadgpt.brief.readers.model.vocabulary import (
     MEASURED,
     NEXT_TO,
     NOUNS,
+    ORDER,
     PERCENTS,
     POSITIONS,
     SHARPNESS,
@@ -100,7 +101,7 @@ def _wish(numbers: Numbers) -> Symbol:
         _position(like, MOVES),
         sequel(one_of("side"), one_of(*SIDES, "other")),
         sequel(one_of("shape"), shape),
-        one_of(*ALONE),
+        one_of(*ALONE, ORDER),
     )
 
 

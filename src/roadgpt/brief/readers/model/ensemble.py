@@ -28,7 +28,9 @@ class Ensemble:
     fillers: frozenset[str]
     """Words that are never reported as unused."""
     meanings: Mapping[str, Sequence[str]]
-    """The tokens that words usually ask for, the most usual one first."""
+    """The tokens that words of descriptions usually ask for, the most usual one first."""
+    meanings_of_changes: Mapping[str, Sequence[str]]
+    """The same for words of change requests."""
 
     def scored(
         self,
@@ -52,7 +54,8 @@ class Ensemble:
 
     def unused(self, text: SlottedText, tokens: Sequence[str]) -> tuple[str, ...]:
         """Returns the words that a plan does not depend on, each once, in the order of the text."""
-        return unused_words(self.networks[0], text, tokens, self.fillers, self.meanings)
+        meanings = self.meanings_of_changes if text.is_change else self.meanings
+        return unused_words(self.networks[0], text, tokens, self.fillers, meanings)
 
     def confidence(
         self,

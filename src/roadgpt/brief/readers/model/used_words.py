@@ -167,8 +167,9 @@ def understood(
 
     A word counts if it usually asks for a token that occurs in the plan at least as often as the word occurs
     in the text. A number counts if it is in the plan, or if the plan has this number of turns (of a kind or
-    to a side), straights or junctions, or a junction where this number of roads meets. A negation and the
-    words that it denies are added if the plan lacks what these words ask for.
+    to a side), straights or junctions, or a junction where this number of roads meets. In a description, a
+    negation and the words that it denies are added if the plan lacks what these words ask for; in a change
+    request they may say what is to stay, so they are not.
     """
     there = with_groups(tokens)
     words = [word.text for word in text.words]
@@ -177,7 +178,7 @@ def understood(
     for at in (n for n, word in enumerate(words) if word in NEGATORS):
         nouns = [n for n in places_reached(words, at, MOST_DENIED) if words[n] in meanings]
         denied.update(nouns)
-        if nouns and all(_is_absent(meanings[words[n]], there) for n in nouns):
+        if nouns and not text.is_change and all(_is_absent(meanings[words[n]], there) for n in nouns):
             found |= {at, *nouns}
     for place in set(places) - denied:
         word = words[place]

@@ -73,6 +73,9 @@ ENDS_OF_ROAD = ["at_start", "at_end", "at_middle"]
 MEASURED = {"angle": "degrees", "radius": "metres", "length": "metres", "slope": "percent", "climb": "metres"}
 """The properties to which a change can give a value, with the unit of the value."""
 ALONE = ["straighten", "remove", "mirror", "alternate"]
+ORDER = "order"
+"""The token for "swap", and of the whole road for "reverse"; weights know it as a cause of refusals, too."""
+OF_ORDER = ("swap", "reverse")
 FACTORS = (
     "-1", "0.1", "0.2", "0.25", "0.3", "0.333", "0.4", "0.5", "0.6", "0.667", "0.7", "0.75", "0.8", "0.9",
     "1.1", "1.2", "1.25", "1.333", "1.5", "1.75", "2", "2.5", "3", "4",
@@ -163,7 +166,7 @@ def tokens_of(plan: str, slots: Sequence[NumberSlot], compared: Compared | None 
             key = piece
         elif piece not in ("..", "=", "+", "-", "x", *SLOPES):
             key = ""
-        out.append(piece)
+        out.append(ORDER if piece in OF_ORDER else piece)
     return out
 
 
@@ -230,6 +233,8 @@ def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
             out.append(_plain(value, 1))
         elif word in (";", "|", ")", ","):
             out.append(word + " ")
+        elif word == ORDER and out[-1:] == [":"]:
+            out.append("reverse" if out[-2:] == ["road", ":"] else "swap")
         else:
             out.append(word)
     text = ""

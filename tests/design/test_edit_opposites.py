@@ -1,0 +1,190 @@
+"""Two wishes for the same place: opposites are refused by name, and a part of the road keeps its own wish."""
+
+from itertools import combinations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roadgpt.brief.change.plan import read_change_plan
+from roadgpt.check.measures import Measures, measure
+from roadgpt.design.edit import edit
+from roadgpt.errors import EditError, IdleEditError
+from roadgpt.road import Design, Segment, World, build
+
+PARTS = [(30, 0), (26, 50), (45, 0), (30, -60), (40, 0), (32, 70), (50, 0)]
+ROAD = Design(
+    starting_point=(60, 40, 10),
+    theta=45,
+    segments=tuple(
+        Segment(
+            distance=d, direction="left" if t > 0 else "right" if t else "straight", turn_degrees=t, incline=2
+        )
+        for d, t in PARTS
+    ),
+)
+OPPOSITES = [
+    ("road: length +50", "road: length less"),
+    ("road: length x1.2", "road: length -20"),
+    ("turn 2: radius =20", "turn 2: radius =35"),
+    ("turn 2: angle more", "turn 2: angle less"),
+    ("turn 2: side left", "turn 2: side right"),
+    ("turn 2: side other", "turn 2: side left"),
+    ("turn 1: slope up", "turn 1: slope down"),
+    ("turn 1: slope flat", "turn 1: slope down =3"),
+    ("road: slope up", "road: slope down"),
+    ("road: slope more", "road: slope less"),
+    ("straight 1: length 40..", "straight 1: length ..30"),
+    ("straight 1: length =50", "straight 1: length ..40"),
+    ("turn 2: shape sharp", "turn 2: shape gentle"),
+    ("turn 1,-1: swap", "turn 1,3: swap"),
+]
+COMPATIBLE = [
+    ("turn 2: angle more", "turn 2: radius less"),
+    ("turn 2: angle less", "turn 2: radius less"),
+    ("turn 2: angle -15", "turn 2: radius less"),
+    ("turn 2: angle -15", "turn 2: radius +10"),
+    ("turn 1: angle +15", "turn 1: radius +8"),
+    ("turn 1: side right", "turn 1: angle =70"),
+    ("turn 1: side right", "turn 1: radius =60"),
+    ("turn 1: angle =70", "turn 1: angle 60.."),
+    ("turn 1: angle less", "turn 1: radius 20.."),
+    ("turn 3: shape gentle", "turn 3: angle ..60"),
+    ("turn 3: shape hairpin", "turn 3: radius =20"),
+    ("turn 2: angle more", "turn 3: angle less"),
+    ("straight 2: length 20..", "straight 2: length ..30"),
+    ("road: slope down", "road: slope =5"),
+    ("turn 2: radius less", "turn 2: radius 15.."),
+    ("turn 1: slope up =4", "turn 2: slope down =4"),
+    ("road half1: slope up =4", "road half2: slope down =4"),
+]
+
+
+def after(plan: str) -> Design:
+    return edit(ROAD, read_change_plan(plan), World()).design
+
+
+def contradiction(plan: str) -> bool:
+    try:
+        after(plan)
+    except EditError as error:
+        return "contradict each other" in str(error) or "is asked for twice" in str(error)
+    return False
+
+
+@pytest.mark.parametrize(("one", "other"), OPPOSITES)
+def test_opposites_are_refused_by_name_in_either_order(one: str, other: str) -> None:
+    for first, second in ((one, other), (other, one)):
+        with pytest.raises(EditError, match="contradict each other; leave one of them out") as raised:
+            after(f"{first}; {second}")
+        assert f"'{first}'" in str(raised.value)
+        assert f"'{second}'" in str(raised.value)
+
+
+@pytest.mark.parametrize(("one", "other"), COMPATIBLE)
+def test_what_can_both_be_meant_is_done_in_either_order(one: str, other: str) -> None:
+    was = measure(build(ROAD).centreline())
+    for plan in (f"{one}; {other}", f"{other}; {one}"):
+        try:
+            design = after(plan)
+        except IdleEditError:
+            continue
+        now = measure(build(design).centreline())
+        for wish in (one, other):
+            assert holds(wish, was, now), (plan, wish)
+
+
+def holds(wish: str, was: Measures, now: Measures) -> bool:
+    """Does the changed road have what one wish asks for? Written without the code that edits."""
+    place, said = wish.split(": ")
+    if place == "road" or place.startswith("straight") or "slope" in said:
+        return True
+    one, new = (road.turns[int(place.split()[1]) - 1] for road in (was, now))
+    what, value = said.split(" ", 1)
+    if what == "side":
+        return new.side == value
+    if what == "shape":
+        return new.radius > 38 if value == "gentle" else new.degrees > 140
+    before, after = (turn.degrees if what == "angle" else turn.radius for turn in (one, new))
+    slack = 0.06 * after
+    if value in ("more", "less"):
+        return after > 1.02 * before if value == "more" else after < 0.98 * before
+    if value.startswith("="):
+        return abs(after - float(value[1:])) < slack
+    if value.startswith(".."):
+        return after < float(value[2:]) + slack
+    return (
+        after > float(value[:-2]) - slack if value.endswith("..") else abs(after - before - float(value)) < 3
+    )
+
+
+def radii(design: Design) -> list[float]:
+    return [turn.radius for turn in measure(build(design).centreline()).turns]
+
+
+def test_a_wish_without_a_number_goes_no_further_than_a_limit() -> None:
+    was, now = radii(ROAD), radii(after("turn 2: radius less; turn 2: radius 19.."))
+    assert now[1] == pytest.approx(19, rel=0.04)  # alone, it would be 15 m
+    assert now[0::2] == pytest.approx(was[0::2], rel=0.02)
+
+
+def test_of_several_things_one_that_is_at_the_limit_stays() -> None:
+    was = radii(ROAD)
+    assert was == pytest.approx([22.3, 21.5, 19.6], abs=0.1)
+    now = radii(after("turn all: radius less; turn all: radius 19.5.."))
+    assert now == pytest.approx([19.5] * 3, rel=0.04)
+
+
+def test_a_limit_at_the_present_value_leaves_no_room_for_a_wish() -> None:
+    radius = measure(build(ROAD).centreline()).turns[1].radius
+    for limit in (round(radius - 0.2, 1), round(radius + 1, 1)):
+        with pytest.raises(EditError, match=r"need requests of their own|cannot be done"):
+            after(f"turn 2: radius less; turn 2: radius {limit}..")
+
+
+def test_what_would_undo_itself_is_asked_for_once() -> None:
+    with pytest.raises(EditError, match="'road: mirror' is asked for twice; ask for it once"):
+        after("road: mirror; road: mirror")
+
+
+@pytest.mark.parametrize(
+    "plans", ["turn all: angle +10; turn 2: angle +20", "turn 2: angle +20; turn all: angle +10"]
+)
+def test_a_part_keeps_its_own_wish(plans: str) -> None:
+    before, now = (measure(build(design).centreline()).turns for design in (ROAD, after(plans)))
+    more = [turn.degrees - was.degrees for turn, was in zip(now, before, strict=True)]
+    assert more == pytest.approx([10, 20, 10], abs=2.5)
+
+
+def test_a_limit_holds_for_its_parts_as_well() -> None:
+    turns = measure(build(after("turn all: radius 28..; turn 2: radius more")).centreline()).turns
+    was = measure(build(ROAD).centreline()).turns
+    assert min(turn.radius for turn in turns) >= 27
+    assert turns[1].radius > was[1].radius
+
+
+SIZES = ["more", "less", "=30", "=60", "40..", "..35"]
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.sampled_from([*combinations(SIZES, 2)]), st.sampled_from(["straight 2: length", "turn 2: radius"]))
+def test_no_two_wishes_are_half_done(sizes: tuple[str, str], of: str) -> None:
+    """Either the road has what both ask for, or nothing is built."""
+    try:
+        design = after("; ".join(f"{of} {size}" for size in sizes))
+    except EditError:
+        return
+    found, was = (measure(build(each).centreline()) for each in (design, ROAD))
+    now, then = (
+        each.turns[1].radius if "turn" in of else [f for f in each.features if f.kind == "straight"][1].length
+        for each in (found, was)
+    )
+    holds = {
+        "more": now > then - 0.5,
+        "less": now < then + 0.5,
+        "=30": abs(now - 30) < 3.1,
+        "=60": abs(now - 60) < 4,
+        "40..": now > 38.5,
+        "..35": now < 36.5,
+    }
+    assert all(holds[size] for size in sizes), (sizes, then, now)
