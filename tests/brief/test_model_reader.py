@@ -104,7 +104,8 @@ def test_the_weights_are_small_and_come_with_their_notice() -> None:
     assert "Apache-2.0" in (WEIGHTS / "NOTICE").read_text(encoding="utf-8")
     sums = json.loads((WEIGHTS / "sums.json").read_text(encoding="utf-8"))
     graphs = {f"{part}{name}.onnx" for part in ("encoder", "decoder") for name in ("", "_2", "_routes")}
-    assert {*sums} == {*graphs, "embedding.bin", "pieces.txt", "words.txt", "meanings.txt", "settings.json"}
+    texts = {"pieces.txt", "words.txt", "meanings.txt", "meanings_of_changes.txt"}
+    assert {*sums} == {*graphs, *texts, "embedding.bin", "settings.json"}
     for name, digest in sums.items():
         assert sha256((WEIGHTS / name).read_bytes()).hexdigest() == digest
 

@@ -291,12 +291,25 @@ SWAPPED = [
     ("swap the first and the last turn", "turn 1,-1: swap"),
     ("swap the first turn and the last turn, the straights stay where they are", "turn 1,-1: swap"),
     ("tausche die zweite und die dritte Kurve, der Rest bleibt, wie er ist", "turn 2,3: swap"),
-    ("Tausch bitte die erste mit der dritten Kurve", "turn 1,3: swap"),
+    ("Vertausch doch mal die Kurven 1 und 3", "turn 1,3: swap"),
     ("échange les virages 1 et 4", "turn 1,4: swap"),
     ("scambia le due curve", "turn all: swap"),
     ("Intercambia la segunda curva con la tercera", "turn 2,3: swap"),
+    ("exchange straights 1 and 3", "straight 1,3: swap"),
+    ("vertausche Gerade 2 und 3", "straight 2,3: swap"),
+    ("échange la première et la deuxième ligne droite", "straight 1,2: swap"),
+    ("intercambia la primera recta con la última, lo demás igual", "straight 1,-1: swap"),
+    ("scambia i due rettilinei", "straight all: swap"),
+    ("swap the two straights between the turns", "straight all but(straight 1,-1): swap"),
+    ("tausch die beiden Geraden zwischen den Kurven", "straight all but(straight 1,-1): swap"),
+    (
+        "swap the straights before and after the hairpin",
+        "straight before(hairpin): length =straight after(hairpin); "
+        "straight after(hairpin): length =straight before(hairpin)",
+    ),
+    ("swap the radius of turn 2 with that of turn 4", "turn 2: radius =turn 4; turn 4: radius =turn 2"),
 ]
-"""Two turns that change places, which rules read."""
+"""Two turns or straights that change places, or exchange a value, which rules read or complete."""
 
 HEIGHTS = [
     ("make the last straight climb 10 m", "straight -1: climb =10"),

@@ -27,6 +27,8 @@ COMMON = frozenset({";", "|", ")", ":", ",", "turn", "x"})
 """Tokens that say nothing about what the words mean."""
 STRUCTURE = frozenset({"//", "||", "(", "..", "=", "+"})
 """Tokens that no word asks for."""
+OF_EVERY_CHANGE = frozenset({"side", "shape", "-"})
+"""Tokens that no word of a change request asks for: "right" asks for "right", and not for "side" alone."""
 OF_GROUP = 40  # pairs that must have both, before a word asks for a group of tokens
 OF_MOST = 0.5  # smallest lift of a word's other tokens, as a share of its largest lift
 
@@ -94,7 +96,8 @@ def word_meanings(pairs: Iterable[Pair], of_changes: bool = False) -> dict[str, 
     counts = _counted(told, has_groups=not of_changes)
     lifts: dict[str, dict[str, float]] = {}
     for word, token in counts.both:
-        if counts.is_asked(word, token) and token not in STRUCTURE and word not in NEGATORS:
+        is_empty = token in STRUCTURE or (of_changes and (token in OF_EVERY_CHANGE or token.isdecimal()))
+        if counts.is_asked(word, token) and not is_empty and word not in NEGATORS:
             lifts.setdefault(word, {})[token] = counts.lift(word, token)
     return {word: _own(found) for word, found in sorted(lifts.items())}
 

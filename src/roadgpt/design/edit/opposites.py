@@ -1,6 +1,7 @@
 """Settles changes of the same property: a part of the road keeps its own wish, and opposites are refused."""
 
 from collections.abc import Hashable, Sequence
+from dataclasses import replace
 from itertools import combinations
 
 from roadgpt.brief.change.request import Change, What
@@ -9,11 +10,12 @@ from roadgpt.errors import EditError
 
 VALUED: frozenset[What] = frozenset({"angle", "radius", "length"})
 TOGGLES: frozenset[What] = frozenset({"mirror", "swap", "alternate"})
-"""Changes that make no sense twice: the second one undoes the first, or does nothing."""
+"""Changes of which the second one would undo the first, or do nothing."""
 
 
 def settled(changes: Sequence[PlacedChange]) -> tuple[PlacedChange, ...]:
-    """Returns the changes, each without the elements that another change of the same property names alone.
+    """Returns the changes, each without the elements that another change of the same property names alone,
+    and what would undo itself, such as "mirror", only once.
 
     "All turns by 10 degrees, turn 2 by 20" turns turn 2 by 20 degrees only. Limits hold for all their
     elements but those that get a value. Slopes of parts are laid over those of more of the road by
@@ -22,16 +24,15 @@ def settled(changes: Sequence[PlacedChange]) -> tuple[PlacedChange, ...]:
     Raises:
         EditError: two changes ask for opposite things of the same elements.
     """
+    once = [*changes]
     for one, other in combinations(changes, 2):
-        if _place(one) == _place(other) and are_opposites(one.change, other.change):
-            raise _clash(one.change.words, other.change.words)
-    return tuple(_without_parts(placed, changes) for placed in changes)
-
-
-def _clash(one: str, other: str) -> EditError:
-    if one == other:
-        return EditError(f"'{one}' is asked for twice; ask for it once")
-    return EditError(f"'{one}' and '{other}' contradict each other; leave one of them out")
+        if _place(one) != _place(other) or not are_opposites(one.change, other.change):
+            continue
+        if replace(one.change, words="") != replace(other.change, words=""):
+            said = f"'{one.change.words}' and '{other.change.words}'"
+            raise EditError(f"{said} contradict each other; leave one of them out")
+        once = [placed for placed in once if placed is not other]
+    return tuple(_without_parts(placed, changes) for placed in once)
 
 
 def are_opposites(one: Change, other: Change) -> bool:

@@ -1,6 +1,7 @@
 """Reads a change request with the networks that read descriptions of single roads.
 
-Rules read the requests to reverse the road or to swap two turns; the networks have no tokens for these.
+Rules read the requests to reverse the road, or to swap two turns or straights, which these networks have not
+learnt yet.
 """
 
 import re
@@ -17,7 +18,7 @@ from roadgpt.errors import BriefError
 
 REVERSED = "road: reverse"
 CERTAIN = 0.97
-"""The confidence in a request that rules read: to reverse the road, or to swap two turns."""
+"""The confidence in a request that rules read: to reverse the road, or to swap two turns or straights."""
 ALMOST = 2.0  # difference of score
 DENIAL = re.compile(
     r"(?:please )?(?:do not|don'?t|never) [^,;:.]*[.!]*"
@@ -75,35 +76,48 @@ TURNS = (
     r"(?:turns?|bends?|curves?|corners?|kurven?|kehren?|bogen|virages?|courbes?|curvas?|curve?|tornanti|"
     r"giros?)"
 )
+STRAIGHTS = r"(?:straights?|geraden?|lignes? droites?|droites?|rectas?|rettiline[oi]|rettifil[oi])"
 NUMBER = rf"(?:(?:the|die|der|le|la|les|las|el|il) )?(\d|{PLACE})(?:st|nd|rd|th| \.|e|eme|a)?"
 AND = r"(?:and|with|und|mit|et|avec|y|con|e)"
-TWO = re.compile(
-    rf"\b{TURNS} (?:no |nr |number )?{NUMBER} {AND} (?:{TURNS} )?{NUMBER}\b|"
-    rf"\b{NUMBER} (?:{TURNS} )?{AND} {NUMBER} {TURNS}\b|"
-    rf"\b{NUMBER} {TURNS} {AND} {NUMBER}(?= |$)"
+EACH = r"(?:the (?:two|2|both)|both|die (?:2|zwei|beiden)|les (?:2|deux)|las (?:2|dos)|(?:le|i) (?:2|due))"
+THINGS = {"turn": TURNS, "straight": STRAIGHTS}
+TWO = {
+    noun: re.compile(
+        rf"\b{nouns} (?:no |nr |number )?{NUMBER} {AND} (?:{nouns} )?{NUMBER}\b|"
+        rf"\b{NUMBER} (?:{nouns} )?{AND} {NUMBER} {nouns}\b|"
+        rf"\b{NUMBER} {nouns} {AND} {NUMBER}(?= |$)"
+    )
+    for noun, nouns in THINGS.items()
+}
+"""Two turns or straights that are named by their numbers, such as "turn 1 and the third"."""
+BOTH = {noun: re.compile(rf"\b{EACH} {nouns}\b") for noun, nouns in THINGS.items()}
+BETWEEN = re.compile(
+    rf"\b{EACH} {STRAIGHTS} (?:\w+ ){{0,4}}(?:between|in between|zwischen|entre|tra|fra) "
+    rf"(?:(?:the|den|les|las|le) )?{TURNS}\b"
 )
-"""Two turns that are named by their numbers, such as "turn 1 and the third"."""
-BOTH = re.compile(
-    rf"\b(?:the (?:two|2|both)|both|die (?:2|zwei|beiden)|les (?:2|deux)|las (?:2|dos)|le (?:2|due)) "
-    rf"{TURNS}\b"
-)
+"""The two straights that lie between the three turns of a road."""
 SWAP = re.compile(
     r"\b(?:swap|exchange|switch|interchange|trade places|change places|(?:ver)?tausch\w*|echang\w*|"
     r"intervert\w*|permut\w*|intercambi\w*|scambi\w*|invertendo di posto)\b"
 )
 MORE = re.compile(
     r"\b(?:left|right|links|rechts|gauche|droite|izquierda|derecha|sinistra|destra|start|end|finish|anfang|ziel|"
-    r"lengths?|sharpness|steepness|width|height|straights?|to|then|remove|make|from|back|aus|off|gentle|"
+    r"lengths?|sharpness|steepness|width|height|to|then|remove|make|from|back|aus|off|gentle|"
     r"sharp|hairpins?|second last|vorletzt\w*|for|directions?|sides?|richtung\w*|sens|sentido\w*|"
+    r"langen?|longueurs?|longitud\w*|lunghezz\w*|"
     r"radi\w+|raggi\w*|rayon\w*|angle\w*|winkel\w*|angul\w*|angol\w*|slope\w*|grade\w*|not|nicht|pas|no|non)\b"
 )
-"""Words that show that a request does not just swap the places of two turns."""
+"""Words that show that a request does not just swap the places of two turns or straights."""
 STAYS = re.compile(
     r" [,;.] (?:and |but |und |aber |et |mais |y |pero |e |ma )?[^,;.]*\b(?:stays?|keep|kept|remains?|"
     r"unchanged|untouched|bleib\w*|unverandert|reste(?:nt)?|inchange\w*|qued\w+|igual|sin cambi\w+|"
     r"rest(?:a|ano)|invariat\w)\b[^,;.]*(?: , wie [^,;.]*)?(?: \.)?$"
 )
 """A phrase at the end of a request that says what stays as it is."""
+TAKEN = re.compile(r"(.+?) ?: (angle|radius|length|slope) =([a-z].*)")
+"""A change that takes a value from another place."""
+LINE = re.compile(r"\blignes? droites?\b")
+"""French for a straight; "droite" alone is the right side."""
 MOST_WORDS = 12  # words of a request at most
 
 
@@ -130,7 +144,7 @@ def read_change(
     if asks_to_reverse(words):
         return ChangeReading(REVERSED, CERTAIN, ())
     text = slotted(words, is_change=True)
-    swapped = _turns_to_swap(text)
+    swapped = _things_to_swap(text)
     if swapped:
         return ChangeReading(f"{swapped}: swap", CERTAIN, ())
     found = scored_plans(roads.networks, words, roads.refuse_from, key=key)
@@ -149,7 +163,7 @@ def read_change(
     sure = confidence(weights, found_in, (*lost, *unused), text)
     sure = min(sure, DOUBT) if is_denial(words) else sure
     unused = tuple(dict.fromkeys([*lost, *unused]))
-    return ChangeReading(draft.line, sure, unused, other)
+    return ChangeReading(_with_both_ways(draft.line, text), sure, unused, other)
 
 
 def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
@@ -163,6 +177,17 @@ def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
     )
 
 
+def _with_both_ways(line: str, text: SlottedText) -> str:
+    """Returns a plan in which one place takes a value of another, with the other taking that of the first, if
+    the words ask to swap; any other plan unchanged.
+    """
+    parts = [TAKEN.fullmatch(part.strip()) for part in line.split(";")]
+    if not parts[0] or not all(parts) or not SWAP.search(" ".join(word.text for word in text.words)):
+        return line
+    one, what, other = parts[0].groups()
+    return f"{one}: {what} ={other}; {other}: {what} ={one}"
+
+
 def is_denial(words: str) -> bool:
     """Returns whether a change request says only what must not change, such as "don't make it longer"."""
     return DENIAL.fullmatch(words.strip().replace("’", "'")) is not None
@@ -174,16 +199,23 @@ def asks_to_reverse(words: str) -> bool:
     return REVERSE.fullmatch(" ".join(said.split())) is not None
 
 
-def _turns_to_swap(text: SlottedText) -> str | None:
-    """Returns the two turns that a change request asks to swap; None if it asks for anything else.
+def _things_to_swap(text: SlottedText) -> str | None:
+    """Returns the two turns or straights that a change request asks to swap; None if it asks for anything
+    else.
 
-    The turns are named as in plans of changes: "turn 1,3", or "turn all" for "the two turns".
+    They are named as in plans of changes: "turn 1,3", or "turn all" for "the two turns".
     """
     said = STAYS.sub("", " ".join(word.text for word in text.words if word.written))
-    if not SWAP.search(said) or MORE.search(said) or len(said.split()) > MOST_WORDS:
+    if not SWAP.search(said) or MORE.search(LINE.sub(" ", said)) or len(said.split()) > MOST_WORDS:
         return None
-    found = TWO.findall(said)
+    if BETWEEN.search(said):
+        return "straight all but(straight 1,-1)"
+    there = [noun for noun, nouns in THINGS.items() if re.search(rf"\b{nouns}\b", said)]
+    if len(there) != 1:
+        return None
+    noun = there[0]
+    found = TWO[noun].findall(said)
     if len(found) == 1:
         one, other = (place_of(word) or int(word) for word in found[0] if word)
-        return f"turn {one},{other}"
-    return "turn all" if BOTH.search(said) else None
+        return f"{noun} {one},{other}"
+    return f"{noun} all" if BOTH[noun].search(said) else None
