@@ -19,7 +19,8 @@ from roadgpt.brief import SURE as SURE_ENOUGH
 from roadgpt.brief.change import read_request
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import Change, EditRequest, Target
-from roadgpt.brief.readers.model.change_reading import asks_to_reverse
+from roadgpt.brief.readers.model.change_reading import _with_both_ways, asks_to_reverse
+from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.errors import EditError
 
 TRAINING = Path(__file__).resolve().parents[2] / "data" / "changes" / "train"
@@ -549,3 +550,33 @@ def test_any_row_of_words_is_read_or_refused(words: list[str]) -> None:
 def test_any_text_is_read_or_refused(words: str) -> None:
     with suppress(EditError):
         assert read_request(words).changes
+
+
+@pytest.mark.parametrize(
+    ("words", "line", "wanted"),
+    [
+        ("swap them", "turn 2: radius =turn 4", "turn 2: radius =turn 4; turn 4: radius =turn 2"),
+        (
+            "swap them",
+            "turn 2: radius =turn 4; turn 2: radius =turn 4",
+            "turn 2: radius =turn 4; turn 4: radius =turn 2",
+        ),
+        ("the same radius", "turn 2: radius =turn 4", "turn 2: radius =turn 4"),
+        ("swap it for that of turn 4", "turn 2: radius =turn 4", "turn 2: radius =turn 4"),
+        (
+            "swap them",
+            "turn 2: radius =turn 4; straight 1: length =straight 2",
+            "turn 2: radius =turn 4; straight 1: length =straight 2",
+        ),
+        (
+            "swap them",
+            "turn 1: radius =turn 2; turn 2: radius =turn 1; straight 1: length =straight 2",
+            "turn 1: radius =turn 2; turn 2: radius =turn 1; straight 1: length =straight 2",
+        ),
+        ("swap them", "turn 2: radius =20; turn 2: angle more", "turn 2: radius =20; turn 2: angle more"),
+    ],
+)
+def test_half_an_exchange_is_completed_and_nothing_else_is_touched(
+    words: str, line: str, wanted: str
+) -> None:
+    assert _with_both_ways(line, slotted(words, is_change=True)) == wanted

@@ -178,13 +178,16 @@ def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
 
 
 def _with_both_ways(line: str, text: SlottedText) -> str:
-    """Returns a plan in which one place takes a value of another, with the other taking that of the first, if
-    the words ask to swap; any other plan unchanged.
+    """Returns a plan that lets one place take a value of another, with the other taking that of the first, if
+    the words ask to swap and the plan asks for nothing else; any other plan unchanged.
     """
+    said = " ".join(word.text for word in text.words)
     parts = [TAKEN.fullmatch(part.strip()) for part in line.split(";")]
-    if not parts[0] or not all(parts) or not SWAP.search(" ".join(word.text for word in text.words)):
+    if not parts[0] or len(parts) > 2 or not SWAP.search(said) or " for " in said:
         return line
     one, what, other = parts[0].groups()
+    if len(parts) == 2 and not (parts[1] and parts[1][2] == what and parts[1][1].strip() in (one, other)):
+        return line
     return f"{one}: {what} ={other}; {other}: {what} ={one}"
 
 
