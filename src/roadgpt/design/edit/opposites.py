@@ -18,8 +18,8 @@ def settled(changes: Sequence[PlacedChange]) -> tuple[PlacedChange, ...]:
     and what would undo itself, such as "mirror", only once.
 
     "All turns by 10 degrees, turn 2 by 20" turns turn 2 by 20 degrees only. Limits hold for all their
-    elements but those that get a value. Slopes of parts are laid over those of more of the road by
-    ``search``.
+    elements but those that get a value inside them. ``search`` lays slopes of parts over those of more of
+    the road.
 
     Raises:
         EditError: two changes ask for opposite things of the same elements.
@@ -86,6 +86,7 @@ def _without_parts(placed: PlacedChange, changes: Sequence[PlacedChange]) -> Pla
     others = [other for other in changes if other.change.what == own.what and not other.change.bound]
     if not own.bound:
         return placed.without(others)
-    # a value that was checked against the limit needs no limit
-    valued = {each.name for other in others if other.change.is_state for each in other.elements}
+    values = [other for other in others if other.change.is_state and other.change.to is not None]
+    within = [other for other in values if not own.is_outside(other.change.to or 0.0)]
+    valued = {each.name for other in within for each in other.elements}
     return placed._replace(elements=tuple(each for each in placed.elements if each.name not in valued))
