@@ -149,6 +149,8 @@ def test_what_would_undo_itself_is_done_once() -> None:
     )
     assert [turn.side for turn in twice] == [turn.side for turn in once] == ["left", "left", "left"]
     assert after("road: mirror; road: mirror") == after("road: mirror")
+    told = edit(ROAD, read_change_plan("turn 2: side other; turn 2: side other"), World()).changes
+    assert told.count("'turn 2: side other' is asked for twice and done once") == 1
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ road before the edit. Elements that the request does not name keep all their val
 may be shifted or rotated, so that it stays inside the map.
 """
 
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -20,7 +21,7 @@ from roadgpt.design.differences import grades_changed, sentences
 from roadgpt.design.edit.candidates import candidates_of
 from roadgpt.design.edit.chatting import edited_by_chat
 from roadgpt.design.edit.opposites import settled
-from roadgpt.design.edit.placing import placed
+from roadgpt.design.edit.placing import PlacedChange, placed
 from roadgpt.design.edit.search import made
 from roadgpt.design.road_elements import elements_on_road
 from roadgpt.errors import EditError, IdleEditError, UnclearPlaceError
@@ -85,7 +86,8 @@ def edit(
 def _edited(design: Design, request: EditRequest, world: World, geometry: Geometry) -> Edited:
     """Returns the Design with the changes of a request that was read."""
     elements, found = elements_on_road(design, geometry)
-    changes = settled(placed(request.changes, elements))
+    asked = placed(request.changes, elements)
+    changes = settled(asked)
     if len(changes) > MOST_CHANGES:
         raise EditError(f"{len(changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer")
     proposed = candidates_of(changes, elements, found, world)
@@ -97,8 +99,17 @@ def _edited(design: Design, request: EditRequest, world: World, geometry: Geomet
         *grades_changed(design, road.design, stretches, geometry),
         *sentences(design, elements, found, road, draft),
         *(f"'{each.change.words}' was so already" for each in proposed if not each.ways),
+        *(
+            f"'{each.change.words}' is asked for twice and done once"
+            for each in asked
+            if not _is_in(each, changes)
+        ),
     ]
     return Edited(road.design, tuple(told), request.unused, request.confidence, request.other)
+
+
+def _is_in(placed: PlacedChange, changes: Sequence[PlacedChange]) -> bool:
+    return any(placed.change is each.change for each in changes)
 
 
 def _edited_by_model(
