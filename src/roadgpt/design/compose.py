@@ -74,18 +74,19 @@ def composed(order: TurnSequence, task: DraftTask) -> list[Element] | None:
         elements = _with_hills(elements, outline.hills, task.rng)
     length = _asked_length(outline, task.windows)
     whole = _with_length(elements, length, task) if length else elements
-    if whole is None or order.turns:
+    if whole is None or (order.turns and any(group.feature.kind == "turn" for group in outline.groups)):
         return whole
-    whole = _evened(whole, order.gaps[0])
+    whole = _evened(whole, [wish for gap in order.gaps for wish in gap])
     return _from_corner_to_corner(whole, task.world) if outline.turns.hi == 0 else whole
 
 
 def _evened(elements: list[Element], wishes: Sequence[Feature]) -> list[Element]:
-    """Returns the straights of a road without turns. Those of open length have equal lengths if each has a
-    number for its grade, so that "the first half climbs at 5 percent, the second falls at 5" comes out even,
-    or if they have equal heights.
+    """Returns the elements of a road none of whose turns has a place. The required straights of open length
+    have equal lengths if each has a number for its grade, so that "the first half climbs at 5 percent, the
+    second falls at 5" comes out even, or if they have equal heights.
     """
-    free = [element.length for element in elements if element.is_elastic]
+    is_free = [element.is_elastic and element.required_length is not None for element in elements]
+    free = [element.length for element, may_change in zip(elements, is_free, strict=True) if may_change]
     open_wishes = [wish for wish in wishes if not wish.length or wish.length.hi == inf]
     have_grades = all(wish.grade and wish.grade.number is not None for wish in open_wishes)
     heights = {abs(wish.climb.number or 0.0) if wish.climb else 0.0 for wish in open_wishes}
@@ -93,7 +94,10 @@ def _evened(elements: list[Element], wishes: Sequence[Feature]) -> list[Element]
     if not free or len(free) != len(open_wishes) or not are_alike:
         return elements
     length = sum(free) / len(free)
-    return [element._replace(straight=length) if element.is_elastic else element for element in elements]
+    return [
+        element._replace(straight=length) if may_change else element
+        for element, may_change in zip(elements, is_free, strict=True)
+    ]
 
 
 def _from_corner_to_corner(elements: list[Element], world: World) -> list[Element]:
