@@ -22,7 +22,7 @@
   all other Briefs.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from math import inf
 
 from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, Kind, Side, Slope, at_least, exactly, span
@@ -86,6 +86,22 @@ def _simpler(brief: Brief) -> Brief:
     ):
         brief = step(brief)
     return brief
+
+
+def with_continued_grades(clauses: Sequence[Clause]) -> list[Clause]:
+    """Returns the clauses; one that goes on climbing or falling behind a clause with a number for its grade
+    gets the same number: "down at 3 percent, then a right turn, still downhill". Straights that follow each
+    other have grades of their own, since only their grades tell them apart.
+    """
+    out: list[Clause] = []
+    for clause in clauses:
+        last = out[-1] if out else None
+        goes_on = last and last.incline and last.slope == clause.slope and clause.slope in ("up", "down")
+        is_open = not clause.incline and clause.climb is None and clause.kind not in BUMPS
+        if last and goes_on and is_open and {last.kind, clause.kind} != {"straight"}:
+            clause = clause.model_copy(update={"incline": last.incline})
+        out.append(clause)
+    return out
 
 
 def with_like_numbers(brief: Brief) -> Brief:

@@ -11,7 +11,7 @@ from math import inf
 from typing import Any, Literal, TypeVar
 
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
-from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of, with_like_numbers
+from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of, with_continued_grades, with_like_numbers
 from roadgpt.brief.part_climb import (
     climb_of_each,
     limits_of_climb,
@@ -218,7 +218,7 @@ def _with_figures_first(brief: Brief) -> Brief:
     percent, since the length of the road is open.
     """
     most = span(brief.steepest).hi
-    clauses = tuple(_within(clause, most) for clause in _with_continued_grades(brief.clauses))
+    clauses = tuple(_within(clause, most) for clause in with_continued_grades(brief.clauses))
     brief = _within(brief.model_copy(update={"clauses": clauses}), most)
     usual = SLOPES[brief.slope].grade if brief.slope and not brief.incline else None
     height, metres = _near(brief.climb, ROAD["climb"]), _near(brief.length, ROAD["length"])
@@ -227,22 +227,6 @@ def _with_figures_first(brief: Brief) -> Brief:
     low, high = sorted((abs(usual.lo), abs(usual.hi)))
     mean = 100 * min(abs(height.lo), abs(height.hi)) / metres.hi if metres else 0.0
     return brief.model_copy(update={"incline": Amount(lo=min(max(mean, LEAST_GRADE), low), hi=high)})
-
-
-def _with_continued_grades(clauses: Sequence[Clause]) -> list[Clause]:
-    """Returns the clauses; one that goes on climbing or falling behind a clause with a number for its grade
-    gets the same number: "down at 3 percent, then a right turn, still downhill". Straights that follow each
-    other have grades of their own, since only their grades tell them apart.
-    """
-    out: list[Clause] = []
-    for clause in clauses:
-        last = out[-1] if out else None
-        goes_on = last and last.incline and last.slope == clause.slope and clause.slope in ("up", "down")
-        is_open = not clause.incline and clause.climb is None and clause.kind not in BUMPS
-        if last and goes_on and is_open and {last.kind, clause.kind} != {"straight"}:
-            clause = clause.model_copy(update={"incline": last.incline})
-        out.append(clause)
-    return out
 
 
 def _within(said: Sloped, most: float) -> Sloped:
