@@ -29,7 +29,7 @@ CAUTION = 2.0
 """Weight of a wrong reading of a route, relative to a right one: a confident wrong reading does more harm
 than an unnecessary doubt.
 """
-CAUTION_OF_ROADS = 3.3
+CAUTION_OF_ROADS = 6.0
 """Weight of a wrong reading of a single road, relative to a right one."""
 PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
 PULL_OF_TOKENS = 10.0  # the same for the inputs that say which tokens a plan has, of which there are many

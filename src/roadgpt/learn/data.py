@@ -29,14 +29,14 @@ from roadgpt.learn.routes import draw_route, routes
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
 SHARES: Mapping[str, float] = {
-    "hand": 0.12,
-    "free": 0.20,
+    "hand": 0.11,
+    "free": 0.19,
     "contrasts": 0.09,
     "changes": 0.13,
-    "generated": 0.08,
+    "generated": 0.06,
     "generated contrasts": 0.06,
-    "generated changes": 0.08,
-    "generated specs": 0.24,
+    "generated changes": 0.11,
+    "generated specs": 0.25,
 }
 """The share of each series of pairs in the training of the networks for single roads and changes."""
 SHARES_OF_ROUTES: Mapping[str, float] = {

@@ -1,7 +1,6 @@
 """Reads a change request with the networks that read descriptions of single roads.
 
-Rules read the requests to reverse the road, or to swap two turns or straights, which these networks have not
-learnt yet.
+Rules read the requests to swap two turns or straights, which these networks often take for unclear.
 """
 
 import re
@@ -10,15 +9,13 @@ from typing import NamedTuple
 
 from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features
 from roadgpt.brief.readers.model.ensemble import Ensemble
-from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.ordinals import PLACE, place_of
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.errors import BriefError
 
-REVERSED = "road: reverse"
 CERTAIN = 0.97
-"""The confidence in a request that rules read: to reverse the road, or to swap two turns or straights."""
+"""The confidence in a request that rules read: to swap two turns or straights."""
 ALMOST = 2.0  # difference of score
 DENIAL = re.compile(
     r"(?:please )?(?:do not|don'?t|never) [^,;:.]*[.!]*"
@@ -28,50 +25,6 @@ DENIAL = re.compile(
     r"|non (?:fare|rendere|cambiare|mettere) [^,;:.]*[.!]*",
     re.IGNORECASE,
 )
-POLITE = (
-    r"please|now|can you|could you|would you|just|simply|bitte|jetzt|einfach|mal|s'il (?:te|vous) plait|"
-    r"maintenant|por favor|ahora|per favore|adesso|ora"
-)
-WHOLE = r"(?:whole |entire |ganze |gesamte |toute |tout |entera |intera )?"
-ENGLISH = (
-    rf"(?:reverse|turn around|flip around) (?:the )?{WHOLE}(?:road|route|course|track|direction)"
-    r"(?: of (?:the )?(?:road|route|travel|driving))?|"
-    r"reverse the (?:driving|travel) direction|"
-    r"(?:swap|exchange|switch) (?:the )?(?:start|beginning) and (?:the )?(?:end|finish)|"
-    r"(?:let )?(?:the )?start and (?:the )?(?:end|finish) (?:should |shall )?(?:change|trade|swap) places|"
-    r"(?:drive|run|take|make|do)(?: it| this| the (?:same )?(?:road|route))?"
-    r" (?:backwards|in reverse|the other way(?: a?round)?|in the (?:other|opposite|reverse) direction|"
-    r"from (?:the )?(?:end|finish) to (?:the )?(?:start|beginning))"
-)
-GERMAN = (
-    rf"(?:(?:dreh|kehr)e? )?(?:die )?{WHOLE}(?:stra(?:ss|ß)e|strecke|fahrtrichtung|richtung)"
-    r" (?:um|umdrehen|umkehren|andersherum|rueckwaerts|ruckwarts)|"
-    r"(?:(?:tausche?|vertausche?) )?start und (?:ziel|ende)(?: (?:ver)?tauschen)?|"
-    r"(?:fahre? |das ganze )?(?:sie |es |die(?:selbe| gleiche)? (?:strecke|route) )?"
-    r"(?:in (?:der |die )?(?:gegenrichtung|umgekehrte[rn]? richtung|"
-    r"andere[rn]? richtung)|andersherum|ruckwarts)(?: fahren)?"
-)
-FRENCH = (
-    rf"(?:invers|renvers|retourn)e[rz]? (?:la |le |l')?{WHOLE}(?:route|parcours|trace|sens)"
-    r"(?: de (?:la )?(?:route|marche|parcours|circulation))?|"
-    r"(?:parcour\w+|prend\w*|roule[rz]?) ?-? ?(?:l[ae] )?(?:meme )?(?:route |parcours )?(?:en sens inverse|"
-    r"dans l'autre sens|a l'envers)|echange[rz]? (?:le )?depart et (?:l')?arrivee"
-)
-SPANISH = (
-    rf"(?:invierte|invertir|dale la vuelta a|da la vuelta a) (?:la |el )?{WHOLE}"
-    r"(?:carretera|ruta|recorrido|sentido)(?: de (?:la )?(?:marcha|carretera|circulacion))?|"
-    r"(?:recorre\w*|conduce\w*|haz\w*) (?:la |el )?(?:misma )?(?:carretera |ruta )?"
-    r"(?:al reves|en sentido contrario|en sentido inverso)|"
-    r"intercambia (?:la )?salida y (?:la )?(?:meta|llegada)"
-)
-ITALIAN = (
-    rf"(?:inverti|invertire|capovolgi) (?:la |il )?{WHOLE}(?:strada|percorso|senso|direzione|tracciato)"
-    r"(?: di (?:marcia|percorrenza))?|"
-    r"(?:percorri|guida|fai)(?:la|lo)? (?:la (?:stessa )?strada )?(?:al contrario|"
-    r"in senso (?:inverso|opposto|contrario))|"
-    r"scambia (?:la )?partenza e (?:l')?arrivo"
-)
-REVERSE = re.compile("|".join((ENGLISH, GERMAN, FRENCH, SPANISH, ITALIAN)))
 TURNS = (
     r"(?:turns?|bends?|curves?|corners?|kurven?|kehren?|bogen|virages?|courbes?|curvas?|curve?|tornanti|"
     r"giros?)"
@@ -141,8 +94,6 @@ def read_change(
     Raises:
         BriefError: the network wrote no plan that can be read.
     """
-    if asks_to_reverse(words):
-        return ChangeReading(REVERSED, CERTAIN, ())
     text = slotted(words, is_change=True)
     swapped = _things_to_swap(text)
     if swapped:
@@ -194,12 +145,6 @@ def _with_both_ways(line: str, text: SlottedText) -> str:
 def is_denial(words: str) -> bool:
     """Returns whether a change request says only what must not change, such as "don't make it longer"."""
     return DENIAL.fullmatch(words.strip().replace("’", "'")) is not None
-
-
-def asks_to_reverse(words: str) -> bool:
-    """Returns whether a change request asks to reverse the whole road, and for nothing else."""
-    said = re.sub(rf"\b(?:{POLITE})\b|[.,!?]", " ", plain(words))
-    return REVERSE.fullmatch(" ".join(said.split())) is not None
 
 
 def _things_to_swap(text: SlottedText) -> str | None:
