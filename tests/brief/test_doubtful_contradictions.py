@@ -9,9 +9,9 @@ from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.refusal import ContradictionError
 from roadgpt.brief.words import SURE
+from roadgpt.errors import BriefError
 
 HONEST = [
-    ("Zwei Kurven und die ganze Zeit nur rauf, runter geht's nirgends.", "turn x2 | up"),
     ("Nur bergauf, nirgends bergab, und kaum mehr als 3 % steil.", "| up turns=1.. steepest=..3"),
     (
         "Tres curvas y ni una más: izquierda de 100 grados como mínimo, derecha de 40 como máximo, izquierda"
@@ -41,6 +41,12 @@ def test_what_only_looks_like_a_contradiction_is_read_with_a_doubt(words: str, m
     assert brief.confidence <= 0.5
 
 
+@pytest.mark.xfail(raises=ContradictionError, strict=True, reason="the networks are certain of it")
+def test_a_denial_that_says_the_same_again_is_no_contradiction() -> None:
+    words = "Zwei Kurven und die ganze Zeit nur rauf, runter geht's nirgends."
+    assert plan(read(words)) == "turn x2 | up"
+
+
 @pytest.mark.parametrize(("words", "meant"), LEARNT)
 def test_denials_and_corrections_that_the_networks_have_learnt_leave_no_doubt(words: str, meant: str) -> None:
     brief = read(words)
@@ -52,7 +58,6 @@ def test_denials_and_corrections_that_the_networks_have_learnt_leave_no_doubt(wo
     "words",
     [
         "Four curves, all to the left, two of them to the right.",
-        "A road with exactly two turns: three to the left and one to the right.",
         "Eine durchgehend ebene Straße ohne jedes Gefälle, die am Ende 10 m höher liegt als am Anfang.",
         "I need five turns, all of them to the right, and the third one goes to the left.",
         "Cuatro curvas, pero ninguna a la izquierda y ninguna a la derecha.",
@@ -61,6 +66,11 @@ def test_denials_and_corrections_that_the_networks_have_learnt_leave_no_doubt(wo
 def test_real_contradictions_are_refused_with_what_may_be_meant(words: str) -> None:
     with pytest.raises(ContradictionError, match=r"contradicts itself about .*; or is this meant: --plan"):
         read(words)
+
+
+def test_a_real_contradiction_for_which_no_plan_is_likely_is_refused() -> None:
+    with pytest.raises(BriefError, match="contradicts itself about the number of turns"):
+        read("A road with exactly two turns: three to the left and one to the right.")
 
 
 @pytest.mark.parametrize(

@@ -41,6 +41,22 @@ def test_a_plan_with_the_told_number_of_turns_is_preferred() -> None:
     assert most_plausible(found, slotted("six turns or seven turns")).line == "turn x7 alternating"
 
 
+@pytest.mark.parametrize(
+    ("words", "behind", "chosen"),
+    [
+        ("a winding road with at least five bends", 2.7, "| turns=5.."),
+        ("strada tortuosa, almeno cinque curve", 2.7, "| turns=5.."),
+        ("eine kurvige Straße, höchstens fünf Kurven", 2.7, "winding"),
+        ("a winding road with at least five bends", 4.7, "winding"),
+        ("a winding road, 5 % uphill", 2.7, "winding"),
+        ("a winding road with five bends, then six turns", 2.7, "winding"),
+    ],
+)
+def test_turns_that_are_counted_once_are_not_left_out(words: str, behind: float, chosen: str) -> None:
+    bound = "| turns=..6" if "höchstens" in words else "| turns=5.."
+    assert most_plausible(plans(("winding", -0.1), (bound, -behind)), slotted(words)).line == chosen
+
+
 def test_refusals_stay() -> None:
     found = plans(("!contradiction length", -0.1), ("turn | len=[1]", -0.2))
     assert most_plausible(found, slotted("a bend on a road of 1 km")).line == "!contradiction length"

@@ -21,11 +21,14 @@ NEARLY = 0.7  # difference of score
 ALMOST = 2.0  # difference of score
 CLOSE = 1.0  # difference of score
 FAIRLY = 1.5  # difference of score
+FAR = 4.0  # difference of score
 NOUN = rf"(?:{'|'.join(sorted({*COUNTED, *ONE_TURN}, key=len, reverse=True))})"
 COUNT = re.compile(
     rf"(?<!\w )\b(\d+) (?:\w+ )?(?:{NOUN})\b|\b(?:with|mit|avec|con|of|has|have) (\d+) {NOUN}\b"
 )
 OF_PART = ("first", "last", "other", "ersten", "letzten", "anderen", "les", "las", "los", "le")
+COUNTS = frozenset({"x", "turns=", "lefts=", "rights=", "turn", "hairpin", "switchback", "u_turn"})
+"""Tokens of plans that say how many turns there are, if only by naming each."""
 ANY_COUNT = re.compile(rf"{''.join(f'(?<!{word} )' for word in OF_PART)}\b(\d+) (?:\w+ )?{NOUN}\b")
 """A number of turns; a number behind a word such as "first" counts only a part, and does not match."""
 
@@ -64,11 +67,21 @@ def _with_all_numbers(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredP
 def _with_told_turns(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
     """Returns the likeliest plan of a single road with as many turns as the words count, if it is nearly as
     likely as the first plan; else None.
+
+    If the words count turns once and the first plan counts none, as in "winding, at least 5 bends", a plan
+    with this number may be much less likely.
     """
-    told = _told_turns(text.text)
-    near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - FAIRLY)
+    told, counted = _told_turns(text.text), {*map(int, ANY_COUNT.findall(text.text))} - {1}
+    far = FAR if len(counted) == 1 and COUNTS.isdisjoint(found[0].tokens) else FAIRLY
+    near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - far)
     kept = (draft for draft in near if not is_of_junctions(draft.line) and can_be_kept(draft.line))
+    if far == FAR:
+        return next((draft for draft in kept if counted & _ends(_turns(draft.line))), None)
     return next((draft for draft in kept if told is not None and _turns(draft.line) == exactly(told)), None)
+
+
+def _ends(amount: Amount) -> set[float]:
+    return {end for end in (amount.lo, amount.hi) if end is not None}
 
 
 def _told_turns(said: str) -> int | None:
