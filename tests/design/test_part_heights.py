@@ -48,6 +48,13 @@ def test_a_crest_alone_is_as_high_as_was_said(plan: str) -> None:
     assert min(tops) > 2.7
 
 
+@pytest.mark.parametrize(("height", "length"), [(5, 130), (6, 150), (6, 160)])
+def test_a_steep_hill_on_a_short_road_is_as_high_on_both_sides(height: int, length: int) -> None:
+    for z in heights(f"straight up climb={height}; straight down climb={height} | turns=0 len={length}"):
+        assert z.max() == pytest.approx(height, abs=0.2)
+        assert z.max() - z[-1] == pytest.approx(height, abs=0.2)
+
+
 def test_a_crest_behind_a_dip_rises_from_its_depth_to_its_height() -> None:
     found = heights("dip climb=2; crest climb=4")
     assert np.median([z.min() for z in found]) == pytest.approx(-2, abs=0.3)

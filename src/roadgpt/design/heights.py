@@ -1,7 +1,7 @@
 """Chooses the heights of a draft at random: one incline per turn, and one or more per straight."""
 
 from collections.abc import Sequence
-from itertools import accumulate, pairwise
+from itertools import pairwise
 from math import inf
 
 import numpy as np
@@ -11,12 +11,12 @@ from roadgpt.brief.outline import Outline
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import STEEPEST
 from roadgpt.check.measures import LEVEL
+from roadgpt.design.climbs import asks_for_heights, with_grades_of_climbs
 from roadgpt.design.elements import TENTH, required_hills
 from roadgpt.design.sequence import is_hairpin
 from roadgpt.design.vertical import Pace, softened
 from roadgpt.design.windows import Windows
 from roadgpt.geometry.curve import Array
-from roadgpt.road.elevation import MOST_OF_SLOPE
 
 NEAR_CLIMB = 0.1  # share of the tolerance of a climb that is used
 LEVEL_SHARE, SLOPE_SHARE = 0.22, 0.3  # of roads without required heights: level, of one slope; others roll
@@ -34,8 +34,6 @@ HARDLY_SLOPED = Range(-0.8, 0.8)  # percent, of parts of which no slope is asked
 SHORT_JOIN = 30.0  # m, of a straight between two parts with heights, which takes no slope of its own
 MOST_SHIFT = 40.0  # percentage points
 BISECTIONS = 50
-ROUNDS = 12  # of estimating how much height the parabola on a crest takes away
-FEW_ROUNDS = 3  # beside a straight of fixed length, which steeper slopes would shorten by longer parabolas
 
 
 def drawn_heights(
@@ -51,7 +49,7 @@ def drawn_heights(
 
     A straight of several slopes becomes several elements. For ``ease`` and ``bumps``, see ``Pace.eased``.
     """
-    plan = _with_grades_of_climbs(plan, windows.limit, pace, ease, bumps)
+    plan = with_grades_of_climbs(plan, windows.limit, pace, ease, bumps)
     is_hilly = bool(outline.hills and outline.hills.lo > required_hills(plan))
     if is_hilly:
         assert outline.hills is not None
@@ -84,69 +82,6 @@ def drawn_heights(
     final = iter(rounded(values).tolist())
     drawn = [[element._replace(incline=next(final)) for element in own] for own in drawn]
     return [element for own in _joining(drawn) for element in own]
-
-
-def _with_grades_of_climbs(
-    plan: Sequence[Element], limit: Range, pace: Pace, ease: float, bumps: bool
-) -> Sequence[Element]:
-    """Returns the elements of a plan with the grades in percent that give the heights that are asked for.
-
-    Where the road rises and then falls, the parabola between the two slopes takes away height at its vertex,
-    which both slopes make up for.
-    """
-    if not _asks_for_heights(plan):
-        return plan
-    joints = list(accumulate(element.length for element in plan))[:-1]
-    radii = [pace.eased(s, ease, bumps) for s in joints]
-    grades = [_grade_of_climb(element, 0.0) for element in plan]
-    for _ in range(FEW_ROUNDS if any(element.has_fixed_length for element in plan) else ROUNDS):
-        lost = [0.0] * len(plan)
-        for at, ((one, other), radius) in enumerate(zip(pairwise(grades), radii, strict=True)):
-            if one * other < 0 and all(plan[i].required_climb for i in (at, at + 1)):
-                change = abs(one - other) / 100
-                room = 2 * MOST_OF_SLOPE * min(plan[at].length, plan[at + 1].length)  # half on each side
-                cut = min(radius * change, room) * change / 8
-                lost[at], lost[at + 1] = lost[at] + cut, lost[at + 1] + cut
-        grades = [_grade_of_climb(element, metres) for element, metres in zip(plan, lost, strict=True)]
-    return [_with_grade(element, grade, limit) for element, grade in zip(plan, grades, strict=True)]
-
-
-def _asks_for_heights(plan: Sequence[Element]) -> bool:
-    """Returns whether a height is asked of a part; parts of which no slope is asked then stay level."""
-    return any(element.required_climb for element in plan)
-
-
-def _grade_of_climb(element: Element, lost: float) -> float:
-    """Returns the grade in percent that gives an element its height and ``lost`` metres more; 0 if it needs
-    none.
-    """
-    if element.required_climb is None:
-        return 0.0
-    metres = _height(element.required_climb)
-    return 100 * (metres + (lost if metres > 0 else -lost)) / element.length
-
-
-def _height(asked: Range) -> float:
-    """Returns the height in metres to design: the number that was given, or one inside the range: a little
-    beyond its end nearer to 0, or half of "at most" a height.
-    """
-    if asked.number is not None:
-        return asked.number
-    near, far = sorted((asked.lo, asked.hi), key=abs)
-    return near * 1.1 if near and abs(far) > 1.2 * abs(near) else (near + far) / 2
-
-
-def _with_grade(element: Element, grade: float, limit: Range) -> Element:
-    asked = element.required_climb
-    if asked is None:
-        return element
-    low, high = sorted(grade * end / _height(asked) for end in (asked.lo, asked.hi))
-    found = Range(low, high, number=grade)
-    for other in (limit, element.required_grade):
-        both = overlap(found, other) or found
-        near = min(max(grade, limit.lo), limit.hi)  # as high as it can be, if it cannot be as high as asked
-        found = both if both.lo <= both.hi else Range(near, near)
-    return element._replace(required_grade=found)
 
 
 def rounded(values: Array) -> Array:
@@ -186,7 +121,7 @@ def _are_level(plan: Sequence[Element], outline: Outline, windows: Windows) -> l
     it; a short straight between two parts with heights only joins them.
     """
     is_steep = outline.steepest is not None and outline.steepest.lo > 0
-    if windows.base or outline.climb or outline.hills or is_steep or not _asks_for_heights(plan):
+    if windows.base or outline.climb or outline.hills or is_steep or not asks_for_heights(plan):
         return [False] * len(plan)
     has_height = [False, *(element.required_climb is not None for element in plan), False]
     joins = [

@@ -7,7 +7,7 @@ draft, so that a later draft can meet requirements that leave little room.
 """
 
 from collections import Counter
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.refusal import NoRoomError
 from roadgpt.check.bumps import asks_for_bumps
+from roadgpt.design.climbs import asks_for_heights, has_room_for_heights
 from roadgpt.design.compose import composed
 from roadgpt.design.draw import DraftTask
 from roadgpt.design.grade_correction import corrected_draft
@@ -256,12 +257,16 @@ class DraftSearch:
         """Returns the segments of a plan with slopes that meet all requirements; None if none were found."""
         pace = Pace.along(drafted.elements, self.world)
         # shorter parabolas leave more of a straight at the grade and the length that were said
-        eases = EASES[1:] if any(map(_has_exact_slope, drafted.elements)) else EASES
-        tries = [(ease, False) for ease in (*eases, EASES[-1])]
+        has_heights = asks_for_heights(drafted.elements)
+        first = 1 if any(map(_has_exact_slope, drafted.elements)) else 0
+        roomy = partial(has_room_for_heights, drafted.elements, self.windows.limit, pace, bumps=False)
+        eases = [ease for ease in EASES[first:-1] if roomy(ease=ease)]
+        tries = [(ease, False) for ease in (*eases, EASES[-1], EASES[-1])]
         tries += [(ease, True) for ease in EASES_OF_BUMPS] if self.bumps else []
         for ease, bumps in tries:
             sloped = drawn_heights(drafted.elements, self.outline, self.windows, self.rng, pace, ease, bumps)
-            for share in dict.fromkeys((1.0, ease)):  # what is not required may be comfortable after all
+            # what is not required may be comfortable after all, unless it takes away a height
+            for share in dict.fromkeys((ease if has_heights else 1.0, ease)):
                 segments, broken = corrected_draft(
                     sloped, drafted.line, self.outline, self.windows.limit, pace, ease, share, bumps
                 )
