@@ -256,8 +256,8 @@ class DraftSearch:
     def with_heights(self, drafted: PlacedPlan) -> tuple[Segment, ...] | None:
         """Returns the segments of a plan with slopes that meet all requirements; None if none were found."""
         pace = Pace.along(drafted.elements, self.world)
-        # shorter parabolas leave more of a straight at the grade and the length that were said
         has_heights = asks_for_heights(drafted.elements)
+        # shorter parabolas leave more of a straight at the grade and the length that were said
         first = 1 if any(map(_has_exact_slope, drafted.elements)) else 0
         roomy = partial(has_room_for_heights, drafted.elements, self.windows.limit, pace, bumps=False)
         eases = [ease for ease in EASES[first:-1] if roomy(ease=ease)]

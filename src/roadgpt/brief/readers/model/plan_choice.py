@@ -72,15 +72,17 @@ def _with_told_turns(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPl
     with this number may be much less likely.
     """
     told, counted = _told_turns(text.text), {*map(int, ANY_COUNT.findall(text.text))} - {1}
-    far = FAR if len(counted) == 1 and COUNTS.isdisjoint(found[0].tokens) else FAIRLY
-    near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - far)
+    counts_none = len(counted) == 1 and COUNTS.isdisjoint(found[0].tokens)
+    least = found[0].score - (FAR if counts_none else FAIRLY)
+    near = (draft for draft in found if not draft.is_refusal and draft.score > least)
     kept = (draft for draft in near if not is_of_junctions(draft.line) and can_be_kept(draft.line))
-    if far == FAR:
+    if counts_none:
         return next((draft for draft in kept if counted & _ends(_turns(draft.line))), None)
     return next((draft for draft in kept if told is not None and _turns(draft.line) == exactly(told)), None)
 
 
 def _ends(amount: Amount) -> set[float]:
+    """Returns the numbers between which an amount lies, one or two."""
     return {end for end in (amount.lo, amount.hi) if end is not None}
 
 
