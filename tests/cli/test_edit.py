@@ -71,6 +71,16 @@ def test_a_run_is_changed_into_a_new_folder() -> None:
     assert Path("new/test.0001.json").is_file()
 
 
+def test_the_run_of_a_road_that_needs_a_larger_map_has_one() -> None:
+    old = made()
+    result = invoke("edit", str(old), "--plan", "straight -1: length +300", "--out", "new", "--no-plot")
+    assert result.exit_code == 0
+    run = read_run(Path("new", "runs", "0001"))
+    assert run.is_valid
+    assert run.world.site.map_size > read_run(old).world.site.map_size == 250
+    assert f"the map is {run.world.site.map_size:g} m wide" in result.stdout
+
+
 def test_pictures_show_the_road_before_and_after() -> None:
     made()
     assert invoke("edit", "old", *CHANGE, "--out", "new").exit_code == 0

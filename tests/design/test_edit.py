@@ -130,7 +130,7 @@ def test_turns_to_one_hand_do_not_run_into_each_other() -> None:
         ("h12", "road: remove", "no road would be left"),
         ("h07", "road: slope flat", "is so already"),
         ("h07", "road: slope less", "is so already"),
-        ("h01", "straight 1: length =900", "leaves the map"),
+        ("h01", "straight 1: length =1900", "leaves the map"),
         ("h01", "road: length =5", "too short"),
         ("h01", "turn middle: angle more", "none is in the middle"),
         ("h07", "road: mirror", "mirror image is the same"),
@@ -154,10 +154,13 @@ def test_a_straight_between_turns_of_one_hand_goes_and_the_turns_stay_two() -> N
     assert [turn.side for turn in after.turns] == ["left", "left"]
 
 
-def test_an_angle_and_a_radius_may_both_be_said() -> None:
-    turn = seen(changed("h01", "turn 2: angle =80; turn 2: radius =25")).turns[1]
-    assert turn.degrees == pytest.approx(80, abs=2)
-    assert turn.radius == pytest.approx(25, rel=0.08)
+@pytest.mark.parametrize("radius", [18, 25, 45])
+@pytest.mark.parametrize("is_radius_first", [True, False])
+def test_an_angle_and_a_radius_may_both_be_said(radius: int, is_radius_first: bool) -> None:
+    wishes = ["turn 2: angle =45", f"turn 2: radius ={radius}"]
+    turn = seen(changed("h01", "; ".join(wishes[::-1] if is_radius_first else wishes))).turns[1]
+    assert turn.degrees == pytest.approx(45, abs=2)
+    assert turn.radius == pytest.approx(radius, rel=0.08)
 
 
 def test_turns_that_are_excepted_by_number_stay() -> None:
@@ -201,6 +204,46 @@ def test_roads_on_other_maps_keep_inside() -> None:
     design = draft(Brief(), world, seed=3)
     after = edited(design, "add turn left at_end", world).design
     assert check.inspect(build(after), None, world) == ()
+
+
+LONG_TAIL = "add straight len=250 at_end"
+
+
+def test_the_usual_map_grows_rather_than_the_rest_of_the_road_shrinks() -> None:
+    before = ROADS["h01"]
+    after = edited(before, LONG_TAIL)
+    size = after.world.site.map_size
+    assert size > WORLD.site.map_size
+    assert any(f"the map is {size:g} m wide" in sentence for sentence in after.changes)
+    assert after.design.segments[: len(before.segments)] == before.segments
+    assert build(after.design).length == pytest.approx(build(before).length + 250, abs=1)
+    assert check.inspect(build(after.design), None, after.world) == ()
+    assert check.inspect(build(after.design), None, WORLD) != ()
+
+
+def test_a_map_of_another_size_stays_and_what_then_changes_is_told() -> None:
+    world = World(site=Site(map_size=260))
+    with pytest.raises(EditError, match="the map runs from 0 to 260 m"):
+        edited(ROADS["h01"], "straight -1: length +900", world)
+    after = edited(ROADS["h01"], LONG_TAIL, world)
+    assert after.world == world
+    assert any("to keep it valid" in sentence for sentence in after.changes)
+    assert check.inspect(build(after.design), None, world) == ()
+
+
+@pytest.mark.parametrize("length", [30, 60])
+def test_a_straight_behind_a_new_turn_at_the_end_is_as_long_as_the_words_say(length: int) -> None:
+    plan = f"add turn right deg=60 r=25 at_end; add straight len={length} at_end"
+    found = seen(changed("h01", plan))
+    assert len(found.turns) == len(seen(ROADS["h01"]).turns) + 1
+    assert found.straights[-1].length == pytest.approx(length, abs=2.5)
+
+
+@pytest.mark.parametrize("length", [15, 40])
+def test_a_straight_added_to_one_that_is_there_makes_it_longer_by_that_much(length: int) -> None:
+    before = seen(ROADS["h01"]).straights[-1].length
+    after = seen(changed("h01", f"add straight len={length} at_end")).straights[-1].length
+    assert after == pytest.approx(before + length, abs=1)
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.words import SURE
 from roadgpt.design import draft
-from roadgpt.design.edit import edit
+from roadgpt.design.edit import Edited, edit
 from roadgpt.errors import EditError, UnclearPlaceError
 from roadgpt.road import Design, World, build
 
@@ -24,7 +24,7 @@ HONOURED, LEFT_ALONE = 0.95, 0.99
 
 
 @cache
-def answers() -> tuple[tuple[dict[str, Any], Design, Design | str], ...]:
+def answers() -> tuple[tuple[dict[str, Any], Design, Edited | str], ...]:
     """Every request that has a plan, with its road, and the changed one or the refusal."""
     known, out = roads(), []
     for row in requests():
@@ -32,7 +32,7 @@ def answers() -> tuple[tuple[dict[str, Any], Design, Design | str], ...]:
             continue
         old = known[row["road"]]
         try:
-            out.append((row, old, edit(old, read_change_plan(row["plan"]), World()).design))
+            out.append((row, old, edit(old, read_change_plan(row["plan"]), World())))
         except EditError as error:
             out.append((row, old, str(error)))
     return tuple(out)
@@ -50,14 +50,15 @@ def referee() -> ModuleType | None:
     return module
 
 
-def wrong(row: dict[str, Any], old: Design, got: Design | str, judge: ModuleType | None) -> str:
+def wrong(row: dict[str, Any], old: Design, answer: Edited | str, judge: ModuleType | None) -> str:
     """What is wrong with an answer; empty where the request was honoured."""
     if "refused" in row:
-        is_told = isinstance(got, str) and all(word in got for word in row["refused"])
-        return "" if is_told else f"not refused as it should be: {got}"
-    if isinstance(got, str):
-        return got
-    findings = check.inspect(build(got), None, World())
+        is_told = isinstance(answer, str) and all(word in answer for word in row["refused"])
+        return "" if is_told else f"not refused as it should be: {answer}"
+    if isinstance(answer, str):
+        return answer
+    got = answer.design
+    findings = check.inspect(build(got), None, answer.world)
     said = [finding.sentence for finding in findings] + misses(row, old, got, ours)
     if judge is not None:
         with suppress(IndexError):  # this referee cannot measure a road that turns up to its very end
@@ -83,15 +84,15 @@ def test_what_nobody_spoke_of_stays_as_it_was() -> None:
     changed = [
         (row["road"], row["request"], besides)
         for row, old, got in answers()
-        if isinstance(got, Design) and (besides := changed_besides(old, got, row["touched"]))
+        if isinstance(got, Edited) and (besides := changed_besides(old, got.design, row["touched"]))
     ]
     assert len(changed) <= (1 - LEFT_ALONE) * len(answers()), changed
 
 
 def test_no_changed_road_is_against_the_rules() -> None:
     for row, _, got in answers():
-        if isinstance(got, Design):
-            assert check.inspect(build(got), None, World()) == (), row["request"]
+        if isinstance(got, Edited):
+            assert check.inspect(build(got.design), None, got.world) == (), row["request"]
 
 
 @pytest.mark.parametrize("break_it", ["sides", "T2"])

@@ -43,7 +43,8 @@ def command(run: str, words: tuple[str, ...], as_json: bool, quiet: bool, **rest
 
     RUN is a run, a folder that holds one run, or a file with a RoadGPT design. The changed road is written
     into a new folder. Everything that the request does not refer to stays the same. World, driver and rules
-    are those of the run; --map-size applies only to a design from a file.
+    are those of the run, but a map of the usual 250 m grows if the changed road needs it; --map-size applies
+    only to a design from a file.
 
     \b
     roadgpt edit my-roads/runs/0001 "make the second turn sharper and the end downhill"
@@ -114,7 +115,7 @@ def edit_road(
     setup = setup.model_copy(update={"designer": designer, "chat": chat, "drives": drives})
     old = prove(design, before.seed, before.world, setup.model_copy(update={"drives": False}))
     with redirect_stdout(sys.stderr):  # a user's driver may print
-        run = prove(made.design, before.seed, before.world, setup)
+        run = prove(made.design, before.seed, made.world, setup)
     folder = folder_for(words, before.seed, out)
     place = write_edit(run, old, words, made.changes, road, folder, options.drawing_of(pictures))
     row = row_of(run, str(folder / test_name(1)), test_name(1))

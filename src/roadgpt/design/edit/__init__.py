@@ -41,6 +41,8 @@ class Edited(NamedTuple):
     """Estimated probability that the request was read correctly."""
     other: str = ""
     """The plan of another reading that is likely; empty if there is none."""
+    world: World = World()
+    """The World before the edit, or one with a larger map if the changed road needs it."""
 
 
 def edit(
@@ -56,7 +58,8 @@ def edit(
     Args:
         design: the Design before the edit; this value itself is not changed.
         words: the text of a change request, or the EditRequest read from it.
-        world: size of the map, and limits that the rules check, such as the steepest grade.
+        world: size of the map, and limits that the rules check, such as the steepest grade. A map of the
+            usual size grows if the changed road needs it.
         geometry: the kind of geometry that the road is built with.
         designer: name of a designer. If it uses a language model, the model makes the change; otherwise rules
             make it.
@@ -105,7 +108,11 @@ def _edited(design: Design, request: EditRequest, world: World, geometry: Geomet
             if not _is_in(each, changes)
         ),
     ]
-    return Edited(road.design, tuple(told), request.unused, request.confidence, request.other)
+    found_world = road.requirements.world
+    before, now = world.site.map_size, found_world.site.map_size
+    if now != before:
+        told.append(f"the map is {now:g} m wide, since the changed road does not fit on one of {before:g} m")
+    return Edited(road.design, tuple(told), request.unused, request.confidence, request.other, found_world)
 
 
 def _is_in(placed: PlacedChange, changes: Sequence[PlacedChange]) -> bool:
@@ -127,7 +134,8 @@ def _edited_by_model(
     road = edited_by_chat(
         open_chat(settings), settings, design, said, elements, found, allowed, world, geometry
     )
-    return Edited(road.design, sentences(design, elements, found, road, road.design))
+    told = sentences(design, elements, found, road, road.design)
+    return Edited(road.design, told, world=world)
 
 
 __all__ = ["EditRequest", "Edited", "edit", "read_request"]

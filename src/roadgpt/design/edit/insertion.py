@@ -53,6 +53,9 @@ PREFERRED = {
     "sweeping": (40.0, 75.0),
 }
 """Angle in degrees and radius in metres of a new turn if the request does not give them."""
+TAIL, STRAIGHT = "tail", "straight"
+"""Last words of the names of new elements: a straight behind a new turn, and one that the request adds."""
+FADE = 2.0  # m by which a straight between two turns is measured shorter than it is written
 MOST_NEW = 12
 HALVED = 0  # in place of a number of segments: the longest segment is split in half
 FILLERS = (0.0, SEPARATE)  # m of straight road in the place of a removed turn
@@ -243,8 +246,22 @@ def _new_turns(
         segments = turn_segments(degrees, 1 if side == "left" else -1, radius, transition, slope)
         new.append(RoadElement(f"new {number} turn {i + 1}", segments, side, asked=asked))
     if tail:
-        new.append(gap(f"new {number} tail", tail, incline))
+        new.append(gap(f"new {number} {TAIL}", tail, incline))
     return tuple(new)
+
+
+def without_spare_tail(elements: RoadElements) -> RoadElements:
+    """Returns the elements without the straight behind a new turn at the end of the road, if the same request
+    adds a straight there; that one is then measured by itself, between the turn and the end.
+    """
+    if len(elements) < 2:
+        return elements
+    *front, tail, last = elements
+    if not (tail.name.endswith(f" {TAIL}") and last.name.endswith(f" {STRAIGHT}")):
+        return elements
+    room = Range(last.length - 2.0, last.length + 2.0)
+    alone = replace(last.lengthened(FADE), asked=replace(FREE_STRAIGHT, length=room))
+    return (*front, alone)
 
 
 def _name(elements: RoadElements, at: int) -> str:
@@ -290,13 +307,18 @@ def _straight_ways(
     beside = elements[at] if at < len(elements) and not elements[at].is_turn else elements[at - 1]
     if change.is_whole and change.length is not None and not beside.is_turn and beside.seen is not None:
         return ((Adjust(beside, length=Wanted.near(change.length, 1.0)),),)
-    new = [gap(f"new {number} straight", length + 2.0, incline) for length in lengths]
     if not beside.is_turn and beside.seen is None:  # then the new straight is seen by itself
-        rooms = [Range(length - 2.0, length + 2.0) for length in lengths]
         new = [
-            replace(each, asked=replace(FREE_STRAIGHT, length=room))
-            for each, room in zip(new, rooms, strict=True)
+            replace(
+                gap(f"new {number} {STRAIGHT}", length + FADE, incline),
+                asked=replace(FREE_STRAIGHT, length=Range(length - 2.0, length + 2.0)),
+            )
+            for length in lengths
         ]
+    else:
+        new = [gap(f"new {number} {STRAIGHT}", length, incline) for length in lengths]
+        if change.length is not None:  # then it stays as long as the words say
+            new = [replace(each, asked=None) for each in new]
     return tuple((Insert(_name(elements, at), (each,), split),) for split in splits for each in new)
 
 

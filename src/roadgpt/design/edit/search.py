@@ -5,7 +5,8 @@ preferred candidates come first. The steps of the candidates are applied to the 
 ``design.fit`` changes the elements that the request names until the road is valid and its measurements are as
 requested; all other elements are frozen. If that fails and the geometry is ``arcs``, the other elements may
 change as well. The start moves if the road is reversed or mirrored, or if elements are added in front of it.
-If the road would leave the map, the road is shifted or rotated.
+If the road would leave the map, the road is shifted or rotated. If that is not enough, a map of the usual
+size grows; on any other map, elements that the request does not name change.
 """
 
 from collections.abc import Iterator, Sequence
@@ -15,16 +16,19 @@ from math import atan2, cos, degrees, hypot, pi, radians, sin
 
 from roadgpt.brief.change.clashes import clash
 from roadgpt.brief.change.request import NUMBERING
+from roadgpt.brief.map_fit import ROUND_MAP
 from roadgpt.brief.model import Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import LEAST_STRAIGHT
 from roadgpt.design.edit.candidates import ChangeCandidates, is_beyond
+from roadgpt.design.edit.insertion import without_spare_tail
 from roadgpt.design.edit.reordering import Reverse
 from roadgpt.design.edit.slopes import SlopeOfAll
 from roadgpt.design.edit.steps import SEPARATE, EditStep, Mirror, RoadLength
 from roadgpt.design.fit import Look, Requirements, fit
 from roadgpt.design.fit.grades import graded
+from roadgpt.design.layout import moved_onto_map
 from roadgpt.design.road_elements import (
     RoadElement,
     RoadElements,
@@ -34,11 +38,13 @@ from roadgpt.design.road_elements import (
     numbered,
 )
 from roadgpt.errors import EditError, IdleEditError, UsageError
-from roadgpt.road import Design, Geometry, World, build
+from roadgpt.road import Design, Geometry, Site, World, build
 from roadgpt.road.design import MAX_SEGMENTS
 
 MOST_TRIALS = 40
 FITTED_WHOLE = 2  # trials that are fitted again with all elements free, if none is valid otherwise
+INSIDE_MAP = "inside_map"
+MOST_GROWTH = 20  # steps by which a map may grow for a changed road
 LARGEST = 12  # candidates of one change that are combined with others
 SLACK = 0.03  # share by which a measured value may miss a limit
 SEEN_STRAIGHT = Feature("straight", "straight", length=Range(LEAST_STRAIGHT + 0.3))
@@ -102,8 +108,33 @@ def _fitted(
 ) -> tuple[Look, Design]:
     """Returns the road with all changes, and its design before other elements had to change.
 
+    If the usual map has no room for it, the map grows; only otherwise do other elements change.
+
     Raises:
         EditError: no valid road was found; the message says what was wrong with the first one tried.
+    """
+    drafts, objection = _drafts(design, elements, changes, world, geometry)
+    if world.site.map_size == Site().map_size and drafts and drafts[-1].objection:
+        drafts += _on_larger_map(drafts, world)
+    if drafts and not drafts[-1].objection:
+        return drafts[-1], drafts[-1].design
+    for draft in drafts[:FITTED_WHOLE] if geometry == "arcs" else ():
+        whole = fit(draft.design, _staying(draft.elements), draft.requirements._replace(before=None))
+        if not whole.objection:
+            return whole, draft.design
+    said = " and ".join(dict.fromkeys(f"'{each.change.words}'" for each in changes))
+    raise EditError(f"{said} cannot be done on this road: {objection}; ask for less, or elsewhere")
+
+
+def _drafts(
+    design: Design,
+    elements: RoadElements,
+    changes: Sequence[ChangeCandidates],
+    world: World,
+    geometry: Geometry,
+) -> tuple[list[Look], str]:
+    """Returns the roads of combinations of candidates, up to the first one that is valid and as requested,
+    and what was wrong with the first one tried; elements that the request does not name are frozen.
     """
     objection, drafts = "", list[Look]()
     for steps in islice(_combined(changes), MOST_TRIALS):
@@ -114,20 +145,34 @@ def _fitted(
             after = _applied(elements, steps, world)
             begun = _started(design, after, elements, world, steps)
             begun = graded(begun, after, needs.outline, world, design)
-            trial = fit(begun, after, needs, {element.name for element in after if not element.may_bend})
+            drafts.append(fit(begun, after, needs, _frozen(after)))
         except UsageError as error:
             objection = objection or str(error)
             continue
-        if not trial.objection:
-            return trial, trial.design
-        objection = objection or trial.objection
-        drafts.append(trial)
-    for draft in drafts[:FITTED_WHOLE] if geometry == "arcs" else ():
-        whole = fit(draft.design, _staying(draft.elements), draft.requirements._replace(before=None))
-        if not whole.objection:
-            return whole, draft.design
-    said = " and ".join(dict.fromkeys(f"'{each.change.words}'" for each in changes))
-    raise EditError(f"{said} cannot be done on this road: {objection}; ask for less, or elsewhere")
+        objection = objection or drafts[-1].objection
+        if not drafts[-1].objection:
+            break
+    return drafts, objection
+
+
+def _frozen(elements: RoadElements) -> set[str]:
+    return {element.name for element in elements if not element.may_bend}
+
+
+def _on_larger_map(drafts: Sequence[Look], world: World) -> list[Look]:
+    """Returns the first of the drafts that is valid on a larger map, in a list; an empty list if none is."""
+    for draft in drafts:
+        if not any(finding.rule == INSIDE_MAP for finding in draft.findings):
+            continue
+        for steps in range(1, MOST_GROWTH + 1):
+            larger = world.changed(map_size=world.site.map_size + steps * ROUND_MAP)
+            if moved_onto_map(draft.design, larger) is not None:
+                needs = draft.requirements._replace(world=larger)
+                found = fit(draft.design, draft.elements, needs, _frozen(draft.elements))
+                if not found.objection:
+                    return [found]
+                break
+    return []
 
 
 def _staying(elements: RoadElements) -> RoadElements:
@@ -164,6 +209,7 @@ def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) ->
     after = elements
     for step in sorted(steps, key=_rank):
         after = step.apply(after, world)
+    after = without_spare_tail(after)
     after = _with_room(after, Reverse().apply(elements, world) if Reverse() in steps else elements)
     after = numbered(after)
     count = len(joined(after))

@@ -126,15 +126,16 @@ class Adjust:
         assert seen is not None
         turn = abs(now.degrees)
         more = (abs(before.degrees) + self.degrees.aim - seen.degrees) / turn if self.degrees else 1.0
-        wider = self.radius.aim / seen.radius if self.radius else 1.0
+        already = (now.length / turn) / (before.length / abs(before.degrees))  # by another change
+        wide = self.radius.aim / seen.radius if self.radius else already
         if self.length:
-            wider *= self.length.aim / seen.length
-        wider *= (before.length / abs(before.degrees)) / (now.length / turn)
+            wide *= self.length.aim / seen.length
+        wider = wide / already
         if abs(more - 1) < 1e-9 and abs(wider - 1) < 1e-9:
             return now
         most = max((abs(s.turn_degrees) for s in now.segments), default=0.0)
         if most * more > MAX_TURN >= most:
-            return now.rewritten(turn * more, seen.radius * wider)
+            return now.rewritten(turn * more, seen.radius * wide)
         return now.scaled(more, wider)
 
 
