@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -469,10 +470,34 @@ def test_only_the_part_that_climbs_becomes_steeper() -> None:
 
 def test_what_changes_nothing_gives_way_to_a_reading_of_the_same_sort_that_does() -> None:
     before = len(seen(ROADS["r01"]).turns)
-    idle = replace(read_change_plan(f"turn: x..{before + 2}"), words="two more", other=f"turn: x{before + 2}")
+    idle = replace(
+        read_change_plan(f"turn: x..{before + 2}"), words="two more", others=(f"turn: x{before + 2}",)
+    )
     made = edit(ROADS["r01"], idle, WORLD)
     assert len(seen(made.design).turns) == before + 2
     assert made.confidence == 0.5
-    for other in ("", "turn 1: remove"):
+    for others in ((), ("turn 1: remove",)):
         with pytest.raises(EditError, match="is so already"):
-            edit(ROADS["r01"], replace(idle, other=other), WORLD)
+            edit(ROADS["r01"], replace(idle, others=others), WORLD)
+
+
+def test_a_doubtful_reading_that_this_road_cannot_have_gives_way_to_the_next_that_it_can() -> None:
+    others = ("turn 8: angle less", "turn 2: angle =60", "turn 1: remove")
+    asked = replace(read_change_plan("turn 9: angle less"), words="ease it", confidence=0.3, others=others)
+    made = edit(ROADS["r01"], asked, WORLD)
+    assert made.design == changed("r01", "turn 2: angle =60")
+    assert made.confidence == 0.3
+    assert "'turn 9: angle less', the likeliest reading, cannot be done" in made.changes[-1]
+    assert "no ninth turn" in made.changes[-1]
+    for surer in (replace(asked, confidence=0.9), replace(asked, others=others[:1])):
+        with pytest.raises(EditError, match="no ninth turn"):
+            edit(ROADS["r01"], surer, WORLD)
+
+
+@pytest.mark.parametrize("road", ["r01", "h01"])
+def test_new_turns_go_on_alternating(road: str) -> None:
+    before = seen(ROADS[road]).turns
+    after = seen(changed(road, f"turn: x{len(before) + 3}; turn all: alternate")).turns
+    assert len(after) == len(before) + 3
+    assert after[0].side == before[0].side
+    assert all(one.side != other.side for one, other in pairwise(after))

@@ -4,6 +4,8 @@
 ``design.edit`` finds the turns and straights of the road to which a request refers.
 """
 
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 
@@ -51,28 +53,22 @@ def read_request(words: str) -> EditRequest:
     except BriefError as error:
         raise EditError(str(error)) from error
     if reading.plan.startswith("!"):
-        raise _refusal(words, reading.plan, reading.other)
+        raise _refusal(words, reading.plan, next(iter(reading.others), ""))
     request = read_change_plan(reading.plan)
     return replace(
-        request, words=words, unused=reading.unused, confidence=reading.confidence, other=reading.other
+        request, words=words, unused=reading.unused, confidence=reading.confidence, others=reading.others
     )
 
 
-def second_reading(request: EditRequest) -> EditRequest | None:
-    """Returns the second likeliest reading of a change request, with a confidence of ``DOUBT`` or less.
-
-    Returns None if no second reading is likely, or if the second reading asks for other kinds of changes.
-
-    Raises:
-        EditError: two of its changes need separate requests.
+def other_readings(request: EditRequest) -> Iterator[EditRequest]:
+    """Yields the other likely readings of a change request, the likeliest first, each with a confidence of
+    ``DOUBT`` or less. A reading whose changes need separate requests is left out.
     """
-    if not request.other:
-        return None
-    other = read_change_plan(request.other)
-    if {each.what for each in other.changes} != {each.what for each in request.changes}:
-        return None
-    refuse_clashes(other.changes)
-    return replace(other, words=request.words, confidence=min(request.confidence, DOUBT))
+    for plan in request.others:
+        other = read_change_plan(plan)
+        with suppress(EditError):
+            refuse_clashes(other.changes)
+            yield replace(other, words=request.words, confidence=min(request.confidence, DOUBT))
 
 
 @cache
@@ -104,4 +100,4 @@ def _refusal(words: str, plan: str, other: str) -> EditError:
             return EditError(f"'{shown}' is no change of a road that I know; {ADVICE}")
 
 
-__all__ = ["EditRequest", "checked_request", "read_request", "second_reading"]
+__all__ = ["EditRequest", "checked_request", "other_readings", "read_request"]

@@ -203,5 +203,10 @@ class EditRequest:
     """Words of the request that were not understood."""
     confidence: float = 1.0
     """Estimated probability that the request was read correctly."""
-    other: str = ""
-    """The plan of the second likeliest reading; empty if no other is likely."""
+    others: tuple[str, ...] = ()
+    """The plans of other readings that are likely, the likeliest first."""
+
+    @property
+    def other(self) -> str:
+        """The plan of the second likeliest reading; empty if no other is likely."""
+        return self.others[0] if self.others else ""

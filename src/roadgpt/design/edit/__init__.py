@@ -14,8 +14,10 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from roadgpt import plugins
-from roadgpt.brief.change import EditRequest, checked_request, read_request, second_reading
+from roadgpt.brief.change import EditRequest, checked_request, other_readings, read_request
+from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import OF_SLOPE
+from roadgpt.brief.readers.model.confidence import DOUBT
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.design.differences import grades_changed, sentences
 from roadgpt.design.edit.candidates import candidates_of
@@ -73,17 +75,36 @@ def edit(
     """
     if asks_a_model(plugins.find("designers", designer)):
         return _edited_by_model(design, words, world, geometry, chat or configured())
-    request = checked_request(words)
+    request = read_request(words) if isinstance(words, str) else words
     try:
-        return _edited(design, request, world, geometry)
-    except (IdleEditError, UnclearPlaceError) as error:
-        other = second_reading(request)
-        if other is None:
-            raise
-        # "the descent" of a road that falls all the way is the whole road
-        if isinstance(error, UnclearPlaceError) and not all(each.is_of_road for each in other.changes):
-            raise
-        return _edited(design, other, world, geometry)
+        return _edited(design, checked_request(request), world, geometry)
+    except EditError as error:
+        for other in other_readings(request) if _may_be_other(request, error) else ():
+            with suppress(EditError):
+                return _instead(error, request, _edited(design, other, world, geometry))
+        raise
+
+
+def _may_be_other(request: EditRequest, error: EditError) -> bool:
+    """Returns whether a request that this road cannot have may be meant as its next likely readings.
+
+    That is so if the first reading is doubtful. If the road is as asked already, or has several such places,
+    it is so if the next reading asks for the same kinds of changes: "the descent" of a road that falls all
+    the way is the whole road.
+    """
+    if request.confidence < DOUBT:
+        return True
+    if not request.others or not isinstance(error, IdleEditError | UnclearPlaceError):
+        return False
+    other = read_change_plan(request.other)
+    is_alike = {each.what for each in other.changes} == {each.what for each in request.changes}
+    return is_alike and (isinstance(error, IdleEditError) or all(each.is_of_road for each in other.changes))
+
+
+def _instead(error: EditError, request: EditRequest, made: Edited) -> Edited:
+    """Returns what was made of another reading, with a sentence on why the likeliest one was not."""
+    told = f"'{change_plan(request)}', the likeliest reading, cannot be done: {error}"
+    return made._replace(changes=(*made.changes, told), unused=request.unused)
 
 
 def _edited(design: Design, request: EditRequest, world: World, geometry: Geometry) -> Edited:

@@ -10,7 +10,7 @@ from math import inf
 from typing import NamedTuple
 
 from roadgpt.brief.change.request import REORDERS, Change
-from roadgpt.brief.model import OTHER_SIDE
+from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import Measures, way
@@ -78,7 +78,8 @@ def candidates_of(
         EditError: no road can have the requested values, or a change of a stretch of the road would alter a
             part of this stretch that already is as another change asks.
     """
-    ways = [_ways(placed, elements, found, world, number) for number, placed in enumerate(changes, 1)]
+    sides = _sides_after(changes, elements)
+    ways = [_ways(placed, elements, found, world, number, sides) for number, placed in enumerate(changes, 1)]
     told = [
         hill_sentence(placed, elements, len(changes) == 1)
         if placed.change.is_hill
@@ -91,12 +92,17 @@ def candidates_of(
     for number, placed in enumerate(changes, 1):
         own = placed.without(idle)
         if own.elements is not placed.elements:
-            ways[number - 1] = _ways(own, elements, found, world, number)
+            ways[number - 1] = _ways(own, elements, found, world, number, sides)
     return tuple(map(ChangeCandidates, changes, agreed(changes, ways), told))
 
 
 def _ways(
-    placed: PlacedChange, elements: RoadElements, found: Measures, world: World, number: int
+    placed: PlacedChange,
+    elements: RoadElements,
+    found: Measures,
+    world: World,
+    number: int,
+    sides: Sequence[Side | None],
 ) -> tuple[EditCandidate, ...]:
     """Returns the candidates of one change, the preferred one first; none if the road already is so."""
     match placed.change.what:
@@ -115,11 +121,11 @@ def _ways(
         case "add" if placed.change.is_hill:
             return hill_candidates(placed, elements)
         case "add":
-            return insertion_candidates(placed, elements, world, number)
+            return insertion_candidates(placed, elements, world, number, sides)
         case "remove":
             return removal_candidates(placed.elements, elements)
         case "alternate":
-            return _alternating_candidates(placed.elements, world)
+            return _flipped(_out_of_turn(placed.elements), world)
         case _ if placed.stretch is not None:
             return stretch_candidates(placed.change, elements, placed.stretch, world)
         case _:
@@ -160,7 +166,7 @@ def _change_candidates(
             if any(not element.is_turn for element in elements):
                 raise EditError(f"'{change.words}' is said of a straight, which has no side; name a turn")
             wrong = [b for b in elements if change.side is None or b.side != change.side]
-            return _flipped(wrong, world) if wrong else ()
+            return _flipped(wrong, world)
         case _:  # a turn becomes a straight, as long as the turn if there is room for it
             bends = [element for element in elements if element.is_turn and element.seen]
             return _together([Become(bend, (straight(bend.length, bend.incline),))] for bend in bends)
@@ -176,8 +182,8 @@ def is_beyond(change: Change, element: RoadElement) -> bool:
     )
 
 
-def _alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
-    """Returns the candidates that make turns alternate between left and right; none if they already do.
+def _out_of_turn(elements: Sequence[RoadElement]) -> list[RoadElement]:
+    """Returns the turns that have to change their sides so that all alternate between left and right.
 
     Raises:
         EditError: There are no turns.
@@ -189,7 +195,18 @@ def _alternating_candidates(elements: Sequence[RoadElement], world: World) -> tu
     for turn in turns:
         wrong += [turn] if turn.side != side else []
         side = side and OTHER_SIDE[side]
-    return _flipped(wrong, world) if wrong else ()
+    return wrong
+
+
+def _sides_after(changes: Sequence[PlacedChange], elements: RoadElements) -> list[Side | None]:
+    """Returns the sides of all elements once the turns alternate, if a change asks for that."""
+    wrong = [
+        turn.name
+        for placed in changes
+        if placed.change.what == "alternate"
+        for turn in _out_of_turn(placed.elements)
+    ]
+    return [e.side and OTHER_SIDE[e.side] if e.name in wrong else e.side for e in elements]
 
 
 def _together(ways: Iterable[Sequence[EditStep]]) -> tuple[EditCandidate, ...]:
@@ -294,7 +311,11 @@ def _shaped(change: Change, element: RoadElement, d: float, r: float, least: flo
 
 
 def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
-    """Returns a candidate that mirrors each element; its angle and radius may change where room is short."""
+    """Returns a candidate that mirrors each element, whose angle and radius may change where room is short;
+    none if there are no elements.
+    """
+    if not elements:
+        return ()
     steps: list[EditStep] = [Mirror(frozenset(element.name for element in elements))]
     for element in elements:
         d, r = (element.seen.degrees, element.seen.radius) if element.seen else (0.0, inf)

@@ -93,10 +93,16 @@ class Insert:
 
 
 def insertion_candidates(
-    placed: PlacedChange, elements: RoadElements, world: World, number: int
+    placed: PlacedChange, elements: RoadElements, world: World, number: int, sides: Sequence[Side | None]
 ) -> tuple[EditCandidate, ...]:
-    """Returns all candidates that add what a change asks for; ``number`` is the number of the change in the
-    request; the names of new elements contain it.
+    """Returns all candidates that add what a change asks for.
+
+    Args:
+        placed: the change, and where on the road it is.
+        elements: the road before the edit.
+        world: the limits that the rules check.
+        number: number of the change in the request; the names of new elements contain it.
+        sides: the sides of the elements once other changes of the request have turned some of them.
 
     Raises:
         EditError: the place does not exist, turns of this kind or number cannot be added, or no turn or
@@ -110,6 +116,7 @@ def insertion_candidates(
     at, splits = _place(placed, elements)
     if change.target is not None and change.target.noun == "straight":
         return _straight_ways(change, elements, at, splits, number)
+    elements = tuple(map(_with_side, elements, sides))
     shape, incline, name = _shape(change, world), _incline(elements, at), _name(elements, at)
     out = []
     for spare, sides, split in product(SPARE, _sides(change, elements[:at]), splits):
@@ -117,6 +124,10 @@ def insertion_candidates(
         new = _new_turns(change, shape, sides, lead, tail, incline, number)
         out.append((Insert(name, new, split),))
     return tuple(out)
+
+
+def _with_side(element: RoadElement, side: Side | None) -> RoadElement:
+    return element if element.side == side else element.mirrored()
 
 
 def _place(placed: PlacedChange, elements: RoadElements) -> tuple[int, list[int | None]]:

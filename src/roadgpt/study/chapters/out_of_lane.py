@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from roadgpt.campaign.record import Record
+from roadgpt.plural import plural
 from roadgpt.report.page.model import Table
 from roadgpt.road import World
 from roadgpt.study.chapters.wording import decimal, row, share_cell, share_of
@@ -66,7 +67,7 @@ def outside_sentences(found: Sequence[Passed], world: World) -> list[str]:
     within = "without a lane departure" if world.limits.lane_departure else f"within {tolerance}"
     most = f"{percent(max(each.share for each in found))} of the car{beyond}"
     return [
-        f"Of {every:,} roads that the car passed, it was partly outside its lane on "
+        f"Of {plural(every, 'road')} that the car passed, it was partly outside its lane on "
         f"{share_of(partly.tests, every)} and mostly outside on {share_of(mostly.tests, every)}, {within}: "
         f"at most {most}."
     ]

@@ -17,6 +17,7 @@ from roadgpt.errors import BriefError
 CERTAIN = 0.97
 """The confidence in a request that rules read: to swap two turns or straights."""
 ALMOST = 2.0  # difference of score
+LIKELY = 2.5  # difference of score to another plan that may be meant
 DENIAL = re.compile(
     r"(?:please )?(?:do not|don'?t|never) [^,;:.]*[.!]*"
     r"|(?:bitte )?mach\w* [^,;:.]*\bnicht \w+er[.!]*"
@@ -82,8 +83,8 @@ class ChangeReading(NamedTuple):
     confidence: float
     unused: tuple[str, ...]
     """Words that the plan does not depend on."""
-    other: str = ""
-    """The second likeliest plan that is no refusal; empty if none is likely."""
+    others: tuple[str, ...] = ()
+    """Other plans that are likely and no refusals, the likeliest first."""
 
 
 def read_change(
@@ -103,18 +104,18 @@ def read_change(
         raise BriefError("this could not be read as changes; use shorter sentences")
     near = [draft for draft in found if draft.score >= found[0].score - ALMOST]
     draft = next((draft for draft in near if not _lost_numbers(draft, text)), found[0])
-    others = (each.line for each in near if each is not draft and not each.is_refusal)
-    other = next(others, "")
+    likely = [each for each in found if each.score >= found[0].score - LIKELY and each is not draft]
+    others = tuple(each.line for each in likely if not each.is_refusal)
     found_in = features(roads.networks, draft, text)
     if draft.is_refusal:
         sure = confidence(weights, found_in, (), text)
-        return ChangeReading(draft.line, sure, (), other)
+        return ChangeReading(draft.line, sure, (), others)
     lost = _lost_numbers(draft, text)
     unused = roads.unused(text, draft.tokens)
     sure = confidence(weights, found_in, (*lost, *unused), text)
     sure = min(sure, DOUBT) if is_denial(words) else sure
     unused = tuple(dict.fromkeys([*lost, *unused]))
-    return ChangeReading(_with_both_ways(draft.line, text), sure, unused, other)
+    return ChangeReading(_with_both_ways(draft.line, text), sure, unused, others)
 
 
 def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
