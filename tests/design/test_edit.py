@@ -494,6 +494,13 @@ def test_a_doubtful_reading_that_this_road_cannot_have_gives_way_to_the_next_tha
             edit(ROADS["r01"], surer, WORLD)
 
 
+def test_the_grades_of_a_straight_over_a_crest_are_told_one_by_one() -> None:
+    design = draft(read_plan("straight up pct=7 len=100; straight down pct=5 len=100"), WORLD, seed=1)
+    made = edited(design, "road up: slope =4")
+    assert made.changes[0] == "straight 1: grades +7.0, -5.0 -> +4.0, -5.0 %"
+    assert [segment.incline for segment in made.design.segments] == [4, -5]
+
+
 @pytest.mark.parametrize("road", ["r01", "h01"])
 def test_new_turns_go_on_alternating(road: str) -> None:
     before = seen(ROADS[road]).turns

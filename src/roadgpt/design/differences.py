@@ -5,8 +5,9 @@ measured on the road before and after an edit.
 """
 
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 
-from roadgpt.check.measures import MeasuredFeature, Measures
+from roadgpt.check.measures import MeasuredFeature, Measures, way
 from roadgpt.design.fit import Look
 from roadgpt.design.road_elements import RoadElement, RoadElements, features_of
 from roadgpt.network import NetworkDesign
@@ -128,12 +129,25 @@ def _other(element: RoadElement, now: RoadElement, name: str, seen: MeasuredFeat
         if abs(was.length - seen.length) >= 1 and (was.kind == "straight" or not said):
             said.append(f"length {was.length:.0f} -> {seen.length:.0f} m")
     if abs(element.incline - now.incline) >= 0.05:
-        one, other = (was.grade, seen.grade) if was and seen else (element.incline, now.incline)
-        said.append(f"grade {one:+.1f} -> {other:+.1f} %")
+        said.append(_other_grades(element, now, was, seen))
     if not (was and seen) and abs(element.length - now.length) >= 0.05:
         said.append(f"length {element.length:.0f} -> {now.length:.0f} m")
     if said:
         yield f"{name}: {', '.join(said)}"
+
+
+def _other_grades(
+    element: RoadElement, now: RoadElement, was: MeasuredFeature | None, seen: MeasuredFeature | None
+) -> str:
+    """Returns the old and the new grade of an element; of a straight over a crest or a dip, those of all its
+    parts, since their mean says little.
+    """
+    parts = [[key for key, _ in groupby(segment.incline for segment in e.segments)] for e in (element, now)]
+    if not element.is_turn and any(len({*map(way, inclines)}) > 1 for inclines in parts):
+        one, other = (", ".join(f"{incline:+.1f}" for incline in inclines) for inclines in parts)
+        return f"grades {one} -> {other} %"
+    low, high = (was.grade, seen.grade) if was and seen else (element.incline, now.incline)
+    return f"grade {low:+.1f} -> {high:+.1f} %"
 
 
 def changes_between(before: AnyRoute, after: AnyRoute) -> tuple[str, ...]:
