@@ -17,8 +17,9 @@ from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES
 from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot, slot_name, slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, OF_ROADS, SLOT_TOKENS, tokens_of
-from roadgpt.brief.readers.model.wordpiece import WordPieces
+from roadgpt.brief.readers.model.wordpiece import WINDOW, WordPieces
 from roadgpt.brief.sentence import sentence
+from roadgpt.learn.asides import with_asides
 from roadgpt.learn.augmentation import augmented
 from roadgpt.learn.generator import draw, draw_change, draw_specified, pairs, series
 from roadgpt.learn.mentions import names_in, with_mention, with_talk
@@ -29,14 +30,14 @@ from roadgpt.learn.routes import draw_route, routes
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
 SHARES: Mapping[str, float] = {
-    "hand": 0.11,
-    "free": 0.19,
+    "hand": 0.10,
+    "free": 0.20,
     "contrasts": 0.09,
-    "changes": 0.13,
-    "generated": 0.06,
-    "generated contrasts": 0.06,
+    "changes": 0.22,
+    "generated": 0.04,
+    "generated contrasts": 0.05,
     "generated changes": 0.11,
-    "generated specs": 0.25,
+    "generated specs": 0.19,
 }
 """The share of each series of pairs in the training of the networks for single roads and changes."""
 SHARES_OF_ROUTES: Mapping[str, float] = {
@@ -64,6 +65,8 @@ MENTIONS = 0.15
 """Share of descriptions to which a mention or denial of something beside the road is added."""
 TALK = 0.07
 """Share of all pairs that get additional small talk, such as a greeting."""
+ASIDES = 0.35
+"""Share of change requests to which sentences without a wish are added."""
 CAUSED = ("!contradiction", "!impossible")
 """Refusals that can name a cause. A plan that has only one of these words names no cause."""
 MOTORWAY = re.compile(r" ?\bmotorway\b")
@@ -87,8 +90,8 @@ class Example:
 
 
 def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = None) -> Example | None:
-    """Returns a pair as numbers; None if its plan is too long, has a number that is not in the text, or has a
-    token that is not in the vocabulary.
+    """Returns a pair as numbers; None if its text or plan is too long, or if the plan has a number that is
+    not in the text, or a token that is not in the vocabulary.
 
     A slot token stands for a number in the text. With ``rng``, the slot tokens are chosen at random, so that
     the network learns all of them equally well. A refusal without a labelled cause gets no end token, so that
@@ -104,6 +107,8 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
     if rng is not None and taken.slots:
         words, tokens = _reslotted(words, tokens, taken.slots, rng)
     numbers, _ = pieces.encode(words)
+    if len(numbers) > WINDOW:
+        return None
     end = () if plan in CAUSED else (2,)
     return Example(tuple(numbers), (1, *(NUMBER_OF[token] for token in tokens), *end))
 
@@ -141,7 +146,9 @@ def examples(
         pair = next(streams[names[weighted(shares, rng)]])
         if not pair.is_change and rng.random() < MENTIONS:
             pair = with_mention(pair, rng) or pair
-        if rng.random() < TALK:
+        if pair.is_change and rng.random() < ASIDES:
+            pair = with_asides(pair, rng)
+        elif rng.random() < TALK:
             pair = replace(pair, text=with_talk(pair.text, pair.lang, rng))
         is_left_out = is_held_out(pair.text) or (is_of_routes and is_for_roads_only(pair))
         made = None if is_left_out else example(pair, pieces, rng)
