@@ -38,7 +38,7 @@ LEARNT = [
 def test_what_only_looks_like_a_contradiction_is_read_with_a_doubt(words: str, meant: str) -> None:
     brief = read(words)
     assert plan(brief) == meant
-    assert brief.confidence <= 0.5
+    assert brief.confidence < SURE
 
 
 @pytest.mark.xfail(raises=ContradictionError, strict=True, reason="the networks are certain of it")

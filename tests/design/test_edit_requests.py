@@ -2,6 +2,7 @@
 
 import importlib.util
 from contextlib import suppress
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -106,14 +107,15 @@ def test_the_truths_can_be_missed(break_it: str) -> None:
 
 
 def test_the_descent_of_a_road_that_falls_all_the_way_is_the_whole_road() -> None:
-    """The likelier reading is one of the straights; which one, the words do not say."""
     design = draft(
         read_plan("turn right deg=80; straight len=40; turn left deg=60 | down pct=6"), World(), seed=2
     )
-    edited = edit(design, "dimezza la pendenza della discesa", World())
-    assert [segment.incline for segment in edited.design.segments] == pytest.approx(
-        [segment.incline / 2 for segment in design.segments], abs=0.11
-    )
+    unclear = replace(read_change_plan("straight down: slope x0.5"), others=("road: slope x0.5",))
+    for request in ("dimezza la pendenza della discesa", unclear):
+        edited = edit(design, request, World())
+        assert [segment.incline for segment in edited.design.segments] == pytest.approx(
+            [segment.incline / 2 for segment in design.segments], abs=0.11
+        )
     assert edited.confidence < SURE
     with pytest.raises(UnclearPlaceError, match=r"could be any of"):
         edit(design, read_change_plan("straight: length more"), World())

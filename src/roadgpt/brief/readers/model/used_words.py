@@ -5,6 +5,7 @@ the remaining words. If this hardly changes, the word is reported as unused, unl
 usually asks for.
 """
 
+import unicodedata
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -106,14 +107,18 @@ def _idle(
 
     If two words mean the same ("uphill, climbing all the way"), each of them can be left out, but not both.
     If the plan changes when all such words are left out, a word that alone restores the plan counts as used.
+    A word in letters of another script than Latin is in none of the languages that are read: it never counts
+    as used, even if the plan happens to be less likely without it.
     """
-    tried = [place for place, word in enumerate(text.words) if _is_content(word, fillers)][:MOST_WORDS]
+    content = [place for place, word in enumerate(text.words) if _is_content(word, fillers)]
+    foreign = frozenset(place for place in content if not _is_latin(text.words[place].text))
+    tried = [place for place in content if place not in foreign][:MOST_WORDS]
     kept = _are_kept(network, text, tokens, [{place} for place in tried])
     idle = [place for place, is_kept in zip(tried, kept, strict=True) if is_kept]
     if len(idle) < 2 or all(_are_kept(network, text, tokens, [{*idle}])):
-        return frozenset(idle)
+        return frozenset(idle) | foreign
     restored = _are_kept(network, text, tokens, [{*idle} - {place} for place in idle])
-    return frozenset(place for place, is_back in zip(idle, restored, strict=True) if not is_back)
+    return foreign.union(place for place, is_back in zip(idle, restored, strict=True) if not is_back)
 
 
 def _are_kept(
@@ -136,6 +141,10 @@ def _is_content(word: Word, fillers: frozenset[str]) -> bool:
         return False
     is_long = len(word.text) >= SHORTEST or not word.text.isascii()  # a single Chinese character is a word
     return word.text.isdecimal() or (word.text.isalpha() and is_long)
+
+
+def _is_latin(word: str) -> bool:
+    return all(not letter.isalpha() or unicodedata.name(letter, "").startswith("LATIN") for letter in word)
 
 
 def with_groups(tokens: Iterable[str]) -> Counter[str]:
