@@ -12,11 +12,12 @@ from roadgpt.brief.words import SURE
 from roadgpt.errors import BriefError
 
 HONEST = [
-    ("Nur bergauf, nirgends bergab, und kaum mehr als 3 % steil.", "| up turns=1.. steepest=..3"),
+    ("Nur bergauf, nirgends bergab, und kaum mehr als 3 % steil.", "| up turns=1.. steepest=..3", 0.5),
     (
         "Tres curvas y ni una más: izquierda de 100 grados como mínimo, derecha de 40 como máximo, izquierda"
         " de entre 50 y 60.",
         "turn left deg=100..; turn right deg=..40; turn left deg=50..60",
+        SURE - 0.001,  # the networks no longer take it for a contradiction, but they are not sure
     ),
 ]
 LEARNT = [
@@ -34,11 +35,13 @@ LEARNT = [
 ]
 
 
-@pytest.mark.parametrize(("words", "meant"), HONEST)
-def test_what_only_looks_like_a_contradiction_is_read_with_a_doubt(words: str, meant: str) -> None:
+@pytest.mark.parametrize(("words", "meant", "most"), HONEST)
+def test_what_only_looks_like_a_contradiction_is_read_with_a_doubt(
+    words: str, meant: str, most: float
+) -> None:
     brief = read(words)
     assert plan(brief) == meant
-    assert brief.confidence < SURE
+    assert brief.confidence <= most
 
 
 @pytest.mark.xfail(raises=ContradictionError, strict=True, reason="the networks are certain of it")

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from roadgpt.learn.noise import tidy
+from roadgpt.learn.mentions import followed, preceded
 from roadgpt.learn.pair import Pair
 from roadgpt.learn.phrasebook import one_of, phrases_of
 
@@ -49,11 +49,9 @@ def with_asides(pair: Pair, rng: np.random.Generator) -> Pair:
             after.insert(0, kept)
     text = pair.text
     for phrase in after:
-        text = _followed(text, phrase)
+        text = followed(text, phrase)
     for phrase in reversed(before):
-        is_open = phrase[-1] in ",:"
-        text = f"{phrase} {text if is_open else text[:1].upper() + text[1:]}"
-    text = tidy(text, pair.lang)
+        text = preceded(phrase, text, pair.lang)
     return replace(pair, text=text) if len(text) <= LONGEST else pair
 
 
@@ -67,10 +65,3 @@ def unchanged(plan: str) -> list[str]:
     if not all(wishes):
         return []
     return [name for name, words in OF_PROPERTY.items() if changed.isdisjoint(words)]
-
-
-def _followed(text: str, phrase: str) -> str:
-    """Returns the text with a phrase after it; one that begins with a comma goes on with the sentence."""
-    if phrase.startswith(","):
-        return f"{text.rstrip(' .!?')}{phrase}"
-    return f"{text if text[-1:] in '.!?' else f'{text}.'} {phrase}"

@@ -53,7 +53,7 @@ def with_mention(pair: Pair, rng: np.random.Generator) -> Pair | None:
         return None
     is_before = rng.random() < BEFORE and bool(table[names]["before"])
     phrase = _numbered(one_of(table[names]["before" if is_before else "after"], rng), new[0], rng)
-    text = _before(phrase, pair.text, pair.lang) if is_before else _after(pair, phrase, rng)
+    text = preceded(phrase, pair.text, pair.lang) if is_before else _after(pair, phrase, rng)
     if not is_said:
         return replace(pair, text=text)
     plan = with_names(pair.plan, [*new, *there] if is_before else [*there, *new])
@@ -65,9 +65,9 @@ def with_talk(text: str, language: str, rng: np.random.Generator) -> str:
     told = TALK.get(language, TALK["en"])
     way = rng.random()
     if way < 2 / 3:
-        text = _before(one_of(told["before"], rng), text, language)
+        text = preceded(one_of(told["before"], rng), text, language)
     if way > 1 / 3:
-        text = f"{text if text[-1:] in '.!?' else f'{text}.'} {one_of(told['after'], rng)}"
+        text = followed(text, one_of(told["after"], rng))
     return text
 
 
@@ -95,9 +95,17 @@ def _numbered(phrase: str, name: str, rng: np.random.Generator) -> str:
     return phrase.replace("{n}", str(number // 10 * 10 if name == "speed" else number))
 
 
-def _before(phrase: str, text: str, language: str) -> str:
+def preceded(phrase: str, text: str, language: str) -> str:
+    """Returns the text with a phrase before it."""
     is_open = phrase.rstrip()[-1:] in ",:"
     return tidy(f"{phrase} {text if is_open else text[:1].upper() + text[1:]}", language)
+
+
+def followed(text: str, phrase: str) -> str:
+    """Returns the text with a phrase after it; one that begins with a comma goes on with the sentence."""
+    if phrase.startswith(","):
+        return f"{text.rstrip(' .!?')}{phrase}"
+    return f"{text if text[-1:] in '.!?' else f'{text}.'} {phrase}"
 
 
 def _after(pair: Pair, phrase: str, rng: np.random.Generator) -> str:
