@@ -152,7 +152,6 @@ def test_stations_bound_a_slope(plan: str, start: float, end: float, grade: floa
         ("road flat after(start len=50): slope up", "mixes distances with other words"),
         ("road on(start len=50): slope up", "mixes distances with other words"),
         ("road after(start len=50): length more", "only its slope or its climb can be changed"),
-        ("add turn left at_end; road after(start len=50): slope up", "need requests of their own"),
     ],
 )
 def test_what_cannot_be_taken_or_bounded_is_said(plan: str, complaint: str) -> None:

@@ -21,20 +21,25 @@ FADING = 12.0  # m that a straight gains at most from turns that fade into it
 
 
 def sentences(
-    before: Design, elements: RoadElements, found: Measures, after: Look, draft: Design
+    before: Design,
+    elements: RoadElements,
+    found: Measures,
+    after: Look,
+    fitted: Sequence[tuple[Design, Design]] = (),
 ) -> tuple[str, ...]:
     """Returns a sentence for each turn and straight that has changed, and for the road as a whole.
 
     ``elements`` and ``found`` are those of the road before the edit. If the Look at the road after the edit
     has no elements, the sentences give the number of turns before and after the edit, and describe each turn
-    after it. ``draft`` is the edited design before further segments were changed to keep the road valid.
+    after it. ``fitted`` holds each edited design before further segments were changed to keep the road valid,
+    and after that.
     """
     new = after.found
     things = _things(elements, after.elements, new) if after.elements else _counted(found, new)
     lengths, climbs = f"{found.length:.0f} -> {new.length:.0f}", f"{found.climb:+.1f} -> {new.climb:+.1f}"
     whole = f"the road: {lengths} m long, climbs {climbs} m"
-    besides = "; ".join(_changed_segments(draft, after.design))
-    valid = [f"to keep it valid: {besides}"] if besides else []
+    besides = ["; ".join(_changed_segments(*pair)) for pair in fitted]
+    valid = [f"to keep it valid: {said}" for said in besides if said]
     return (*things, whole, *_placing(before, after.design), *valid)
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from roadgpt.brief.change.request import NUMBERING, OF_SLOPE, REORDERS, Change, Place, Target
+from roadgpt.brief.change.request import NUMBERING, Change, Place, Target
 from roadgpt.errors import EditError
 
 
@@ -18,25 +18,16 @@ def refuse_clashes(changes: Sequence[Change]) -> None:
             _check_count(change)
         if change.is_hill:
             _check_hill(change)
-    whats = {change.what for change in changes}
     numbering = [change for change in changes if change.what in NUMBERING and not change.is_hill]
     counts = [change for change in changes if change.what == "count"]
-    if counts and len(numbering) > 1:
+    if counts and len(numbering) > 1 and not _are_of_both_sides(numbering):
         raise clash(counts[0], next(change for change in numbering if change is not counts[0]))
-    moves = [change for change in changes if change.what in REORDERS]
-    if moves and numbering:
-        raise clash(moves[0], numbering[0])
-    sloped = [change for change in changes if change.what in OF_SLOPE]
-    far = [change for change in sloped if change.target and _is_by_distance(change.target)]
-    if far and (numbering or moves):
-        raise clash(far[0], (numbering or moves)[0])
-    hills = [change for change in changes if change.is_hill]
-    if hills and whats & {*OF_SLOPE, *REORDERS}:
-        raise clash(hills[0], next(each for each in changes if each.what in (*OF_SLOPE, *REORDERS)))
 
 
-def _is_by_distance(target: Target) -> bool:
-    return target.is_distance or (target.place is not None and target.place.is_of_distances)
+def _are_of_both_sides(changes: Sequence[Change]) -> bool:
+    """Returns whether two changes count the left and the right turns."""
+    sides = [change.target.side if change.what == "count" and change.target else None for change in changes]
+    return len(sides) == 2 and {*sides} == {"left", "right"}
 
 
 def clash(one: Change, other: Change) -> EditError:

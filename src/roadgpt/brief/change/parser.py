@@ -104,7 +104,8 @@ class ChangeParser:
             if what == "mirror" and target.noun == "road" and target != Target("road", words="road"):
                 raise EditError("only the whole road, or turns, can be mirrored; write: road: mirror")
             whole = what in OF_ROAD and target.noun == "road"
-            return Change(cast(Any, what), None if whole else target)
+            other = self._target() if what == "swap" and self._take("=") else None
+            return Change(cast(Any, what), None if whole else target, like=other)
         if what == "side":
             side = self._word()
             if side not in (*get_args(Side), "other"):
@@ -154,20 +155,20 @@ class ChangeParser:
         if self._take(".."):
             return self._to(replace(change, bound=-1))
         if self._take("+"):
-            return replace(change, more=1, by=self._figure())
+            return self._of(replace(change, more=1, by=self._figure()))
         if self._take("-"):
-            return replace(change, more=-1, by=self._figure())
+            return self._of(replace(change, more=-1, by=self._figure()))
         if self._take("x"):
             figure = self._figure()
-            return replace(change, times=figure / 100 if self._take("%") else figure)
+            return self._of(replace(change, times=figure / 100 if self._take("%") else figure))
         if self._next() in (*NOUNS, *KINDS):
             change = self._to(replace(change, bound=1))
             self._need("..")
             return change
         if _is_number(self._next()):
             number = self._figure()
-            if number < 0 and not self._next():  # the sign belongs to the difference: -20
-                return replace(change, more=-1, by=-number)
+            if number < 0 and self._next() in ("", "="):  # the sign belongs to the difference: -20
+                return self._of(replace(change, more=-1, by=-number))
             if not self._take(".."):
                 raise self._error(self._next())
             return replace(change, to=number, bound=1)
@@ -177,6 +178,10 @@ class ChangeParser:
         if word not in ("more", "less"):
             raise self._error(word)
         return replace(change, more=1 if word == "more" else -1, dose=dose)
+
+    def _of(self, change: Change) -> Change:
+        """Returns the change with the place of whose value its factor or difference is, if one is given."""
+        return replace(change, like=self._target()) if change.what != "climb" and self._take("=") else change
 
     def _to(self, change: Change) -> Change:
         """Returns the change with its figure, or with the place that has this figure."""

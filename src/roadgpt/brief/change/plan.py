@@ -35,6 +35,8 @@ def _wish(change: Change) -> Iterator[str]:
         yield _position(change.place)
         return
     yield change.what
+    if change.what == "swap" and change.like is not None:
+        yield f"={_place(change.like)}"
     if change.what == "side":
         yield change.side or "other"
     if change.what == "shape":
@@ -46,8 +48,8 @@ def _wish(change: Change) -> Iterator[str]:
 
 
 def _value(change: Change) -> Iterator[str]:
-    if change.like is not None:
-        place = _place(change.like)
+    place = _place(change.like) if change.like is not None else ""
+    if place and not change.is_compared:
         yield {-1: f"..{place}", 0: f"={place}", 1: f"{place}.."}[change.bound]
     elif change.to is not None:
         number = _number(change.to)
@@ -59,6 +61,8 @@ def _value(change: Change) -> Iterator[str]:
     elif change.more:
         yield from (word for word, dose in DOSES.items() if dose == change.dose)
         yield "more" if change.more > 0 else "less"
+    if change.is_compared:
+        yield f"={place}"
 
 
 def _added(change: Change) -> Iterator[str]:
@@ -117,8 +121,4 @@ def read_change_plan(line: str) -> EditRequest:
     changes = tuple(ChangeParser(part).change() for part in line.split(";") if part.strip())
     if not changes:
         raise EditError("the plan names no change; write for example: turn 2: radius x0.75")
-    if len(changes) > 1 and any(change.what in ("reverse", "climb") for change in changes):
-        raise EditError(
-            "a road is reversed, or climbs by metres, in a request of its own; leave the other changes out"
-        )
     return EditRequest(line, changes)

@@ -124,7 +124,8 @@ class Change:
     to: float | None = None
     times: float | None = None
     like: Target | None = None
-    """The place from which the value ``to`` is taken, as in 'as long as the first straight'."""
+    """The place from which the value ``to`` is taken, as in 'as long as the first straight'. With ``by`` or
+    ``times``, the value differs from it by so much, as in 'twice as long as the first straight'."""
     bound: Literal[-1, 0, 1] = 0
     """-1: ``to`` is an upper limit; 1: ``to`` is a lower limit; 0: ``to`` is the value itself."""
     dose: float = 1.0
@@ -160,6 +161,11 @@ class Change:
     def sign(self) -> int:
         """1 if the new slope goes uphill, -1 if downhill, 0 if level or if the request does not say."""
         return {"up": 1, "down": -1}.get(self.way or "", 0)
+
+    @property
+    def is_compared(self) -> bool:
+        """Whether the change gives its value by how much it differs from that of another place."""
+        return self.like is not None and (self.by is not None or self.times is not None)
 
     @property
     def is_hill(self) -> bool:

@@ -3,7 +3,8 @@
     words --checked_request--> EditRequest --placed, settled--> PlacedChanges
           --candidates_of--> ChangeCandidates --made--> Look --sentences--> Edited
 
-A Look is a Design with the road that was built from it, the findings of the rules, and measurements.
+Changes that cannot be made at once go through the second line one after the other (``stages``). A Look is a
+Design with the road that was built from it, the findings of the rules, and measurements.
 Turns and straights are those that ``check.measures`` finds on the finished road. They are numbered as on the
 road before the edit. Elements that the request does not name keep all their values, but the road as a whole
 may be shifted or rotated, so that it stays inside the map.
@@ -16,18 +17,20 @@ from typing import NamedTuple
 from roadgpt import plugins
 from roadgpt.brief.change import EditRequest, checked_request, other_readings, read_request
 from roadgpt.brief.change.plan import change_plan, read_change_plan
-from roadgpt.brief.change.request import OF_SLOPE
+from roadgpt.brief.change.request import OF_SLOPE, Change
 from roadgpt.brief.readers.model.confidence import DOUBT
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.design.differences import grades_changed, sentences
-from roadgpt.design.edit.candidates import candidates_of
+from roadgpt.design.edit.candidates import ChangeCandidates, candidates_of
 from roadgpt.design.edit.chatting import edited_by_chat
 from roadgpt.design.edit.opposites import settled
 from roadgpt.design.edit.placing import PlacedChange, placed
+from roadgpt.design.edit.reordering import RENAMED
 from roadgpt.design.edit.search import made
+from roadgpt.design.edit.stages import carried_over, directions, known, renamed, stages, with_final_heights
 from roadgpt.design.road_elements import elements_on_road
 from roadgpt.errors import EditError, IdleEditError, UnclearPlaceError
-from roadgpt.road import Design, Geometry, World
+from roadgpt.road import Design, Geometry, Site, World
 
 MOST_CHANGES = 12
 
@@ -109,31 +112,72 @@ def _instead(error: EditError, request: EditRequest, made: Edited) -> Edited:
 
 def _edited(design: Design, request: EditRequest, world: World, geometry: Geometry) -> Edited:
     """Returns the Design with the changes of a request that was read."""
+    if len(request.changes) > MOST_CHANGES:
+        raise EditError(
+            f"{len(request.changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer"
+        )
+    groups, told, idle = [*directions(request.changes)], list[str](), list[IdleEditError]()
+    now, place, may_grow = design, world, world.site.map_size == Site().map_size
+    for changes in groups:
+        try:
+            now, place, said = _in_one_direction(now, changes, place, geometry, may_grow)
+        except IdleEditError as error:
+            idle.append(error)
+            said = [str(error)]
+        told += said
+        if changes[0].what == "reverse" and changes is not groups[-1]:
+            told.append(RENAMED)
+    if len(idle) == len(groups):
+        raise idle[0]
+    if place.site.map_size != world.site.map_size:
+        sizes = place.site.map_size, world.site.map_size
+        told.append(
+            "the map is {:g} m wide, since the changed road does not fit on one of {:g} m".format(*sizes)
+        )
+    return Edited(now, tuple(told), request.unused, request.confidence, request.other, place)
+
+
+def _in_one_direction(
+    design: Design, changes: Sequence[Change], world: World, geometry: Geometry, may_grow: bool
+) -> tuple[Design, World, list[str]]:
+    """Returns the Design with changes that name their places on the same road, its World, and what to say."""
     elements, found = elements_on_road(design, geometry)
-    asked = placed(request.changes, elements)
-    changes = settled(asked)
-    if len(changes) > MOST_CHANGES:
-        raise EditError(f"{len(changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer")
-    proposed = candidates_of(changes, elements, found, world)
-    road, draft = made(design, elements, proposed, world, geometry)
-    is_of_slope = all(change.change.what in OF_SLOPE for change in changes)
-    stretches = [change.stretch for change in changes if change.stretch and is_of_slope]
+    asked = placed(changes, elements)
+    once = settled(asked)
+    wanted = with_final_heights(once)
+    now, road = known(elements, found), None
+    proposed, idle = list[ChangeCandidates](), list[IdleEditError]()
+    fitted = list[tuple[Design, Design]]()
+    for number, stage in enumerate(stages(wanted)):
+        if road is not None:
+            now = renamed(road, geometry, number)
+        own = [carried_over(each, now, elements, wanted) for each in stage]
+        ways = candidates_of(own, now.elements, now.found, world, first=len(proposed) + 1)
+        try:
+            before = design if road is None else road.design
+            road, draft = made(before, now.elements, ways, world, geometry, may_grow)
+            fitted.append((draft, road.design))
+            world = road.requirements.world
+        except IdleEditError as error:
+            idle.append(error)
+            ways = tuple(each._replace(ways=()) for each in ways)
+        proposed += ways
+    if road is None:
+        raise idle[0]
+    is_of_slope = all(change.change.what in OF_SLOPE for change in wanted)
+    stretches = [change.stretch for change in wanted if change.stretch and is_of_slope]
     told = [
         *(each.sentence for each in proposed if each.ways and each.sentence),
         *grades_changed(design, road.design, stretches, geometry),
-        *sentences(design, elements, found, road, draft),
+        *sentences(design, elements, found, road, fitted),
         *(f"'{each.change.words}' was so already" for each in proposed if not each.ways),
         *(
             f"'{each.change.words}' is asked for twice and done once"
             for each in asked
-            if not _is_in(each, changes)
+            if not _is_in(each, once)
         ),
     ]
-    found_world = road.requirements.world
-    before, now = world.site.map_size, found_world.site.map_size
-    if now != before:
-        told.append(f"the map is {now:g} m wide, since the changed road does not fit on one of {before:g} m")
-    return Edited(road.design, tuple(told), request.unused, request.confidence, request.other, found_world)
+    return road.design, world, told
 
 
 def _is_in(placed: PlacedChange, changes: Sequence[PlacedChange]) -> bool:
@@ -149,13 +193,14 @@ def _edited_by_model(
     with suppress(EditError):
         request = checked_request(words)
         changes = placed(request.changes, elements)
-        if not request.unused:
+        is_of_one_road = len([*directions(request.changes)]) == 1
+        if is_of_one_road and not request.unused:
             allowed = {i + 1 for change in changes for element in change.elements for i in element.members}
     said = words if isinstance(words, str) else words.words
     road = edited_by_chat(
         open_chat(settings), settings, design, said, elements, found, allowed, world, geometry
     )
-    told = sentences(design, elements, found, road, road.design)
+    told = sentences(design, elements, found, road)
     return Edited(road.design, told, world=world)
 
 

@@ -67,10 +67,11 @@ class ChangeCandidates(NamedTuple):
 
 
 def candidates_of(
-    changes: Sequence[PlacedChange], elements: RoadElements, found: Measures, world: World
+    changes: Sequence[PlacedChange], elements: RoadElements, found: Measures, world: World, first: int = 1
 ) -> tuple[ChangeCandidates, ...]:
     """Returns the ways to make each change of a request on a road with these elements and measurements.
 
+    ``first`` is the number of the first change in the request; names of new elements contain these numbers.
     If the road already is as one change asks, other changes of the same property leave the elements of that
     change alone: "everything uphill, the first straight level" keeps a first straight that is level.
 
@@ -79,7 +80,9 @@ def candidates_of(
             part of this stretch that already is as another change asks.
     """
     sides = _sides_after(changes, elements)
-    ways = [_ways(placed, elements, found, world, number, sides) for number, placed in enumerate(changes, 1)]
+    ways = [
+        _ways(placed, elements, found, world, number, sides) for number, placed in enumerate(changes, first)
+    ]
     told = [
         hill_sentence(placed, elements, len(changes) == 1)
         if placed.change.is_hill
@@ -89,10 +92,10 @@ def candidates_of(
         for placed in changes
     ]
     idle = [placed for placed, its in zip(changes, ways, strict=True) if not its and placed.change.is_state]
-    for number, placed in enumerate(changes, 1):
+    for index, placed in enumerate(changes):
         own = placed.without(idle)
         if own.elements is not placed.elements:
-            ways[number - 1] = _ways(own, elements, found, world, number, sides)
+            ways[index] = _ways(own, elements, found, world, first + index, sides)
     return tuple(map(ChangeCandidates, changes, agreed(changes, ways), told))
 
 

@@ -62,7 +62,9 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
     """
     out = []
     for change in changes:
-        if change.like is not None:
+        if change.like is not None and change.what == "swap":
+            out.append(_swapped(change, change.like, elements))
+        elif change.like is not None:
             out.append(_like_its_model(change, changes, elements))
         elif change.what in ("mirror", "reverse") and change.target is None:  # the whole road
             out.append(PlacedChange(change, elements))
@@ -82,6 +84,16 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
             stretch = stretch_of(change.target, elements) if is_sloped else None
             out.append(PlacedChange(change, own, stretch=stretch))
     return tuple(_on_straight(placed, elements) if placed.change.is_hill else placed for placed in out)
+
+
+def _swapped(change: Change, like: Target, elements: RoadElements) -> PlacedChange:
+    """Returns a swap of two things that are named each by itself, with both of them."""
+    assert change.target is not None
+    own = pointed(change.target, elements, "length"), pointed(named(like), elements, "length")
+    if any(len(each) != 1 for each in own) or own[0] == own[1]:
+        raise EditError(f"'{change.words}' has to name two different things; name one on each side")
+    both = {element.name for each in own for element in each}
+    return PlacedChange(change, tuple(element for element in elements if element.name in both))
 
 
 def _on_straight(placed: PlacedChange, elements: RoadElements) -> PlacedChange:
@@ -173,13 +185,19 @@ def _with_value_of(change: Change, model: RoadElement, others: Sequence[Change])
     seen = model.seen
     assert seen is not None
     measures = {"angle": seen.degrees, "radius": seen.radius, "length": seen.length, "slope": seen.grade}
-    value = measures[change.what] if change.bound else round(measures[change.what], 1)
+    is_exact = change.bound or change.is_compared
+    value = measures[change.what] if is_exact else round(measures[change.what], 1)
     direction = way(value) if change.what == "slope" else None
     for other in others:
         if other.what in RELATED[change.what]:
             raise clash(change, other)
         if other.what == change.what:
             value, direction = _new_value(change, other, value, direction)
+    if change.is_compared:
+        value = change.aim(abs(value)) or 0.0
+        if value < 0:
+            raise EditError(f"'{change.words}' would be less than nothing on this road; ask for less")
+        change = replace(change, more=0, by=None, times=None)
     if change.what != "slope":
         return replace(change, like=None, to=value)
     if change.bound:

@@ -13,6 +13,7 @@ from roadgpt.errors import EditError
 from roadgpt.road import World
 
 REVERSED = "the road leads from its former end to its former start; its parts are named as before"
+RENAMED = "what follows names the parts as they come in the new direction"
 
 
 @dataclass(frozen=True, slots=True)

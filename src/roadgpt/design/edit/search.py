@@ -38,7 +38,7 @@ from roadgpt.design.road_elements import (
     numbered,
 )
 from roadgpt.errors import EditError, IdleEditError, UsageError
-from roadgpt.road import Design, Geometry, Site, World, build
+from roadgpt.road import Design, Geometry, World, build
 from roadgpt.road.design import MAX_SEGMENTS
 
 MOST_TRIALS = 40
@@ -58,10 +58,12 @@ def made(
     changes: Sequence[ChangeCandidates],
     world: World,
     geometry: Geometry,
+    may_grow: bool,
 ) -> tuple[Look, Design]:
     """Returns the road with all changes, and a design in which only the elements named in them changed.
 
-    A change without candidates is not needed; ``elements`` are those of the road before the edit.
+    A change without candidates is not needed; ``elements`` are those of the road before the edit, and
+    ``may_grow`` says whether the map may become larger.
 
     Raises:
         EditError: The road already is as requested, or no valid road has the requested changes.
@@ -70,7 +72,7 @@ def made(
     idle = [each for each in changes if not each.ways]
     if not needed:
         raise IdleEditError(f"nothing is to be changed: '{idle[0].change.words}' is so already")
-    road, draft = _fitted(design, elements, needed, world, geometry)
+    road, draft = _fitted(design, elements, needed, world, geometry, may_grow)
     if idle and not any(each.change.what in NUMBERING for each in needed):
         _refuse_broken_limits(idle, needed, road, geometry)
     is_of_road = any(each.change.what in ("mirror", "reverse") for each in needed)
@@ -105,16 +107,17 @@ def _fitted(
     changes: Sequence[ChangeCandidates],
     world: World,
     geometry: Geometry,
+    may_grow: bool,
 ) -> tuple[Look, Design]:
     """Returns the road with all changes, and its design before other elements had to change.
 
-    If the usual map has no room for it, the map grows; only otherwise do other elements change.
+    If the map has no room for it, the map grows if it may; only otherwise do other elements change.
 
     Raises:
         EditError: no valid road was found; the message says what was wrong with the first one tried.
     """
     drafts, objection = _drafts(design, elements, changes, world, geometry)
-    if world.site.map_size == Site().map_size and drafts and drafts[-1].objection:
+    if may_grow and drafts and drafts[-1].objection:
         drafts += _on_larger_map(drafts, world)
     if drafts and not drafts[-1].objection:
         return drafts[-1], drafts[-1].design

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import compress
+from math import ceil, degrees, floor, radians
 from typing import NamedTuple
 
 from roadgpt.brief.change.request import Target
@@ -11,6 +12,8 @@ from roadgpt.road import Segment
 
 LEAST_LENGTH = 5.0  # m of a stretch
 LEAST_PIECE = 1.0  # m of a straight segment: a shorter piece is not cut off
+LEAST_ARC = 4.0  # m of the arc of a turn on either side of a cut
+TENTH = 10.0  # per degree
 MOST_MOVED = 0.3  # share of a stretch by which its end may be moved to the end of a turn
 MILLIMETRE = 1000.0
 
@@ -25,7 +28,8 @@ class RoadStretch(NamedTuple):
 def stretch_of(target: Target, elements: RoadElements) -> RoadStretch | None:
     """Returns the stretch that a target names by distances or as a half; None for any other target.
 
-    A stretch that would begin or end within a bend begins or ends at the nearer end of that bend.
+    A stretch may begin or end in the arc of a turn. If it would begin or end anywhere else within a bend, it
+    begins or ends at the nearer end of that bend.
 
     Raises:
         EditError: the road is shorter than the target says, the stretch is shorter than 5 m, or one of its
@@ -69,18 +73,24 @@ def _station(target: Target, whole: float) -> float:
 
 
 def _outside_bends(station: float, length: float, elements: RoadElements) -> float:
-    """Returns the station, or the nearer end of the turn in which it lies.
+    """Returns the station, or the nearer end of the turn in which it lies; in an arc, the station itself.
 
     Raises:
         EditError: the station would be moved by more than a share of the stretch, which has this length.
     """
+    for element, begin in with_stations(elements):
+        for i, (_, start) in enumerate(_segment_stations(element.segments, begin)):
+            if i and _is_in_turn(element.segments, i) and abs(start - station) < LEAST_ARC:
+                return start
+            if _arc_cut(element.segments, i, start, station):
+                return station
     for at, end in _bends(elements):
         if at < station < end:
             nearer = min(at, end, key=lambda each: abs(each - station))
             if abs(nearer - station) > MOST_MOVED * length:
                 raise EditError(
-                    f"station {station:.0f} m of this road lies in a turn, which keeps one slope; name turns "
-                    "and straights, for example: from turn 2 on"
+                    f"station {station:.0f} m of this road lies in a turn and cannot be an end there; name "
+                    "turns and straights, for example: from turn 2 on"
                 )
             return nearer
     return station
@@ -114,10 +124,12 @@ def pieces(
 ) -> tuple[tuple[Segment, ...], tuple[bool, ...]]:
     """Returns the segments of an element that begins at station ``at``, and which of them lie in a stretch.
 
-    A straight segment in which the stretch begins or ends is cut in two there.
+    A straight segment or an arc in which the stretch begins or ends is cut in two there.
     """
-    pairs = _segment_stations(element.segments, at)
-    cut = [part for segment, start in pairs for part in _cut(segment, start, stretch)]
+    cut = list(element.segments)
+    for station in stretch:
+        starts = list(_segment_stations(cut, at))
+        cut = [part for i, (_, start) in enumerate(starts) for part in _cut(cut, i, start, station)]
     middles = (start + part.distance / 2 for part, start in _segment_stations(cut, at))
     return tuple(cut), tuple(stretch.start < middle < stretch.end for middle in middles)
 
@@ -129,14 +141,57 @@ def _segment_stations(segments: Sequence[Segment], at: float) -> Iterator[tuple[
         at += segment.distance
 
 
-def _cut(segment: Segment, at: float, stretch: RoadStretch) -> list[Segment]:
+def _is_in_turn(segments: Sequence[Segment], index: int) -> bool:
+    """Returns whether a segment goes on with the turn of the segment before it."""
+    return segments[index - 1].turn_degrees * segments[index].turn_degrees > 0
+
+
+def _cut(segments: Sequence[Segment], index: int, at: float, station: float) -> Sequence[Segment]:
+    """Returns a segment, which begins at station ``at``, in two parts if it is to be cut at ``station``."""
+    segment = segments[index]
     if segment.turn_degrees:
+        return _arc_cut(segments, index, at, station) or [segment]
+    first = round((station - at) * MILLIMETRE) / MILLIMETRE
+    rest = round((segment.distance - first) * MILLIMETRE) / MILLIMETRE
+    if min(first, rest) < LEAST_PIECE:
         return [segment]
-    out = [segment]
-    for station in stretch:
-        before = sum(part.distance for part in out[:-1])
-        first = round((station - at - before) * MILLIMETRE) / MILLIMETRE
-        rest = round((out[-1].distance - first) * MILLIMETRE) / MILLIMETRE
-        if min(first, rest) >= LEAST_PIECE:
-            out[-1:] = [out[-1].model_copy(update={"distance": each}) for each in (first, rest)]
-    return out
+    return [segment.model_copy(update={"distance": each}) for each in (first, rest)]
+
+
+def _arc_cut(segments: Sequence[Segment], index: int, at: float, station: float) -> list[Segment]:
+    """Returns a segment of a turn in two parts with the same curvature, cut at the tenth of a degree that is
+    nearest to ``station``; an empty list if there is no arc there, or the segment does not give its arc.
+    """
+    segment, away = segments[index], station - at
+    if not segment.turn_degrees or not 0 < away < segment.distance:
+        return []
+    is_end = [not (0 < i < len(segments) and _is_in_turn(segments, i)) for i in (index, index + 1)]
+    if any(is_end) and not (segment.radius and segment.transition):
+        return []
+    ramps = [(segment.transition or 0.0) if end else 0.0 for end in is_end]
+    turned = radians(abs(segment.turn_degrees))
+    radius = segment.radius if segment.radius and any(is_end) else segment.distance / turned
+    if away - ramps[0] < LEAST_ARC or segment.distance - away - ramps[1] < LEAST_ARC:
+        return []
+    angle = round(degrees((away - ramps[0] / 2) / radius) * TENTH) / TENTH
+    if not 0 < angle < abs(segment.turn_degrees):
+        return []
+    angles = angle, round((abs(segment.turn_degrees) - angle) * TENTH) / TENTH
+    return [_arc(segment, *part, radius) for part in zip(angles, ramps, strict=True)]
+
+
+def _arc(segment: Segment, angle: float, ramp: float, radius: float) -> Segment:
+    """Returns a part of a segment of a turn, of so many degrees, with a ramp of so many metres or none.
+
+    As in ``design.elements.cut``, parts with ramps are a hair long, and others a hair short, so that all of
+    them keep the radius.
+    """
+    exact = (radius * radians(angle) + ramp / 2) * MILLIMETRE
+    return segment.model_copy(
+        update={
+            "distance": (ceil(exact) if ramp else floor(exact)) / MILLIMETRE,
+            "turn_degrees": angle if segment.turn_degrees > 0 else -angle,
+            "radius": segment.radius if ramp else None,
+            "transition": segment.transition if ramp else None,
+        }
+    )

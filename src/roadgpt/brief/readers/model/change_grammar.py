@@ -101,7 +101,8 @@ def _wish(numbers: Numbers) -> Symbol:
         _position(like, MOVES),
         sequel(one_of("side"), one_of(*SIDES, "other")),
         sequel(one_of("shape"), shape),
-        one_of(*ALONE, ORDER),
+        one_of(*ALONE),
+        sequel(one_of(ORDER), in_order(sequel(one_of("="), like))),
     )
 
 
@@ -117,13 +118,14 @@ def _climb(numbers: Numbers) -> Symbol:
 
 def _value(name: str, numbers: Numbers, like: Symbol) -> Symbol:
     """Returns the forms of a value: an exact number or a bound, each also as the place that has it; a
-    difference, a factor, or "more" or "less"."""
+    difference or a factor, each also of the value of another place; or "more" or "less"."""
     found = numbers.of(name)
     figures = [one_of(*found)] if found else []
+    other = in_order(sequel(one_of("="), like))
     return any_of(
         sequel(one_of("=", BOUND), any_of(*figures, like)),
-        *(sequel(one_of("+", MINUS), figure) for figure in figures),
-        *_factors(numbers),
+        *(sequel(one_of("+", MINUS), figure, other) for figure in figures),
+        *(sequel(factor, other) for factor in _factors(numbers)),
         sequel(one_of("slightly", "much"), one_of("more", "less")),
         one_of("more", "less"),
         *(sequel(each, one_of(BOUND)) for each in (*figures, like)),
