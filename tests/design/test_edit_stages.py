@@ -29,6 +29,14 @@ LEVEL = draft(
     WORLD,
     seed=1,
 )
+LEVEL_END = draft(
+    read_plan(
+        "straight len=50; turn left deg=60 r=30; straight len=50; turn right deg=80 r=25; straight len=40; "
+        "turn left deg=40 r=40; straight len=30 | flat"
+    ),
+    WORLD,
+    seed=1,
+)
 ROADS = {**roads(), "climbing": CLIMBING, "level": LEVEL}
 AFTERWARDS = [
     "turn 1: radius x1.15",
@@ -110,6 +118,8 @@ def test_after_a_reversal_the_parts_are_named_in_the_new_direction() -> None:
         ("road: reverse; road: climb =6", 6.0),
         ("road: climb =5; road: slope up", 5.0),
         ("straight 1: climb =0; road: climb =8", 8.0),
+        ("add turn right deg=60 r=30 at_start; road: climb =-5", -5.0),
+        ("straight 1: climb =2; road from(turn 1): climb =3", 5.0),
     ],
 )
 def test_a_height_holds_when_all_else_is_done(plan: str, metres: float) -> None:
@@ -146,6 +156,12 @@ def test_heights_of_two_straights() -> None:
         ("turn 1: at_end; add turn right deg=90 r=25 at_end", [-80, 40, 60, -90]),
         ("turn 1,2: swap; add turn right deg=50 r=25 after(turn 1)", [-80, 60, -50, 40]),
         ("turn: x2; turn 1: at_end", [-80, 60]),
+        ("turn 1: at_end; turn 3: at_end", [-80, 60, 40]),
+        ("turn 1,3: swap; turn 1: at_start", [60, 40, -80]),
+        (
+            "add turn left deg=50 r=30 at_end; turn 1: at_end; add turn left deg=50 r=30 at_end",
+            [-80, 40, 50, 60, 50],
+        ),
         ("turn left: x3; turn right: x2", [60, -80, 40, 60, -60]),
         ("turn left: x1; turn right: x1", [60, -80]),
     ],
@@ -195,6 +211,56 @@ def test_a_whole_straight_counts_what_is_there_after_the_removals() -> None:
     assert straights(found)[-1].length == pytest.approx(70, abs=2)
 
 
+@pytest.mark.parametrize(
+    "plan",
+    ["turn 3: remove; add straight len=60 whole at_end", "add straight len=60 whole at_end; turn 3: remove"],
+)
+def test_a_whole_straight_comes_last(plan: str) -> None:
+    assert straights(after(CLIMBING, plan))[-1].length == pytest.approx(60, abs=2)
+
+
+def test_parts_that_a_removal_joined_are_still_found() -> None:
+    found = after(CLIMBING, "turn 2: remove; turn 1: at_end; straight 3: climb =2")
+    assert angles(found) == pytest.approx([40, 60], abs=4)
+    assert found.turns[0].start * 0.04 + 2 == pytest.approx(0.04 * 50 + 2, abs=0.3)
+    joined = straights(found)[1]
+    assert joined.length * joined.grade / 100 == pytest.approx(2, abs=0.3)
+    kept = after(CLIMBING, "turn 2: remove; straight 3: slope flat; turn 1,3: swap; road: climb =8")
+    assert kept.climb == pytest.approx(8, abs=0.35)
+
+
+def test_a_crest_may_stand_on_a_straight_that_gets_longer() -> None:
+    short = "straight 4: length =60; add crest on(straight 4)"
+    assert any("a crest of 60 m is new" in sentence for sentence in edited(LEVEL_END, short).changes)
+
+
+def test_what_moved_is_named_as_before() -> None:
+    said = edited(CLIMBING, "turn 1: remove; turn 2,3: swap").changes
+    assert any(sentence.startswith("turn 2 and turn 3 have changed places") for sentence in said)
+    said = edited(CLIMBING, "add straight len=100 at_end; turn 1,2: swap").changes
+    assert any(sentence.startswith("straight 4: length 40 -> 140 m") for sentence in said)
+    assert not any("is gone" in sentence for sentence in said)
+
+
+def test_a_straight_that_differs_from_a_level_one() -> None:
+    plan = "straight 1: slope flat; straight 2: slope +2 =straight 1"
+    assert straights(after(CLIMBING, plan))[1].grade == pytest.approx(2, abs=0.7)
+
+
+def test_differences_of_several_heights_are_those_to_the_heights_before() -> None:
+    old = straights(measure(build(CLIMBING).centreline()))
+    new = straights(after(CLIMBING, "straight all: climb +1; straight all: length x1.5"))
+    for before, now in zip(old, new, strict=True):
+        assert now.length * now.grade / 100 == pytest.approx(before.length * before.grade / 100 + 1, abs=0.35)
+
+
+def test_splines_are_not_cut_within_bends() -> None:
+    design = edit(CLIMBING, read_change_plan("start len=70: slope flat"), WORLD, "spline").design
+    assert [segment.turn_degrees for segment in design.segments] == [
+        segment.turn_degrees for segment in CLIMBING.segments
+    ]
+
+
 def test_the_map_may_grow_in_a_later_stage_and_it_is_said_once() -> None:
     plan = "turn 1,3: swap; add straight len=120 at_end; add straight len=90 at_start"
     made = edited(CLIMBING, plan)
@@ -216,8 +282,34 @@ def test_a_stage_that_is_so_already_is_said() -> None:
     [
         ("turn 2: remove; turn 2: at_end", "speaks of something that the same request removes"),
         ("turn 2: remove; turn 1,2: swap", "speaks of something that the same request removes"),
-        ("road: slope up =4; road: climb =8", "each give the same part of the road its slopes"),
-        ("straight 1: slope flat; straight 1: climb =2", "each give the same part of the road its slopes"),
+        ("turn 2: at_start; turn 2: remove", "speaks of something that the same request removes"),
+        ("turn 3: at_start; turn: x2", "speaks of something that the same request removes"),
+        (
+            "road between(turn 1, turn 2): climb =2; straight between(turn 1, turn 2): remove",
+            "speaks of something that the same request removes",
+        ),
+        ("road: slope up =4; road: climb =8", "both give a part of the road its slopes"),
+        ("straight 1: slope flat; straight 1: climb =2", "both give a part of the road its slopes"),
+        ("road half1: slope flat; road: climb =8", "both give a part of the road its slopes"),
+        ("road up_to(turn 2): climb =5; road from(turn 2): climb =5", "both give a part of the road"),
+        ("road: slope down; road: climb =5", "contradict each other"),
+        ("straight 1: climb =-2; straight 1: slope up", "contradict each other"),
+        ("straight 1: climb =2; straight 1: slope steeply_up", "both give a part of the road its slopes"),
+        ("road: slope ..3; straight 1: climb =5", "need requests of their own"),
+        ("straight all: climb =2; straight 1: climb =3", "need requests of their own"),
+        ("straight all: slope flat; turn all: slope flat; road: climb =8", "leaves nothing that could climb"),
+        (
+            "straight 1: climb =2; road from(turn 1): climb =3; road: climb =10",
+            "leaves nothing that could climb",
+        ),
+        ("add crest on(straight 2); road: climb =8", "need requests of their own"),
+        ("add straight len=40 pct=10 up at_end; road: climb =8", "need requests of their own"),
+        ("start len=60: climb =2; road: slope down =3", "need requests of their own"),
+        ("start len=120: climb =5; turn 1: remove", "need requests of their own"),
+        ("add crest on(straight 2); straight 2: slope up =5", "need requests of their own"),
+        ("add crest on(straight 2); straight 2: length =25", "a crest needs a straight of 40 m or more"),
+        ("road: reverse; road: reverse", "reversed twice"),
+        ("road: reverse; turn 1: radius =turn 1; turn 2: radius x1.5", "compares a place with itself"),
         ("turn 1: swap =turn 1", "has to name two different things"),
         ("turn all: swap =turn 1", "has to name two different things"),
         ("turn 1: swap =straight 1", "two turns, or two straights, can change places"),

@@ -49,6 +49,9 @@ class RoadElement:
     """
     asked: Feature | None = None
     """The requirement that the element must meet; None if there is none."""
+    is_of_arcs: bool = True
+    """Whether the road is built of lines, arcs and clothoids, and not as a spline through the joints of its
+    segments; then the arc of a turn can be cut in two."""
 
     @property
     def length(self) -> float:
@@ -166,6 +169,8 @@ def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadE
             out.append(RoadElement(f"turn {number // 2 + 1}", own, turn.side, first, turn))
         else:
             out.append(RoadElement(f"gap {number // 2}", own, None, first, straights[number // 2]))
+    if geometry != "arcs":
+        out = [replace(element, is_of_arcs=False) for element in out]
     return tuple(out), found
 
 

@@ -21,13 +21,14 @@ from roadgpt.brief.change.request import OF_SLOPE, Change
 from roadgpt.brief.readers.model.confidence import DOUBT
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.design.differences import grades_changed, sentences
-from roadgpt.design.edit.candidates import ChangeCandidates, candidates_of
+from roadgpt.design.edit.candidates import candidates_of, sentence_of
 from roadgpt.design.edit.chatting import edited_by_chat
+from roadgpt.design.edit.heights import with_final_heights
 from roadgpt.design.edit.opposites import settled
 from roadgpt.design.edit.placing import PlacedChange, placed
 from roadgpt.design.edit.reordering import RENAMED
 from roadgpt.design.edit.search import made
-from roadgpt.design.edit.stages import carried_over, directions, known, renamed, stages, with_final_heights
+from roadgpt.design.edit.stages import carried_over, directions, renamed, stages, unchanged
 from roadgpt.design.road_elements import elements_on_road
 from roadgpt.errors import EditError, IdleEditError, UnclearPlaceError
 from roadgpt.road import Design, Geometry, Site, World
@@ -116,19 +117,17 @@ def _edited(design: Design, request: EditRequest, world: World, geometry: Geomet
         raise EditError(
             f"{len(request.changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer"
         )
-    groups, told, idle = [*directions(request.changes)], list[str](), list[IdleEditError]()
+    groups, told, idle = directions(request.changes), list[str](), 0
     now, place, may_grow = design, world, world.site.map_size == Site().map_size
     for changes in groups:
-        try:
-            now, place, said = _in_one_direction(now, changes, place, geometry, may_grow)
-        except IdleEditError as error:
-            idle.append(error)
-            said = [str(error)]
+        made_of, place, said = _in_one_direction(now, changes, place, geometry, may_grow)
+        idle += made_of is None
+        now = made_of or now
         told += said
         if changes[0].what == "reverse" and changes is not groups[-1]:
             told.append(RENAMED)
-    if len(idle) == len(groups):
-        raise idle[0]
+    if idle == len(groups):
+        raise IdleEditError(f"nothing is to be changed: '{request.changes[0].words}' is so already")
     if place.site.map_size != world.site.map_size:
         sizes = place.site.map_size, world.site.map_size
         told.append(
@@ -139,38 +138,42 @@ def _edited(design: Design, request: EditRequest, world: World, geometry: Geomet
 
 def _in_one_direction(
     design: Design, changes: Sequence[Change], world: World, geometry: Geometry, may_grow: bool
-) -> tuple[Design, World, list[str]]:
-    """Returns the Design with changes that name their places on the same road, its World, and what to say."""
+) -> tuple[Design | None, World, list[str]]:
+    """Returns the Design with changes that name their places on the same road, its World, and what to say;
+    None instead of the Design if the road is so already.
+    """
     elements, found = elements_on_road(design, geometry)
     asked = placed(changes, elements)
     once = settled(asked)
     wanted = with_final_heights(once)
-    now, road = known(elements, found), None
-    proposed, idle = list[ChangeCandidates](), list[IdleEditError]()
-    fitted = list[tuple[Design, Design]]()
-    for number, stage in enumerate(stages(wanted)):
+    now, road = unchanged(elements, found), None
+    told, idle, fitted = list[str](), list[str](), list[tuple[Design, Design]]()
+    number = 1
+    for stage in stages(wanted):
         if road is not None:
-            now = renamed(road, geometry, number)
-        own = [carried_over(each, now, elements, wanted) for each in stage]
-        ways = candidates_of(own, now.elements, now.found, world, first=len(proposed) + 1)
+            now = renamed(road, now, geometry, number)
+        own = [carried_over(each, now, wanted) for each in stage]
+        ways = candidates_of(own, now.elements, now.found, world, first=number)
+        number += len(ways)
+        pairs = zip(stage, own, strict=True)
+        said = [sentence_of(each, elements, there, now.elements) for each, there in pairs]
         try:
             before = design if road is None else road.design
             road, draft = made(before, now.elements, ways, world, geometry, may_grow)
             fitted.append((draft, road.design))
             world = road.requirements.world
-        except IdleEditError as error:
-            idle.append(error)
+        except IdleEditError:
             ways = tuple(each._replace(ways=()) for each in ways)
-        proposed += ways
+        told += [sentence for sentence, each in zip(said, ways, strict=True) if each.ways and sentence]
+        idle += [f"'{each.change.words}' was so already" for each in ways if not each.ways]
     if road is None:
-        raise idle[0]
+        return None, world, idle
     is_of_slope = all(change.change.what in OF_SLOPE for change in wanted)
     stretches = [change.stretch for change in wanted if change.stretch and is_of_slope]
-    told = [
-        *(each.sentence for each in proposed if each.ways and each.sentence),
+    told += [
         *grades_changed(design, road.design, stretches, geometry),
         *sentences(design, elements, found, road, fitted),
-        *(f"'{each.change.words}' was so already" for each in proposed if not each.ways),
+        *idle,
         *(
             f"'{each.change.words}' is asked for twice and done once"
             for each in asked
@@ -193,7 +196,7 @@ def _edited_by_model(
     with suppress(EditError):
         request = checked_request(words)
         changes = placed(request.changes, elements)
-        is_of_one_road = len([*directions(request.changes)]) == 1
+        is_of_one_road = len(directions(request.changes)) == 1
         if is_of_one_road and not request.unused:
             allowed = {i + 1 for change in changes for element in change.elements for i in element.members}
     said = words if isinstance(words, str) else words.words

@@ -57,8 +57,6 @@ class ChangeCandidates(NamedTuple):
     """The change, and the elements that it refers to."""
     ways: tuple[EditCandidate, ...]
     """All candidates, the preferred one first; none if the road already is as requested."""
-    sentence: str = ""
-    """What the change does to the road, if measurements alone would not tell; else empty."""
 
     @property
     def change(self) -> Change:
@@ -69,7 +67,7 @@ class ChangeCandidates(NamedTuple):
 def candidates_of(
     changes: Sequence[PlacedChange], elements: RoadElements, found: Measures, world: World, first: int = 1
 ) -> tuple[ChangeCandidates, ...]:
-    """Returns the ways to make each change of a request on a road with these elements and measurements.
+    """Returns the ways to make each change of a stage on a road with these elements and measurements.
 
     ``first`` is the number of the first change in the request; names of new elements contain these numbers.
     If the road already is as one change asks, other changes of the same property leave the elements of that
@@ -83,20 +81,23 @@ def candidates_of(
     ways = [
         _ways(placed, elements, found, world, number, sides) for number, placed in enumerate(changes, first)
     ]
-    told = [
-        hill_sentence(placed, elements, len(changes) == 1)
-        if placed.change.is_hill
-        else reordering_sentence(placed, elements)
-        if placed.change.what in (*REORDERS, "reverse")
-        else ""
-        for placed in changes
-    ]
     idle = [placed for placed, its in zip(changes, ways, strict=True) if not its and placed.change.is_state]
     for index, placed in enumerate(changes):
         own = placed.without(idle)
         if own.elements is not placed.elements:
             ways[index] = _ways(own, elements, found, world, first + index, sides)
-    return tuple(map(ChangeCandidates, changes, agreed(changes, ways), told))
+    return tuple(map(ChangeCandidates, changes, agreed(changes, ways)))
+
+
+def sentence_of(asked: PlacedChange, before: RoadElements, placed: PlacedChange, now: RoadElements) -> str:
+    """Returns what a change does to the road, if measurements alone would not tell; else an empty string.
+
+    ``asked`` is the change on the road before the edit, with the elements ``before``; ``placed`` is the same
+    change on the road to which it is made, with the elements ``now``.
+    """
+    if asked.change.is_hill:
+        return hill_sentence(placed, now)
+    return reordering_sentence(asked, before) if asked.change.what in (*REORDERS, "reverse") else ""
 
 
 def _ways(

@@ -57,8 +57,8 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
     """Returns the changes with the elements that they refer to on the road before the edit.
 
     Raises:
-        EditError: no element matches, several match although the request means one, or the straight for a
-            crest or a dip is too short.
+        EditError: no element matches, several match although the request means one, or there is no straight
+            for a crest or a dip.
     """
     out = []
     for change in changes:
@@ -100,16 +100,17 @@ def _on_straight(placed: PlacedChange, elements: RoadElements) -> PlacedChange:
     """Returns the addition of a crest or a dip, with the straight that gets it.
 
     Raises:
-        EditError: the straight is too short or bends, or the change does not refer to exactly one straight.
+        EditError: the change does not refer to exactly one straight.
     """
     where = _straight_at(placed, elements)
-    if where is None or where.length < LEAST_FOR_HILL or any(s.turn_degrees for s in where.segments):
-        found = f"; there are {where.length:.0f} m" if where else ""
-        raise EditError(
-            f"a {placed.change.kind} needs a straight of {LEAST_FOR_HILL:.0f} m or more{found}; "
-            "lengthen it first"
-        )
+    if where is None:
+        raise EditError(too_short_for_hill(placed.change))
     return placed._replace(elements=(where,))
+
+
+def too_short_for_hill(change: Change, found: str = "") -> str:
+    """Returns a sentence on a crest or dip for which there is no straight; ``found`` says what there is."""
+    return f"a {change.kind} needs a straight of {LEAST_FOR_HILL:.0f} m or more{found}; lengthen it first"
 
 
 def _straight_at(placed: PlacedChange, elements: RoadElements) -> RoadElement | None:
@@ -194,7 +195,7 @@ def _with_value_of(change: Change, model: RoadElement, others: Sequence[Change])
         if other.what == change.what:
             value, direction = _new_value(change, other, value, direction)
     if change.is_compared:
-        value = change.aim(abs(value)) or 0.0
+        value, direction = change.aim(abs(value)) or 0.0, None if direction == "flat" else direction
         if value < 0:
             raise EditError(f"'{change.words}' would be less than nothing on this road; ask for less")
         change = replace(change, more=0, by=None, times=None)

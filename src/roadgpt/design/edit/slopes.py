@@ -11,7 +11,7 @@ from roadgpt.brief.change.request import HILLS, Change, Steepness, Way
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import PERCENT_SLACK
 from roadgpt.check.measures import Measures, way
-from roadgpt.design.edit.placing import LEAST_FOR_HILL, PlacedChange
+from roadgpt.design.edit.placing import LEAST_FOR_HILL, PlacedChange, too_short_for_hill
 from roadgpt.design.edit.steps import OFF_STEEPEST, Adjust, EditCandidate, EditStep, Wanted
 from roadgpt.design.edit.stretches import RoadStretch, pieces, within
 from roadgpt.design.road_elements import RoadElement, RoadElements, with_inclines, with_stations
@@ -241,10 +241,12 @@ def climb_step(change: Change, elements: Sequence[RoadElement], world: World) ->
     Otherwise the grades become equal.
 
     Raises:
-        EditError: the change gives no climb in metres or only a limit, or the required grade is steeper than
-            the rules allow.
+        EditError: the change gives no climb in metres or only a limit, the required grade is steeper than the
+            rules allow, or the elements have no length.
     """
     length = sum(element.length for element in elements)
+    if not length:  # a spline bends before and behind its turns
+        raise EditError(f"'{change.words}' names a part that has no length of its own; name another one")
     rises = [segment.incline * segment.distance / 100 for each in elements for segment in each.segments]
     now = sum(rises)
     aim = change.aim(now)
@@ -263,7 +265,13 @@ def climb_step(change: Change, elements: Sequence[RoadElement], world: World) ->
 def hill_candidates(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate, ...]:
     """Returns the candidates that put one crest or dip on the straight that a change refers to; the road's
     length and its plan stay the same.
+
+    Raises:
+        EditError: the straight is too short or bends.
     """
+    (where,) = placed.elements
+    if where.length < LEAST_FOR_HILL or any(segment.turn_degrees for segment in where.segments):
+        raise EditError(too_short_for_hill(placed.change, f"; there are {where.length:.0f} m"))
     middle, half = _hill_of(placed, elements)
     names, sign = frozenset(element.name for element in placed.elements), HILLS[placed.change.kind or ""]
     sides = (RoadStretch(middle - half, middle), sign), (RoadStretch(middle, middle + half), -sign)
@@ -273,11 +281,10 @@ def hill_candidates(placed: PlacedChange, elements: RoadElements) -> tuple[EditC
     )
 
 
-def hill_sentence(placed: PlacedChange, elements: RoadElements, is_alone: bool) -> str:
-    """Returns a sentence on a new crest or dip; it says where, if the request has no other change."""
+def hill_sentence(placed: PlacedChange, elements: RoadElements) -> str:
+    """Returns a sentence on a new crest or dip, and on where it is."""
     middle, half = _hill_of(placed, elements)
-    where = f", its middle at {middle:.0f} m" if is_alone else ""
-    return f"a {placed.change.kind} of {2 * half:.0f} m is new{where}"
+    return f"a {placed.change.kind} of {2 * half:.0f} m is new, its middle at {middle:.0f} m"
 
 
 class Hill(NamedTuple):

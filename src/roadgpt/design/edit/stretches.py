@@ -80,6 +80,8 @@ def _outside_bends(station: float, length: float, elements: RoadElements) -> flo
     """
     for element, begin in with_stations(elements):
         for i, (_, start) in enumerate(_segment_stations(element.segments, begin)):
+            if not element.is_of_arcs:
+                break
             if i and _is_in_turn(element.segments, i) and abs(start - station) < LEAST_ARC:
                 return start
             if _arc_cut(element.segments, i, start, station):
