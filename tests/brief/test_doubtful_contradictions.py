@@ -44,7 +44,6 @@ def test_what_only_looks_like_a_contradiction_is_read_with_a_doubt(
     assert brief.confidence <= most
 
 
-@pytest.mark.xfail(raises=ContradictionError, strict=True, reason="the networks are certain of it")
 def test_a_denial_that_says_the_same_again_is_no_contradiction() -> None:
     words = "Zwei Kurven und die ganze Zeit nur rauf, runter geht's nirgends."
     assert plan(read(words)) == "turn x2 | up"

@@ -254,6 +254,50 @@ def test_differences_of_several_heights_are_those_to_the_heights_before() -> Non
         assert now.length * now.grade / 100 == pytest.approx(before.length * before.grade / 100 + 1, abs=0.35)
 
 
+@pytest.mark.parametrize(
+    ("plan", "grade"),
+    [
+        ("add turn right deg=40 r=25 between(turn 1, turn 2); road: slope up =6", 6),
+        ("road: slope down =5; add hairpin left at_end", -5),
+        ("road: slope x0.5; add turn right deg=50 r=25 at_end", 2),
+        ("road: slope flat; add straight len=60 at_start; turn 1,2: swap", 0),
+    ],
+)
+def test_what_is_new_has_the_slope_of_the_whole_road(plan: str, grade: float) -> None:
+    road = build(edited(CLIMBING, plan).design)
+    heights = road.at(np.linspace(0, road.length, 30))[:, 2]
+    assert np.diff(heights) / road.length * 2900 == pytest.approx([grade] * 29, abs=0.5)
+
+
+def test_what_is_new_keeps_a_slope_that_is_told_of_it() -> None:
+    found = after(
+        CLIMBING, "add turn right deg=50 r=25 up pct=2 at_end; road: slope up =6; straight 1: slope flat"
+    )
+    assert found.turns[-1].grade == pytest.approx(2, abs=1)
+    own = straights(found)
+    assert abs(own[0].grade) < 0.8
+    assert own[1].grade == pytest.approx(6, abs=0.5)
+
+
+@pytest.mark.parametrize(
+    ("plan", "number", "what"),
+    [("turn 3: radius ..turn 1", 2, "radius"), ("turn 3: angle turn 1..", 2, "degrees")],
+)
+def test_what_is_to_be_beyond_another_value_is_clearly_beyond_it(plan: str, number: int, what: str) -> None:
+    turns = after(CLIMBING, plan).turns
+    share = getattr(turns[number], what) / getattr(turns[0], what)
+    assert 0.9 < share < 0.985 if what == "radius" else 1.015 < share < 1.1
+
+
+def test_a_straight_that_is_to_be_longer_is_longer() -> None:
+    longer = straights(after(CLIMBING, "straight 3: length straight 1.."))
+    assert 1.01 * longer[0].length < longer[2].length < 1.1 * longer[0].length
+    same = straights(after(CLIMBING, "straight all: length ..straight 2"))
+    assert same[1].length == pytest.approx(
+        straights(measure(build(CLIMBING).centreline()))[1].length, abs=0.5
+    )
+
+
 def test_splines_are_not_cut_within_bends() -> None:
     design = edit(CLIMBING, read_change_plan("start len=70: slope flat"), WORLD, "spline").design
     assert [segment.turn_degrees for segment in design.segments] == [

@@ -84,7 +84,7 @@ def test_wider_lanes_leave_less_room() -> None:
         ("a winding road of 2 km", 1000),
         ("an uphill road with 3 turns", 120),
         ("a road of 10 km", 10_000),
-        ("a road with 3 turns of 6 km", 4000),
+        ("a road of 6 km with 3 turns", 4000),
         ("a road", 100),
     ],
 )

@@ -17,7 +17,7 @@ from roadgpt.check.measures import Measures, way
 from roadgpt.design.edit.agreement import agreed
 from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
 from roadgpt.design.edit.lengths import length_steps, road_length_candidates
-from roadgpt.design.edit.placing import PlacedChange
+from roadgpt.design.edit.placing import PlacedChange, is_beyond
 from roadgpt.design.edit.reordering import Reverse, move_of, reordering_sentence, swap_of
 from roadgpt.design.edit.slopes import (
     climb_step,
@@ -174,16 +174,6 @@ def _change_candidates(
         case _:  # a turn becomes a straight, as long as the turn if there is room for it
             bends = [element for element in elements if element.is_turn and element.seen]
             return _together([Become(bend, (straight(bend.length, bend.incline),))] for bend in bends)
-
-
-def is_beyond(change: Change, element: RoadElement) -> bool:
-    """Returns whether an element violates the limit that a change sets."""
-    if change.what == "slope":
-        return any(change.is_outside(abs(segment.incline)) for segment in element.segments)
-    seen = element.seen
-    return seen is not None and change.is_outside(
-        getattr(seen, "degrees" if change.what == "angle" else change.what)
-    )
 
 
 def _out_of_turn(elements: Sequence[RoadElement]) -> list[RoadElement]:

@@ -53,6 +53,8 @@ PREFERRED = {
     "sweeping": (40.0, 75.0),
 }
 """Angle in degrees and radius in metres of a new turn if the request does not give them."""
+NEW = "new "
+"""Prefix of the names of new elements."""
 TAIL, STRAIGHT = "tail", "straight"
 """Last words of the names of new elements: a straight behind a new turn, and one that the request adds."""
 FADE = 2.0  # m by which a straight between two turns is measured shorter than it is written
@@ -250,14 +252,14 @@ def _new_turns(
     asked = Feature("turn", "turn", None, angles, radii, None, grade)
     transition = min(max(TRANSITION_SHARE * radius * radians(degrees), 3.0), 12.0)
     slope = _incline_asked(change, incline)
-    new = [gap(f"new {number} lead", lead, incline)] if lead else []
+    new = [gap(f"{NEW}{number} lead", lead, incline)] if lead else []
     for i, side in enumerate(sides):
         if i:
-            new.append(gap(f"new {number} gap {i}", SEPARATE if side == sides[i - 1] else JOINT, incline))
+            new.append(gap(f"{NEW}{number} gap {i}", SEPARATE if side == sides[i - 1] else JOINT, incline))
         segments = turn_segments(degrees, 1 if side == "left" else -1, radius, transition, slope)
-        new.append(RoadElement(f"new {number} turn {i + 1}", segments, side, asked=asked))
+        new.append(RoadElement(f"{NEW}{number} turn {i + 1}", segments, side, asked=asked))
     if tail:
-        new.append(gap(f"new {number} {TAIL}", tail, incline))
+        new.append(gap(f"{NEW}{number} {TAIL}", tail, incline))
     return tuple(new)
 
 
@@ -321,13 +323,13 @@ def _straight_ways(
     if not beside.is_turn and beside.seen is None:  # then the new straight is seen by itself
         new = [
             replace(
-                gap(f"new {number} {STRAIGHT}", length + FADE, incline),
+                gap(f"{NEW}{number} {STRAIGHT}", length + FADE, incline),
                 asked=replace(FREE_STRAIGHT, length=Range(length - 2.0, length + 2.0)),
             )
             for length in lengths
         ]
     else:
-        new = [gap(f"new {number} {STRAIGHT}", length, incline) for length in lengths]
+        new = [gap(f"{NEW}{number} {STRAIGHT}", length, incline) for length in lengths]
         if change.length is not None:  # then it stays as long as the words say
             new = [replace(each, asked=None) for each in new]
     return tuple((Insert(_name(elements, at), (each,), split),) for split in splits for each in new)

@@ -12,6 +12,7 @@ from roadgpt.design.edit.stretches import RoadStretch, stretch_of
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError, IdleEditError
 
+CLEARLY = 0.04  # share by which a value gets beyond that of another place
 LEAST_FOR_HILL = 40.0  # m: the shortest straight for a crest or a dip
 RELATED: Mapping[What, frozenset[What]] = {
     "angle": frozenset({"shape", "length", "straighten"}),
@@ -169,7 +170,12 @@ def _like_its_model(asked: Change, changes: Sequence[Change], elements: RoadElem
         elif other.what == asked.what and not {*pointed(other.like, elements, other.what)} <= {*own}:
             raise clash(asked, other)
     stretch = stretch_of(asked.target, elements) if asked.what == "slope" else None
-    return PlacedChange(_with_value_of(asked, models[0], others), own, stretch=stretch)
+    change = _with_value_of(asked, models[0], others)
+    if change.bound and change.what != "slope":
+        beyond = tuple(each for each in own if is_beyond(change, each))
+        if beyond:  # "longer than the first" is clearly longer, and "at least as long" allows it
+            return PlacedChange(replace(change, to=(change.to or 0.0) * (1 + CLEARLY * change.bound)), beyond)
+    return PlacedChange(change, own, stretch=stretch)
 
 
 def _with_value_of(change: Change, model: RoadElement, others: Sequence[Change]) -> Change:
@@ -223,6 +229,16 @@ def _new_value(
     if change.what != "slope" and other.times is not None:
         return value * other.times, None
     raise clash(change, other)
+
+
+def is_beyond(change: Change, element: RoadElement) -> bool:
+    """Returns whether an element violates the limit that a change sets."""
+    if change.what == "slope":
+        return any(change.is_outside(abs(segment.incline)) for segment in element.segments)
+    seen = element.seen
+    return seen is not None and change.is_outside(
+        getattr(seen, "degrees" if change.what == "angle" else change.what)
+    )
 
 
 def _marks(place: Place | None, elements: RoadElements) -> tuple[RoadElements, RoadElement | None]:

@@ -21,8 +21,9 @@ from roadgpt.brief.model import Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import LEAST_STRAIGHT
-from roadgpt.design.edit.candidates import ChangeCandidates, is_beyond
+from roadgpt.design.edit.candidates import ChangeCandidates
 from roadgpt.design.edit.insertion import without_spare_tail
+from roadgpt.design.edit.placing import is_beyond
 from roadgpt.design.edit.reordering import Reverse
 from roadgpt.design.edit.slopes import SlopeOfAll
 from roadgpt.design.edit.steps import SEPARATE, EditStep, Mirror, RoadLength

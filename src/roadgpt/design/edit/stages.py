@@ -2,9 +2,9 @@
 
 ``directions`` splits a request where it reverses the road; places behind that are named on the reversed road.
 ``stages`` orders the changes between: what is named by distances comes before what makes distances others,
-then moves, swaps, additions and removals in the order of the request, then what ends the road, crests and
-dips, and heights. Between two stages, ``renamed`` measures the road and gives its elements the names that
-they had, and ``carried_over`` finds the elements of a change among them.
+then moves, swaps, additions and removals in the order of the request, then what ends the road, slopes that
+new parts have as well, crests and dips, and heights. Between two stages, ``renamed`` measures the road and
+gives its elements the names that they had, and ``carried_over`` finds the elements of a change among them.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,11 +16,14 @@ from roadgpt.brief.change.clashes import clash
 from roadgpt.brief.change.request import NUMBERING, OF_SLOPE, REORDERS, Change, Target
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.heights import is_final, without_told
+from roadgpt.design.edit.insertion import NEW, STRAIGHT
 from roadgpt.design.edit.placing import PlacedChange
 from roadgpt.design.fit import Look
 from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road
 from roadgpt.errors import EditError
 from roadgpt.road import Geometry
+
+KINDS = ("value", "order", "whole", "slope", "hill", "height")
 
 
 class Named(NamedTuple):
@@ -54,9 +57,11 @@ def stages(changes: Sequence[PlacedChange]) -> list[list[PlacedChange]]:
         EditError: a change removes what another one moves, or gives the straight of a crest another slope.
     """
     _refuse_conflicts(changes)
-    by_kind: dict[str, list[PlacedChange]] = {"value": [], "order": [], "whole": [], "hill": [], "height": []}
+    is_slope_last = _reaches_new_parts(changes)
+    by_kind: dict[str, list[PlacedChange]] = {kind: [] for kind in KINDS}
     for each in changes:
-        by_kind[_kind(each)].append(each)
+        is_slope = is_slope_last and each.change.what == "slope"
+        by_kind["slope" if is_slope else _kind(each)].append(each)
     # every move is judged on the road that the last one left
     groups = [
         list(group) for _, group in groupby(by_kind["order"], lambda each: _key_of_order(each, changes))
@@ -68,7 +73,24 @@ def stages(changes: Sequence[PlacedChange]) -> list[list[PlacedChange]]:
     else:
         groups.insert(0, by_kind["value"])
     heights = sorted(by_kind["height"], key=lambda each: len(each.elements))
-    return [group for group in (*groups, by_kind["hill"], *([each] for each in heights)) if group]
+    last = by_kind["slope"], by_kind["hill"], *([each] for each in heights)
+    return [group for group in (*groups, *last) if group]
+
+
+def _reaches_new_parts(changes: Sequence[PlacedChange]) -> bool:
+    """Returns whether a slope is that of the whole road, with what the same request adds to the road."""
+    sloped = [each for each in changes if each.change.what == "slope"]
+    is_of_all = any(_is_whole_road(each.change.target) for each in sloped)
+    is_by_distance = any(each.stretch is not None for each in sloped)
+    return is_of_all and not is_by_distance and any(_is_new_part(each.change) for each in changes)
+
+
+def _is_whole_road(target: Target | None) -> bool:
+    return target is None or target == Target("road", words=target.words)
+
+
+def _is_new_part(change: Change) -> bool:
+    return change.what == "add" and not change.is_hill
 
 
 def _kind(placed: PlacedChange) -> str:
@@ -115,8 +137,18 @@ def carried_over(placed: PlacedChange, now: Named, others: Sequence[PlacedChange
 
     if is_final(placed):
         return _height(placed, now, others)
+    if placed.change.what == "slope" and _is_whole_road(placed.change.target) and placed.stretch is None:
+        # what is new keeps a slope that is told of it
+        told = any(_is_new_part(each.change) and each.change.way for each in others)
+        own = tuple(each for each in now.elements if not (told and _is_new(each)))
+        return placed._replace(elements=own)
     stop = found([placed.stop])[0] if placed.stop else None
     return placed._replace(elements=found(placed.elements), marks=found(placed.marks), stop=stop)
+
+
+def _is_new(element: RoadElement) -> bool:
+    """Returns whether an element is a new turn or straight, and not road that leads to one."""
+    return element.name.startswith(NEW) and (element.is_turn or element.name.endswith(STRAIGHT))
 
 
 def _found(element: RoadElement, now: Named, change: Change) -> RoadElement:
@@ -151,7 +183,7 @@ def _part(placed: PlacedChange, now: Named) -> RoadElements:
     of the road that it reaches.
     """
     target, own = placed.change.target, now.elements
-    if target is None or target == Target("road", words=target.words):
+    if target is None or _is_whole_road(target):
         return own
     there = [now.by_name[element.name] for element in placed.elements if element.name in now.by_name]
     if not there:
