@@ -1,4 +1,4 @@
-"""Makes all changes of a request at once. Main function: ``made``.
+"""Makes all changes of a stage at once. Main function: ``made``.
 
 Each change has one or more candidates. Combinations of one candidate per change are tried; combinations of
 preferred candidates come first. The steps of the candidates are applied to the elements of the road. Then
@@ -63,7 +63,7 @@ def made(
 ) -> tuple[Look, Design]:
     """Returns the road with all changes, and a design in which only the elements named in them changed.
 
-    A change without candidates is not needed; ``elements`` are those of the road before the edit, and
+    A change without candidates is not needed; ``elements`` are those of the road before the stage, and
     ``may_grow`` says whether the map may become larger.
 
     Raises:
