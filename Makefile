@@ -26,8 +26,8 @@ help:
 # The environment: one for everything; a wish for another Python makes it anew.
 # Where Python comes without ensurepip, the pip at hand fills the environment.
 $(VENV)/.python-$(WANTED):
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
-	  || { echo "make: needs Python 3.11 or newer, '$(PYTHON)' is '$(WANTED)'; say make PYTHON=python3.12"; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 15))' \
+	  || { echo "make: needs Python 3.11 to 3.14, '$(PYTHON)' is '$(WANTED)'; say make PYTHON=python3.14"; exit 1; }
 	@if [ "$$($(BIN)/python -c '$(FIND_VERSION)' 2>/dev/null)" != "$(WANTED)" ]; then \
 	  echo "making $(VENV) with Python $(WANTED)"; \
 	  $(PYTHON) -m venv --clear $(VENV) >/dev/null 2>&1 \

@@ -5,6 +5,7 @@ To hunt for new ones: HYPOTHESIS_PROFILE=hunt python -m pytest
 
 import os
 import signal
+import sys
 from collections.abc import Iterator
 
 import pytest
@@ -16,6 +17,14 @@ from roadgpt.campaign.workers.in_process import InProcess
 settings.register_profile("steady", derandomize=True, deadline=None, max_examples=50)
 settings.register_profile("hunt", deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
+
+
+def _no_telemetry(event: str, told: tuple[object, ...]) -> None:
+    if event == "import" and told[0] == "onnxruntime" and os.environ.get("ORT_DISABLE_TELEMETRY") != "1":
+        raise AssertionError("onnxruntime is imported with its telemetry on")
+
+
+sys.addaudithook(_no_telemetry)
 
 # Tests that a shell started in the background ignore Ctrl-C, and all that they start would inherit that.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

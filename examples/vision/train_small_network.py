@@ -1,4 +1,4 @@
-"""Trains the network of small_network.py: ``pip install "roadgpt[learn]"``, then
+"""Trains the network of small_network.py: ``pip install -e '.[learn]'``, then
 
     python examples/vision/train_small_network.py
 

@@ -1,7 +1,9 @@
 """Defines the errors that users can cause. Every message states what is wrong and what to do."""
 
+import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 
 class RoadGPTError(Exception):
@@ -121,3 +123,14 @@ def explained(kind: type[RoadGPTError], what: str, advice: str) -> Iterator[None
         yield
     except OSError as error:
         raise kind(f"{what}: {error.strerror or error}; {advice}") from error
+
+
+def to_install(extra: str) -> str:
+    """Returns the command that installs an extra. In a checkout it keeps the installation editable, which pip
+    would otherwise replace by a copy.
+    """
+    checkout = Path(__file__).parents[2]
+    if not (checkout / "pyproject.toml").is_file():
+        return f"python -m pip install 'roadgpt[{extra}]'"
+    place = "." if checkout == Path.cwd() else checkout
+    return f"python -m pip install -e {shlex.quote(f'{place}[{extra}]')}"

@@ -59,6 +59,9 @@ def test_results_values_and_errors_come_back_and_who_kills_is_found(
     hands: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("roadgpt.campaign.workers.job_queue.MOST_DEATHS", 2)  # each takes seconds
+    from ray._common.usage.usage_lib import usage_stats_enabled
+
+    assert not usage_stats_enabled()  # Ray's own word that it reports to nobody
     assert hands.map(jobs.square, range(50)) == [number * number for number in range(50)]
     with pytest.raises(ValueError, match="no number 3"):
         hands.map(jobs.fails_at_three, range(5))

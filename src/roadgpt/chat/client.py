@@ -20,7 +20,7 @@ from roadgpt.chat.model import ChatSettings
 from roadgpt.chat.prices import has_openai_prices
 from roadgpt.chat.secret import NO_KEY, Key, redacted
 from roadgpt.chat.strict_json import NotReadableError, plain
-from roadgpt.errors import ChatError
+from roadgpt.errors import ChatError, to_install
 
 PAGE = ("<!doctype", "<html")  # how a web page begins, in lower case
 CONNECT = 10.0  # s, to connect
@@ -49,8 +49,7 @@ class ApiClient:
             import openai
         except ImportError:
             raise ChatError(
-                "language models need the package 'openai'; install it with:"
-                " python -m pip install 'roadgpt[chat]'"
+                f"language models need the package 'openai'; install it with: {to_install('chat')}"
             ) from None
         for name in TALKATIVE:
             logging.getLogger(name).setLevel(logging.WARNING)
@@ -196,9 +195,7 @@ def diagnose() -> str:
     try:
         library = f"openai {version('openai')}"
     except PackageNotFoundError:
-        raise ChatError(
-            "the package 'openai' is missing; install it with: python -m pip install 'roadgpt[chat]'"
-        ) from None
+        raise ChatError(f"the package 'openai' is missing; install it with: {to_install('chat')}") from None
     settings = configured().model_copy(update={"timeout": PATIENCE, "retries": 0})
     place, wanted = address_of(settings.base_url), settings.model
     try:

@@ -1,6 +1,7 @@
 """Handles errors of standard output, and keeps the output of users' drivers out of standard output."""
 
 import io
+import logging
 import os
 import sys
 from collections.abc import Iterable, Iterator
@@ -43,8 +44,10 @@ class _Output(io.TextIOWrapper):
 def make_ready() -> None:
     """Makes both output streams accept every character; failed writes to standard output raise OutputError.
 
-    A stream that was closed before the program began is replaced by the null device.
+    A stream that was closed before the program began is replaced by the null device. What matplotlib says of
+    a HOME where it cannot keep its list of fonts is not shown.
     """
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     if sys.stdin is None:
         sys.stdin = os.fdopen(_nothing(0, os.O_RDONLY))
     if sys.stdout is None:

@@ -7,14 +7,14 @@ It needs RoadGPT's optional dependencies: ``roadgpt[gym]``. Importing this packa
 environment with Gymnasium.
 """
 
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, to_install
 
 NAME = "roadgpt/LaneKeeping-v0"
 
 try:
     from gymnasium.envs.registration import register, registry
 except ImportError as error:
-    raise UsageError(f"this needs more libraries: python -m pip install 'roadgpt[gym]' ({error})") from error
+    raise UsageError(f"this needs more libraries: {to_install('gym')} ({error})") from error
 
 if NAME not in registry:
     register(id=NAME, entry_point="roadgpt.gym.lane_keeping:LaneKeeping")

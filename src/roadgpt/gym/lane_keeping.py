@@ -1,6 +1,7 @@
 """The environment ``roadgpt/LaneKeeping-v0``: drive a road that meets a description, and stay in the lane."""
 
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from typing import Any
 
 import gymnasium
@@ -98,6 +99,9 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
             self.observation_space = spaces.Box(0, 255, shape, np.uint8)
         self.road: Road | None = None
 
+    def __copy__(self) -> "LaneKeeping":
+        return deepcopy(self)  # a copy that shared the car would move it
+
     def set_prompts(self, prompts: Sequence[str]) -> None:
         """Replaces the descriptions, from the next ``reset`` on.
 
@@ -118,8 +122,12 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         Raises:
             BriefError: ``options["prompt"]`` cannot be read, or demands something that the world does not
                 allow.
+            UsageError: ``options`` has another key than "prompt".
             DesignError: no valid road was found for the description.
         """
+        unknown = sorted(set(options or ()) - {"prompt"})
+        if unknown:
+            raise UsageError(f"reset() has no option {', '.join(map(repr, unknown))}; it has 'prompt'")
         super().reset(seed=seed)
         brief = self._briefs[int(self.np_random.integers(len(self._briefs)))]
         if options and "prompt" in options:

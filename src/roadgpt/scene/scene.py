@@ -1,6 +1,7 @@
 """Defines the Scene: a road that can be rendered."""
 
 import threading
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -42,6 +43,9 @@ class Scene:
     trees: Trees
     lanes: LaneBoundaries
     _own: threading.local = field(default_factory=threading.local, repr=False)
+
+    def __reduce__(self) -> tuple[Callable[[Road, World], "Scene"], tuple[Road, World]]:
+        return Scene.of, (self.road, self.world)  # a copy has its own working memory
 
     @classmethod
     def of(cls, road: Road, world: World) -> "Scene":

@@ -33,7 +33,7 @@ from roadgpt.campaign.workers.process_loop import (
     portable,
     unpickled,
 )
-from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.errors import RoadGPTError, UsageError, to_install
 
 ROUND = 0.5  # s between two looks at all workers
 TOGETHER = 16  # jobs in one message, at most
@@ -172,10 +172,11 @@ class Ray(JobQueue[_Worker]):
 
 def _connected(staff: WorkerConfig) -> tuple[Any, bool]:
     """Connects to Ray; returns the module ``ray``, and whether this function made the connection."""
+    os.environ["RAY_USAGE_STATS_ENABLED"] = "0"  # a cluster of ours reports to nobody
     try:
         import ray
     except ImportError as error:
-        raise UsageError("the executor 'ray' needs Ray; say python -m pip install 'roadgpt[ray]'") from error
+        raise UsageError(f"the executor 'ray' needs Ray; say {to_install('ray')}") from error
     if ray.is_initialized():
         return ray, False
     address = staff.address or os.environ.get("RAY_ADDRESS", "")

@@ -15,7 +15,7 @@ from roadgpt.cli.option import Heading, Option, named
 from roadgpt.cli.option_groups import CommandGroup, GroupedCommand
 from roadgpt.cli.option_types import measure, whole
 from roadgpt.cli.screen import Screen
-from roadgpt.errors import UsageError, explained
+from roadgpt.errors import UsageError, explained, to_install
 
 if TYPE_CHECKING:
     from roadgpt.report import Scale
@@ -128,9 +128,6 @@ def _watched(work: "Competition", screen: Screen, formats: Any) -> int:
     return 0 if work.ending is None or work.ending.is_fine else FAILED
 
 
-EXTRA = "this needs more libraries: python -m pip install 'roadgpt[sdc]'"
-
-
 OPTIONS = (
     Option("--port", "Port of the service; 0: a free one.", whole(0, 65_535, "a port"), 4545),
     Option(
@@ -158,7 +155,7 @@ def sdc_command(port: int, host: str, quiet: bool) -> None:
     try:
         from roadgpt.sbft.sdc.service import serve as serve_on
     except ImportError as error:
-        raise UsageError(f"{EXTRA} ({error})") from error
+        raise UsageError(f"this needs more libraries: {to_install('sdc')} ({error})") from error
     logging.basicConfig(level=logging.WARNING if quiet else logging.INFO, format="%(asctime)s %(message)s")
     server, got = serve_on(host, port)
     if not quiet:

@@ -95,7 +95,7 @@ def command(
     RUN is a run, such as DIR/runs/0001 or DIR/test.0001.json; a test of a campaign, such as CAMPAIGN/c01/17;
     or a road file, along which the camera moves without a car. The film shows the description, the speed, the
     position along the road and the margin, and at the end the outcome. An existing film of the same name is
-    replaced. Filming needs PyAV: python -m pip install 'roadgpt[film]'.
+    replaced. Filming needs PyAV, in a checkout: pip install -e '.[film]'.
 
     \b
     roadgpt film roadgpt-runs/hairpins-7/runs/0001 --view both

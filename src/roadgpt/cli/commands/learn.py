@@ -15,7 +15,7 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Option
 from roadgpt.cli.option_groups import CommandGroup
 from roadgpt.cli.option_types import PATH, folder, measure, whole
-from roadgpt.errors import LearnError
+from roadgpt.errors import LearnError, to_install
 
 if TYPE_CHECKING:
     from roadgpt.learn.evaluate import Reading
@@ -33,7 +33,6 @@ SPENT = tuple(
 HELD_BACK = ("validation", "contrasts_validation", "free_validation")
 """Folders of the descriptions with which readers are trained (TRAINED_ON) and calibrated (HELD_BACK)."""
 MEASURED = 600  # number of training pairs that are descriptions of measured roads
-EXTRA = "this needs more libraries: python -m pip install 'roadgpt[learn]'"
 # fmt: off
 HAND = Option(
     "--hand",
@@ -172,7 +171,7 @@ def train(
     try:
         from roadgpt.learn.train import TrainingSettings, train_together
     except ImportError as error:
-        raise LearnError(EXTRA) from error
+        raise LearnError(f"this needs more libraries: {to_install('learn')}") from error
     from roadgpt.brief.readers.model import ROUTES, SECOND, WEIGHTS
     from roadgpt.learn.back_labelling import measured_pairs
     from roadgpt.learn.pretrained import begin
@@ -211,7 +210,7 @@ def export(
     try:
         from roadgpt.learn.export import export_checkpoints
     except ImportError as error:
-        raise LearnError(EXTRA) from error
+        raise LearnError(f"this needs more libraries: {to_install('learn')}") from error
     from roadgpt.brief.readers.model import MEANINGS, MEANINGS_OF_CHANGES, ROUTES, SECOND, WEIGHTS
     from roadgpt.learn.data import is_for_roads_only
     from roadgpt.learn.told_prompts import told_prompts

@@ -100,8 +100,8 @@ def new(
 def serve(directory: Path, raters: int, is_open: bool, port: int, host: str, url: str) -> None:
     """Serve a survey until Ctrl-C; each answer is on the disk before it is confirmed.
 
-    The same command resumes the survey later: links stay valid, and answers are kept. The server is an extra:
-    python -m pip install 'roadgpt[survey]'.
+    The same command resumes the survey later: links stay valid, and answers are kept. The server is an extra;
+    in a checkout: pip install -e '.[survey]'.
 
     \b
     roadgpt study survey serve my-survey --raters 10

@@ -5,7 +5,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from roadgpt.errors import RoadGPTError, UsageError, explained
+from roadgpt.errors import RoadGPTError, UsageError, explained, to_install
 from roadgpt.report.film.glyphs import Frame
 from roadgpt.run.atomic import whole_file
 
@@ -22,11 +22,11 @@ def encoder() -> Any:
     try:
         import av
     except ImportError as error:
-        raise UsageError("films need PyAV; say python -m pip install 'roadgpt[film]'") from error
+        raise UsageError(f"films need PyAV; say {to_install('film')}") from error
     if ENCODER not in av.codecs_available:
         raise UsageError(
             f"PyAV is installed without {ENCODER}, which writes films; install it from its wheels: "
-            "python -m pip install --force-reinstall --only-binary av 'roadgpt[film]'"
+            "python -m pip install --force-reinstall --only-binary av av"
         )
     return av
 

@@ -34,7 +34,7 @@ STEPS = (10, 20, 25, 50, 100, 200, 500, 1000, 2000, 5000)  # m between lines of 
 BEFORE_THE_END = 0.1  # s; at the end of a drive, films show its outcome, which raters should not know
 WHY_NONE = (
     "there are no films, because the library for them is not installed; raters see plots and the 3-D view. "
-    "To add films, run python -m pip install 'roadgpt[film]' and make the survey again"
+    "To add films, install the extra 'film' and make the survey again"
 )
 HIDDEN = {"outcome": "", "description": "", "about": "", "words": "", "places": []}
 """Replacements for what a 3-D view shows to users but must not show to raters."""

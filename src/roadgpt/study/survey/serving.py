@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadgpt.errors import RoadGPTError, UsageError, explained
+from roadgpt.errors import RoadGPTError, UsageError, explained, to_install
 from roadgpt.reading import read_text
 from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey.store import ANSWERS, MOST_RATERS, AnswerStore, new_token
@@ -37,7 +37,7 @@ def open_server(folder: Path | str, host: str, port: int, is_open: bool = False)
         from roadgpt.study.survey.app import SurveyApp
         from roadgpt.study.survey.server import Server
     except ImportError as error:
-        raise UsageError(f"{NEEDS}; run python -m pip install 'roadgpt[survey]'") from error
+        raise UsageError(f"{NEEDS}; run {to_install('survey')}") from error
     folder = Path(folder).resolve()
     survey = read_survey(folder)
     store = AnswerStore(folder / ANSWERS)

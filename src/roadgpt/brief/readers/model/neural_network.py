@@ -9,8 +9,8 @@ from typing import Self
 
 import numpy as np
 import numpy.typing as npt
-import onnxruntime
 
+from roadgpt.brief.readers.model.onnx_runtime import onnxruntime
 from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
 from roadgpt.brief.readers.model.plan_numbers import Evidence
 from roadgpt.brief.readers.model.slots import SlottedText

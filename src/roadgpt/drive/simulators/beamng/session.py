@@ -15,7 +15,7 @@ from roadgpt.drive.simulators.beamng.launch import BeamngProcess, binary_of, com
 from roadgpt.drive.simulators.beamng.settings import BeamngSettings
 from roadgpt.drive.simulators.beamng.tracking import CarGeometry
 from roadgpt.drive.simulators.beamng.watchdog import Watchdog
-from roadgpt.errors import PartError, SimulatorError
+from roadgpt.errors import PartError, SimulatorError, to_install
 
 # Flat levels in order of preference, and the heights of their ground in metres.
 LEVELS = {"tig": -28.0, "tech_ground": 0.0, "smallgrid": 0.0}
@@ -31,7 +31,7 @@ def client() -> Any:
         package = import_module("beamngpy")
     except ImportError as error:
         raise PartError(
-            f"the simulator 'beamng' needs beamngpy ({error}); run python -m pip install 'roadgpt[beamng]'"
+            f"the simulator 'beamng' needs beamngpy ({error}); run {to_install('beamng')}"
         ) from error
     # It logs every failed attempt, which without a handler would go to the screen; we report the result.
     logging.getLogger("beamngpy").addHandler(logging.NullHandler())

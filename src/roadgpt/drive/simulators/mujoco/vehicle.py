@@ -58,6 +58,19 @@ class Vehicle:
         self.has_fallen = False
         self._step = bound(control_step, (*self._parts, 0.0, 0.0, 0.0, 0, self.row))
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Returns what a copy needs to go on as this car does; MuJoCo's addresses are not part of it."""
+        arrays = {"_state": self._state, "wheels": self.wheels, "row": self.row}
+        return {"car": self.car, "ground": self._ground, "data": self._data, "arrays": arrays,
+                "has_fallen": self.has_fallen}  # fmt: skip
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(state["car"], state["ground"])  # type: ignore[misc]  # with a model of its own
+        mujoco.mj_copyData(self._data, self._model, state["data"])
+        for name, values in state["arrays"].items():
+            getattr(self, name)[:] = values
+        self.has_fallen = state["has_fallen"]
+
     @classmethod
     def on(cls, road: "Road", world: "World", car: Car = ETK_LIKE) -> "Vehicle":
         """Returns a car on a road, with the road's lanes and shoulders and the world's friction."""
