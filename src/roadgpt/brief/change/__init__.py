@@ -4,6 +4,7 @@
 ``design.edit`` finds the turns and straights of the road to which a request refers.
 """
 
+import re
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -12,12 +13,25 @@ from functools import cache
 from roadgpt.brief.change.clashes import refuse_clashes
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import EditRequest
+from roadgpt.brief.change.spoken import spoken
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.readers.model.confidence import DOUBT
 from roadgpt.brief.refusal import MOST_CHARACTERS, causes_of
+from roadgpt.brief.words import SURFACES
 from roadgpt.errors import BriefError, EditError
 
 ADVICE = "say for example: make the second turn sharper"
+SURFACE_WORDS = {
+    "wet": r"wet|rainy|nass\w*|nässe|regennass\w*|mouillée?s?|mojad[oa]s?|bagnat[oaie]",
+    "snow": r"snow\w*|schnee\w*|verschneit\w*|neige|enneigée?s?|nieve|nevad[oa]s?|neve|innevat[oaie]",
+    "ice": r"ice|icy|eis|eisig\w*|vereist\w*|glatteis|verglas|verglacée?s?|hielo|helad[oa]s?|ghiacci\w+",
+}
+"""The words that name a surface in a change request, as regular expressions, by the surface's name."""
+DENIALS = (
+    r"not?|n't|never|without|instead|than|dry|nicht|kein\w*|ohne|statt|trocken\w*|pas|sans|sec|sèche|sin|sec[oa]|non|senza|"
+    r"asciutt[oa]"
+)
+"""Words with which a surface may be denied; it is then left as it is, and listed as not understood."""
 SHOWN = 60
 """The largest number of letters of a request that a message repeats."""
 
@@ -52,12 +66,36 @@ def read_request(words: str) -> EditRequest:
         reading = _reader().read_change(words, _normal_form)
     except BriefError as error:
         raise EditError(str(error)) from error
+    surface, named = _surface_in(words)
+    unused = tuple(dict.fromkeys((*named, *reading.unused)))
+    if surface:
+        unused = tuple(word for word in reading.unused if word not in named)
+        if reading.plan.split() == ["!impossible", surface]:
+            return EditRequest(words, (), unused, reading.confidence, surface=surface)
     if reading.plan.startswith("!"):
         raise _refusal(words, reading.plan, next(iter(reading.others), ""))
-    request = read_change_plan(reading.plan)
+    request = spoken(read_change_plan(reading.plan))
     return replace(
-        request, words=words, unused=reading.unused, confidence=reading.confidence, others=reading.others
+        request,
+        words=words,
+        unused=unused,
+        confidence=reading.confidence,
+        others=reading.others,
+        surface=surface,
     )
+
+
+def _surface_in(words: str) -> tuple[str, tuple[str, ...]]:
+    """Returns the slipperiest surface that the words ask for, and the words that name a surface. The surface
+    is "" if there is none, or if the words may deny it.
+    """
+    found = {
+        name: tuple(re.findall(rf"\b(?:{stems})\b", words, re.I)) for name, stems in SURFACE_WORDS.items()
+    }
+    named = [name for name, those in found.items() if those]
+    is_denied = re.search(rf"\b(?:{DENIALS})\b", words, re.I)
+    slipperiest = min(named, key=lambda name: SURFACES[name].friction, default="")
+    return "" if is_denied else slipperiest, tuple(word for name in named for word in found[name])
 
 
 def other_readings(request: EditRequest) -> Iterator[EditRequest]:
@@ -65,7 +103,7 @@ def other_readings(request: EditRequest) -> Iterator[EditRequest]:
     ``DOUBT`` or less. A reading whose changes need separate requests is left out.
     """
     for plan in request.others:
-        other = read_change_plan(plan)
+        other = spoken(read_change_plan(plan))
         with suppress(EditError):
             refuse_clashes(other.changes)
             yield replace(other, words=request.words, confidence=min(request.confidence, DOUBT))

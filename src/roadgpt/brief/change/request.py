@@ -211,6 +211,8 @@ class EditRequest:
     """Estimated probability that the request was read correctly."""
     others: tuple[str, ...] = ()
     """The plans of other readings that are likely, the likeliest first."""
+    surface: str = ""
+    """The surface that the road is to get, such as "wet"; empty if it stays as it is."""
 
     @property
     def other(self) -> str:

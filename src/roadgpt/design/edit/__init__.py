@@ -16,9 +16,10 @@ from typing import NamedTuple
 
 from roadgpt import plugins
 from roadgpt.brief.change import EditRequest, checked_request, other_readings, read_request
-from roadgpt.brief.change.plan import change_plan, read_change_plan
+from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.change.request import OF_SLOPE, Change
 from roadgpt.brief.readers.model.confidence import DOUBT
+from roadgpt.brief.words import SURFACES
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.design.differences import grades_changed, sentences
 from roadgpt.design.edit.candidates import candidates_of, sentence_of
@@ -107,7 +108,8 @@ def _may_be_other(request: EditRequest, error: EditError) -> bool:
 
 def _instead(error: EditError, request: EditRequest, made: Edited) -> Edited:
     """Returns what was made of another reading, with a sentence on why the likeliest one was not."""
-    told = f"'{change_plan(request)}', the likeliest reading, cannot be done: {error}"
+    asked = "; ".join(change.words for change in request.changes)
+    told = f"'{asked}', the likeliest reading, cannot be done: {error}"
     return made._replace(changes=(*made.changes, told), unused=request.unused)
 
 
@@ -126,7 +128,13 @@ def _edited(design: Design, request: EditRequest, world: World, geometry: Geomet
         told += said
         if changes[0].what == "reverse" and changes is not groups[-1]:
             told.append(RENAMED)
-    if idle == len(groups):
+    surface = SURFACES.get(request.surface)
+    if surface and surface.friction != place.site.friction:
+        told.append(f"friction {place.site.friction:g} -> {surface.friction:g}, as {surface.said}")
+        place = place.changed(friction=surface.friction)
+    elif surface and idle == len(groups):
+        raise IdleEditError(f"nothing is to be changed: friction is {surface.friction:g} already")
+    elif idle == len(groups):
         raise IdleEditError(f"nothing is to be changed: '{request.changes[0].words}' is so already")
     if place.site.map_size != world.site.map_size:
         sizes = place.site.map_size, world.site.map_size
