@@ -122,3 +122,23 @@ def is_declared(path: Path, folder: Path) -> bool:
     is_bytecode = "__pycache__" in path.parts
     is_of_system = path.is_relative_to("/dev") or path.is_relative_to("/proc/self")
     return path.is_relative_to(folder) or is_bytecode or is_of_system
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="/proc takes no file")
+def test_a_home_that_takes_no_file_is_nothing_to_talk_about(tmp_path: Path) -> None:
+    design = ROOT / "examples" / "roads" / "my_road.json"
+    env = {"HOME": "/proc/nowhere", "PATH": os.environ["PATH"]}
+    command = [
+        sys.executable,
+        "-m",
+        "roadgpt",
+        "view",
+        str(design),
+        "--format",
+        "png",
+        "--out",
+        str(tmp_path),
+    ]
+    done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)
+    assert done.stderr == ""
+    assert [*tmp_path.rglob("*.png")]

@@ -70,13 +70,15 @@ def __dir__() -> list[str]:
     return __all__
 
 
-# Values that a notebook shows as pictures, by module and class. Nothing is imported until one is shown.
+# Values that a notebook shows as pictures or as a sentence, by module and class. Nothing is imported before
+# one is shown.
 _PICTURES = (
     ("roadgpt.road.road", "Road"),
     ("roadgpt.road.design", "Design"),
     ("roadgpt.run.model", "Run"),
     ("roadgpt.campaign.folder_campaign", "Campaign"),
 )
+_SENTENCES = (("roadgpt.brief.model", "Brief"), ("roadgpt.verdict.verdict", "Verdict"))
 
 
 def _picture(value: Any) -> bytes | None:
@@ -84,14 +86,24 @@ def _picture(value: Any) -> bytes | None:
     return made
 
 
-def _show_pictures_in_notebooks() -> None:
+def _sentence(value: Any) -> str:
+    if hasattr(value, "outcome"):
+        return f"**{value.outcome}**: {value.description}"
+    unused = ", ".join(f"'{word}'" for word in value.unused)
+    told: str = import_module("roadgpt.brief").sentence(value)
+    return f"{told} Not used: {unused}." if unused else told
+
+
+def _show_values_in_notebooks() -> None:
     """Tells the notebook that runs this process, if there is one, how to display our values."""
     if "IPython" in sys.modules:
         shell = sys.modules["IPython"].get_ipython()
         if shell is not None:
-            formatter = shell.display_formatter.formatters["image/png"]
+            formatters = shell.display_formatter.formatters
             for module, name in _PICTURES:
-                formatter.for_type_by_name(module, name, _picture)
+                formatters["image/png"].for_type_by_name(module, name, _picture)
+            for module, name in _SENTENCES:
+                formatters["text/markdown"].for_type_by_name(module, name, _sentence)
 
 
-_show_pictures_in_notebooks()
+_show_values_in_notebooks()
