@@ -37,6 +37,27 @@ def no_workers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
 
 
+FOR_GOOD = (
+    "PYTEST_",
+    "ORT_DISABLE_TELEMETRY",
+    "RAY_USAGE_STATS_ENABLED",
+    "PYTHONBREAKPOINT",
+)  # the last by Ray
+
+
+@pytest.fixture(autouse=True)
+def environment_is_left_as_it_was() -> Iterator[None]:
+    """What a test leaves in the environment, such as a port, would decide about the tests behind it."""
+    before = dict(os.environ)
+    yield
+    left = {name for name, _ in {*os.environ.items()} ^ {*before.items()} if not name.startswith(FOR_GOOD)}
+    for name in left:
+        os.environ.pop(name, None)
+        if name in before:
+            os.environ[name] = before[name]
+    assert not left, f"this test leaves {', '.join(sorted(left))} in the environment"
+
+
 @pytest.fixture(autouse=True)
 def nothing_was_named() -> Iterator[None]:
     """What a test named as its own, a driver or a server, is a stranger's again in the next one."""

@@ -6,7 +6,6 @@ import shlex
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 
@@ -116,9 +115,9 @@ FULL, CLOSED = (">/dev/full", "No space left on device"), (">&-", "Bad file desc
     ],
 )
 def test_standard_output_that_takes_nothing_is_told_in_a_sentence(
-    command: list[str], places: list[tuple[str, str]]
+    command: list[str], places: list[tuple[str, str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    before = {*Path(tempfile.gettempdir()).glob("roadgpt-crash-*")}
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
     for there, why in places:
         line = f"{shlex.join(command)} {there}"
         done = subprocess.run(["sh", "-c", line], stderr=subprocess.PIPE, text=True, check=False)
@@ -127,8 +126,7 @@ def test_standard_output_that_takes_nothing_is_told_in_a_sentence(
             f"roadgpt: cannot write to standard output ({why}); send it where there is room"
         )
         assert "Exception ignored" not in done.stderr
-    assert {*Path(tempfile.gettempdir()).glob("roadgpt-crash-*")} == before
-    assert not [*Path().rglob("roadgpt-crash-*")]
+    assert not [*tmp_path.rglob("roadgpt-crash-*"), *Path().rglob("roadgpt-crash-*")]
 
 
 def test_who_says_nothing_needs_no_standard_output() -> None:
