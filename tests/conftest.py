@@ -37,12 +37,8 @@ def no_workers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
 
 
-FOR_GOOD = (
-    "PYTEST_",
-    "ORT_DISABLE_TELEMETRY",
-    "RAY_USAGE_STATS_ENABLED",
-    "PYTHONBREAKPOINT",
-)  # the last by Ray
+OF_LIBRARIES = ("PYTHONBREAKPOINT", "PYGAME_HIDE_SUPPORT_PROMPT")  # set by Ray and by Gymnasium
+FOR_GOOD = ("PYTEST_", "ORT_DISABLE_TELEMETRY", "RAY_USAGE_STATS_ENABLED", *OF_LIBRARIES)
 
 
 @pytest.fixture(autouse=True)
