@@ -153,6 +153,11 @@ class Measures:
         """Returns the number of turns to the given side, left or right."""
         return sum(turn.side == side for turn in self.turns)
 
+    def ways(self, feature: MeasuredFeature) -> set[Literal["up", "down", "flat"]]:
+        """Returns in which ways a feature goes: up, down or flat, over 10 m at any of its stations."""
+        first, last = np.searchsorted(self.line.s, (feature.start, feature.end)).tolist()
+        return {way(grade) for grade in _local_grades(self.line, first, last)}
+
     def cut(self, piece: MeasuredFeature, changes: Sequence[GradeChange]) -> tuple[MeasuredFeature, ...]:
         """Cuts a piece of a straight at the given changes of its grade, over 10 m, and returns the parts.
 
@@ -214,6 +219,13 @@ def way(grade: float) -> Literal["up", "down", "flat"]:
     if grade >= LEVEL:
         return "up"
     return "down" if grade <= -LEVEL else "flat"
+
+
+def ups_and_downs(heights: ArrayLike) -> str:
+    """Returns how many metres a road with these heights climbs and falls in all, such as "+10.0 -2.5"."""
+    steps = np.diff(heights)
+    ways = (float(steps[steps > 0].sum()), float(steps[steps < 0].sum()))
+    return " ".join(f"{each:+.1f}" for each in ways if abs(each) >= 0.05) or "+0.0"
 
 
 def _resampled(points: ArrayLike) -> CentreLine:

@@ -14,6 +14,7 @@ from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.selection import Choice, Selection, selection_of
 from roadgpt.campaign.status import status_of
 from roadgpt.chat import Spent
+from roadgpt.check.measures import ups_and_downs
 from roadgpt.cli.campaigns import as_line, cell_lines, faults_of, outcomes_line, told
 from roadgpt.cli.repeat_commands import replay_lines
 from roadgpt.cli.result_row import WIDEST, Row, metres, row_of, row_of_result, spending
@@ -173,9 +174,8 @@ def _road_line(run: Run) -> str:
     samples = run.road.sample()
     bend = float(np.abs(samples.curvature).max())
     tightest = f"tightest radius {1 / bend:.0f} m" if bend > 1e-6 else "straight"
-    climb = float(samples.z[-1] - samples.z[0])
     steep = float(samples.grade[np.abs(samples.grade).argmax()])
-    return f"{run.length:.0f} m, {tightest}, {climb:+.1f} m in height, steepest {steep:+.1%}"
+    return f"{run.length:.0f} m, {tightest}, {ups_and_downs(samples.z)} m in height, steepest {steep:+.1%}"
 
 
 def _folder_lines(folder: Path) -> Iterator[str]:

@@ -7,7 +7,9 @@ measured on the road before and after an edit.
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from roadgpt.check.measures import MeasuredFeature, Measures, way
+import numpy as np
+
+from roadgpt.check.measures import MeasuredFeature, Measures, ups_and_downs, way
 from roadgpt.design.fit import Look
 from roadgpt.design.road_elements import RoadElement, RoadElements, features_of
 from roadgpt.network import NetworkDesign
@@ -17,6 +19,7 @@ AnyRoute = Design | NetworkDesign
 """The design of a road or of a route with junctions."""
 ALL_LISTED = 60  # changed segments; of more, only the number is given
 MOVED = 0.005  # m
+PLACES = 200  # heights that the ups and downs of a stretch are seen in
 FADING = 12.0  # m that a straight gains at most from turns that fade into it
 
 
@@ -36,7 +39,8 @@ def sentences(
     """
     new = after.found
     things = _things(elements, after.elements, new) if after.elements else _counted(found, new)
-    lengths, climbs = f"{found.length:.0f} -> {new.length:.0f}", f"{found.climb:+.1f} -> {new.climb:+.1f}"
+    lengths = f"{found.length:.0f} -> {new.length:.0f}"
+    climbs = " -> ".join(ups_and_downs(each.line.z) for each in (found, new))
     whole = f"the road: {lengths} m long, climbs {climbs} m"
     besides = ["; ".join(_changed_segments(*pair)) for pair in fitted]
     valid = [f"to keep it valid: {said}" for said in besides if said]
@@ -46,16 +50,18 @@ def sentences(
 def grades_changed(
     before: Design, after: Design, stretches: Sequence[tuple[float, float]], geometry: Geometry
 ) -> Iterator[str]:
-    """Yields a sentence on the mean grade of each stretch of a road before and after an edit. Each stretch
-    is a pair of stations in metres, valid for both roads. A stretch named twice counts once.
+    """Yields a sentence on the mean grade, ups and downs of each stretch of a road before and after an edit.
+    Each stretch is a pair of stations in metres, valid for both roads. One named twice counts once.
     """
     for start, end in dict.fromkeys(stretches):
-        grades = []
+        grades, climbs = [], []
         for design in (before, after):
             road = build(design, geometry)
-            low, high = (float(road.at(min(station, road.length))[2]) for station in (start, end))
-            grades.append(100 * (high - low) / (end - start))
-        yield f"from {start:.0f} to {end:.0f} m: grade {grades[0]:+.1f} -> {grades[1]:+.1f} %"
+            z = road.elevation.height(np.linspace(start, min(end, road.length), PLACES))
+            grades.append(100 * float(z[-1] - z[0]) / (end - start))
+            climbs.append(ups_and_downs(z))
+        grade, climb = f"grade {grades[0]:+.1f} -> {grades[1]:+.1f} %", f"climbs {climbs[0]} -> {climbs[1]} m"
+        yield f"from {start:.0f} to {end:.0f} m: {grade}, {climb}"
 
 
 def _counted(before: Measures, after: Measures) -> Iterator[str]:

@@ -134,7 +134,8 @@ def _seen(elements: Sequence[RoadElement]) -> list[str]:
             out.append(f"- {element.name}, {shape}: {where}")
         elif seen:
             straights += 1
-            out.append(f"- straight {straights}, {seen.length:.0f} m, {seen.grade:+.1f} %: {where}")
+            grades = ", ".join(f"{piece.grade:+.1f}" for piece in seen.pieces)
+            out.append(f"- straight {straights}, {seen.length:.0f} m, {grades} %: {where}")
     return out
 
 
