@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from roadgpt.geometry import CubicProfile
+from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Design, Profile, Road, Segment, World, build
 from roadgpt.road.profile import Lane
 from roadgpt.road.superelevation import superelevation
@@ -77,3 +77,15 @@ def missed(road: Road, lane: int, points: np.ndarray) -> tuple[float, float]:
     aside = np.abs(t - outer_edges(road.profile, s)[lane])
     above = np.abs(road.at(s, t)[:, 2] - points[:, 2])
     return float(aside.max()), float(above.max())
+
+
+def bend(radius: float, width: float = 3.5, side: int = -1, lanes: int = 2, ends: bool = False) -> Road:
+    """30 m straight, an arc of 90 degrees, 40 m straight; lanes to the right, one to the left."""
+    k = side / radius
+    plan = PieceCurve(100.0, 100.0, 0.3, (Piece(30.0), Piece(np.pi / 2 * radius, k, k), Piece(40.0)))
+    narrowing = CubicProfile.smooth([(0.0, width), (20.0, width), (28.0, 0.0), (plan.length, 0.0)])
+    right = [Lane("driving", width, "broken")] * (lanes - 1) + [
+        Lane("driving", narrowing if ends else width, "solid")
+    ]
+    profile = Profile((Lane("driving", width, "solid"),), tuple(right))
+    return Road(plan, GradeProfile.level(plan.length), profile=profile)

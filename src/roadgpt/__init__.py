@@ -33,6 +33,7 @@ _ROOMS = {
     "read_design": "road",
     "read_opendrive": "road",
     "read_road": "network",
+    "read_source": "network",
     "Network": "network",
     "MapDesign": "network",
     "NetworkDesign": "network",

@@ -35,9 +35,10 @@ def test_a_road_goes_out_and_comes_back(here: Path) -> None:
     back = said("import", "exports/hill.xodr")
     assert "road 1 (road): A 100 metre road with " in back.stdout
     assert "left turn of 60 degrees" in back.stdout
-    assert back.stdout.splitlines()[-1] == (
-        "written to hill-1.json; drive it: roadgpt drive hill-1.json --speed-limit 50 --lane-width 3.5"
-    )
+    assert back.stdout.splitlines()[-1] == "written to hill-1.json; drive it: roadgpt drive hill-1.json"
+    world = json.loads(Path("hill-1.json").read_text())["world"]
+    assert world["lane_width"] == 3.5
+    assert world["speed_limit"] == pytest.approx(50 / 3.6)
     one, other = read_road("hill.json"), read_road("hill-1.json")
     s = np.linspace(0, one.length, 200)
     assert other.at(s) == pytest.approx(one.at(s), abs=1e-3)
@@ -109,7 +110,8 @@ def test_the_command_that_drives_an_import_can_be_typed(here: Path) -> None:
     file = Path("exports/hill.xodr")
     file.write_text(file.read_text().replace('max="70" unit="km/h"', 'max="13.9" unit="m/s"'))
     told = said("import", str(file), "--out", "my hill.json").stdout.splitlines()[-1]
-    assert told.endswith("roadgpt drive 'my hill.json' --speed-limit 50.04")
+    assert told.endswith("roadgpt drive 'my hill.json'")
+    assert json.loads(Path("my hill.json").read_text())["world"]["speed_limit"] == 13.9
 
 
 @pytest.mark.parametrize(

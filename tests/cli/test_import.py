@@ -4,7 +4,9 @@ import json
 import math
 import re
 import shlex
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,10 +15,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.cli import app
-from roadgpt.cli.commands.import_ import _on_a_map
-from roadgpt.network import read_road
+from roadgpt.cli.roads import on_a_map
+from roadgpt.network import read_road, read_source
 from roadgpt.plugins import find
-from roadgpt.road import read_opendrive
+from roadgpt.road import World, read_opendrive
+from roadgpt.run import Setup, prove
 
 LANES = """<lanes><laneSection s="0"><left>
 <lane id="1" type="driving"><width sOffset="0" a="{width}"/></lane></left><right>
@@ -26,9 +29,7 @@ LANES = """<lanes><laneSection s="0"><left>
 def file(folder: Path, line: str, rest: str = "", width: float = 3.5) -> Path:
     path = folder / "town.xodr"
     lanes = LANES.format(width=width)
-    path.write_text(
-        f'<OpenDRIVE><road id="5" length="1"><planView>{line}</planView>{rest}{lanes}</road></OpenDRIVE>'
-    )
+    path.write_text(f'<OpenDRIVE><road id="5"><planView>{line}</planView>{rest}{lanes}</road></OpenDRIVE>')
     return path
 
 
@@ -83,7 +84,11 @@ def test_placing_and_the_rule_have_one_measure(
 ) -> None:
     folder = tmp_path_factory.mktemp("place")
     arc = f'<arc curvature="{bend!r}"/>'
-    road, world, _ = _on_a_map(read_opendrive(file(folder, element(x, y, heading, length, arc), width=width)))
+    found = read_opendrive(file(folder, element(x, y, heading, length, arc), width=width))
+    road, size, movement, _ = on_a_map(found.road, found.world(World()), keep_place=False)
+    world = found.world(World()).changed(map_size=size)
+    s = np.linspace(0, road.length, 50)
+    assert road.at(s) - movement == pytest.approx(found.road.at(s), abs=1e-9)
     assert find("rules", "inside_map")(road, None, world) == ()
     t = np.array([-world.section.lane_width, world.section.lane_width])[:, None]
     edges = road.at(np.linspace(0, road.length, 5_000), t)[..., :2]
@@ -95,7 +100,7 @@ def test_a_map_far_away_and_deep_down_is_brought_here(tmp_path: Path) -> None:
     heights = '<elevationProfile><elevation s="0" a="-412.5" b="0.02" c="0" d="0"/></elevationProfile>'
     row, told = typed(file(tmp_path, element(691_000.25, 5_335_900.5, 1.1, 120), heights))
     assert (row["test_outcome"], row["findings"]) == ("PASS", [])
-    assert "it is lifted by 412.5 m: its lowest place was below the ground of the map" in told
+    assert "it is lifted by 413 m: its lowest place was below the ground of the map" in told
 
 
 def test_a_road_too_large_for_any_map_is_driven_where_it_is(tmp_path: Path) -> None:
@@ -127,3 +132,297 @@ def test_a_road_of_a_few_metres_is_invalid_in_a_sentence(tmp_path: Path) -> None
     assert str(row["description"]).startswith(
         "the road is 7.0 m long, too short to be driven: a car starts 2.5"
     )
+
+
+LONG = element(-100, 3, 0.4, 400)
+ICE = '<material sOffset="0" friction="0.3"/><speed sOffset="0" max="40" unit="km/h"/>'
+
+
+def long_road(folder: Path) -> Path:
+    """The road file of an imported road of 400 m that names its lanes, friction and speed limit."""
+    path = file(folder, LONG)
+    path.write_text(
+        path.read_text().replace(
+            '<width sOffset="0" a="3.5"/></lane></right>', f'<width sOffset="0" a="3.5"/>{ICE}</lane></right>'
+        )
+    )
+    out = folder / "long.json"
+    assert invoke("import", str(path), "--out", str(out)).exit_code == 0
+    return out
+
+
+def test_check_and_drive_know_the_world_of_an_imported_road(tmp_path: Path) -> None:
+    out = long_road(tmp_path)
+    stored = json.loads(out.read_text())["world"]
+    assert stored == {
+        "map_size": 450, "lane_width": 3.5, "shoulder": 0.0, "friction": 0.3,
+        "speed_limit": pytest.approx(40 / 3.6),
+    }  # fmt: skip
+    assert invoke("check", str(out)).exit_code == 0
+    row = json.loads(invoke("drive", str(out), "--json").stdout.splitlines()[-1])
+    assert (row["findings"], row["test_outcome"]) == ([], "PASS")
+
+
+@pytest.mark.parametrize(
+    "words", [["view", "--out", "page.html"], ["view", "--format", "png"], ["export", "--to", "opendrive"]]
+)
+def test_whatever_reads_the_file_knows_its_map(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[str]
+) -> None:
+    out = long_road(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    seen: list[float] = []
+    for name in ("roadgpt.report.draw", "roadgpt.report.view.write", "roadgpt.run.exporting.export"):
+        module, _, function = name.rpartition(".")
+        monkeypatch.setattr(
+            import_module(module), function, lambda runs, *_, **__: seen.append(of(runs)) or ()
+        )
+    invoke(words[0], str(out), *words[1:])
+    assert seen == [450.0]
+
+
+def of(runs: Any) -> float:
+    """The size of the map of a run, or of the first of several."""
+    return float((runs[0] if isinstance(runs, list) else runs).world.site.map_size)
+
+
+def test_an_option_goes_before_the_file_and_is_said(tmp_path: Path) -> None:
+    out = long_road(tmp_path)
+    result = CliRunner().invoke(app, ["check", str(out), "--map-size", "300"])
+    assert result.exit_code == 1
+    assert "--map-size goes before the 450 of the file" in result.stdout
+    assert "the map runs from 0 to 300 m" in result.stdout
+    driven = invoke("drive", str(out), "--speed-limit", "30", "--json")
+    assert "--speed-limit goes before the 40 of the file" in driven.stderr
+
+
+def test_the_file_goes_before_the_configuration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out = long_road(tmp_path)
+    monkeypatch.setenv("ROADGPT_MAP_SIZE", "200")
+    result = CliRunner().invoke(app, ["check", str(out)])
+    assert result.exit_code == 0
+    assert "the 450 of the file goes before --map-size of the configuration" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("world", "sentence"),
+    [
+        ({"map_size": 1}, "its world cannot be read: site.map_size: is out of range; give 50 or more"),
+        ({"oracle": 3}, "its world is not an object with map_size, lane_width"),
+        ([250], "its world is not an object with map_size, lane_width"),
+        ({"friction": float("nan")}, "its world cannot be read: site.friction"),
+    ],
+)
+def test_a_world_that_is_none_is_refused(tmp_path: Path, world: object, sentence: str) -> None:
+    out = long_road(tmp_path)
+    out.write_text(json.dumps(json.loads(out.read_text()) | {"world": world}))
+    result = CliRunner().invoke(app, ["check", str(out)])
+    assert result.exit_code == 2
+    assert sentence in result.stderr
+
+
+@given(
+    st.floats(-1e7, 1e7),
+    st.floats(-1e7, 1e7),
+    st.floats(-9_000, 9_000),
+    st.floats(0, 6.2),
+    st.floats(20, 500),
+)
+@settings(max_examples=25, deadline=None)
+def test_the_coordinates_of_the_file_are_those_here_plus_the_origin(
+    tmp_path_factory: pytest.TempPathFactory, x: float, y: float, z: float, heading: float, length: float
+) -> None:
+    folder = tmp_path_factory.mktemp("origin")
+    heights = f'<elevationProfile><elevation s="0" a="{z!r}"/></elevationProfile>'
+    path = file(folder, element(x, y, heading, length), heights)
+    told = invoke("import", str(path), "--out", str(folder / "here.json")).stderr
+    here = json.loads((folder / "here.json").read_text())
+    origin = here.get("origin", [0, 0, 0])
+    back = [here["start"][0] + origin[0], here["start"][1] + origin[1], here["height"] + origin[2]]
+    assert back == pytest.approx([x, y, z], abs=1e-9, rel=0)
+    if origin[0] or origin[1]:
+        assert f"add ({origin[0]:.0f}, {origin[1]:.0f}) m for its place in the file" in told
+
+
+def test_a_place_in_a_national_grid_can_be_kept(tmp_path: Path) -> None:
+    path = file(tmp_path, element(691_000.25, 5_335_900.5, 1.1, 120))
+    assert invoke("import", str(path), "--keep-place", "--out", str(tmp_path / "kept.json")).exit_code == 0
+    assert read_road(tmp_path / "kept.json").at(0.0)[:2].tolist() == [691_000.25, 5_335_900.5]
+
+
+@pytest.mark.parametrize(
+    ("length", "word"), [(7, "too short to be driven"), (15, "a road is longer than 20 m")]
+)
+def test_a_road_too_short_for_a_test_says_so_when_it_is_imported(
+    tmp_path: Path, length: float, word: str
+) -> None:
+    path = file(tmp_path, element(0, 0, 0, length))
+    assert word in invoke("import", str(path), "--out", str(tmp_path / "short.json")).stderr
+
+
+@pytest.mark.parametrize(("x", "size"), [(300, 450.0), (20, 250.0), (-20, 250.0)])
+def test_a_road_that_keeps_its_place_gets_a_map_that_has_it(tmp_path: Path, x: float, size: float) -> None:
+    path = file(tmp_path, element(x, 60, 0, 120))
+    told = invoke("import", str(path), "--keep-place", "--out", str(tmp_path / "kept.json")).stderr
+    assert json.loads((tmp_path / "kept.json").read_text())["world"]["map_size"] == size
+    assert ("its place is off the map" in told) == (x < 0)
+    assert (CliRunner().invoke(app, ["check", str(tmp_path / "kept.json")]).exit_code == 0) == (x > 0)
+
+
+POINTS = [[20 + 5 * n, 60 + 20 * math.sin(n / 6)] for n in range(30)]
+NAMED = [{"x": x, "y": y} for x, y in POINTS]
+TESTS = {
+    "competition": {"_id": {"$oid": "64f1"}, "road_points": NAMED,
+                    "meta_data": {"test_info": {"test_outcome": "FAIL"}}},
+    "sbft": {"id": "64f1", "road_points": POINTS, "interpolated_points": [[x, y, 0.0] for x, y in POINTS]},
+    "dense": {"id": "64f1", "interpolated_points": NAMED},
+    "scissor": {"test_id": "64f1", "interpolated_road_points": [[x, y, -28.0, 8.0] for x, y in POINTS]},
+    "asfault": {"name": "64f1", "m1": {"nodes": [[x, y, -28.0, 8.0] for x, y in POINTS]}},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", TESTS)
+@pytest.mark.parametrize("form", ["one", "list of one", "list", "lines"])
+def test_tests_of_others_are_imported_one_by_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str, form: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    test, other = TESTS[kind], {"road_points": [[y, x] for x, y in POINTS]}
+    content = {
+        "one": json.dumps(test),
+        "list of one": json.dumps([test]),
+        "list": json.dumps([test, other]),
+        "lines": f"{json.dumps(test)}\n\n{json.dumps(other)}\n",
+    }[form]
+    path = Path("tests.jsonl" if form == "lines" else "tests.json")
+    path.write_text(content)
+    result = invoke("import", str(path))
+    assert result.exit_code == 0, result.output
+    written = re.findall(r"written to (\S+);", result.stdout)[0]
+    first = Path(written, "64f1.json") if form in ("list", "lines") else Path(written)
+    road = read_road(first)
+    assert road.locate(*np.transpose(POINTS))[1] == pytest.approx(0, abs=0.02)
+    assert len([*Path(written).glob("*.json")]) == (2 if first != Path(written) else 0)
+    assert ("the width of its points is not used" in result.stderr) == (kind in ("scissor", "asfault"))
+    if form in ("list", "lines"):
+        assert invoke("import", str(path), "--road", "64f1", "--out", "one.json").exit_code == 0
+        assert read_road("one.json").to_json() == road.to_json()
+        assert "roadgpt import" in invoke("check", str(path)).stderr
+
+
+def test_a_bad_test_of_a_list_costs_only_itself(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("tests.json").write_text(
+        json.dumps([{"road_points": NAMED}, {"road_points": [[1, 1]]}, {"road_points": POINTS}])
+    )
+    result = invoke("import", "tests.json")
+    assert result.exit_code == 2
+    assert sorted(path.name for path in Path("tests").iterdir()) == ["1.json", "3.json"]
+    assert "tests.json (road 2): " in result.stderr
+
+
+def test_a_list_of_lists_of_points_is_a_list_of_roads(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("two.json").write_text(json.dumps([POINTS, NAMED]))
+    invoke("import", "two.json")
+    one, other = (read_road(Path("two", f"{n}.json")) for n in (1, 2))
+    assert one.to_json() == other.to_json()
+
+
+@pytest.mark.parametrize("file", ["one.json", "lines.jsonl"])
+def test_a_road_that_is_not_there_is_no_road(tmp_path: Path, file: str) -> None:
+    test = json.dumps(TESTS["competition"])
+    (tmp_path / file).write_text(test if file == "one.json" else f"{test}\n{test}\n")
+    result = invoke("import", str(tmp_path / file), "--road", "64f2")
+    assert (result.exit_code, "there is no road 64f2 in it" in result.stderr) == (2, True)
+
+
+def test_names_of_tests_make_no_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    home = tmp_path / "home"
+    home.mkdir()
+    monkeypatch.chdir(home)
+    names = ["../../up", "..", "/etc/x", "a b"]
+    Path("t.json").write_text(json.dumps([{"name": name, "road_points": NAMED} for name in names]))
+    assert invoke("import", "t.json").exit_code == 0
+    assert sorted(path.name for path in tmp_path.rglob("*.json")) == [
+        "_.._up.json", "_etc_x.json", "a_b.json", "road.json", "t.json",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["far.csv", "far.xodr"])
+def test_files_that_know_no_map_get_one_that_holds_them(tmp_path: Path, name: str) -> None:
+    path = file(tmp_path, element(300, 60, 0, 120)).rename(tmp_path / name)
+    if name == "far.csv":
+        path.write_text("x,y\n" + "\n".join(f"{300 + 4 * n},60" for n in range(31)))
+    result = CliRunner().invoke(app, ["check", str(path)])
+    assert result.exit_code == 0, result.output
+    assert "its map is 450 m wide" in result.stdout
+    assert CliRunner().invoke(app, ["check", str(path), "--map-size", "250"]).exit_code == 1
+
+
+def test_python_knows_the_world_of_a_file(tmp_path: Path) -> None:
+    source = read_source(long_road(tmp_path))
+    world = World().changed(**source.world)
+    assert (world.site.map_size, world.site.friction) == (450, 0.3)
+    assert prove(source.blueprint, world=world, setup=Setup(drives=False)).outcome == "VALID"
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "sentence"),
+    [
+        ("a.json", json.dumps({"starting_point": [0, 0, 0], "theta": 0, "road_segment1": {
+            "distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0}}),
+            "is a file of RoadGPT, which needs no import"),
+        ("a.json", json.dumps({"start": [0, 0, 0], "pieces": [[40, 0, 0]], "height": 0, "stations": [0, 40],
+                               "grades": [0, 0]}), "is a file of RoadGPT, which needs no import"),
+        ("a.net.xml", "<net/>", "a file of SUMO: it begins with <net>"),
+        ("a.osm", "<osm/>", "a file of Lanelet2 or OpenStreetMap"),
+        ("a.xml", "<commonRoad/>", "a file of CommonRoad"),
+        ("a.xosc", "<OpenSCENARIO/>", "not OpenDRIVE: it begins with <OpenSCENARIO>"),
+        ("a.json", "{}", "it holds no road"),
+        ("a.jsonl", "{}\n{", "is not valid JSON"),
+    ],
+)  # fmt: skip
+def test_what_is_no_road_of_others_is_named(tmp_path: Path, name: str, content: str, sentence: str) -> None:
+    path = tmp_path / name
+    path.write_text(content)
+    result = invoke("import", str(path))
+    assert result.exit_code == 2
+    assert sentence in result.stderr
+
+
+def test_columns_and_heights_that_are_not_used_are_told(tmp_path: Path) -> None:
+    table = tmp_path / "table.csv"
+    table.write_text("s_m,x_m,y_m,lane_width_m\n" + "\n".join(f"0,{x},{y},3" for x, y in POINTS))
+    result = invoke("import", str(table), "--out", str(tmp_path / "a.json"))
+    assert "its columns s_m, lane_width_m are not used" in result.stderr
+    mixed = [{"sequenceNumber": n, "x": x, "y": y} for n, (x, y) in enumerate(POINTS)]
+    (tmp_path / "b.json").write_text(json.dumps({"road_points": mixed[::-1], "nodes": POINTS}))
+    told = invoke("import", str(tmp_path / "b.json"), "--out", str(tmp_path / "c.json")).stderr
+    assert "its points are sorted by sequenceNumber" in told
+
+
+def test_the_road_of_a_run_keeps_the_map_of_the_run(tmp_path: Path) -> None:
+    run = tmp_path / "runs"
+    made = CliRunner().invoke(
+        app,
+        [
+            "run",
+            "a straight road of 500 metres",
+            "--friction",
+            "0.5",
+            "--no-drive",
+            "--no-plot",
+            "--out",
+            str(run),
+        ],
+    )
+    assert made.exit_code == 0, made.output
+    assert invoke("check", str(run / "runs/0001")).exit_code == 0
+    assert invoke("check", str(run / "runs/0001/design.json")).exit_code == 0
+    assert read_source(run / "runs/0001").world["friction"] == 0.5
+    (run / "runs/0001/run.json").write_text("{}")
+    damaged = invoke("check", str(run / "runs/0001/road.json"))
+    assert (damaged.exit_code, "Traceback" in damaged.output) == (2, False)

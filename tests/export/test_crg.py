@@ -60,5 +60,7 @@ def test_a_bend_too_tight_for_the_verge_narrows_the_surface(tmp_path: Path) -> N
 def test_a_bend_too_tight_for_a_lane_is_refused(tmp_path: Path) -> None:
     angles = np.linspace(0, np.pi / 2, 12)
     road = Road.through(np.column_stack([3 * np.cos(angles), 3 * np.sin(angles), 0 * angles]))
-    with pytest.raises(ExportError, match=r"OpenCRG cannot hold a bend whose radius is [23]\.\d m"):
+    with pytest.raises(
+        ExportError, match=r"cannot hold the bend at s = \d m, whose radius of [23]\.\d m is less"
+    ):
         saved(road, tmp_path)

@@ -1,15 +1,19 @@
 """Lanelet2 maps: the library itself loads them, finds our points again and a way from start to end."""
 
+import re
 import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from shapely.geometry import Polygon
 
 from exported import ROADS, WORLD
-from roadgpt.export import save
+from profiled import bend
+from roadgpt.export import doubts, save
 from roadgpt.export.georeference import LATITUDE, LONGITUDE
+from roadgpt.export.lanelets import lanelets_of
 from roadgpt.road import CrossSection, Road, World
 
 NEAR = [name for name in ROADS if name != "far away"]  # the others leave the UTM zone's middle
@@ -126,3 +130,30 @@ def test_every_centre_line_has_its_tags(tmp_path: Path) -> None:
         "double": {"type": "line_thin", "subtype": "solid_solid"},
         "none": {"type": "virtual"},
     }
+
+
+@pytest.mark.parametrize("ends", [False, True])
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize("radius", [2.5, 4.0, 5.0, 6.0, 8.0, 15.0])
+def test_where_lanelet2_loses_a_way_or_a_lane_folds_it_is_said(
+    lanelet2: Any,
+    tmp_path: Path,
+    radius: float,
+    side: int,
+    ends: bool,
+) -> None:
+    road = bend(radius, 4.5, side, 2, ends)
+    (file,) = save(road, tmp_path, ["lanelet2"], World())
+    map_ = loaded(lanelet2, file)
+    graph = lanelet2.routing.RoutingGraph(map_, rules_of(lanelet2))
+    wanted = sum(len(each.after) for each in lanelets_of(road, World()))
+    found = sum(len(list(graph.following(each))) for each in map_.laneletLayer)
+    whole = all(Polygon([(p.x, p.y) for p in each.polygon2d()]).is_valid for each in map_.laneletLayer)
+    said = doubts(road, ["lanelet2"], World())
+    if wanted != found or not whole:
+        (sentence,) = said
+        s = float(re.findall(r"at s = (\d+) m", sentence)[0])
+        assert 30 <= s <= 30 + np.pi / 2 * radius + 0.5
+        assert f"a radius of {radius:.1f} m" in sentence
+    if radius > 9.5:
+        assert said == ()

@@ -19,8 +19,8 @@ from roadgpt.network import (
     Route,
     build_map,
     read_any_design,
-    read_blueprint,
     read_road,
+    read_source,
     road_from_json,
 )
 from roadgpt.network.map_design import has_nodes, read_map_design
@@ -122,7 +122,7 @@ def test_a_road_may_lead_back_to_its_junction_and_a_route_back_at_a_roundabout()
         ({"node1": {"at": [1, 2]}}, "at: give x, y and the height, as in [20, 80, 0]"),
         ({"node1": {"at": [1, 2, True]}}, "at: is not a number"),
         ({"node1": {"at": [1, 2, math.nan]}}, "at.2: is not finite"),
-        ({"node1": {"at": [1e9, 2, 0]}}, "node 1 is beyond 1,000,000; give smaller numbers"),
+        ({"node1": {"at": [1e9, 2, 0]}}, "node 1 is beyond 25,000,000; give smaller numbers"),
         ({"node1": {"colour": 1}}, "colour: is not a field of a design; remove it"),
         ({"node2": {"kerb": 0.5}}, "node 2 cannot be read: kerb: is out of range; give 1 or more"),
         ({"node2": {"control": "maybe"}}, "control: is unknown"),
@@ -182,7 +182,7 @@ def test_too_steep_a_road_is_built_and_the_rules_say_so(tmp_path: Path) -> None:
 def test_a_map_is_read_from_a_file(tmp_path: Path) -> None:
     path = tmp_path / "map.json"
     path.write_text(json.dumps(GOOD))
-    blueprint, remarks = read_blueprint(path)
+    blueprint, remarks, *_ = read_source(path)
     assert blueprint == read_any_design(GOOD)[0] == read_map_design(GOOD)[0]
     assert remarks == ()
     assert read_road(path).length == pytest.approx(built(GOOD).length)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import count
+from math import ceil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,12 +21,15 @@ from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError, exp
 if TYPE_CHECKING:
     from roadgpt.campaign.selection import Choice, Selection
     from roadgpt.network import Blueprint
-    from roadgpt.road import Geometry, World
+    from roadgpt.road import Geometry, Road, World
     from roadgpt.run import Run
 
 FAILED, UNREADABLE = 1, 2  # exit statuses: a format cannot hold a road; a name or a road cannot be used
 LANES = ("lanes", "lane_width", "lane_width_end", "shoulder", "bank")
 """Fields of the World that have no effect on a road with a cross-section of its own."""
+WITHOUT_MAP = (".xodr", ".csv", ".tsv")  # endings of formats that know no map
+ROOM = 20.0  # m kept free around a road that is moved onto the map
+ROUND_MAP = 50.0  # m, to which the size of a map is rounded up
 ENDINGS = (".json", ".xodr", ".csv", ".tsv", ".sbft")
 NONE = {"failures": "no road failed in {}", "faults": "no road failed in {}", "worst": "nobody drove in {}"}
 
@@ -146,11 +150,7 @@ def _run(folder: Path, said: str) -> NamedRoad:
 
 
 def _single(file: str) -> NamedRoad:
-    """Returns a run or a road file.
-
-    Raises:
-        UsageError: There is nothing of that name.
-    """
+    """Returns a run or a road file. Raises UsageError if there is nothing of that name."""
     from roadgpt.campaign.selection import near
     from roadgpt.run.folder import is_run, run_of_test
 
@@ -169,17 +169,17 @@ def _single(file: str) -> NamedRoad:
     return NamedRoad(file, stem, Path(os.path.realpath(path)), None)
 
 
-def blueprint_of(file: str, world: "World") -> tuple["Blueprint", tuple[str, ...]]:
-    """Returns the design or the road in a file, and remarks on assumptions made in reading it.
+def source_of(file: str, world: "World") -> tuple["Blueprint", "World", tuple[str, ...]]:
+    """Returns the design or the road in a file, its World, and remarks on what is taken from where.
 
-    ``world`` is the World that the options describe. If the file defines lanes, lane options have no effect;
-    a remark then names those that were typed, or differ from their defaults. ``file`` may be the folder of a
-    run.
+    ``world`` is the World that the options describe. What the file states goes before it, except for options
+    that were typed. If the file defines lanes, lane options have no effect; a remark then names those that
+    were typed, or differ from their defaults. ``file`` may be the folder of a run.
 
     Raises:
         UsageError: The file holds no road, or the folder is not that of a run.
     """
-    from roadgpt.network import read_blueprint
+    from roadgpt.network import read_source
     from roadgpt.road import Road, World
     from roadgpt.run.card import CARD
 
@@ -190,17 +190,61 @@ def blueprint_of(file: str, world: "World") -> tuple["Blueprint", tuple[str, ...
             f"{file} is a folder without a road; give a road file, or the folder of a run such as "
             "DIR/runs/0001, which roadgpt drive --again makes from a test of a campaign"
         )
-    blueprint, remarks = read_blueprint(file)
-    if not isinstance(blueprint, Road) or blueprint.profile is None:
-        return blueprint, remarks
-    values, usual = world.values(), World().values()
+    blueprint, remarks, stated, *_ = read_source(file)
     context = click.get_current_context(silent=True)
-    told = typed(context) if context else set()
-    of_lanes = [each for each in WORLD if each.field in LANES]
-    given = [each.flag for each in of_lanes if each.field in told or values[each.field] != usual[each.field]]
-    verb = "has" if len(given) == 1 else "have"
-    own = f"the road has lanes of its own; {', '.join(given)} {verb} no effect on it"
-    return blueprint, (*remarks, own) if given else remarks
+    told, values, usual = typed(context) if context else set(), world.values(), World().values()
+    given = [each for each in WORLD if each.field in told or values[each.field] != usual[each.field]]
+    own = [each.flag for each in given if each.field in LANES] if getattr(blueprint, "profile", None) else []
+    for each in given:
+        if each.flag not in own and stated.get(each.field, values[each.field]) != values[each.field]:
+            of_file = f"the {stated[each.field] * each.unit:.6g} of the file"
+            pair = (of_file, f"{each.flag} of the configuration")
+            remarks += (" goes before ".join((each.flag, of_file) if each.field in told else pair),)
+    world = world.changed(**{name: value for name, value in stated.items() if name not in told})
+    if Path(file).suffix.lower() in WITHOUT_MAP and isinstance(blueprint, Road) and "map_size" not in told:
+        _, size, _, more = on_a_map(blueprint, world, keep_place=True)
+        world, remarks = world.changed(map_size=size), remarks + more
+    if own:
+        verb = "has" if len(own) == 1 else "have"
+        remarks += (f"the road has lanes of its own; {', '.join(own)} {verb} no effect on it",)
+    return blueprint, world, remarks
+
+
+def on_a_map(
+    road: "Road", world: "World", keep_place: bool
+) -> tuple["Road", float, tuple[float, float, float], tuple[str, ...]]:
+    """Returns the road on a map that is as wide as the World's or wider, the map's width in metres, by how
+    many metres the road was moved, and remarks. These are whole metres, so that the file's coordinates are
+    those here less the movement, exactly but for the last digit where one is closer to 0 in the file.
+    """
+    from roadgpt.brief.map_fit import LARGEST_MAP
+    from roadgpt.check.extremes import lowest
+    from roadgpt.check.ribbon import extent
+    from roadgpt.check.sbft import SPLINE_REACH
+    from roadgpt.road import moved
+
+    laid, remarks, x, y, z = world.lay(road), list[str](), 0.0, 0.0, 0.0
+    low, high = extent(laid.sample(), world.profile_of(laid).edges(laid.sample().s))
+    wide = float(high.max()) + SPLINE_REACH if keep_place else float((high - low).max()) + 2 * ROOM
+    size = max(world.site.map_size, ROUND_MAP * ceil(wide / ROUND_MAP))
+    fits = (low > SPLINE_REACH).all() and (high < size - SPLINE_REACH).all()
+    if keep_place and not (fits and size <= LARGEST_MAP):
+        size = world.site.map_size
+        remarks.append("its place is off the map; roadgpt import without --keep-place moves it onto one")
+    elif size > LARGEST_MAP:
+        size = world.site.map_size
+        remarks.append(f"with its lanes it is {wide:.0f} m wide, too large for a map; its place is kept")
+    elif size > world.site.map_size:
+        remarks.append(f"its map is {size:g} m wide")
+    if not (keep_place or fits or wide > LARGEST_MAP):
+        x, y = (float(round(each)) for each in size / 2 - (low + high) / 2)
+        back = f"add ({-x:.0f}, {-y:.0f}) m for its place in the file"
+        remarks.append(f"it is moved by ({x:.0f}, {y:.0f}) m into the middle of the map; {back}")
+    deepest = lowest(road.elevation, road.length)[1]
+    if deepest < world.site.z_floor and not keep_place:
+        z = float(ceil(-deepest))
+        remarks.append(f"it is lifted by {z:.0f} m: its lowest place was below the ground of the map")
+    return moved(road, x, y, z), size, (x, y, z), tuple(remarks)
 
 
 def shown_runs(
@@ -232,9 +276,9 @@ def shown_runs(
     return [run_of(each, world, geometry) for each in named]
 
 
-def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
+def run_of(named: NamedRoad, world: "World", geometry: "Geometry", quiet: bool = False) -> "Run":
     """Returns the Run of a road, or a new Run without a drive for a road file; prints the remarks of
-    ``blueprint_of``.
+    ``source_of`` unless ``quiet``.
 
     Raises:
         UsageError: The road cannot be read.
@@ -243,8 +287,8 @@ def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
 
     if named.run is not None:
         return named.run()
-    blueprint, remarks = blueprint_of(named.said, world)
-    for remark in remarks:
+    blueprint, world, remarks = source_of(named.said, world)
+    for remark in () if quiet else remarks:
         warn(f"{named.said}: {remark}")
     with named_in_errors(named.said):
         run = prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))

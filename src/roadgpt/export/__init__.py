@@ -19,16 +19,22 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
+import numpy as np
+
 from roadgpt import plugins
 from roadgpt.errors import ExportError, UsageError
+from roadgpt.export.edges import fold
 from roadgpt.export.poses import Poses
+from roadgpt.geometry import CubicProfile
 from roadgpt.network import has_no_route, is_route
 from roadgpt.road import Road, World
 
 if TYPE_CHECKING:
     from roadgpt.network import Route
 
-__all__ = ["Exporter", "Poses", "exporter_of", "save"]
+__all__ = ["Exporter", "Poses", "doubts", "exporter_of", "save"]
+
+EDGELESS = ("csv", "sbft", "crg")  # formats that draw no edges of lanes
 
 
 @runtime_checkable
@@ -124,10 +130,29 @@ def save(
     return tuple(dict.fromkeys(written))
 
 
-def _check_holds(road: "Route", part: Exporter) -> None:
-    """Raises ExportError if a format would hold only the route, without the junctions beside it, or if it
-    needs a route and there is none.
+def doubts(road: Road, formats: Sequence[str], world: World) -> tuple[str, ...]:
+    """Returns a sentence for each place of a road, and each property, that some of the formats cannot show
+    rightly. An exporter may have ``lacks``, names of such properties, and a method ``doubts(road, world)``.
     """
+    road, profile = world.lay(road), world.profile_of(road)
+    roads = {f"road {each.id}: ": each.road for each in road.network.roads} if is_route(road) else {"": road}
+    folds = {name: fold(each, world.profile_of(each)) for name, each in roads.items()}
+    shown = ", ".join(name for name in formats if name not in EDGELESS)
+    said = [f"{shown}: {name}{each}" for name, each in folds.items() if each and shown]
+    widths = [lane.width for lane in (*profile.left, *profile.right)]
+    there = {
+        "heights": bool(np.any(road.sample().grade)),
+        "superelevation": profile.superelevation_angle is not None,
+        "changes of width": any(isinstance(width, CubicProfile) for width in widths),
+    }
+    for part in map(exporter_of, formats):
+        said += [f"{part.name}: {what} left out" for what in getattr(part, "lacks", ()) if there[what]]
+        said += [f"{part.name}: {each}" for each in getattr(part, "doubts", lambda *_: ())(road, world)]
+    return tuple(said)
+
+
+def _check_holds(road: "Route", part: Exporter) -> None:
+    """Raises ExportError if a format would hold only the route, or if it needs a route and there is none."""
     if getattr(part, "holds_junctions", False):
         if has_no_route(road) and getattr(part, "needs_route", False):
             raise ExportError(

@@ -79,6 +79,23 @@ def _with_joints(s: Array, profile: Profile) -> Array:
     return np.sort(np.r_[s[np.minimum(away, before) > 2 * BESIDE], joints, steps - BESIDE])
 
 
+def fold(road: Road, profile: Profile) -> str | None:
+    """Returns a sentence on the place where an edge of a lane or shoulder lies farthest beyond the centre of
+    its bend, so that no polyline shows it rightly; None if there is no such place.
+    """
+    s = stations(road, profile.reach)
+    edges = np.stack([t for side in profile.lane_edges(s) for t in side])
+    beyond = road.curvature(s) * edges
+    edge, place = np.unravel_index(int(beyond.argmax()), beyond.shape)
+    if beyond[edge, place] <= PINCH:
+        return None
+    radius, offset = 1 / abs(float(road.curvature(s[place]))), abs(float(edges[edge, place]))
+    return (
+        f"at s = {s[place]:.0f} m the edge of a lane or shoulder lies {offset:.1f} m to the inside of a bend "
+        f"with a radius of {radius:.1f} m; there it folds or is drawn elsewhere, and lanes may end"
+    )
+
+
 def line(road: Road, s: Array, t: ArrayLike) -> Array:
     """Returns the points ``(n, 3)`` of the line at offset ``t`` to the left of the centre line, in metres.
 

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from roadgpt.geometry.curve import Array, Number, before, placed
 
+ROUNDING = 1e-6  # m, or rad: a cubic this little beyond a limit is at the limit
 Cubic = tuple[float, float, float, float]
 """The coefficients (a, b, c, d) of a + b u + c u^2 + d u^3."""
 
@@ -199,13 +200,24 @@ class CubicProfile:
 
     def extremes(self) -> tuple[float, float]:
         """Returns the smallest and the largest height in metres between the first and the last station."""
-        found = [self.coefficients[-1][0]]
+        found = self._peaks()
+        return min(found)[0], max(found)[0]
+
+    def beyond(self, low: float, high: float) -> tuple[float, float] | None:
+        """Returns the station and the height that lies farthest outside a range; None if none is outside by
+        more than ``ROUNDING``. Whatever clamps or checks asks this, so nothing clamped is ever refused.
+        """
+        away, height, s = max((max(low - z, z - high), z, s) for z, s in self._peaks())
+        return (s, height) if away > ROUNDING else None
+
+    def _peaks(self) -> list[tuple[float, float]]:
+        found = [(self.coefficients[-1][0], self.stations[-1])]
         for start, end, (a, b, c, d) in zip(
             self.stations, self.stations[1:], self.coefficients, strict=False
         ):
             for u in (0.0, *(u for u in _roots(3 * d, 2 * c, b) if 0 < u < end - start), end - start):
-                found.append(a + u * (b + u * (c + u * d)))
-        return min(found), max(found)
+                found.append((a + u * (b + u * (c + u * d)), start + u))
+        return found
 
     def height(self, s: ArrayLike) -> Array:
         """Returns heights in metres."""

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     )
     from roadgpt.network.passages import Passage
     from roadgpt.network.route import Route
-    from roadgpt.network.source import read_any_design, read_blueprint, read_road
+    from roadgpt.network.source import read_any_design, read_road, read_source
 
 __all__ = [
     "AnyDesign",
@@ -69,10 +69,10 @@ __all__ = [
     "network_made_from",
     "passing_length",
     "read_any_design",
-    "read_blueprint",
     "read_map_design",
     "read_network_design",
     "read_road",
+    "read_source",
     "refuse_without_route",
     "road_from_json",
 ]
@@ -96,7 +96,7 @@ _LATER = {
     ),
     "passages": ("Passage",),
     "route": ("Route",),
-    "source": ("read_any_design", "read_blueprint", "read_road"),
+    "source": ("read_any_design", "read_road", "read_source"),
 }
 """The names that are loaded when they are first used, by the module that defines them."""
 

@@ -1,61 +1,133 @@
 """Reads roads, routes and designs from files of RoadGPT, tests of other tools, tables and OpenDRIVE files."""
 
-import math
+import shlex
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from pydantic import ValidationError
 from scipy.spatial import cKDTree
 
 from roadgpt.errors import UsageError
 from roadgpt.network.design import is_network_design, read_network_design
 from roadgpt.network.map_design import AnyDesign, Blueprint, has_nodes, read_map_design
 from roadgpt.network.road_or_route import made_from, road_from_json
-from roadgpt.reading import json_of, read_text
-from roadgpt.road import Geometry, ImportedRoad, Road, World, read_design, read_opendrive
+from roadgpt.reading import json_of, read_json, read_text
+from roadgpt.road import Geometry, Road, World, read_design, read_opendrive
+from roadgpt.road.design import first_error
 from roadgpt.road.points import SUFFIXES, plain, points_in, points_of_table
 
 ASTRAY = 1.5  # m; a control point farther than this from all points 1 m apart on a road is not on the road
 OPENDRIVE = ".xodr"
+LINES = ".jsonl"
 LARGEST = 50_000_000  # bytes of a road file
 SHAPES = (
     "a road, a design or a test written by roadgpt, an SBFT or SDC-Scissor test with road_points, "
     "a list of [x, y] or [x, y, z], a table of points (.csv), or an OpenDRIVE file (.xodr)"
 )
+OF_FILE = ("map_size", "lane_width", "shoulder", "speed_limit", "friction")
+"""The fields of a World that a road file may state for its road, as ``world``."""
+OF_RUN = ("road.json", "design.json")  # files of a run, which has its World in run.json
+NAMES = ("_id", "id", "name", "test_id")  # keys of a test that may hold its name
 
 
-def read_blueprint(path: str | Path) -> tuple[Blueprint, tuple[str, ...]]:
-    """Returns the design or the road in a file, and remarks on the file.
+class RoadSource(NamedTuple):
+    """What a road file holds. ``remarks`` are sentences about what was changed, ignored or unusual in it.
 
-    Each remark is a sentence about something in the file that was changed, ignored or unusual.
+    ``world`` has the fields of a World that it states for its road; see ``OF_FILE``. ``name`` is the id of a
+    road in OpenDRIVE, whose name is the ``label``, or the name of the test or file.
+    """
 
-    Args:
-        path: The file, or a folder that holds ``road.json``.
+    blueprint: Blueprint
+    remarks: tuple[str, ...]
+    world: Mapping[str, Any]
+    name: str
+    label: str = ""
+    is_ours: bool = False
+
+
+def read_source(path: str | Path) -> RoadSource:
+    """Reads the design or the road in a file, or in a folder that holds ``road.json``, such as that of a run,
+    with what the file states about its World: ``World().changed(**source.world)``.
 
     Raises:
-        UsageError: The file cannot be read, is not valid, or holds no road.
+        UsageError: The file cannot be read, is not valid, holds no road or several.
     """
-    path = Path(path)
-    if path.is_dir():
-        path = path / "road.json"
-    if path.suffix.lower() == OPENDRIVE:
-        found = read_opendrive(path)
-        return found.road, (*found.remarks, *_lanes_told(found))
+    found = read_sources(path)
+    if len(found) > 1:
+        advice = f"roadgpt import {shlex.quote(str(path))} writes each into a file of its own"
+        raise UsageError(f"{path}: it holds {len(found):,} roads; {advice}")
+    if isinstance(found[0], UsageError):
+        raise found[0]
+    return found[0]
+
+
+def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource | UsageError]:
+    """Reads all roads of a file, those of the name ``wanted``, or one of an OpenDRIVE file; see
+    ``read_opendrive``. A list of tests (.json), or one test in each line (.jsonl), holds several; those that
+    are not valid are returned as errors. Raises UsageError if the file cannot be read or has no such road.
+    """
+    path = Path(path, "road.json") if Path(path).is_dir() else Path(path)
+    ending, card, world = path.suffix.lower(), path.with_name("run.json"), {}
     try:
-        text = read_text(path, LARGEST, "a road file")
-        is_table = path.suffix.lower() in SUFFIXES
-        data = None if is_table else json_of(text)
+        text = "<" if ending == OPENDRIVE else read_text(path, LARGEST, "a road file")
+        if text.lstrip()[:1] == "<":
+            road = read_opendrive(path, wanted)
+            return [RoadSource(road.road, road.remarks, road.world_values, road.id, road.name)]
+        if ending == LINES:
+            text = "[" + ",\n".join(line for line in text.splitlines() if line.strip()) + "]"
+        data = text if ending in SUFFIXES else json_of(text)
+        if path.name in OF_RUN and card.is_file():
+            of_run = World.model_validate(read_json(card, LARGEST)["request"]["world"]).values()
+            world = {name: of_run[name] for name in OF_FILE}
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}; give the path of a road file") from error
-    except ValueError as error:
+    except (ValueError, LookupError, TypeError) as error:
         raise UsageError(f"{path} is not valid JSON ({error}); give {SHAPES}") from error
+    tests = [(_name(data) or path.stem, data)]
+    if isinstance(data, list) and any(map(_is_test, data)):
+        tests = [(_name(each) or str(number), each) for number, each in enumerate(data, 1)]
+    found = [_source(name, each, world, path) for name, each in tests if wanted in (None, name)]
+    if not found:
+        raise UsageError(f"{path}: there is no road {wanted} in it")
+    return found
+
+
+def _is_test(data: Any) -> bool:
+    has_points = isinstance(data, dict) and points_in(data) is not None
+    return has_points or (isinstance(data, list) and bool(data) and isinstance(data[0], (list, dict)))
+
+
+def _name(test: Any) -> str:
+    held = [test[key] for key in NAMES if key in test] if isinstance(test, dict) else []
+    found = [each.get("$oid") if isinstance(each, dict) else each for each in held]
+    return next((str(each) for each in found if isinstance(each, (str, int)) and str(each)), "")
+
+
+def _source(name: str, data: Any, world: Mapping[str, Any], path: Path) -> RoadSource | UsageError:
+    """Returns the road in the text of a table, or in parsed JSON, or the error if there is none."""
+    is_ours = isinstance(data, dict) and ("world" in data or points_in(data) is None)
     try:
-        if is_table:
-            return Road.through(points_of_table(text)), ()
-        return _blueprint_in(data)
+        if isinstance(data, dict) and "world" in data:
+            world = _checked(data["world"])
+        is_table = path.suffix.lower() in SUFFIXES
+        read = _through(*points_of_table(data)) if is_table else _blueprint_in(data)
     except UsageError as error:
-        raise UsageError(f"{path}: {error}") from error
+        which = f" (road {name})" if name != path.stem else ""
+        return UsageError(f"{path}{which}: {error}")
+    return RoadSource(*read, world, name, is_ours=is_ours)
+
+
+def _checked(world: Any) -> Mapping[str, Any]:
+    """Returns the fields of a World that a file states. Raises UsageError if they are not valid."""
+    if not isinstance(world, dict) or not world.keys() <= {*OF_FILE}:
+        raise UsageError(f"its world is not an object with {', '.join(OF_FILE)} or some of them; correct it")
+    try:
+        World().changed(**world)
+    except ValidationError as error:
+        raise UsageError(f"its world cannot be read: {first_error(error)}") from error
+    return world
 
 
 def read_road(path: str | Path, geometry: Geometry = "arcs", world: World | None = None) -> Road:
@@ -64,12 +136,13 @@ def read_road(path: str | Path, geometry: Geometry = "arcs", world: World | None
     Args:
         path: The file, or a folder that holds ``road.json``.
         geometry: How a design becomes a road: "arcs" or "spline", as for ``roadgpt.build``.
-        world: The World, as for ``made_from``; None for the default World.
+        world: The World, as for ``made_from``; None for the default World with what the file states.
 
     Raises:
         UsageError: The file cannot be read, is not valid, or holds no road; see also ``made_from``.
     """
-    return made_from(read_blueprint(path)[0], world or World(), geometry)
+    source = read_source(path)
+    return made_from(source.blueprint, world or World().changed(**source.world), geometry)
 
 
 def read_any_design(data: Mapping[str, Any]) -> tuple[AnyDesign, tuple[str, ...]]:
@@ -86,26 +159,7 @@ def read_any_design(data: Mapping[str, Any]) -> tuple[AnyDesign, tuple[str, ...]
     return read_network_design(data) if is_network_design(data) else read_design(data)
 
 
-def _lanes_told(found: ImportedRoad) -> tuple[str, ...]:
-    """Returns a remark on the lanes, speed limit and friction of an OpenDRIVE file that differ from those of
-    the default World; no remark if none differ.
-    """
-    usual, own = World(), found.world(World())
-    speed, friction = own.limits.speed_limit, own.site.friction
-    told = {
-        f"lanes of {own.section.lane_width:g} m": own.section.lane_width == usual.section.lane_width,
-        f"a shoulder of {own.section.shoulder:g} m": own.section.shoulder == usual.section.shoulder,
-        f"{speed * 3.6:.4g} km/h": math.isclose(speed, usual.limits.speed_limit),
-        f"a friction of {friction:g}": friction == usual.site.friction,
-    }
-    others = [what for what, is_usual in told.items() if not is_usual]
-    if not others:
-        return ()
-    return (f"its file says {', '.join(others)}; roadgpt import prints the options for this",)
-
-
 def _blueprint_in(data: Any) -> tuple[Blueprint, tuple[str, ...]]:
-    """Returns the design or the road in parsed JSON, and remarks. Raises UsageError if there is none."""
     if isinstance(data, dict):
         is_network = is_network_design(data) or has_nodes(data)
         if not is_network and "network" in data:
@@ -116,25 +170,27 @@ def _blueprint_in(data: Any) -> tuple[Blueprint, tuple[str, ...]]:
             return _test_road(data)
         if "pieces" in data or ("nodes" in data and not _has_widths(data["nodes"])):
             return Road.from_json(data), ()
-    points = points_in(data)
-    if points is None:
+    found = points_in(data)
+    if found is None:
         raise UsageError(f"it holds no road; a road file is {SHAPES}")
-    return Road.through(points), ()
+    return _through(*found)
+
+
+def _through(points: list[Any], remarks: tuple[str, ...]) -> tuple[Blueprint, tuple[str, ...]]:
+    return Road.through(points), remarks
 
 
 def _has_widths(nodes: Any) -> bool:
-    """Returns whether these are points in a format of another tool, for example with widths."""
-    return isinstance(nodes, list) and plain(nodes) != nodes
+    return isinstance(nodes, list) and plain(nodes)[0] != nodes
 
 
 def _test_road(data: dict[str, Any]) -> tuple[Road, tuple[str, ...]]:
-    """Returns the road of an SBFT test, with heights only if it has 3-D points that follow its control
-    points.
-    """
+    """Returns the road of an SBFT test, with heights if its 3-D points follow its control points."""
     dense, control = data.get("interpolated_points"), data.get("road_points")
     if not (isinstance(dense, list) and dense and isinstance(dense[0], list) and len(dense[0]) == 3):
         points: Any = dense if control is None else control
-        return Road.through(plain(points) if isinstance(points, list) else points), ()
+        points, remarks = plain(points) if isinstance(points, list) else (points, ())
+        return Road.through(points), remarks
     road = Road.through(dense, control)
     if road.road_points is None:
         return road, ()

@@ -6,9 +6,9 @@
     AsFault and DeepJanus  [[x, y, z, width], ...], alone or as "nodes", "sample_nodes" or "control_nodes"
     tables                 .csv and .tsv, with a header that names x and y, or without one
 
-All values are in metres. Widths are ignored, because lane widths are defined by the World. If points have a
-height and a width, and all heights are equal, the heights are ignored as well, since they only state the
-ground height of the simulator's map.
+All values are in metres. Widths are not used, because lane widths are defined by the World. If points have a
+height and a width, and all heights are equal, the heights are not used either, since they only state the
+ground height of the simulator's map. Sentences say so.
 """
 
 import csv
@@ -20,6 +20,7 @@ from roadgpt.errors import UsageError
 KEYS = (
     "road_points",
     "interpolated_road_points",
+    "interpolated_points",
     "sample_nodes",
     "control_nodes",
     "nodes",
@@ -36,39 +37,39 @@ Z = ("z", "z_m", "pos_z", "height", "elevation", "altitude")
 DEGREES = {"lat", "lon", "lng", "latitude", "longitude"}
 WITH_WIDTH = 4  # numbers of a point
 MOST_ROWS = 200_000  # of a table
+WIDTHS = "the width of its points is not used"
 
 
-def points_in(data: Any) -> list[Any] | None:
+Points = tuple[list[Any], tuple[str, ...]]
+"""Points [x, y] or [x, y, z] in metres, not checked yet, and sentences about what was not taken."""
+
+
+def points_in(data: Any) -> Points | None:
     """Returns the road points in parsed JSON; None if there are none. Of several lists of points in a
-    dictionary, the one whose key comes first in ``KEYS`` is returned. Raises UsageError if there is more than
-    one road.
+    dictionary, the one whose key comes first in ``KEYS`` is returned.
     """
     if isinstance(data, dict):
-        for key in KEYS:
-            if isinstance(data.get(key), list) and data[key]:
-                return plain(data[key])
+        found = [key for key in KEYS if isinstance(data.get(key), list) and data[key]]
+        if found:
+            points, remarks = plain(data[found[0]])
+            others = f"{found[0]} are taken, not {', '.join(found[1:])}"
+            return points, (others, *remarks) if found[1:] else remarks
         held = (points_in(data[key]) for key in INSIDE if isinstance(data.get(key), dict))
         return next((points for points in held if points is not None), None)
-    if isinstance(data, list) and data and _is_test(data[0]):
-        if len(data) > 1:
-            raise UsageError(f"it holds {len(data)} roads; put each into a file of its own")
-        return points_in(data[0])
     return plain(data) if isinstance(data, list) else None
 
 
-def _is_test(value: Any) -> bool:
-    return isinstance(value, dict) and any(isinstance(value.get(key), list) for key in KEYS)
-
-
-def plain(points: list[Any]) -> list[Any]:
+def plain(points: list[Any]) -> Points:
     """Returns points of any supported format as lists [x, y] or [x, y, z], and others unchanged."""
     if all(isinstance(point, dict) and {"x", "y"} <= point.keys() for point in points):
-        points = sorted(points, key=_number)
-        return [[point[name] for name in ("x", "y", "z") if name in point] for point in points]
+        ordered = sorted(points, key=_number)
+        remarks = () if ordered == points else ("its points are sorted by sequenceNumber",)
+        return [[point[name] for name in ("x", "y", "z") if name in point] for point in ordered], remarks
     if all(isinstance(point, (list, tuple)) and len(point) == WITH_WIDTH for point in points):
         is_level = len({point[2] for point in points if isinstance(point[2], (int, float))}) <= 1
-        return [list(point[: 2 if is_level else 3]) for point in points]
-    return points
+        level = "the height of its points is the same everywhere, and it is not used; " if is_level else ""
+        return [list(point[: 2 if is_level else 3]) for point in points], (level + WIDTHS,)
+    return points, ()
 
 
 def _number(point: dict[str, Any]) -> float:
@@ -77,7 +78,7 @@ def _number(point: dict[str, Any]) -> float:
     return float(number) if isinstance(number, (int, float)) else 0.0
 
 
-def points_of_table(text: str) -> list[list[float]]:
+def points_of_table(text: str) -> Points:
     """Returns the points in the text of a .csv or .tsv table: [x, y] or [x, y, z] for each row. Raises
     UsageError if it has no columns for x and y, or a cell is not a number.
     """
@@ -98,9 +99,10 @@ def points_of_table(text: str) -> list[list[float]]:
     points = [[_cell(row, c, n, delimiter) for c in columns] for n, row in enumerate(body, 1 + has_head)]
     if len(points) < 2:
         raise UsageError("a road needs two points or more; give a row for each")
-    if not has_head and len(rows[0]) == WITH_WIDTH and len({point[2] for point in points}) == 1:
-        return [point[:2] for point in points]
-    return points
+    if not has_head and len(rows[0]) == WITH_WIDTH:
+        return plain([[*point, 0.0] for point in points])
+    others = [name for column, name in enumerate(rows[0]) if column not in columns] if has_head else []
+    return points, (f"its columns {', '.join(others)} are not used",) if others else ()
 
 
 def _named(head: list[str]) -> list[int]:

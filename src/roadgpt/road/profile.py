@@ -14,6 +14,7 @@ in each direction.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from math import inf
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -106,7 +107,7 @@ class Profile:
         of_station = [*(lane.width for lane in lanes), self.superelevation_angle, self.offset]
         if any(any(each.coefficients[-1][1:]) for each in of_station if isinstance(each, CubicProfile)):
             raise ValueError("the last width of a lane, and the last superelevation, must be constant")
-        if min(_extremes(lane.width)[0] for lane in lanes) < -NEGATIVE:
+        if any(as_cubics(lane.width).beyond(0.0, inf) for lane in lanes):
             raise ValueError("a lane has a negative width")
 
     @classmethod
@@ -344,9 +345,6 @@ class Profile:
         if self.superelevation_angle is None:
             return np.zeros(np.shape(s))
         return _at(self.superelevation_angle, s)
-
-
-NEGATIVE = 1e-6  # m, rounding of cubics whose width ends at 0
 
 
 def as_cubics(width: Width) -> CubicProfile:

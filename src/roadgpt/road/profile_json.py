@@ -117,8 +117,8 @@ def _cubics(rows: Any, most: float) -> CubicProfile:
     if not all(abs(v) <= LARGEST for row in numbers for v in row):
         raise ValueError(f"a number is not finite, or beyond {LARGEST:g}")
     cubics = CubicProfile(tuple(row[0] for row in numbers), tuple((a, b, c, d) for _, a, b, c, d in numbers))
-    if max(abs(v) for v in cubics.extremes()) > most:
-        raise ValueError(f"a value is beyond {most:g}")
+    if found := cubics.beyond(-most, most):
+        raise ValueError(f"a value is {found[1]:g} at s = {found[0]:g} m, beyond {most:g}")
     return cubics
 
 

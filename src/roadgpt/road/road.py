@@ -26,7 +26,7 @@ from roadgpt.road.profile_json import ONLY_NETWORKS, profile_from_json, profile_
 CONTROL_SPACING = 2.0  # m, so that SBFT's spline keeps the designed radii (14.8 m nominal is accepted)
 MOST_CONTROL_POINTS = 500  # SBFT rule
 LONGEST = 50_000.0  # m, of a road
-FARTHEST = 1_000_000.0  # m, of a point from the origin
+FARTHEST = 25_000_000.0  # m, of a coordinate; Web Mercator reaches 20,037,508
 SHORTEST = 1e-3  # m
 SHARPEST = 1e3  # 1/m, greatest curvature in a file
 STEEPEST = 10.0  # metres up or down for each metre forward
@@ -88,7 +88,7 @@ class Road:
 
         Raises:
             UsageError: The array does not have this shape, there are fewer than two points or more than
-                200,000, a number is not finite or beyond 1,000 km, two neighbouring points are the same, or
+                200,000, a number is not finite or beyond 25,000 km, two neighbouring points are the same, or
                 the road is too long or too steep.
         """
         nodes = _checked(points)
@@ -272,10 +272,11 @@ class Road:
             profile, more = _profile(data)
             if not np.isfinite([*numbers, *more]).all():
                 raise ValueError("a number is not finite")
-            if max(abs(x), abs(y), *(abs(v) for v in more)) > FARTHEST or abs(heading) > FARTHEST:
-                raise ValueError(f"a number is beyond {FARTHEST:,.0f}")
-            if any(max(abs(p.k0), abs(p.k1)) > SHARPEST for p in pieces):
-                raise ValueError(f"a curvature is above {SHARPEST:,.0f} 1/m, a radius below 1 mm")
+            sharpest = max((k for p in pieces for k in (p.k0, p.k1)), key=abs, default=0.0)
+            told = {"x": x, "y": y, "heading": heading, "elevation": max(more, key=abs)}
+            for name, value in (*told.items(), ("curvature", sharpest)):
+                if abs(value) > (most := SHARPEST if name == "curvature" else FARTHEST):
+                    raise UsageError(f"the road's {name} of {value:,.10g} is beyond {most:,.0f}; correct it")
             check_length(length := sum(p.length for p in pieces))
             check_grade(profile, length)
             return cls(PieceCurve(x, y, heading, pieces), profile, profile=own)
@@ -311,11 +312,13 @@ def check_length(length: float) -> None:
 def check_grade(profile: ElevationProfile, length: float) -> None:
     """Raises UsageError if a road somewhere climbs or falls more than ten metres per metre in plan."""
     with np.errstate(all="ignore"):
-        steepest = float(np.abs(profile.grade(np.linspace(0.0, length, LOOKED_AT))).max())
+        s = np.linspace(0.0, length, LOOKED_AT)
+        grades = np.abs(profile.grade(s))
+    steepest, place = float(grades.max()), float(s[grades.argmax()])
     if not steepest <= STEEPEST:
         raise UsageError(
-            f"the road has a grade of {steepest:.4g}, metres up or down for each metre forward; "
-            f"the limit is {STEEPEST:g}"
+            f"the road has a grade of {steepest:.4g}, metres up or down for each metre forward, at "
+            f"s = {place:.1f} m; the limit is {STEEPEST:g}"
         )
 
 
@@ -333,8 +336,11 @@ def _checked(points: ArrayLike) -> Array:
     if nodes.ndim != 2 or nodes.shape[1] not in (2, 3):
         raise UsageError("road points are lists of two or three numbers each, like [[10, 20], [60, 25]]")
     if not np.isfinite(nodes).all() or np.abs(nodes).max(initial=0) > FARTHEST:
+        wrong = int(np.argmin((np.abs(nodes) <= FARTHEST).all(axis=1)))
+        told = ", ".join(f"{v:.10g}" for v in nodes[wrong].tolist())
         raise UsageError(
-            "a road point has a number that is not finite or beyond 1,000 km; correct or remove it"
+            f"road point {wrong + 1} is ({told}), not finite or beyond {FARTHEST / 1000:,.0f} km; correct or "
+            "remove it"
         )
     return nodes
 

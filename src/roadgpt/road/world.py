@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+FRICTIONS = (0.0, 2.0)  # the first is not reached
+SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s, of speed limits in options and files
+LANE_WIDTHS = (2.0, 10.0)  # m, of the driven lane in options and files
 STEEPEST = 0.12  # ratio, largest superelevation of bends
 OWN = {"lanes": "1+1", "lane_width_end": None, "centre_line": None, "bank": "none"}
 """The fields that change the usual cross-section of two equal lanes, with their defaults. Files contain
@@ -61,7 +64,7 @@ class Site(FrozenFields):
 
     map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
     """Side length of the square map in metres. One corner of the map is at (0, 0)."""
-    friction: Annotated[float, Field(gt=0, le=2)] = 1.0
+    friction: Annotated[float, Field(gt=FRICTIONS[0], le=FRICTIONS[1])] = 1.0
     """Friction coefficient: 1.0 for dry asphalt, about 0.6 wet, 0.35 on snow, 0.1 on ice.
 
     If no value is given here, a description that names a surface, such as "wet", sets the friction: see

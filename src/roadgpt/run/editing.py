@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from roadgpt.errors import UsageError, explained
-from roadgpt.network import read_blueprint
+from roadgpt.network import read_source
 from roadgpt.road import Design, Road, World
 from roadgpt.run.atomic import json_text, to_bytes
 from roadgpt.run.folder import EDIT_CARD, Draw, write_run
@@ -27,7 +27,7 @@ def original_of(path: str, run: Run | None, world: World) -> tuple[Run, Design, 
     Args:
         path: where the Run or the road file is.
         run: the Run; None for the file of a design, which becomes a Run with the usual Setup and the seed 0.
-        world: the World for the design in a file.
+        world: the World for the design in a file. A map size that was given to it goes before the file's.
 
     Raises:
         UsageError: there is no such file, or the road has no Design, only points, or junctions.
@@ -36,9 +36,13 @@ def original_of(path: str, run: Run | None, world: World) -> tuple[Run, Design, 
     if run is None:
         if not Path(path).exists():
             raise UsageError(f"there is no {path}; give the folder of a run, or the file of a road")
-        blueprint, remarks = read_blueprint(path)
+        blueprint, remarks, stated, *_ = read_source(path)
         if isinstance(blueprint, Road):
-            raise UsageError(f"{path} holds points and no design; only a design with segments can be changed")
+            raise UsageError(
+                f"{path} holds a finished road and no design; only a design with segments can be changed"
+            )
+        given = world.site.model_fields_set
+        world = world.changed(**{name: value for name, value in stated.items() if name not in given})
         run = Run(Request(world=world), 1, 0, design=blueprint)
     if run.design is None:
         raise UsageError(f"{path} was made from points and has no design; only a design can be changed")

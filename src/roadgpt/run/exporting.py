@@ -6,15 +6,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from roadgpt.errors import ExportError
-from roadgpt.export import Poses, save
+from roadgpt.export import Poses, doubts, save
 from roadgpt.run.folder import Draw
 from roadgpt.run.model import Run
 
 NAME = "road"  # of the files in a Run's own folder
 
 
-def export(run: Run, folder: Path | str, formats: Sequence[str], name: str = NAME) -> tuple[Path, ...]:
-    """Writes the road of a Run in each format, and its drive if the format can hold one.
+def export(
+    run: Run, folder: Path | str, formats: Sequence[str], tell: Callable[[str], None], name: str = NAME
+) -> tuple[Path, ...]:
+    """Writes the road of a Run in each format, and its drive if the format can hold one. ``tell`` gets a
+    sentence on each thing that a format cannot show rightly.
 
     Raises:
         PartError: a format is unknown.
@@ -24,7 +27,10 @@ def export(run: Run, folder: Path | str, formats: Sequence[str], name: str = NAM
         raise ExportError(f"run {run.index} has no road to export: {run.description}")
     is_driven = run.drive is not None and len(run.drive) > 1
     poses = Poses.of(run.drive.columns) if run.drive is not None and is_driven else None
-    return save(run.road, folder, formats, run.world, name, poses)
+    written = save(run.road, folder, formats, run.world, name, poses)
+    for said in doubts(run.road, formats, run.world):
+        tell(said)
+    return written
 
 
 @dataclass(frozen=True)
@@ -41,7 +47,7 @@ class Exporting:
         """Writes the road of one Run in all formats; then ``draw``, if given, draws the Run's pictures."""
         for format_ in self.formats if run.road is not None else ():
             try:
-                export(run, folder, [format_])
+                export(run, folder, [format_], lambda said: self.tell(f"road {run.index}: {said}"))
             except ExportError as error:
                 self.tell(f"road {run.index} is not exported to {format_}: {error}")
         if self.draw is not None:

@@ -14,7 +14,7 @@ from roadgpt.errors import UsageError
 from roadgpt.export import save
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.geometry import GradeProfile
-from roadgpt.network import read_blueprint
+from roadgpt.network import read_source
 from roadgpt.road import (
     CrossSection,
     ImportedRoad,
@@ -44,7 +44,7 @@ def file(
     lanes = LANES.format(right=right, offset=offset)
     path = folder / "some.xodr"
     path.write_text(
-        f'<?xml version="1.0"?><OpenDRIVE><header revMajor="1" revMinor="4"/><road id="1" length="1" {road}>'
+        f'<?xml version="1.0"?><OpenDRIVE><header revMajor="1" revMinor="4"/><road id="1" {road}>'
         f"<planView>{line}</planView>{rest}{lanes}</road></OpenDRIVE>"
     )
     return path
@@ -94,14 +94,16 @@ def test_lanes_limits_and_friction_come_back(tmp_path: Path) -> None:
 
 def test_a_road_file_may_be_opendrive(tmp_path: Path) -> None:
     *_, path = save(ROADS["arcs"], tmp_path, ["opendrive"], WORLD)
-    road, remarks = read_blueprint(path)
+    road, remarks, world, *_ = read_source(path)
     assert isinstance(road, Road)
     assert apart(road, ROADS["arcs"]) < 1e-6
-    assert remarks == (
-        "its file says 50 km/h, a friction of 0.6; roadgpt import prints the options for this",
-    )
-    save(ROADS["arcs"], tmp_path, ["opendrive"], World())
-    assert read_blueprint(path)[1] == ()
+    assert remarks == ()
+    assert world == {
+        "speed_limit": pytest.approx(50 / 3.6),
+        "friction": 0.6,
+        "lane_width": 4.0,
+        "shoulder": 3.0,
+    }
 
 
 def test_poly3_is_a_height_over_the_chord(tmp_path: Path) -> None:
@@ -253,8 +255,8 @@ def test_what_a_road_cannot_show_is_told_by_name_and_number(tmp_path: Path) -> N
     assert read_opendrive(path).remarks == (
         "it is made for left-hand traffic, and is driven on the right here",
         "the car keeps to lane 2 from the centre line, the rightmost that is 2 m wide everywhere",
-        "left out: 2 further lanes (2 sidewalk), 2 objects, 1 railway, 2 signals, 1 surface, 1 tunnel, "
-        "junction 7, lateral shape, heights of single lanes, <geoReference> and <offset> of the map",
+        "left out: 2 further lanes (2 sidewalk), 1 <height>, 1 <shape>, 2 objects, 1 railway, 2 signals, "
+        "1 surface, 1 tunnel, junction 7, <geoReference> and <offset> of the map",
     )
 
 
@@ -322,7 +324,9 @@ def test_a_lane_without_a_width_is_given_one(tmp_path: Path) -> None:
     right = '<lane id="-1" type="driving"><width sOffset="0" a="0"/></lane>'
     found = read_opendrive(file(tmp_path, right=right))
     assert found.lane_width == 2.0
-    assert "its lane is 0.00 to 0.00 m wide, and is taken as 2.00 m everywhere" in found.remarks
+    assert (
+        "the width of its lane is 0 m at s = 0 m, outside 2 to 10 m, and is limited to that" in found.remarks
+    )
 
 
 def test_the_longest_road_outside_of_junctions_is_taken(tmp_path: Path) -> None:
@@ -388,5 +392,7 @@ def test_a_road_can_be_moved(name: str) -> None:
 def test_a_speed_limit_that_changes_is_told_of(tmp_path: Path) -> None:
     rest = '<type s="0"><speed max="50" unit="km/h"/></type><type s="20"><speed max="30" unit="km/h"/></type>'
     found = read_opendrive(file(tmp_path, rest=rest))
-    assert found.remarks == ("its speed limit is 30 to 50 km/h, and is taken as 50 km/h everywhere",)
+    assert found.remarks == (
+        "its speed limit changes from 50 km/h to 30 km/h at s = 20 m; 50 km/h is used everywhere",
+    )
     assert found.speed_limit == pytest.approx(50 / 3.6)

@@ -10,7 +10,7 @@ from roadgpt.cli import options
 from roadgpt.cli.option import named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.result_row import Row, row_of
-from roadgpt.cli.roads import LANES, UNREADABLE, blueprint_of, each_road
+from roadgpt.cli.roads import LANES, UNREADABLE, each_road, source_of
 from roadgpt.cli.screen import Screen
 
 INVALID = 1  # exit status, so that a script can ask
@@ -44,7 +44,7 @@ def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -
     from roadgpt.run import Setup, prove
 
     begun = time.perf_counter()
-    blueprint, remarks = blueprint_of(file, world)
+    blueprint, world, remarks = source_of(file, world)
     run = prove(blueprint, world=world, setup=Setup(rules=rules, geometry=geometry, drives=False))
     row = row_of(run, file)
     if is_only_map := run.road is not None and has_no_route(run.road):

@@ -14,7 +14,7 @@ from roadgpt.cli.option import Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import driver_again, folder
 from roadgpt.cli.result_row import Row, row_of
-from roadgpt.cli.roads import UNREADABLE, blueprint_of, each_road, made
+from roadgpt.cli.roads import UNREADABLE, each_road, made, source_of
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
 from roadgpt.errors import UsageError
@@ -115,12 +115,12 @@ def _refuse_mixture(ctx: click.Context, again: bool) -> None:
 def _driven(screen: Screen, file: str, asked: "Request", losses: "LostDrives[str]") -> Row:
     from roadgpt.run import prove
 
-    blueprint, remarks = blueprint_of(file, asked.world)
+    blueprint, world, remarks = source_of(file, asked.world)
     for remark in remarks:
         screen.say(f"{file}: {remark}")
     with redirect_stdout(sys.stderr):  # what a user's driver prints is no row
         is_strict = asked.setup.rules == "strict"
-        run = prove(blueprint, asked.seed, asked.world, asked.setup, despite_findings=is_strict)
+        run = prove(blueprint, asked.seed, world, asked.setup, despite_findings=is_strict)
     screen.detail(f"{file}: {run.description}")
     for finding in run.findings:
         screen.detail(f"{file}: finding: {finding.sentence}")

@@ -1,23 +1,15 @@
 """``roadgpt export``: writes roads in the formats of other tools."""
 
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from roadgpt.cli import options
 from roadgpt.cli.option import Argument, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.roads import LANES, NamedRoad, blueprint_of, named_in_errors, numbered, use_each
+from roadgpt.cli.roads import LANES, NamedRoad, named_in_errors, numbered, run_of, use_each
 from roadgpt.cli.streams import warn
-
-if TYPE_CHECKING:
-    from roadgpt.road import Geometry, World
-    from roadgpt.run import Run
-
-OPENDRIVE = ".xodr"
-
 
 TO = "Name a format: --to opendrive; 'roadgpt config plugins' lists them."
 ADVICE = "Name one or more folders of runs, or road files."
@@ -56,8 +48,7 @@ def command(
     choice = options.choice_of(rest)
     asked = options.typed(click.get_current_context()) & rest.keys()
     world, taken = options.world_of(rest), set[str]()
-    said = {name: world.values()[name] for name in asked}
-    unheeded = "" if quiet else ", ".join(flag.flag for flag in options.WORLD if flag.field in said)
+    unheeded = "" if quiet else ", ".join(flag.flag for flag in options.WORLD if flag.field in asked)
 
     def write(each: NamedRoad) -> None:
         nonlocal unheeded
@@ -65,36 +56,15 @@ def command(
             warn(f"runs keep their own lanes and limits; {unheeded} is for road files")
             unheeded = ""  # it is said once
         taken.add(name := next(name for name in numbered(each.stem) if name not in taken))
+
+        def tell(said: str) -> None:
+            if not quiet:
+                warn(f"{each.said}: {said}")
+
         with named_in_errors(each.said):
-            written = export(_run_of(each, world, said, geometry, quiet), out, formats, name)
+            run = run_of(each, world, geometry, quiet)
+            written = export(run, out, formats, tell, name)
         if not quiet:
             click.echo("\n".join(map(str, written)))
 
     return use_each(files, choice, write, takes_all=True)
-
-
-def _run_of(
-    named: NamedRoad, world: "World", said: dict[str, float], geometry: "Geometry", quiet: bool
-) -> "Run":
-    """Returns the Run of a road, or a new Run without a drive for a road file.
-
-    The World and the geometry are for road files; the fields of the World in ``said`` were given as options.
-
-    Raises:
-        UsageError: The road cannot be read.
-    """
-    from roadgpt.network import made_from
-    from roadgpt.road import read_opendrive
-    from roadgpt.run import Request, Run
-
-    file = named.said
-    if named.run is not None:
-        run = named.run()
-        return replace(run, description=f"{file}: {run.description}")
-    imported = read_opendrive(Path(file)) if Path(file).suffix.lower() == OPENDRIVE else None
-    blueprint, remarks = (imported.road, imported.remarks) if imported else blueprint_of(file, world)
-    for remark in () if quiet else remarks:
-        warn(f"{file}: {remark}")
-    if imported is not None:
-        return Run(Request(world=imported.world(world).changed(**said)), 1, 0, road=imported.road)
-    return Run(Request(world=world), 1, 0, road=made_from(blueprint, world, geometry))

@@ -31,6 +31,14 @@ class Crg:
     name = "crg"
     suffix = ".crg"
 
+    def doubts(self, road: Road, world: World) -> tuple[str, ...]:
+        """Says where the surface ends before the shoulders do."""
+        bend, profile = np.abs(road.sample(STEP).curvature), world.profile_of(road)
+        if bend.max() * profile.reach < ROOM:
+            return ()
+        s = road.sample(STEP).s[bend.argmax()]
+        return (f"the bend at s = {s:.0f} m has no room for the shoulders; they are narrower everywhere",)
+
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the surface of lanes and shoulders.
 
@@ -129,18 +137,16 @@ def _headings(points: list[list[float]], step: float) -> list[float]:
 
 
 def _across(headings: Array, step: float, profile: Profile, length: float) -> tuple[float, float]:
-    """Returns how far lanes and shoulders reach to the right and left, reduced to what the tightest bend
-    allows, as offsets in metres to the left of the centre line.
-
-    Raises:
-        ExportError: In the tightest bend, not even the lanes have room.
+    """Returns how far lanes and shoulders reach to the right and left, as offsets in metres, reduced to what
+    the tightest bend allows. Raises ExportError if not even the lanes have room there.
     """
     turns = np.abs(wrap_angle(np.diff(headings)))
+    place = step * int(turns.argmax()) if len(turns) else 0.0
     room = ROOM * step / math.sin(min(float(turns.max(initial=1e-12)), math.pi / 2))
     if room < profile.paved_reach:
         raise ExportError(
-            f"OpenCRG cannot hold a bend whose radius is {room:.1f} m, less than a lane is wide; "
-            "use wider bends or a narrower lane"
+            f"OpenCRG cannot hold the bend at s = {place:.0f} m, whose radius of {room:.1f} m is less than a "
+            "lane is wide; use wider bends or a narrower lane"
         )
     rims = profile.rims(np.linspace(0.0, length, len(headings) + 1))
     return max(float(rims.right.min()), -room), min(float(rims.left.max()), room)

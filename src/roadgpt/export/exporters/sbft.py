@@ -10,6 +10,7 @@ import numpy as np
 from roadgpt.export.finite import finite
 from roadgpt.export.poses import Poses
 from roadgpt.road import Road, World
+from roadgpt.road.road import CONTROL_SPACING
 
 DECIMALS = 5
 STEP = 1.0  # m
@@ -20,6 +21,12 @@ class Sbft:
 
     name = "sbft"
     suffix = ".sbft.json"
+
+    def doubts(self, road: Road, world: World) -> tuple[str, ...]:
+        """Says so if the control points are too few for the road."""
+        apart = road.length / (len(road.control_points()) - 1)
+        said = f"its control points are {apart:.1f} m apart, so bends may become tighter"
+        return (said,) if road.nodes is None and apart > CONTROL_SPACING else ()
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the test without a result. Campaigns write results to their ``test.NNNN.json`` files."""

@@ -43,6 +43,7 @@ class Sumo:
 
     name = "sumo"
     suffix = ".nod.xml"
+    lacks = ("superelevation", "changes of width")
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes NAME.nod.xml, .edg.xml, .netccfg, .rou.xml and .sumocfg; also .net.xml if netconvert is
@@ -178,9 +179,8 @@ def _trip(limits: Sequence[SpeedZone], profile: Profile) -> XmlElement:
     out.add("vType", {"id": "saloon", "vClass": "passenger", **car, "sigma": 0, "speedDev": 0})
     lane = profile.count[0] - 1 - profile.driven  # SUMO counts from the right
     begin: dict[str, Value] = {"depart": 0, "departPos": "base", "departSpeed": 0}
-    ego = out.add(
-        "vehicle", {"id": "ego", "type": "saloon", **({"departLane": lane} if lane else {}), **begin}
-    )
+    place = {"departLane": lane} if lane else {}
+    ego = out.add("vehicle", {"id": "ego", "type": "saloon", **place, **begin})
     ego.add("route", {"edges": " ".join(["road", *(f"road_{n}" for n in range(1, len(limits)))])})
     return out
 
@@ -196,11 +196,7 @@ def _configuration(sections: Mapping[str, Mapping[str, Value]]) -> XmlElement:
 
 
 def _convert(program: str, settings: Path, network: Path) -> None:
-    """Runs netconvert, and removes the comment in which it states when and where it ran.
-
-    Raises:
-        ExportError: netconvert refuses the road or takes too long.
-    """
+    """Runs netconvert, and removes the comment in which it states when and where it ran."""
     try:
         done = subprocess.run(  # noqa: S603 -- an installed program, and our own file by name
             [program, "-c", settings.name],

@@ -2,8 +2,10 @@
 
 tree        reads the XML with limits on its size and without entities; selects one road of the file
 geometries  evaluates lines, arcs, spirals, poly3 and paramPoly3
+records     sorts the records of the road by their stations
 lanes       reads the lane sections; the inner edge of the driving lanes becomes the centre line of the Road
 profile     joins the lanes of all sections, reads their road marks, and selects the driven lane
+stated      reads what lanes state along the road: speed limits, friction
 line        computes the plan curve: unchanged where possible, otherwise clothoids through poses 1 m apart
 joins       finds places where elements do not meet exactly, and bridges them
 heights     reads the elevation, and converts it to the stations of the Road
@@ -26,10 +28,12 @@ from roadgpt.road.opendrive.cubic_rows import closed
 from roadgpt.road.opendrive.geometries import GeometryElement, reference_line
 from roadgpt.road.opendrive.heights import carried_over, edge_heights, elevation, jumps, plain
 from roadgpt.road.opendrive.joins import KINK, SampledLine, misses, turns_back
-from roadgpt.road.opendrive.lanes import NEAR, Lanes, friction, read_lanes, speed_limits
+from roadgpt.road.opendrive.lanes import NEAR, Lanes, read_lanes
 from roadgpt.road.opendrive.left_out import left_out
 from roadgpt.road.opendrive.line import exact, fitted, lies_on_the_line, walk
 from roadgpt.road.opendrive.profile import Carry, FileProfile, checked, read_profile
+from roadgpt.road.opendrive.records import in_order
+from roadgpt.road.opendrive.stated import friction, speed_limit
 from roadgpt.road.opendrive.tree import Choice, read_tree
 from roadgpt.road.profile import Profile
 from roadgpt.road.road import Road, check_length
@@ -37,11 +41,8 @@ from roadgpt.road.world import World
 
 __all__ = ["ImportedRoad", "read_opendrive"]
 
-FRICTIONS = (0.05, 2.0)
-SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s
 NODES = 5.0  # m between the nodes of a spline that rounds off kinks
 CLOSEST = 0.5  # m between such nodes
-SAME_SPEED = 0.1  # m/s
 MOST_SPANS = 3  # spans that a remark lists
 MOST_STATIONS = 10_000  # pairs of corresponding stations in the file and on the Road, for interpolation
 PLACES = 1_000  # stations at which the spline is compared with the line, and at which widths are sampled
@@ -67,7 +68,7 @@ class ImportedRoad:
     speed_limit: float | None
     """Speed limit in m/s, limited to 5 to 300 km/h; None if the file gives no speed limit."""
     friction: float | None
-    """Friction coefficient of the driven lane, limited to 0.05 to 2; None if the file gives none."""
+    """Friction coefficient of the driven lane, up to 2; None if the file gives none."""
     remarks: tuple[str, ...]
     """Sentences about contents of the file that were changed, replaced or left out."""
 
@@ -77,11 +78,15 @@ class ImportedRoad:
         A speed limit or friction that the file does not state is taken from ``base``. If ``road.profile`` is
         not None, it defines the lanes and shoulders, and ``base`` keeps its lane width and shoulder.
         """
+        return base.changed(**self.world_values)
+
+    @property
+    def world_values(self) -> dict[str, float]:
+        """The fields of a World that the file states, by name."""
         told = {"speed_limit": self.speed_limit, "friction": self.friction}
         if self.road.profile is None:
             told |= {"lane_width": self.lane_width, "shoulder": self.shoulder}
-        known = {name: value for name, value in told.items() if value is not None}
-        return base.changed(**known)
+        return {name: value for name, value in told.items() if value is not None}
 
 
 def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
@@ -114,6 +119,7 @@ def _imported(choice: Choice, id_: str, is_our_choice: bool) -> ImportedRoad:
     if is_our_choice and len(choice.others) > 1:
         which = f"the longest of {len(choice.others)} with a driving lane"
         remarks.append(f"road {id_} is taken, {which}; use --road ID for another")
+    remarks += in_order(node)
     line = reference_line(node)
     lanes = read_lanes(node, line[-1].s + line[-1].length)
     own = read_profile(node, lanes)
@@ -125,26 +131,24 @@ def _imported(choice: Choice, id_: str, is_our_choice: bool) -> ImportedRoad:
             "no lane to the right of its line is driven; the road follows the direction of its left lanes"
         )
     remarks += [*_driven_otherwise(node, lanes), *own.remarks]
-    limits = speed_limits(node, own.driven_nodes())
-    if limits and max(limits) - min(limits) > SAME_SPEED:
-        span = f"{min(limits) * 3.6:.0f} to {max(limits) * 3.6:.0f} km/h"
-        remarks.append(f"its speed limit is {span}, and is taken as {limits[0] * 3.6:.0f} km/h everywhere")
+    limit = speed_limit(node, own.parts(), lanes.length, remarks)
+    rubbed = friction(own.parts(), remarks)
     sentence = left_out(choice, own)
     remarks += [sentence] if sentence else []
-    rubbed, limit = friction(own.driven_nodes()), next(iter(limits), None)
     profile = _carried(own, carry, grown.length, is_reversed=lanes.side == 1)
     s = np.linspace(0.0, grown.length, PLACES)
     width, shoulder = (round(float(np.median(each)), 4) for each in (profile.width(s), profile.shoulder(s)))
     is_usual = profile == Profile.of(1, 1, width, shoulder)
+    made = grown if is_usual else grown.with_profile(profile)
     return ImportedRoad(
-        grown if is_usual else grown.with_profile(profile),
+        Road.from_json(made.to_json()),  # so that no road is written that cannot be read
         id_,
         node.get("name", "")[:80],
         width,
         shoulder,
-        None if limit is None or limit <= 0 else float(np.clip(limit, *SPEEDS)),
-        None if rubbed is None else float(np.clip(rubbed, *FRICTIONS)),
-        tuple(remarks),
+        limit,
+        rubbed,
+        tuple(dict.fromkeys(remarks)),
     )
 
 
@@ -165,9 +169,7 @@ def _carried(own: FileProfile, carry: Carry, length: float, is_reversed: bool) -
 
 
 def _grown(node: Element, line: list[GeometryElement], lanes: Lanes) -> tuple[Road, Carry, list[str]]:
-    """Returns the road, the ``Carry`` that converts cubics over stations of the file to cubics over stations
-    of the road, and a remark for each thing changed.
-    """
+    """Returns the road without its cross-section, and a remark for each thing changed."""
     heights, length = elevation(node), line[-1].s + line[-1].length
     step = jumps(heights, length)
     remarks = [step] if step else []
@@ -212,9 +214,7 @@ def _away(found: SampledLine, road: Road) -> float:
 
 
 def _rounded(found: SampledLine, heights: Array) -> tuple[Road, Array]:
-    """Returns a spline through a line whose joins are too close for any other method, and the stations of its
-    nodes in the file.
-    """
+    """Returns a spline through a line with very close joins, and the stations of its nodes in the file."""
     kept = [0]
     for i in range(1, len(found.s) - 1):
         since = found.s[i] - found.s[kept[-1]]

@@ -78,7 +78,7 @@ class Polynomial:
 
     @cached_property
     def _walked(self) -> tuple[Array, Array]:
-        """Returns values of the parameter p, and the arc length in metres up to each of them."""
+        """Returns values of the parameter p, and the arc length in metres up to each."""
         rough = np.linspace(0.0, self.end, 65)
         length = float(np.hypot(*np.diff(self._at(rough), axis=1)).sum())
         count = int(min(MOST_PLACES, max(64, length / FINE)))
@@ -115,14 +115,13 @@ class Polynomial:
 
 
 def reference_line(road: Element) -> list[GeometryElement]:
-    """Returns the geometry elements of a road's reference line in order. Raises UsageError if there are none,
-    or if one is unknown or invalid.
+    """Returns the geometry elements of a road's reference line, which ``in_order`` has sorted. Raises
+    UsageError if there are none, or if one is unknown or invalid.
     """
     nodes = road.findall("planView/geometry")
     if len(nodes) > MOST:
         raise UsageError(f"its line has more than {MOST:,} elements; cut out the part that you need")
     check_length(sum(abs(number(node, "length")) for node in nodes) or 1.0)
-    nodes.sort(key=lambda node: number(node, "s"))
     kept = [_element(node) for node in _long_enough(nodes)]
     if not kept:
         raise UsageError("its <planView> has no geometry; add the reference line")
@@ -180,15 +179,13 @@ def _shape(node: Element, s: float, length: float) -> Shape:
         return Polynomial((0.0, 1.0, 0.0, 0.0), v, length).up_to(length)
     kind = node.get("pRange", "normalized")
     if kind not in ("normalized", "arcLength"):
-        raise UsageError(
-            f"the paramPoly3 at s = {s:g} has a pRange '{kind[:20]}'; give arcLength or normalized"
-        )
+        what = f"has a pRange '{kind[:20]}'; give arcLength or normalized"
+        raise UsageError(f"the paramPoly3 at s = {s:g} {what}")
     along, across = (_cubic(node, axis) for axis in "UV")
     shape = Polynomial(along, across, 1.0 if kind == "normalized" else length)
     if not 0.2 * length < shape.length < 5 * length:
-        raise UsageError(
-            f"the paramPoly3 at s = {s:g} is {shape.length:.3g} m long, not {length:g} m; correct it"
-        )
+        what = f"is {shape.length:.3g} m long, not {length:g} m; correct it"
+        raise UsageError(f"the paramPoly3 at s = {s:g} {what}")
     return shape
 
 

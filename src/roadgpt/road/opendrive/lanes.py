@@ -1,12 +1,10 @@
-"""Reads the lane sections, speed limits and friction of an OpenDRIVE road, and the edge that becomes the
-centre line.
+"""Reads the lane sections of an OpenDRIVE road, and the edge that becomes the centre line.
 
 The driven side is the right-hand side, or the left-hand side if driving lanes cover more than twice as much
 length there. The inner edge of the innermost driving lane on the driven side becomes the centre line of the
 Road.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 from xml.etree.ElementTree import Element
@@ -20,7 +18,7 @@ from roadgpt.road.opendrive.numbers import cubics, number
 from roadgpt.road.opendrive.tree import DRIVING
 
 BESIDE = ("shoulder", "border")
-UNITS = {"m/s": 1.0, "km/h": 3.6, "mph": 3600 / 1609.344}  # per m/s
+EDGES = ("width", "border")  # elements of a lane that state its outer edge
 NEAR = 1.0  # m; shorter parts without a driving lane are not reported
 MOST_SECTIONS = 5_000
 MOST_ACROSS = 200  # lanes on one side of a section
@@ -106,9 +104,7 @@ class Lanes:
         return t, slope
 
     def _outer(self, section: LaneSection, last: int, s: Array) -> tuple[Array, Array]:
-        """Returns the distance in metres of the outer edge of ``section.lanes[last]`` from lane 0, and its
-        slope; for -1 both are 0.
-        """
+        """Returns the distance of the outer edge of ``section.lanes[last]`` from lane 0, and its slope."""
         across, lean = np.zeros(len(s)), np.zeros(len(s))
         for lane in section.lanes[: last + 1]:
             if lane.width is None and lane.border is not None:
@@ -160,7 +156,6 @@ def read_lanes(road: Element, length: float) -> Lanes:
         raise UsageError("it has no lane section; add <lanes>")
     if len(nodes) > MOST_SECTIONS:
         raise UsageError(f"it has more than {MOST_SECTIONS:,} lane sections; cut out the part that you need")
-    nodes.sort(key=lambda node: number(node, "s"))
     offset = cubics(road.findall("lanes/laneOffset"), "s")
     angle = cubics(road.findall("lateralProfile/superelevation"), "s")
     starts = [number(node, "s") for node in nodes]
@@ -194,12 +189,7 @@ def _elements(section: Element, side: str, s: float) -> tuple[LaneElement, ...]:
     if len(nodes) > MOST_ACROSS:
         raise UsageError(f"its lane section at s = {s:g} has more than {MOST_ACROSS} lanes on one side")
     return tuple(
-        LaneElement(
-            lane,
-            lane.get("type", ""),
-            cubics(lane.findall("width"), "sOffset", s),
-            cubics(lane.findall("border"), "sOffset", s),
-        )
+        LaneElement(lane, lane.get("type", ""), *(cubics(lane.findall(tag), "sOffset", s) for tag in EDGES))
         for lane in nodes
     )
 
@@ -208,25 +198,3 @@ def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:
     if profile is None:
         return np.zeros(len(s)), np.zeros(len(s))
     return profile.height(s), profile.grade(s)
-
-
-def speed_limits(road: Element, driven: Sequence[Element]) -> list[float]:
-    """Returns all speed limits of the driven lane in m/s, in driving order; those of the road if the lane has
-    none. ``driven`` has the XML element of this lane from each lane section.
-    """
-    of_lane = [node for lane in driven for node in lane.findall("speed")]
-    return _speeds(of_lane) or _speeds(road.findall("type/speed"))
-
-
-def _speeds(nodes: Sequence[Element]) -> list[float]:
-    return [
-        number(node, "max") / UNITS.get(node.get("unit", "m/s"), 1.0)
-        for node in nodes
-        if node.get("max") not in (None, "no limit", "undefined")
-    ]
-
-
-def friction(driven: Sequence[Element]) -> float | None:
-    """Returns the friction coefficient that the file states for the driven lane; None if it states none."""
-    said = [node for lane in driven for node in lane.findall("material") if "friction" in node.attrib]
-    return number(said[0], "friction") if said else None

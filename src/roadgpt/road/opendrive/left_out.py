@@ -4,12 +4,16 @@ from collections import Counter
 from collections.abc import Container, Iterator
 from xml.etree.ElementTree import Element
 
-from roadgpt.road.opendrive.lanes import BESIDE
 from roadgpt.road.opendrive.numbers import number
 from roadgpt.road.opendrive.profile import FileProfile
 from roadgpt.road.opendrive.tree import Choice
+from roadgpt.road.profile import LINE
 
-UNUSED = ("none", *BESIDE)  # types of lanes that are not listed
+UNREAD = ("color", "direction", "dynamicLaneDirection", "dynamicLaneType", "level", "roadWorks", "roughness",
+          "singleSide", "weight")  # fmt: skip
+USUAL = ("", "false", "standard", "white")  # values of these attributes that are not reported, like 0
+PLAIN = ("none", "solid", "broken", "solid solid")  # types of road marks that are painted as they are
+BROAD = 0.2  # m; a wider line is reported
 
 
 def left_out(choice: Choice, profile: FileProfile) -> str | None:
@@ -28,31 +32,29 @@ def _parts(choice: Choice, profile: FileProfile) -> Iterator[str]:
         yield _many(count, what)
     if road.get("junction", "-1") not in ("-1", ""):
         yield f"junction {road.attrib['junction'][:40]}"
-    for tag, what in (("crossfall", "crossfall"), ("shape", "lateral shape")):
-        if any(number(each, "a", 0.0) for each in road.findall(f"lateralProfile/{tag}")):
-            yield what
-    lanes = [lane for side in ("left", "right") for lane in road.findall(f"lanes/laneSection/{side}/lane")]
-    if any(lane.findall("height") for lane in lanes):
-        yield "heights of single lanes"
-    if profile.angle is not None and any(lane.get("level") == "true" for lane in lanes):
-        yield "lanes that stay level"
+    nodes = [*road.iter()]
+    if any(node.find("width") is not None and node.find("border") is not None for node in nodes):
+        yield "borders of lanes that have widths"
+    for name in UNREAD:
+        if any(node.get(name, "").strip("0.") not in USUAL for node in nodes):
+            yield f"the attribute {name}"
+    marks = [*road.iter("roadMark")]
+    others = {mark.get("type", "none")[:20] for mark in marks} - {*PLAIN}
+    if others:
+        yield f"what road marks of type {', '.join(sorted(others))} look like"
+    if any(number(mark, "width", LINE) > BROAD for mark in marks):
+        yield "the width of broad road marks"
     if choice.header:
         yield " and ".join(f"<{tag}>" for tag in sorted(choice.header)) + " of the map"
 
 
 def _further_lanes(road: Element, used: Container[int]) -> Counter[str]:
-    """Counts, by type, the lanes that are not in the profile; a lane in several sections counts once."""
-    found = {
-        (name, place, node.get("type", ""))
-        for section in road.findall("lanes/laneSection")
-        for name in ("right", "left")
-        for place, node in enumerate(
-            sorted(section.findall(f"{name}/lane"), key=lambda lane: abs(number(lane, "id")))
-        )
-        if id(node) not in used
-    }
-    return Counter(kind[:20] for _, _, kind in found if kind not in UNUSED)
+    """Counts the lanes that are not in the profile; a lane in several sections counts once."""
+    sides = [road.findall(f"lanes/laneSection/{side}/lane") for side in ("left", "right")]
+    lanes = [lane for side in sides for lane in side if id(lane) not in used]
+    found = {(number(lane, "id"), lane.get("type", "")) for lane in lanes}
+    return Counter(kind[:20] for _, kind in found if kind != "none")
 
 
 def _many(count: int, what: str) -> str:
-    return f"{count:,} {what}{'s' * (count != 1)}"
+    return f"{count:,} {what}{'s' * (count != 1 and what[-1] != '>')}"

@@ -41,8 +41,8 @@ def exact(line: list[GeometryElement]) -> PieceCurve | None:
     first = line[0]
     plan = PieceCurve(first.x, first.y, first.heading, tuple(pieces))
     starts = np.r_[0.0, np.cumsum([piece.length for piece in pieces])][:-1]
-    told = np.array([(each.x, each.y, each.heading) for each in line])
-    apart = np.hypot(*(plan.at(starts) - told[:, :2]).T)
+    told = np.array([(each.x, each.y, each.heading, each.s) for each in line])
+    apart = np.maximum(np.hypot(*(plan.at(starts) - told[:, :2]).T), np.abs(starts - told[:, 3]))
     turned = np.abs(wrap_angle(plan.heading(starts) - told[:, 2]))
     return plan if apart.max() < MEETS and turned.max() < SAME_WAY else None
 
@@ -87,16 +87,12 @@ def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
 
 
 def _parts(element: GeometryElement, joints: Array, lanes: Lanes | None) -> Iterator[tuple[Array, Array]]:
-    """Yields the parts into which the joints cut one element: stations ``(n,)`` and poses ``(n, 3)`` each.
-
-    Every part includes both of its ends.
-    """
+    """Yields the parts, with both ends, into which joints cut an element: stations and poses ``(n, 3)``."""
     start, end = element.s, element.s + element.length
     count = max(FEWEST, int(np.ceil(element.length / STEP)))
-    while (
-        isinstance(element.shape, Polynomial) and count * LEAST < element.length and _strays(element, count)
-    ):
-        count *= 2
+    if isinstance(element.shape, Polynomial):
+        while count * LEAST < element.length and _strays(element, count):
+            count *= 2
     even = np.linspace(start, end, count + 1)
     cuts = [start, *joints[(joints > start + TOGETHER) & (joints < end - TOGETHER)], end]
     cuts = [start, *(b for a, b in pairwise(cuts[:-1]) if b - a > TOGETHER), end]

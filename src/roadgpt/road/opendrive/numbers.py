@@ -34,16 +34,14 @@ def number(node: Element, name: str, missing: float | None = None) -> float:
 def cubics(nodes: Iterable[Element], station: str, start: float = 0.0) -> CubicProfile | None:
     """Returns the cubic polynomials that the elements define by a, b, c and d; None if there are no elements.
 
-    The station of a cubic is its attribute named ``station``, plus ``start`` metres. Each cubic applies from
-    its station to that of the next cubic. Before the first station, the value is that at the first station.
+    The station of a cubic is its attribute named ``station``, plus ``start`` metres; stations ascend. Each
+    cubic applies from its station to that of the next cubic. Before the first station, the value is that at
+    the first station.
     """
-    rows: list[tuple[float, Cubic]] = []
+    kept: dict[float, Cubic] = {}
     for node in nodes:
-        s = start + number(node, station, 0.0)
         a, b, c, d = (number(node, name, None if name == "a" else 0.0) for name in "abcd")
-        rows.append((s, (a, b, c, d)))
-    # where several begin at one station, the last one applies
-    kept = dict(sorted(rows, key=lambda row: row[0]))
+        kept[start + number(node, station, 0.0)] = (a, b, c, d)
     if not kept:
         return None
     stations = list(kept)

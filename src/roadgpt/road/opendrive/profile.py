@@ -9,7 +9,8 @@ there. In sections where a joined lane does not exist, its width is 0.
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain, pairwise, repeat, takewhile
+from itertools import chain, repeat, takewhile
+from math import inf
 from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
@@ -17,21 +18,20 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.road.opendrive.cubic_rows import Row, closed, combined, constant, limited, value_at
 from roadgpt.road.opendrive.lanes import BESIDE, LaneElement, Lanes, Span
-from roadgpt.road.opendrive.numbers import number
+from roadgpt.road.opendrive.stated import MarkedLane, longest_first, stated
 from roadgpt.road.opendrive.tree import DRIVING
 from roadgpt.road.profile import Kind, Lane, Marking, Profile, Width
 from roadgpt.road.profile_json import MOST_LANES, MOST_ROWS, STEEPEST, WIDEST
+from roadgpt.road.world import LANE_WIDTHS
 
-LEAST, MOST = 2.0, 10.0  # m, width of the driven lane
 ADJOINS = 1e-3  # m; lanes for oncoming cars that are farther from the centre line lie behind a median
-ROUNDING = 1e-6  # m
 THIN = 0.25  # m; a lane that is narrower at the end of a section ends or begins there
 
 UNMARKED: Marking = "none"
 MARKS: dict[str, Marking] = {
     "solid": "solid",
     "broken": "broken",
-    "solid solid": "solid",
+    "solid solid": "double",
     "solid broken": "solid",
     "broken solid": "solid",
     "broken broken": "broken",
@@ -42,13 +42,6 @@ MARKS: dict[str, Marking] = {
 
 Carry = Callable[[CubicProfile], CubicProfile]
 """A function that converts cubics over the stations of the file to cubics over those of the Road."""
-
-
-class MarkedLane(NamedTuple):
-    """A lane in one lane section. Its XML element, ``node``, contains the road marks at the outer edge."""
-
-    span: Span
-    node: Element
 
 
 class JoinedLane(NamedTuple):
@@ -81,9 +74,11 @@ class FileProfile:
         """Returns ``id(node)`` for the XML elements ``node`` of all lanes in the cross-section."""
         return {id(part.node) for slot in (*self.right, *self.left) for part in slot.parts}
 
-    def driven_nodes(self) -> list[Element]:
-        """Returns the XML element of the driven lane from each lane section in which it exists."""
-        return [part.node for part in self.right[self.driven].parts]
+    def parts(self) -> tuple[list[MarkedLane], list[MarkedLane]]:
+        """Returns the driven lane in each lane section in which it exists, and all further lanes."""
+        driven = self.right[self.driven]
+        others = [slot for slot in (*self.right, *self.left) if slot is not driven]
+        return driven.parts, [part for slot in others for part in slot.parts]
 
     def carried(self, carry: Carry, turned: Carry) -> Profile:
         """Returns the cross-section as a function of the station on the Road. ``carry`` converts the widths,
@@ -98,7 +93,6 @@ class FileProfile:
 
 
 def _plain(width: CubicProfile) -> Width:
-    """Returns a width as one number if it is constant."""
     return width.coefficients[0][0] if len(width.stations) == 1 else width
 
 
@@ -127,37 +121,30 @@ def read_profile(road: Element, lanes: Lanes) -> FileProfile:
     """
     spans = lanes.spans()
     left_sides, remarks = _oncoming(spans)
-    right = _joined([_beside(span, _outward(span)) for span in spans], lanes.length)
-    left = _joined(left_sides, lanes.length)
+    right = _joined([_beside(span, _outward(span)) for span in spans], lanes.length, remarks)
+    left = _joined(left_sides, lanes.length, remarks)
     right, left, centre, repainted = _painted(road, spans, right, left)
     driven = _rightmost(right)
     if driven:
-        remarks.append(
-            f"the car keeps to lane {driven + 1} from the centre line, the rightmost that is "
-            f"{LEAST:g} m wide everywhere"
-        )
-    width, narrowed = _driven_width(right[driven].width, lanes.length)
+        which = f"the rightmost that is {LANE_WIDTHS[0]:g} m wide everywhere"
+        remarks.append(f"the car keeps to lane {driven + 1} from the centre line, {which}")
+    width = _kept(right[driven].width.rows, lanes.length, LANE_WIDTHS, "the width of its lane", remarks)
     right[driven] = right[driven]._replace(width=width)
-    angle, flattened = _superelevation(lanes)
-    told = (*remarks, *narrowed, *repainted, *flattened)
-    return FileProfile(tuple(right), tuple(left), centre, driven, angle, told)
+    angle = _superelevation(lanes, remarks)
+    return FileProfile(tuple(right), tuple(left), centre, driven, angle, (*remarks, *repainted))
 
 
 def _outward(span: Span) -> Iterator[WideLane]:
     """Yields the lanes from the centre line outwards on the driven side."""
     lanes = span.section.lanes
-    return (
-        WideLane(lanes[place], _width(lanes, place, span)) for place in range(span.section.first, len(lanes))
-    )
+    return (WideLane(lanes[n], _width(lanes, n, span)) for n in range(span.section.first, len(lanes)))
 
 
 def _inward(span: Span) -> Iterator[WideLane]:
     """Yields the lanes from the centre line towards the side not driven on, except lanes without a width."""
     lanes, others = span.section.lanes, span.section.others
-    inner = (
-        WideLane(lanes[place], _width(lanes, place, span)) for place in reversed(range(span.section.first))
-    )
-    beyond = (WideLane(others[place], _width(others, place, span)) for place in range(len(others)))
+    inner = (WideLane(lanes[n], _width(lanes, n, span)) for n in reversed(range(span.section.first)))
+    beyond = (WideLane(others[n], _width(others, n, span)) for n in range(len(others)))
     return (each for found in (inner, beyond) for each in found if _is_wide(each.width, span.end))
 
 
@@ -184,16 +171,14 @@ def _width(lanes: Sequence[LaneElement], place: int, span: Span) -> list[Row]:
 
 
 def _sign(border: CubicProfile) -> float:
-    """Returns the factor that makes the offset of a border positive."""
     return -1.0 if next((row[0] for row in border.coefficients if row[0]), 0.0) < 0 else 1.0
 
 
 def _beside(span: Span, lanes: Iterator[WideLane]) -> _SectionSide:
     found = list(lanes)
     driving = [*takewhile(lambda each: each.element.kind in DRIVING, found)]
-    return _SectionSide(
-        span, driving, [*takewhile(lambda each: each.element.kind in BESIDE, found[len(driving) :])]
-    )
+    shoulders = [*takewhile(lambda each: each.element.kind in BESIDE, found[len(driving) :])]
+    return _SectionSide(span, driving, shoulders)
 
 
 def _oncoming(spans: Sequence[Span]) -> tuple[list[_SectionSide], list[str]]:
@@ -206,14 +191,14 @@ def _oncoming(spans: Sequence[Span]) -> tuple[list[_SectionSide], list[str]]:
     return kept, ["its lanes for oncoming cars do not adjoin its other lanes; the road is one-way here"]
 
 
-def _joined(sides: Sequence[_SectionSide], length: float) -> list[JoinedLane]:
+def _joined(sides: Sequence[_SectionSide], length: float, remarks: list[str]) -> list[JoinedLane]:
     """Returns the lanes of one side, joined over all sections: first driving lanes, then shoulders."""
     spans = [side.span for side in sides]
     driving = _aligned(spans, [side.driving for side in sides])[:MOST_LANES]
     shoulders = _aligned(spans, [side.shoulders for side in sides])[: MOST_LANES - len(driving)]
     return [
-        *(_joined_lane("driving", spans, lanes, length) for lanes in driving),
-        *(_joined_lane("shoulder", spans, lanes, length) for lanes in shoulders),
+        *(_joined_lane("driving", spans, lanes, length, remarks) for lanes in driving),
+        *(_joined_lane("shoulder", spans, lanes, length, remarks) for lanes in shoulders),
     ]
 
 
@@ -242,9 +227,9 @@ def _aligned(spans: Sequence[Span], sections: Sequence[Sequence[WideLane]]) -> l
 
 
 def _joined_lane(
-    kind: Kind, spans: Sequence[Span], lanes: Mapping[int, WideLane], length: float
+    kind: Kind, spans: Sequence[Span], lanes: Mapping[int, WideLane], length: float, remarks: list[str]
 ) -> JoinedLane:
-    """Returns one lane of the whole road. ``lanes`` maps the index of a section to the lane's part in it."""
+    """Returns a lane of the whole road. ``lanes`` maps the index of a section to the lane's part in it."""
     rows: list[Row] = []
     end = 0.0
     for n, span in enumerate(spans):
@@ -255,7 +240,8 @@ def _joined_lane(
     if end < length:
         rows.append(constant(end, value_at(rows[-1], end)))
     parts = [MarkedLane(spans[n], lane.element.node) for n, lane in sorted(lanes.items())]
-    return JoinedLane(kind, checked(closed(limited(rows, length, 0.0, WIDEST), length)), parts)
+    name = f"the width of its lane {parts[0].node.get('id', '?')[:10]}"
+    return JoinedLane(kind, _kept(rows, length, (0.0, WIDEST), name, remarks), parts)
 
 
 def checked(cubics: CubicProfile) -> CubicProfile:
@@ -272,59 +258,54 @@ def _rightmost(right: Sequence[JoinedLane]) -> int:
     wide = [
         number
         for number, slot in enumerate(right)
-        if slot.kind == "driving" and slot.width.extremes()[0] > LEAST - ROUNDING
+        if slot.kind == "driving" and not slot.width.beyond(LANE_WIDTHS[0], inf)
     ]
     return wide[-1] if wide else 0
 
 
-def _driven_width(width: CubicProfile, length: float) -> tuple[CubicProfile, list[str]]:
-    """Returns the width of the driven lane, clamped to its limits, and a remark if this changes the width."""
-    low, high = width.extremes()
-    if low > LEAST - ROUNDING and high < MOST + ROUNDING:
-        return width, []
-    kept = closed(limited(width.rows, length, LEAST, MOST), length)
-    least, most = kept.extremes()
-    is_constant = most - least < ROUNDING
-    taken = f"{least:.2f} m everywhere" if is_constant else f"{least:.2f} to {most:.2f} m"
-    return kept, [f"its lane is {low:.2f} to {high:.2f} m wide, and is taken as {taken}"]
+def _kept(
+    rows: Sequence[Row],
+    length: float,
+    limits: tuple[float, float],
+    what: str,
+    remarks: list[str],
+    unit: tuple[float, str] = (1.0, "m"),
+) -> CubicProfile:
+    """Returns the rows as cubics within the limits, and adds a remark if a value had to be limited."""
+    whole, (low, high) = checked(closed(rows, length)), limits
+    found = whole.beyond(low, high)
+    if found is None:
+        return whole
+    value, least, most = (f"{each * unit[0]:.4g}" for each in (found[1], low, high))
+    where = f"at s = {found[0]:.4g} m, outside {least} to {most} {unit[1]}, and is limited to that"
+    remarks.append(f"{what} is {value} {unit[1]} {where}")
+    return checked(closed(limited(rows, length, low, high), length))
 
 
-def _superelevation(lanes: Lanes) -> tuple[CubicProfile | None, list[str]]:
-    """Returns the superelevation (None for a level road), and a remark if it had to be limited."""
+def _superelevation(lanes: Lanes, remarks: list[str]) -> CubicProfile | None:
     if lanes.angle is None:
-        return None, []
-    rows = lanes.angle.rows
-    angle = checked(closed(limited(rows, lanes.length, -STEEPEST, STEEPEST), lanes.length))
-    if not any(any(cubic) for cubic in angle.coefficients):
-        return None, []
-    steepest = max(abs(each) for each in closed(rows, lanes.length).extremes())
-    if steepest < STEEPEST + ROUNDING:
-        return angle, []
-    told, most = math.degrees(steepest), math.degrees(STEEPEST)
-    return angle, [f"its superelevation is up to {told:.1f} degrees, and is taken as {most:.1f} at most"]
+        return None
+    limits, unit = (-STEEPEST, STEEPEST), (math.degrees(1), "degrees")
+    angle = _kept(lanes.angle.rows, lanes.length, limits, "its superelevation", remarks, unit)
+    return angle if any(any(cubic) for cubic in angle.coefficients) else None
 
 
 def _painted(
     road: Element, spans: Sequence[Span], right: Sequence[JoinedLane], left: Sequence[JoinedLane]
 ) -> tuple[list[JoinedLane], list[JoinedLane], Marking, list[str]]:
-    """Returns the lanes with their markings and the marking of the centre line, and a remark if they differ
-    from those in the file.
-    """
-    if has_marks(road):
+    """Returns the lanes with their markings, the marking of the centre line, and a remark if some differ."""
+    if any(True for _ in road.iter("roadMark")):
         found = [[marking(slot.parts) for slot in side] for side in (right, left)]
         centre, centre_changes = marking([MarkedLane(s, _inner(s)) for s in spans if s.section.centre])
         changes = centre_changes or any(changed for side in found for _, changed in side)
         said = "its road marks change along the road; the most frequent ones are painted here"
         marks = [[mark for mark, _ in side] for side in found]
     else:
-        usual = Profile.of(
-            *(sum(slot.kind == "driving" for slot in side) for side in (right, left)), shoulder=0.0
-        )
+        counts = [sum(slot.kind == "driving" for slot in side) for side in (right, left)]
+        usual = Profile.of(*counts, shoulder=0.0)
         said, changes = "it has no road marks in its file; the usual ones are painted here", True
-        centre, marks = (
-            usual.centre_marking,
-            [[lane.marking for lane in side] for side in (usual.right, usual.left)],
-        )
+        centre = usual.centre_marking
+        marks = [[lane.marking for lane in side] for side in (usual.right, usual.left)]
     on_right, on_left = (
         [slot._replace(marking=mark) for slot, mark in zip(side, chain(own, repeat(UNMARKED)), strict=False)]
         for side, own in zip((right, left), marks, strict=True)
@@ -333,10 +314,7 @@ def _painted(
 
 
 def _inner(span: Span) -> Element:
-    """Returns the XML element of the lane whose outer edge is the centre line.
-
-    Lanes without a width and without road marks are skipped, as far as lane 0.
-    """
+    """Returns the lane whose outer edge is the centre line, and that has a width or a mark, or lane 0."""
     section = span.section
     for place in reversed(range(section.first)):
         lane = section.lanes[place]
@@ -345,26 +323,10 @@ def _inner(span: Span) -> Element:
     return section.centre[0]
 
 
-def has_marks(road: Element) -> bool:
-    """Returns whether the file contains a road mark for this road."""
-    return any(
-        road.findall(f"lanes/laneSection/{side}/lane/roadMark") for side in ("left", "center", "right")
-    )
-
-
 def marking(lanes: Iterable[MarkedLane]) -> tuple[Marking, bool]:
     """Returns the marking at the outer edge of a lane, and whether the marking changes along the road. If so,
     the marking with the largest total length is returned. ``lanes`` is the lane in each lane section.
     """
-    lengths: dict[Marking, float] = {}
-    for span, lane in lanes:
-        marks = sorted(lane.findall("roadMark"), key=lambda mark: number(mark, "sOffset", 0.0))
-        starts = [span.section.s + number(mark, "sOffset", 0.0) for mark in marks]
-        starts = [min(max(start, span.start), span.end) for start in starts]
-        before = (starts[0] if starts else span.end) - span.start
-        kinds = [MARKS.get(mark.get("type", "none"), "none") for mark in marks]
-        reaches = [end - start for start, end in pairwise([*starts, span.end])]
-        for kind, reach in zip(["none", *kinds], [before, *reaches], strict=True):
-            lengths[kind] = lengths.get(kind, 0.0) + reach
-    found = sorted((kind for kind, reach in lengths.items() if reach > 0), key=lambda kind: -lengths[kind])
-    return (found[0] if found else "none"), len(found) > 1
+    marked = stated(lanes, "roadMark", lambda mark: MARKS.get(mark.get("type", "none"), UNMARKED))
+    found = longest_first(each._replace(value=each.value or UNMARKED) for each in marked)
+    return found[0] if found else UNMARKED, len(found) > 1

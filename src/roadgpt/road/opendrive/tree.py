@@ -4,7 +4,6 @@ A file with a DOCTYPE is refused, so that no XML entities can be declared, fetch
 size, number of elements, depth and tag length bound the time and memory that reading takes.
 """
 
-import math
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from xml.parsers import expat
 
 from roadgpt.errors import UsageError
 from roadgpt.reading import opened
+from roadgpt.road.opendrive.numbers import NUMBER
 
 LARGEST = 50_000_000  # bytes; the largest public maps have 20 MB
 TOO_LARGE = f"it is larger than {LARGEST // 1_000_000} MB; cut out the roads that you need"
@@ -22,11 +22,14 @@ MOST_KEPT = 60_000  # elements of one road
 DEEPEST = 60
 LONGEST_TAG = 1_000_000  # bytes
 CHUNK = 65_536  # bytes
-# Elements of a road that say nothing about its geometry.
-LEFT_OUT = frozenset(
-    {"objects", "signals", "railroad", "userData", "surface", "include", "dataQuality", "link"}
-)
-# Elements that are reported, by the noun under which they are counted; IN_HEADER is reported if present.
+READ = frozenset({
+    "type", "speed", "planView", "geometry", "line", "spiral", "arc", "poly3", "paramPoly3",
+    "elevationProfile", "elevation", "lateralProfile", "superelevation", "lanes", "laneOffset", "laneSection",
+    "left", "center", "right", "lane", "width", "border", "roadMark", "material",
+})  # fmt: skip
+"""The elements of a road that RoadGPT reads."""
+SILENT = ("objects", "signals", "surface", "link", "userData", "dataQuality", "sway", "explicit")
+"""Elements of a road that are neither read nor reported; those in them that ``COUNTED`` names are."""
 COUNTED = {
     "object": "object",
     "bridge": "bridge",
@@ -35,10 +38,16 @@ COUNTED = {
     "signalReference": "signal",
     "railroad": "railway",
     "CRG": "surface",
+    "include": "included file",
 }
+"""The nouns under which some elements are counted; ``IN_HEADER`` is reported if present."""
+VALUES = frozenset({"a", "b", "c", "d", "inner", "outer"})  # an element says nothing if they are 0
+OTHER_KINDS = {"osm": "Lanelet2 or OpenStreetMap", "net": "SUMO", "commonRoad": "CommonRoad"}
+"""Whose XML files begin with these elements."""
 IN_HEADER = ("geoReference", "offset")
 OURS = "RoadGPT"  # vendor of files that RoadGPT wrote: their georeference has no meaning
-DRIVING = ("driving", "bidirectional", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "slipLane")
+RAMPS = ("entry", "exit", "onRamp", "offRamp", "connectingRamp", "mwyEntry", "mwyExit")
+DRIVING = ("driving", "bidirectional", "slipLane", *RAMPS)
 
 
 @dataclass(frozen=True)
@@ -54,11 +63,6 @@ class Choice:
     """Names of the header elements (``geoReference``, ``offset``) that the file contains and that are
     skipped.
     """
-
-
-def is_driven(lane: Element) -> bool:
-    """Returns whether a lane is of a type on which cars drive."""
-    return lane.get("type", "") in DRIVING
 
 
 def read_tree(path: Path, wanted: str | None) -> Choice:
@@ -116,11 +120,14 @@ class _RoadSelector:
             raise UsageError(f"it has {what}; cut out the roads that you need")
         tag = tag.rpartition(":")[2]
         if self.depth == 1 and tag != "OpenDRIVE":
-            raise UsageError(f"it is XML but not OpenDRIVE: it begins with <{tag[:40]}>")
-        if self.hidden or (self.stack and tag in LEFT_OUT):
+            kind = f", but a file of {OTHER_KINDS[tag]}" if tag in OTHER_KINDS else ""
+            raise UsageError(f"it is XML but not OpenDRIVE{kind}: it begins with <{tag[:40]}>")
+        if self.hidden or (self.stack and tag not in READ and self.stack[-1].tag != "geometry"):
             self.hidden += 1
-            if tag in COUNTED:
-                self.passed[COUNTED[tag]] += 1
+            values = [attributes[name].strip("+-0.e") for name in VALUES & attributes.keys()]
+            is_told = self.hidden == 1 and tag not in SILENT and (any(values) or not values)
+            if tag in COUNTED or is_told:
+                self.passed[COUNTED.get(tag, f"<{tag[:30]}>")] += 1
         elif self.stack:
             node = Element(tag, attributes)
             self.kept += 1
@@ -152,16 +159,10 @@ class _RoadSelector:
                 self._compare(node)
 
     def _compare(self, road: Element) -> None:
-        lanes = [
-            lane for side in ("left", "right") for lane in road.findall(f"lanes/laneSection/{side}/lane")
-        ]
+        is_driven = any(lane.get("type") in DRIVING for lane in road.findall("lanes/laneSection/*/lane"))
         is_free = road.get("junction", "-1") == "-1"
-        try:
-            length = float(road.get("length", "0"))
-        except ValueError:
-            length = 0.0
-        length = length if math.isfinite(length) else 0.0
-        rank = (any(map(is_driven, lanes)), is_free, length)
+        length = road.get("length", "0")
+        rank = (is_driven, is_free, float(length) if NUMBER.fullmatch(length) else 0.0)
         if self.best is None or rank > self.best[0]:
             self.best = (rank, road, self.passed)
 
