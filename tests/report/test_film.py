@@ -215,7 +215,7 @@ def test_what_cannot_be_filmed_is_told(driven: Run, tmp_path: Path, monkeypatch:
     with pytest.raises(RoadGPTError, match="cannot write"):
         film_of(driven, tmp_path / "file" / "a.mp4", settings=replace(SMALL, seconds=0.1))
     monkeypatch.setitem(sys.modules, "av", None)
-    with pytest.raises(UsageError, match=r"pip install 'roadgpt\[film\]'"):
+    with pytest.raises(UsageError, match=r"pip install (-e '\.|'roadgpt)\[film\]'"):
         film_of(driven, tmp_path / "a.mp4")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file"]
 
