@@ -39,7 +39,11 @@ SEGMENTS = [
 
 
 def road(**more: Any) -> dict[str, Any]:
-    return {"starting_point": [60, 60, 0], "theta": 15, "segments": SEGMENTS, **more}
+    """A road as the thesis' prompt asks for it; ``segments`` are its own."""
+    plain = {"starting_point": [60, 60, 0], "theta": 15, **more}
+    segments = plain.pop("segments", SEGMENTS)
+    numbered = enumerate(segments, 1) if isinstance(segments, list) else [(1, segments)]
+    return plain | {f"road_segment{number}": one for number, one in numbered}
 
 
 def text(**more: Any) -> str:
@@ -90,7 +94,7 @@ FAULTS: dict[str, tuple[Scene, set[str]]] = {
     "segments are numbers": (says(text(segments=[1, 2, 3])), {SENTENCE}),
     "no segments": (says(text(segments=[])), {SENTENCE}),
     "numbers as text": (says(AS_TEXT), {ROAD}),
-    "numbers with units": (says(AS_TEXT.replace('"60"', '"60 m"').replace('"2"', '"2 %"')), {ROAD}),
+    "numbers with units": (says(AS_TEXT.replace('"60"', '"60 m"').replace('"2"', '"2 %"')), {SENTENCE}),
     "10,000 segments": (says(MANY), {SENTENCE}),
     "NaN": (says(text().replace("60,", "NaN,", 1)), {SENTENCE}),
     "Infinity": (says(text().replace("55,", "Infinity,", 1)), {SENTENCE}),
@@ -100,7 +104,7 @@ FAULTS: dict[str, tuple[Scene, set[str]]] = {
     "duplicate keys": (says(DOUBLE), {SENTENCE}),
     "deep nesting": (says('{"segments": ' * 5000 + "1" + "}" * 5000), {SENTENCE}),
     "keys in another order": (says(json.dumps(dict(reversed(road().items())))), {ROAD}),
-    "keys that are too many": (says(text(comment="x" * 5000, __class__="os")), {ROAD}),
+    "keys that are too many": (says(text(comment="x" * 5000, __class__="os")), {SENTENCE}),
     "injection": (says(INJECTION), {ROAD, SENTENCE}),
     "injection alone": (says("\x1b]0;pwned\x07 {{7*7}} ${jndi:ldap://x} `touch pwned`"), {SENTENCE}),
     "half letters": (answers(json.dumps(completion("\ud800" + text())).encode()), {ROAD}),
@@ -146,7 +150,7 @@ def begin(stub: StubServer, kept: Path) -> None:
 
 
 def run(stub: StubServer, *more: str, roads: int = 3) -> Result:
-    words = ["run", "turn left", "--reader", "plan", "--designer", "chat", "-n", str(roads)]
+    words = ["run", "turn left", "--reader", "plan", "--designer", "thesis", "-n", str(roads)]
     server = [
         "--base-url",
         stub.url,

@@ -48,8 +48,7 @@ def test_every_setting_can_be_set_in_every_place(monkeypatch: pytest.MonkeyPatch
     other = {
         "provider": "mine", "model": "m", "base_url": "http://localhost:1/v1", "api": "responses",
         "temperature": 0.5, "timeout": 9.0, "retries": 1, "max_completion": 99, "max_tokens": 1000,
-        "max_cost": 1.5, "price": "1/2", "record": "r", "replay": "p", "rounds": 2, "repair": "place",
-        "strategy": "stepwise",
+        "max_cost": 1.5, "price": "1/2", "record": "r", "replay": "p", "rounds": 2,
     }  # fmt: skip
     assert {*other} == {*ChatSettings.model_fields}
     write(Path("roadgpt.toml"), "[chat]\n" + "\n".join(f"{k} = {json.dumps(v)}" for k, v in other.items()))
@@ -213,7 +212,7 @@ def test_the_command_shows_origins_and_masks_keys(monkeypatch: pytest.MonkeyPatc
 def test_options_for_models_are_refused_where_none_is_asked() -> None:
     result = invoke("run", "| turns=1..", "--reader", "plan", "--max-cost", "1")
     assert result.exit_code == 2
-    assert "--max-cost is for language models; give --designer chat or --reader chat" in result.stderr
+    assert "--max-cost is for language models; give --reader chat as well" in result.stderr
 
 
 def test_doctor_looks_for_the_model_that_is_named(stub: StubServer, monkeypatch: pytest.MonkeyPatch) -> None:

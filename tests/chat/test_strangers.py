@@ -39,7 +39,7 @@ def invoke(*words: str) -> Result:
 def plan_naming(url: str) -> Path:
     path = Path("plan.toml")
     path.write_text(
-        'prompts = ["turn left"]\ntests = 1\ndrive = false\ndesigners = ["chat"]\nreader = "plan"\n'
+        'prompts = ["turn left"]\ntests = 1\ndrive = false\ndesigners = ["thesis"]\nreader = "plan"\n'
         f'[chat]\nmodel = "m"\nretries = 0\nbase_url = "{url}"\n'
     )
     return path
@@ -76,7 +76,7 @@ def test_a_store_does_not_get_the_users_key_sent(
         request.getfixturevalue("no_workers")
     stub.play(says(GOOD))
     chat = ChatSettings(model="m", base_url=stub.url, retries=0)
-    setup = {"designers": ("chat",), "reader": "plan", "drives": False, "chat": chat}
+    setup = {"designers": ("thesis",), "reader": "plan", "drives": False, "chat": chat}
     begin(Plan(prompts=("turn left",), budget=CellBudget(tests=1), **setup), Path("c"))  # type: ignore[arg-type]
     provenance.SERVERS.forget()
     given = {"resume": [], "resume with a flag": [stub.url], "resume another": [ELSEWHERE]}[how]

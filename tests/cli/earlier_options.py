@@ -6,7 +6,7 @@ EARLIER = {
         "--speed-limit --oob-tolerance --lane-departure --lane-width --verge --friction --geometry "
         "--rules --no-drive --no-plot --axes --format --export --model --base-url --provider --api "
         "--temperature --timeout --retries --max-completion --max-tokens --max-cost --price --record "
-        "--replay --rounds --repair --strategy --beamng-home --beamng-user --beamng-host "
+        "--replay --rounds --beamng-home --beamng-user --beamng-host "
         "--beamng-port --beamng-level --beamng-aggression --beamng-recycle --headless --nogpu --gfx "
         "--junit --json -q --quiet -v --verbose",
     "read":
@@ -14,7 +14,7 @@ EARLIER = {
         "--temperature --timeout --retries --max-completion --max-tokens --max-cost --price --record "
         "--replay --rounds",
     "edit":
-        "--out --designer --model --base-url --provider --api --temperature --timeout --retries "
+        "--out --model --base-url --provider --api --temperature --timeout --retries "
         "--max-completion --max-tokens --max-cost --price --record --replay --rounds --map-size "
         "--driver --no-drive --no-plot --format --json -q --quiet",
     "drive":
@@ -49,13 +49,13 @@ EARLIER = {
         "--keep-driving --geometry --map-size --speed-limit --oob-tolerance --lane-departure "
         "--lane-width --verge --friction --no-plot -q --quiet --model --base-url --provider --api "
         "--temperature --timeout --retries --max-completion --max-tokens --max-cost --price --record "
-        "--replay --rounds --repair --strategy",
+        "--replay --rounds",
     "study alignment":
         "-n --roads --drive --designer --seed --out --workers --reader --driver --simulator "
         "--keep-driving --geometry --map-size --speed-limit --oob-tolerance --lane-departure "
         "--lane-width --verge --friction --no-plot -q --quiet --model --base-url --provider --api "
         "--temperature --timeout --retries --max-completion --max-tokens --max-cost --price --record "
-        "--replay --rounds --repair --strategy",
+        "--replay --rounds",
     "study survey":
         "",
     "study survey new":
@@ -69,8 +69,8 @@ EARLIER = {
         "--reader --designer --driver --simulator --keep-driving --map-size --speed-limit "
         "--oob-tolerance --lane-departure --lane-width --verge --friction --geometry --rules "
         "--no-drive --model --base-url --provider --api --temperature --timeout --retries "
-        "--max-completion --max-tokens --max-cost --price --record --replay --rounds --repair "
-        "--strategy --beamng-home --beamng-user --beamng-host --beamng-port --beamng-level "
+        "--max-completion --max-tokens --max-cost --price --record --replay --rounds "
+        "--beamng-home --beamng-user --beamng-host --beamng-port --beamng-level "
         "--beamng-aggression --beamng-recycle --headless --nogpu --gfx --faults --minimise --repeat "
         "--junit --json -q --quiet",
     "resume":
@@ -112,8 +112,7 @@ EARLIER = {
         "",
     "config show":
         "--origin --json --model --base-url --provider --api --temperature --timeout --retries "
-        "--max-completion --max-tokens --max-cost --price --record --replay --rounds --repair "
-        "--strategy",
+        "--max-completion --max-tokens --max-cost --price --record --replay --rounds",
     "beamng":
         "",
     "beamng selftest":

@@ -190,7 +190,7 @@ def test_the_line_that_makes_a_run_again_holds_under_the_settings_of_the_folder(
     [
         ("run", 'driver = "mine.py:Mine"'),
         ("run", 'driver = "/tmp/mine.py:Mine"'),
-        ("run", 'designer = "chat"'),
+        ("run", 'designer = "thesis"'),
         ("run", 'reader = "chat"'),
         ("run", 'reader = "model:weights"'),
         ("beamng", 'home = "/beamng"'),
@@ -227,7 +227,7 @@ def test_a_strangers_folder_cannot_choose_code_or_servers(table: str, line: str,
 
 
 def test_what_a_strangers_folder_names_can_be_named_again() -> None:
-    Path("roadgpt.toml").write_text('[run]\ndesigner = "chat"')
+    Path("roadgpt.toml").write_text('[run]\ndesigner = "thesis"')
     assert given("--designer", "planner")["designer"] == "planner"
 
 

@@ -10,7 +10,6 @@ from click.testing import CliRunner, Result
 
 from chat.stub_server import StubServer, says, serving
 from edit_truth import roads
-from fake_chat import FakeChat
 from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.cli import app
 from roadgpt.design import edit as edit_room
@@ -132,8 +131,8 @@ def test_a_changed_road_can_be_changed_again() -> None:
         (["design.json", "--plan", "turn 2: colour blue"], "'colour' is not expected"),
         (["design.json", "paint it blue"], "roadgpt: "),
         (["nowhere.json", *CHANGE], "there is no nowhere.json"),
-        (["design.json", *CHANGE, "--designer", "gpt"], "gpt"),
-        (["design.json", *CHANGE, "--designer", "chat"], "--plan needs no language model"),
+        (["design.json", *CHANGE, "--reader", "gpt"], "gpt"),
+        (["design.json", *CHANGE, "--reader", "chat"], "--plan needs no language model"),
         (["design.json"], "Say what to change"),
         ([], "Name the folder of a run"),
         (["design.json", *CHANGE, "--out", "full"], "not empty"),
@@ -156,14 +155,14 @@ def test_what_cannot_be_done_is_told_and_nothing_is_written(words: list[str], ad
 
 def test_words_that_are_not_understood_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     read = replace(read_change_plan(LINE), unused=("pronto",))
-    monkeypatch.setattr(edit_room, "read_request", lambda words: read)
+    monkeypatch.setattr(edit_room, "read_request", lambda words, chat: read)
     result = invoke("edit", "design.json", f"{WORDS} pronto", "--no-drive", "--no-plot")
     assert "not understood: 'pronto'" in result.stdout
 
 
 def test_what_a_model_cost_is_told_also_where_nothing_came_of_it(stub: StubServer) -> None:
     stub.play(says("Sure, done!"))
-    more = ("--designer", "chat", "--base-url", stub.url, "--model", "m", "--out", "new")
+    more = ("--reader", "chat", "--base-url", stub.url, "--model", "m", "--out", "new")
     result = invoke("edit", "design.json", WORDS, *more)
     assert result.exit_code == 4
     assert "language model: " in result.stdout
@@ -172,22 +171,17 @@ def test_what_a_model_cost_is_told_also_where_nothing_came_of_it(stub: StubServe
 
 
 def test_options_that_an_edit_does_not_heed_are_refused() -> None:
-    for option, advice in (("--repair", "No such option"), ("--model", "give --designer chat as well")):
+    for option, advice in (("--designer", "No such option"), ("--model", "give --reader chat as well")):
         result = invoke("edit", "design.json", *CHANGE, option, "none")
         assert result.exit_code == 2
         assert advice in result.stderr
 
 
-def test_the_chat_designer_changes_roads_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    design = roads()["h01"]
-    segments = [
-        {"was": number, **segment.model_dump(include={"distance", "direction", "incline", "turn_degrees"})}
-        for number, segment in enumerate(design.segments, 1)
-    ]
-    segments[3] |= {"turn_degrees": -70}
-    chat = FakeChat(json.dumps({"touched": [4], "theta": 0, "segments": segments}))
-    monkeypatch.setattr(edit_room, "open_chat", lambda settings: chat)
-    more = ("--designer", "chat", "--model", "m", "--no-drive", "--no-plot", "--json")
-    result = invoke("edit", "design.json", WORDS, *more)
+def test_a_language_model_reads_changes_too(stub: StubServer) -> None:
+    stub.play(says('{"changes": ["turn 2: angle =70"], "unused": ["please"]}'))
+    more = ("--reader", "chat", "--base-url", stub.url, "--model", "m", "--no-drive", "--no-plot", "--json")
+    result = invoke("edit", "design.json", f"{WORDS}, please", *more)
     assert result.exit_code == 0, result.output
-    assert any("60 -> 70 degrees" in sentence for sentence in json.loads(result.stdout)["changes"])
+    told = json.loads(result.stdout.splitlines()[-1])
+    assert any("60 -> 70 degrees" in sentence for sentence in told["changes"])
+    assert told["unused"] == ["please"]

@@ -8,7 +8,7 @@ from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.check import inspect
 from roadgpt.design import draft
 from roadgpt.design.edit import edit
-from roadgpt.design.repair import repair
+from roadgpt.design.layout import moved_onto_map
 from roadgpt.road import CrossSection, Design, Segment, World, build
 
 WORLD = World(section=CrossSection(lanes="3+2", lane_width=3.5, bank="auto"))
@@ -37,6 +37,7 @@ def test_a_road_whose_outer_lane_leaves_the_map_is_moved_in() -> None:
     segments = (Segment(distance=100, direction="straight"),)
     near = Design(starting_point=(20.0, 9.0, 0.0), theta=0.0, segments=segments)
     assert inspect(WORLD.lay(build(near)), None, WORLD)[0].rule == "inside_map"
-    mended = repair(near, None, WORLD, "place").design
+    mended = moved_onto_map(near, WORLD)
+    assert mended is not None
     assert inspect(WORLD.lay(build(mended)), None, WORLD) == ()
     assert mended.starting_point[1] >= 10.5

@@ -24,7 +24,7 @@ EXAMPLE = {  # the example of the thesis, whose left turn has a negative angle
 
 def drafted(*lines):
     chat = FakeChat(*lines)
-    designer = ThesisDesigner(ChatSettings(rounds=3, repair="full"), chat)
+    designer = ThesisDesigner(ChatSettings(rounds=3), chat)
     return designer.draft(planned("turn x3", "a road with 3 turns"), WORLD, ("note",), (), 7), designer, chat
 
 

@@ -264,13 +264,13 @@ def test_recorded_answers_stand_beside_the_planner(tmp_path: Path) -> None:
     file.write_text('{"prompt": "a road", "truth": {"turns": [1, null]}}')
     replay = Path(__file__).resolve().parents[2] / "examples" / "chat-replay"
     words = ["study", "alignment", str(file), "-n", "1", "--seed", "1", "--no-plot"]
-    words += ["--designer", "planner", "--designer", "chat", "--max-completion", "400", "--rounds", "1"]
+    words += ["--designer", "planner", "--designer", "thesis", "--max-completion", "400"]
     words += ["--replay", str(replay), "--workers", "1", "--out", str(tmp_path / "s"), "-q"]
     result = CliRunner().invoke(app, words)
     assert result.exit_code == 0, result.output
     text = (tmp_path / "s" / "report.md").read_text()
     assert "planner: 1 of 1" in text
-    assert "chat: 1 of 1" in text
+    assert "thesis: 0 of 1" in text
 
 
 def test_words_that_cannot_be_read_count_as_not_kept(tmp_path: Path) -> None:

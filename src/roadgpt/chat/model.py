@@ -9,8 +9,6 @@ from roadgpt.chat.address import origin_of
 from roadgpt.provenance import SERVERS
 
 Api = Literal["chat", "responses"]
-Repair = Literal["none", "place", "full"]
-Strategy = Literal["whole", "stepwise"]
 LEAST_REPLY = 64  # tokens; a shorter answer is of no use
 DECIMALS = 9  # of seconds and USD, so that a difference of sums does not depend on earlier costs
 Role = Literal["system", "user", "assistant"]
@@ -133,9 +131,7 @@ class ChatSettings(ChatValue):
     replay: str | None = Field(default=None, exclude=True)
     """Folder of recorded exchanges, from which every answer is taken instead of asking a server."""
     rounds: Annotated[int, Field(ge=1, le=20)] = 3
-    """The largest number of questions that may be asked for one road."""
-    repair: Repair = "full"
-    strategy: Strategy = "whole"
+    """The largest number of questions that may be asked for one description or change request."""
 
     @field_validator("base_url")
     @classmethod

@@ -78,8 +78,8 @@ WORLD = (
 SETUP = (
     _run("--reader", "Reads the description: model (neural networks), chat (a language model), plan (plans "
          "only).", str, "model", guard=reader_guard),
-    _run("--designer", "Designs roads: planner (a search), chat (a language model), thesis (chat as in "
-         "RoadGPT's thesis).", str, "planner", guard=designer_guard),
+    _run("--designer", "Designs roads: planner (a search), or thesis (a language model, as in RoadGPT's "
+         "thesis).", str, "planner", guard=designer_guard),
     _run("--driver", "A name, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
          guard=driver_guard),
     _run("--simulator", "What simulates the car.", str, "mujoco", heading=Heading.DRIVE),
@@ -113,17 +113,11 @@ CHAT = (
           "USD per million input and output tokens, such as 0.15/0.60. [default: OpenAI's prices]"),
     _rare("--record", "Save every exchange with the server in this folder."),
     _rare("--replay", "Use the answers saved in this folder; ask no server."),
-    _rare("--rounds", "Maximum number of requests to the model for one road. [default: 3]",
+    _rare("--rounds", "Maximum number of requests to the model for one description. [default: 3]",
           whole(1, 20, "rounds")),
-    _rare("--repair", "How to repair an invalid road of a language model: none (not at all), place (move and "
-          "turn it), full (also change its lengths and angles). [default: full]",
-          click.Choice(["none", "place", "full"])),
-    _rare("--strategy", "Ask for the whole road, or for one segment at a time. [default: whole]",
-          click.Choice(["whole", "stepwise"])),
 )
 """The options that set fields of ChatSettings; ``roadgpt.chat.config`` looks up those that are not given."""
 # fmt: on
-CHAT_WITHOUT_DRAFTS = tuple(each for each in CHAT if each.field not in ("repair", "strategy"))
 
 
 def _keep(ctx: click.Context, option: click.Parameter, value: Any) -> None:
@@ -319,10 +313,7 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
         return configured(told)
     if told:
         flag = next(each.flag for each in CHAT if each.field in told)
-        advice = " or ".join(
-            f"--{part} chat" for part, name in (("designer", designer), ("reader", reader)) if name
-        )
-        raise UsageError(f"{flag} is for language models; give {advice} as well")
+        raise UsageError(f"{flag} is for language models; give --reader chat as well")
     return None
 
 

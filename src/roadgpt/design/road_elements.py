@@ -2,12 +2,9 @@
 
     gap 0 | turn 1 | gap 1 | turn 2 | ... | turn n | gap n
 
-The segments can be grouped in two ways. ``elements_on_road`` uses the turns that are measured on the finished
-geometry (``check.measures``): segments that are measured as a single turn form one turn, and a bend that is
-too slight to be measured as a turn belongs to a gap. ``elements_as_proposed`` uses the list of segments
-alone: successive segments that bend the same way form one turn, since RoadGPT's prompt asks for turns of more
-than 70 degrees to be split, and successive straight segments form one element if all of them climb, all fall
-or all are level.
+``elements_on_road`` uses the turns that are measured on the finished geometry (``check.measures``): segments
+that are measured as a single turn form one turn, and a bend that is too slight to be measured as a turn
+belongs to a gap.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -19,7 +16,7 @@ import numpy as np
 
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
-from roadgpt.check.measures import LEAST_TURN, MeasuredFeature, Measures, measure, way
+from roadgpt.check.measures import MeasuredFeature, Measures, measure, way
 from roadgpt.design.elements import straight, turn_segments
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Geometry, Segment, build
@@ -188,30 +185,6 @@ def _members(
         inside = np.arange(len(segments)) == int(np.argmax(np.where(bends, shared, -np.inf)))
     which = np.flatnonzero(inside)
     return int(which[0]), int(which[-1]) + 1
-
-
-def elements_as_proposed(segments: Sequence[Segment]) -> RoadElements:
-    """Returns the turns and straights that a list of segments forms, in driving order, without measuring a
-    road.
-    """
-    rows: list[list[int]] = []
-    for index, segment in enumerate(segments):
-        last = segments[rows[-1][-1]] if rows else None
-        if (
-            last
-            and np.sign(last.turn_degrees) == np.sign(segment.turn_degrees)
-            and (segment.turn_degrees or way(last.incline) == way(segment.incline))
-        ):
-            rows[-1].append(index)
-        else:
-            rows.append([index])
-    out: list[RoadElement] = []
-    for number, row in enumerate(rows):
-        own = tuple(segments[i] for i in row)
-        degrees = sum(segment.turn_degrees for segment in own)
-        side: Side | None = ("left" if degrees > 0 else "right") if abs(degrees) >= LEAST_TURN else None
-        out.append(RoadElement(f"part {number}", own, side, row[0]))
-    return tuple(out)
 
 
 def shows_turns(found: Measures, elements: Sequence[RoadElement]) -> bool:

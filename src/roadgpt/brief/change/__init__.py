@@ -1,6 +1,7 @@
 """Reads a change request, such as "make the second turn wider", and returns it as an EditRequest.
 
-``read_request`` reads words with RoadGPT's neural network; ``plan.read_change_plan`` reads plans.
+``read_request`` reads words with RoadGPT's neural network, or with a language model (``chatting``);
+``plan.read_change_plan`` reads plans.
 ``design.edit`` finds the turns and straights of the road to which a request refers.
 """
 
@@ -18,6 +19,7 @@ from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.readers.model.confidence import DOUBT
 from roadgpt.brief.refusal import MOST_CHARACTERS, causes_of
 from roadgpt.brief.words import SURFACES
+from roadgpt.chat import ChatSettings
 from roadgpt.errors import BriefError, EditError
 
 ADVICE = "say for example: make the second turn sharper"
@@ -49,12 +51,14 @@ def checked_request(words: str | EditRequest) -> EditRequest:
     return request
 
 
-def read_request(words: str) -> EditRequest:
-    """Reads what a change request asks for.
+def read_request(words: str, chat: ChatSettings | None = None) -> EditRequest:
+    """Reads what a change request asks for, with RoadGPT's neural network, or with the language model that
+    ``chat`` names.
 
     Raises:
         EditError: the request is empty or too long, asks for no change that can be read, contradicts itself,
             or asks for something that cannot be built.
+        ChatError: the language model could not be asked.
     """
     if not words.strip():
         raise EditError(f"no change was asked for; {ADVICE}")
@@ -62,6 +66,13 @@ def read_request(words: str) -> EditRequest:
         raise EditError(
             f"a change request of {len(words)} characters is too long; use {MOST_CHARACTERS} or less"
         )
+    if chat is not None:
+        from roadgpt.brief.change.chatting import request_by_chat  # most requests need no language model
+
+        surface, named = _surface_in(words)
+        request = request_by_chat(words, chat, surface)
+        unused = request.unused if surface else tuple(dict.fromkeys((*named, *request.unused)))
+        return replace(request, unused=unused)
     try:
         reading = _reader().read_change(words, _normal_form)
     except BriefError as error:

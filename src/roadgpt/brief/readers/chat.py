@@ -187,7 +187,7 @@ def _brief(answer: PlanAnswer, words: str) -> Brief:
         raise BriefError(f"no road could be read out of '{start}'; {EXAMPLE}")
     brief = read_plan(line)
     check(brief, map_size=None, min_radius=0.0)  # the limits of a World are checked in brief.read
-    unused = _said(answer.unused, words)
+    unused = said_in(words, answer.unused)
     share = len(unused) / max(len(words.split()), 1)
     told = {"words": words, "unused": unused, "confidence": round(max(0.0, 1.0 - share), 3)}
     return normal(brief).model_copy(update=told)
@@ -238,7 +238,7 @@ def _in_our_words(text: str) -> str:
     return " ".join([*kind, *(word for word in words if word not in kind)])
 
 
-def _said(unused: Sequence[str], words: str) -> tuple[str, ...]:
-    """Returns those of the words that occur in the description; any others were made up by the model."""
+def said_in(words: str, unused: Sequence[str]) -> tuple[str, ...]:
+    """Returns those of the unused words that occur in the text; any others were made up by the model."""
     there = words.lower()
     return tuple(word for word in unused[:MOST_UNUSED] if word.strip() and word.lower() in there)

@@ -28,9 +28,12 @@ PARAMETERS = (
     options.out("Folder for the changed road. [default: a new one]"),
     Option("--plan is_plan", "CHANGE is a plan, such as 'turn 2: radius x0.75'.", bool),
     Option(
-        "--designer", "What changes the road: planner (by rules) or chat (a language model).", str, "planner"
+        "--reader",
+        "What reads CHANGE: model (neural networks) or chat (a language model).",
+        click.Choice(["model", "chat"]),
+        "model",
     ),
-    *options.CHAT_WITHOUT_DRAFTS,
+    *options.CHAT,
     *named(options.WORLD, "map_size"),
     *(options.DRIVER_AGAIN, options.NO_DRIVE, options.NO_PLOT, options.FORMAT),
     *(options.json_option("Print one JSON line.", heading=Heading.OUTPUT), options.QUIET),
@@ -59,7 +62,7 @@ def command(run: str, words: tuple[str, ...], as_json: bool, quiet: bool, **rest
         run,
         " ".join(words),
         options.world_of(rest),
-        chat=options.chat_of(rest, designer=rest["designer"]),
+        chat=options.chat_of(rest, rest["reader"]),
         pictures=options.pictures_of(rest),
         drives=not rest.pop("no_drive"),
         **rest,
@@ -67,7 +70,7 @@ def command(run: str, words: tuple[str, ...], as_json: bool, quiet: bool, **rest
 
 
 def edit_road(
-    screen: Screen, road: str, words: str, world: "World", out: Path | None = None, designer: str = "planner",
+    screen: Screen, road: str, words: str, world: "World", out: Path | None = None, reader: str = "model",
     chat: "ChatSettings | None" = None, driver: str | None = None, drives: bool = True,
     pictures: "tuple[Format, ...]" = ("png",), is_plan: bool = False,
 ) -> Path:  # fmt: skip
@@ -79,10 +82,9 @@ def edit_road(
     Raises:
         RoadGPTError: The request or the road cannot be used; nothing is written.
     """
-    from roadgpt import plugins
     from roadgpt.brief import SURE
     from roadgpt.brief.change.plan import read_change_plan
-    from roadgpt.chat import Meter, asks_a_model, counting
+    from roadgpt.chat import Meter, counting
     from roadgpt.design.edit import edit
     from roadgpt.drive.permission import check_named_driver, require_permission
     from roadgpt.run import prove
@@ -102,17 +104,17 @@ def edit_road(
         require_permission(setup.driver)
     request: str | EditRequest = words
     if is_plan:
-        if asks_a_model(plugins.find("designers", designer)):
-            raise UsageError(f"--plan needs no language model; leave out --designer {designer}")
+        if chat is not None:
+            raise UsageError(f"--plan needs no language model; leave out --reader {reader}")
         request = read_change_plan(words)
     meter = Meter.of(chat)
     try:
         with counting(meter, "edit"):
-            made = edit(design, request, before.world, setup.geometry, designer, chat)
+            made = edit(design, request, before.world, setup.geometry, chat)
     finally:  # a language model costs money even if the change failed
         if meter.spent.calls:
             screen.say(f"language model: {spending(meter.spent)}")
-    setup = setup.model_copy(update={"designer": designer, "chat": chat, "drives": drives})
+    setup = setup.model_copy(update={"designer": "planner", "reader": reader, "chat": chat, "drives": drives})
     old = prove(design, before.seed, before.world, setup.model_copy(update={"drives": False}))
     with redirect_stdout(sys.stderr):  # a user's driver may print
         run = prove(made.design, before.seed, made.world, setup)

@@ -27,7 +27,7 @@ OPTIONS = (
     Option("--table as_table", "Print a row for each turn and straight.", bool),
     options.json_option("Print the interpretation as JSON."),
     Option("--alternatives number", "Show up to this many different interpretations.", FEW, 1),
-    *options.CHAT_WITHOUT_DRAFTS,
+    *options.CHAT,
 )
 
 

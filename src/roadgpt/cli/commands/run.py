@@ -53,7 +53,7 @@ def command(words: tuple[str, ...], as_json: bool, quiet: bool, verbose: bool, *
     \b
     roadgpt run "an uphill road with 3 turns" -n 5
     roadgpt run "two hairpins, then a straight" -n 20 --seed 7 --friction 0.6
-    roadgpt run "a winding road" --designer chat --max-cost 0.50
+    roadgpt run "a winding road" --reader chat --max-cost 0.50
 
     \b
     Exit status:

@@ -78,7 +78,7 @@ def alignment(prompts: Path, drives: bool, **rest: Any) -> int:
 
     \b
     roadgpt study alignment prompts.jsonl
-    roadgpt study alignment prompts.jsonl -n 3 --designer chat --model gpt-5-mini
+    roadgpt study alignment prompts.jsonl -n 3 --reader chat --model gpt-5-mini
     """
     from roadgpt.study.plan import read_prompts
 

@@ -16,16 +16,18 @@ The thesis' program passed answers, which were Python dictionaries, to ``eval``;
 """
 
 from collections.abc import Sequence
+from importlib.resources import files
 
 from roadgpt.brief.model import Brief
+from roadgpt.brief.sentence import sentence
 from roadgpt.chat import Chat, ChatSettings, Message, UnparsableError, configured, open_chat
 from roadgpt.chat.strict_json import NotReadableError, read_object
-from roadgpt.design.asking import rules, words_of
 from roadgpt.design.report import DesignReport
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Geometry, World, build, read_design
 
 RULES = "thesis_rules.txt"
+MOST_WORDS = 2000  # characters of a description
 
 
 class ThesisDesigner:
@@ -53,8 +55,8 @@ class ThesisDesigner:
         chat = self._chat = self._chat or open_chat(self._settings)
         before = chat.spent
         asked = [
-            Message(role="system", text=rules(RULES, world)),
-            Message(role="user", text=words_of(brief)),
+            Message(role="system", text=_rules(world)),
+            Message(role="user", text=brief.words.strip()[:MOST_WORDS] or sentence(brief)),
         ]
         reply = chat.ask(asked)
         try:
@@ -73,3 +75,9 @@ class ThesisDesigner:
             proposed=design.to_json(),
         )
         return design
+
+
+def _rules(world: World) -> str:
+    """Returns the system prompt with the limits of ``world`` filled in."""
+    text = files("roadgpt.design.designers").joinpath(RULES).read_text(encoding="utf-8")
+    return text.format(bound=f"{0.8 * world.site.map_size:g}", floor=f"{world.site.z_floor:g}")

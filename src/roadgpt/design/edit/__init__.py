@@ -14,16 +14,14 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
-from roadgpt import plugins
 from roadgpt.brief.change import EditRequest, checked_request, other_readings, read_request
 from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.change.request import OF_SLOPE, Change
 from roadgpt.brief.readers.model.confidence import DOUBT
 from roadgpt.brief.words import SURFACES
-from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
+from roadgpt.chat import ChatSettings
 from roadgpt.design.differences import grades_changed, sentences
 from roadgpt.design.edit.candidates import candidates_of, sentence_of
-from roadgpt.design.edit.chatting import edited_by_chat
 from roadgpt.design.edit.heights import with_final_heights
 from roadgpt.design.edit.opposites import settled
 from roadgpt.design.edit.placing import PlacedChange, placed
@@ -57,7 +55,6 @@ def edit(
     words: str | EditRequest,
     world: World,
     geometry: Geometry = "arcs",
-    designer: str = "planner",
     chat: ChatSettings | None = None,
 ) -> Edited:
     """Returns the Design, changed as the words ask.
@@ -68,19 +65,14 @@ def edit(
         world: size of the map, and limits that the rules check, such as the steepest grade. A map of the
             usual size grows if the changed road needs it.
         geometry: the kind of geometry that the road is built with.
-        designer: name of a designer. If it uses a language model, the model makes the change; otherwise rules
-            make it.
-        chat: settings of the language model; None for the user's settings.
+        chat: settings of the language model that reads the words; None for RoadGPT's own networks.
 
     Raises:
         EditError: the words cannot be read, name something that is not on the road, or ask for something that
             no valid road can have; the message gives the reason.
-        PartError: there is no designer of that name.
         ChatError: the language model could not be asked.
     """
-    if asks_a_model(plugins.find("designers", designer)):
-        return _edited_by_model(design, words, world, geometry, chat or configured())
-    request = read_request(words) if isinstance(words, str) else words
+    request = read_request(words, chat) if isinstance(words, str) else words
     try:
         return _edited(design, checked_request(request), world, geometry)
     except EditError as error:
@@ -193,26 +185,6 @@ def _in_one_direction(
 
 def _is_in(placed: PlacedChange, changes: Sequence[PlacedChange]) -> bool:
     return any(placed.change is each.change for each in changes)
-
-
-def _edited_by_model(
-    design: Design, words: str | EditRequest, world: World, geometry: Geometry, settings: ChatSettings
-) -> Edited:
-    """Returns the Design as a language model changed it."""
-    elements, found = elements_on_road(design, geometry)
-    allowed: set[int] | None = None  # a model may understand what cannot be read, or not all of it
-    with suppress(EditError):
-        request = checked_request(words)
-        changes = placed(request.changes, elements)
-        is_of_one_road = len(directions(request.changes)) == 1
-        if is_of_one_road and not request.unused:
-            allowed = {i + 1 for change in changes for element in change.elements for i in element.members}
-    said = words if isinstance(words, str) else words.words
-    road = edited_by_chat(
-        open_chat(settings), settings, design, said, elements, found, allowed, world, geometry
-    )
-    told = sentences(design, elements, found, road)
-    return Edited(road.design, told, world=world)
 
 
 __all__ = ["EditRequest", "Edited", "edit", "read_request"]

@@ -2,9 +2,9 @@
 
     elements --look--> what is wrong? --aim_of--> limits --least_change--> segments --graded--> look --> Look
 
-A full repair leaves all elements of a proposal free. An edit first freezes every element that the request
-does not name: the element's lengths, turns and radii stay exactly as they are. The road as a whole may be
-shifted or rotated, so that it stays inside the map.
+An edit first freezes every element that the request does not name: the element's lengths, turns and radii
+stay exactly as they are. Only if no valid road is found that way, all elements are free. The road as a whole
+may be shifted or rotated, so that it stays inside the map.
 """
 
 from collections.abc import Collection
@@ -38,16 +38,15 @@ def fit(
     """Finds a road that meets all requirements and differs from the design as little as possible.
 
     Args:
-        design: The road as it was proposed, or after the steps of an edit and then ``graded``.
+        design: The road after the steps of an edit and then ``graded``.
         elements: The turns and straights of the road in driving order, each with its requirement; together
             they contain all segments of the design.
         requirements: The other requirements for the road.
         frozen: Names of the elements whose lengths, turns and radii stay as they are.
 
     Returns:
-        A Look at that road, with an empty ``objection``. If no such road was found, a Look at a road that
-        breaks no rule, but whose turns have other slopes than proposed. If neither was found, a Look at the
-        design, moved inside the map if possible.
+        A Look at that road, with an empty ``objection``. If no such road was found, a Look at the design,
+        moved inside the map if possible.
 
     Raises:
         UsageError: No road can be built from these segments.
@@ -57,7 +56,7 @@ def fit(
     free = np.array([element.name not in frozen for element in elements for _ in element.segments])
     if not first.objection or not 1 <= free.sum() <= MOST_SEGMENTS:
         return first
-    best, last = None, first
+    last = first
     for margins in MARGINS if before is None else (TIGHT, *MARGINS):
         segments = None
         for _ in range(ROUNDS):
@@ -74,9 +73,7 @@ def fit(
         last = look(design, first.elements, requirements)
         if not last.objection:
             return last if before else _restored(last, first)
-        if best is None and before is None and last.keeps_all_but_slopes:
-            best = last
-    return best or first
+    return first
 
 
 def look(design: Design, elements: RoadElements, requirements: Requirements) -> Look:
@@ -89,7 +86,7 @@ def look(design: Design, elements: RoadElements, requirements: Requirements) -> 
     elements = with_segments(elements, design.segments)
     road = world.lay(build(design, geometry))
     moved = design
-    findings = check.inspect(road, requirements.brief, world)
+    findings = check.inspect(road, None, world)
     if any(finding.rule == "inside_map" or finding.stops for finding in findings):
         # a design that becomes a spline is placed as if it were built of arcs, which lie close by
         moved = moved_onto_map(design, world) or design
@@ -100,7 +97,7 @@ def look(design: Design, elements: RoadElements, requirements: Requirements) -> 
         moved = moved.model_copy(update={"starting_point": (x, y, height)})
     if moved != design:
         road = world.lay(build(moved, geometry))
-        findings = check.inspect(road, requirements.brief, world)
+        findings = check.inspect(road, None, world)
     return Look(moved, elements, road, findings, requirements)
 
 

@@ -176,8 +176,7 @@ def aim_of(
 def _as_written(first: Look, last: Look) -> RoadElements:
     """Returns the elements, with required measured values converted to the values to write in the design."""
     figure = polyline_of(last.design.segments)
-    is_seen = first.requirements.brief is None and last.has_turns
-    seen = last.seen if is_seen else (None,) * len(last.elements)
+    seen = last.seen if last.has_turns else (None,) * len(last.elements)
     return tuple(
         replace(element, asked=_shifted(element.asked, now, feature, figure))
         if element.asked and element.segments

@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import NamedTuple
 
 from roadgpt import check
-from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import LEAST_STRAIGHT
@@ -25,13 +24,9 @@ class Requirements(NamedTuple):
     """The size of the map, and the limits that the rules check."""
     outline: Outline = Outline(groups=(), turns=Range())
     """Requirements for the whole road; none by default."""
-    brief: Brief | None = None
-    """The Brief that the rule ``promises`` compares with the road. If it is None, each measured element is
-    compared with its own requirement.
-    """
     before: Design | None = None
-    """The road before an edit; the parabolas between its slopes are kept. None for a proposal; then each turn
-    must be measured with the slope that was proposed for it.
+    """The road before an edit; the parabolas between its slopes are kept. With None, they are chosen
+    anew, and each turn must be measured with the slope that it has in the design.
     """
     geometry: Geometry = "arcs"
 
@@ -76,12 +71,7 @@ class Look:
             return "a turn would be seen to the wrong side"
         if self.requirements.before is None and not shows_slopes(self.found, self.elements):
             return "a turn would be seen on another slope"
-        return "" if self.requirements.brief else self._unmet()
-
-    @property
-    def keeps_all_but_slopes(self) -> bool:
-        """Whether the road breaks no rule and has the left and right turns of the elements in their order."""
-        return not self.findings and self.has_turns
+        return self._unmet()
 
     def _unmet(self) -> str:
         """Returns a sentence about the first requirement that the measurements do not meet; empty if none."""
