@@ -29,7 +29,7 @@ from roadgpt.road import World
 from roadgpt.verdict import judge
 
 DRIVERS = ("reference", "beamng_like")
-LIMITS, FRICTIONS = (50.0, 70.0), (1.0, 0.6)
+LIMITS, FRICTIONS, ORACLE = (50.0, 70.0), (1.0, 0.6), "thesis"
 TOUCH = 1.0  # m^2, that two roads which meet at a junction may share
 
 
@@ -63,7 +63,7 @@ def drive_all(them: Sequence[tuple[Route, World]], driver: str, limit: float, fr
     incidents: Counter[str] = Counter()
     speeds, rings = [], []
     for n, (route, usual) in enumerate(them):
-        world = usual.changed(speed_limit=limit / 3.6, friction=friction)
+        world = usual.changed(speed_limit=limit / 3.6, friction=friction, oracle=ORACLE)
         begun = time.process_time()
         drive = simulate(route, world, driver)
         speeds.append(drive.duration / (time.process_time() - begun))
@@ -79,7 +79,7 @@ def drive_all(them: Sequence[tuple[Route, World]], driver: str, limit: float, fr
     kept = causes.pop("kept", 0)
     least, usual_least = (min(rings), np.median(rings)) if rings else (np.nan, np.nan)
     print(
-        f"{driver}, {limit:g} km/h, friction {friction:g}: {kept} of {len(them)} kept "
+        f"{driver}, {limit:g} km/h, friction {friction:g}, oracle {ORACLE}: {kept} of {len(them)} kept "
         f"({100 * kept / len(them):.1f} %), fails: {dict(causes)}; routes with incidents: "
         f"{dict(sorted(incidents.items()))}; least speed in {len(rings)} rings {least:.1f} km/h (median "
         f"{usual_least:.1f}); {np.median(speeds):.0f} times real time per core",

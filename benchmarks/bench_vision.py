@@ -25,7 +25,7 @@ import numpy as np
 import roadgpt.gym  # noqa: F401  makes the environment known to Gymnasium
 from roadgpt.drive import Drive, simulate
 from roadgpt.drive.loading import load_driver
-from roadgpt.road import Limits, Road, World
+from roadgpt.road import ORACLES, Limits, Road, World
 from roadgpt.run import Setup, brief_of, perform
 from roadgpt.verdict import judge
 
@@ -71,7 +71,7 @@ class DriveTally:
 
 
 def driven(name: str, kmh: int, road: Road) -> tuple[Drive, World]:
-    world = World(limits=Limits(speed_limit=kmh / 3.6))
+    world = World(limits=Limits(speed_limit=kmh / 3.6, **ORACLES["thesis"]))
     if name not in SEEING:
         return simulate(road, world, name), world
     os.environ["SPEED_KMH"] = str(kmh)

@@ -135,7 +135,7 @@ def done_in(folder: Path) -> int:
 def test_status_and_top_tell_of_a_finished_campaign(driven: Path) -> None:
     said = roadgpt("status", driven)
     assert "finished, 3 of 3 tests" in said.output
-    assert "turn x2 (beamng_like, words, seed 7)" in said.output
+    assert "turn x2 (lane_centring, words, seed 7)" in said.output
     told = json.loads(roadgpt("status", driven, "--json").stdout)
     assert told["is_finished"]
     assert sum(told["outcomes"].values()) == told["done"] == told["total"] == 3

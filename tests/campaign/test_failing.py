@@ -25,7 +25,8 @@ from roadgpt.cli import app
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
 
-WORDS = ["zigzag x3 | down", "-n", 2, "--friction", 0.4, "--seed", 3, "--reader", "plan"]
+CUTS = ["--driver", "beamng_like", "--oracle", "thesis"]  # cuts the inside of bends
+WORDS = ["zigzag x3 | down", "-n", 2, "--friction", 0.4, "--seed", 3, "--reader", "plan", *CUTS]
 
 
 def roadgpt(*words: object) -> Result:
@@ -69,7 +70,7 @@ def many(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A campaign with more failures than faults; a genetic algorithm finds the same again and again."""
     folder = tmp_path_factory.mktemp("many") / "c"
     words = ["| flat turns=1..", "--goal", "failures", "-n", 40, "--seed", 7, "--reader", "plan", "-q"]
-    genetic = ["--generator", "genetic", "--map-size", 200, "--oob-tolerance", 0.5]
+    genetic = ["--generator", "genetic", "--map-size", 200, "--driver", "beamng_like", "--oracle", "half"]
     roadgpt("campaign", *words, *genetic, "--out", folder)
     return folder
 
@@ -359,8 +360,7 @@ def test_a_page_that_was_looked_into_is_read_as_it_was(looked: Path) -> None:
 
 
 def test_the_report_of_runs_tells_their_faults_as_well(tmp_path: Path) -> None:
-    words = ["zigzag x3 | down", "-n", 3, "--friction", 0.4, "--seed", 3, "--reader", "plan"]
-    roadgpt("run", *words, "--no-plot", "-q", "--out", tmp_path / "runs")
+    roadgpt("run", *WORDS, "-n", 3, "--no-plot", "-q", "--out", tmp_path / "runs")
     found = faults_in(tmp_path / "runs")
     assert found.failures >= 2
     roadgpt("report", tmp_path / "runs")

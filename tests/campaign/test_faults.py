@@ -42,8 +42,8 @@ from roadgpt.check import inspect
 from roadgpt.cli.app import app
 from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View
 from roadgpt.errors import DriverError, PartError, UsageError
-from roadgpt.road import CrossSection, Design, Road, Segment, Site, World, build
-from roadgpt.run import Request, Run, prove, write_run
+from roadgpt.road import ORACLES, CrossSection, Design, Limits, Road, Segment, Site, World, build
+from roadgpt.run import Request, Run, Setup, prove, write_run
 from roadgpt.verdict import Verdict, judge
 
 WORLD = World()
@@ -267,13 +267,14 @@ def test_a_late_driver_sees_what_was_and_does_not_know_of_the_grip() -> None:
     assert notes.believes == 1.0
 
 
-# Two hairpins' worth of bend at the least radius: the default driver cuts its inside.
+# Two hairpins' worth of bend at the least radius: beamng_like cuts its inside.
 WET = design(straight(60), bend(120, 16.0))
 
 
 @pytest.fixture(scope="module")
 def slid() -> Run:
-    run = prove(WET, 3, World(site=Site(friction=0.5)))
+    world = World(site=Site(friction=0.5), limits=Limits(**ORACLES["thesis"]))
+    run = prove(WET, 3, world, Setup(driver="beamng_like"))
     assert run.outcome == "FAIL"
     return run
 

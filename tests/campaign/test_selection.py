@@ -34,9 +34,11 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     home = tmp_path_factory.mktemp("home")
     (home / "plan.toml").write_text(
         'prompts = ["turn x2 | flat"]\nseeds = [3, 4]\ntests = 4\nreader = "plan"\n'
+        'drivers = "beamng_like"\n'
         "[world]\noob_tolerance = 0.3\nmap_size = 200\n"
     )
     words = ["turn x2 | flat", "--reader", "plan", "--seed", 3, "--oob-tolerance", 0.3]
+    words += ["--driver", "beamng_like"]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
         lines("campaign", home / "plan.toml", "--out", home / "two", "-q")

@@ -59,6 +59,8 @@ def results(draw: st.DrawFn, number: int, proposal: Proposal) -> Result:
         at_s=draw(maybe),
         side="left" if failed else None,
         cause="stuck" if failed else None,
+        own_share=draw(maybe),
+        handed_to=draw(st.none() | texts),
         features=draw(st.dictionaries(texts, st.floats(allow_nan=False, allow_infinity=False), max_size=4)),
     )
 

@@ -25,8 +25,8 @@ def slowly(record: Record) -> str:
     for cell, one in ((name, one) for name in record.names() for one in record.results(name)):
         asked = (one.batch, one.proposal.origin, seed_of_driver(one.number, one.proposal))
         came = (one.outcome, one.cause, one.side, one.length, one.margin, one.max_oob, one.beyond, one.at_s)
-        known = [one.features.get(name) for name in features]
-        table.writerow([cell, one.number, *asked, *came, one.description, *known])
+        known = [one.own_share, one.handed_to, one.description, *map(one.features.get, features)]
+        table.writerow([cell, one.number, *asked, *came, *known])
     return text.getvalue()
 
 

@@ -67,11 +67,11 @@ def shared(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     Path("other.py").write_text(DRIVER.format(str(tmp_path / "other ran")))
     driver = f"{here / 'mine.py'}:Mine"
     card = Path("run/runs/0001/run.json")
-    card.write_text(card.read_text().replace('"beamng_like"', json.dumps(driver)))
+    card.write_text(card.read_text().replace('"lane_centring"', json.dumps(driver)))
     for folder in ("done", "begun"):
         with sqlite3.connect(f"{folder}/campaign.sqlite") as db:
-            db.execute("UPDATE meta SET value = replace(value, 'beamng_like', ?)", (driver,))
-            db.execute("UPDATE cells SET cell = replace(cell, 'beamng_like', ?)", (driver,))
+            db.execute("UPDATE meta SET value = replace(value, 'lane_centring', ?)", (driver,))
+            db.execute("UPDATE cells SET cell = replace(cell, 'lane_centring', ?)", (driver,))
             db.execute("UPDATE tests SET outcome = 'FAIL' WHERE outcome = 'PASS'")
         db.close()
     Path("plan.toml").write_text(

@@ -42,6 +42,7 @@ bank = 5.0
 shoulder = 1
 friction = 0.6
 speed_limit_kmh = 50
+oracle = "departure"
 oob_tolerance = 0.5
 lane_departure = true
 

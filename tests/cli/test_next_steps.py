@@ -40,12 +40,15 @@ def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("no_workers")
 def test_a_run_without_failures_says_what_to_try_and_it_can_be_typed(tmp_path: Path) -> None:
     out = tmp_path / "quiet"
-    said = roadgpt("run", *WORDS, "-n", 5, "--no-plot", "--out", out).stdout
+    words = [*WORDS, "--driver", "beamng_like", "--oracle", "thesis"]  # passes with the car outside
+    said = roadgpt("run", *words, "-n", 5, "--no-plot", "--out", out).stdout
     found = commands(said)
-    assert [words[0] for words in found] == ["run", "run", "run", "run", "campaign"]
-    flags = [re.findall(r"--(?!seed|reader)[a-z-]+", " ".join(words)) for words in found]
-    asked = "--lane-departure --oob-tolerance --friction --speed-limit --goal"
-    assert flags == [[flag] for flag in asked.split()]
+    assert [words[0] for words in found] == ["run", "run", "run", "campaign"]
+    flags = [re.findall(r"--(?!seed|reader|driver|oracle)[a-z-]+", " ".join(words)) for words in found]
+    assert flags == [[], ["--friction"], ["--speed-limit"], ["--goal"]]
+    oracles = [words[words.index("--oracle") + 1] for words in found]
+    assert oracles == ["departure", "thesis", "thesis", "thesis"]
+    assert all(words[words.index("--driver") + 1] == "beamng_like" for words in found)
     outcomes = []
     for number, words in enumerate(found):
         if words[0] == "campaign":
@@ -64,7 +67,7 @@ def test_a_run_without_failures_says_what_to_try_and_it_can_be_typed(tmp_path: P
     roadgpt("report", out)
     with (out / "tables" / "next.csv").open(newline="") as file:
         rows = [row["command"] for row in csv.DictReader(file)]
-    assert [shlex.split(row)[1:] for row in rows][:4] == found[:4]
+    assert [shlex.split(row)[1:] for row in rows][:3] == found[:3]
     assert "What to try next" in (out / "report.html").read_text()
 
 
@@ -103,7 +106,7 @@ def test_what_is_set_already_is_not_proposed_again() -> None:
     )
     told = next_steps(WithoutFailure(REQUEST.model_copy(update={"world": hard}), 20, 20))
     assert [why for why, _ in told] == ["search for failures among such roads"]
-    assert "--lane-departure" in told[0][1]
+    assert "--oracle departure:0.4" in told[0][1]
     wet = next_steps(
         WithoutFailure(REQUEST.model_copy(update={"world": World(site=Site(friction=0.6))}), 20, 20)
     )

@@ -138,8 +138,8 @@ def test_who_never_steers_leaves_the_lane_and_the_drive_ends_there():
     assert done.ended == "out_of_lane"
     assert done["outside"][-1] > WORLD.limits.oob_tolerance
     assert done["outside"][:-1].max() <= WORLD.limits.oob_tolerance
-    strict = drive(BEND, Does(0.0, 0.4), World(limits=Limits(oob_tolerance=0.5)))
-    assert strict.duration < done.duration
+    loose = drive(BEND, Does(0.0, 0.4), World(limits=Limits(oob_tolerance=0.95)))
+    assert done.duration < loose.duration
 
 
 def test_the_drive_tells_how_far_the_wheels_turn():

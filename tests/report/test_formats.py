@@ -38,7 +38,7 @@ def design() -> Design:
 
 @pytest.fixture(scope="module")
 def run(design: Design) -> Run:
-    return prove(design, 3)
+    return prove(design, 3, setup=Setup(driver="beamng_like"))
 
 
 def is_of(data: bytes, name: Format) -> bool:

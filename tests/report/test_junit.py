@@ -102,6 +102,7 @@ def test_what_was_there_stays_where_the_file_cannot_be_written(tmp_path: Path) -
 def test_run_and_its_folder_write_the_same_tests(tmp_path: Path) -> None:
     own, again = tmp_path / "own.xml", tmp_path / "again.xml"
     words = ["turn x2", "-n", 4, "--seed", 7, "--reader", "plan", "--no-plot"]
+    words += ["--driver", "beamng_like", "--oracle", "sbft"]
     out = tmp_path / "runs"
     told = roadgpt("run", *words, "--friction", 0.35, "--out", out, "--junit", own, "--json")
     roadgpt("report", out, "--junit", again)
@@ -112,6 +113,7 @@ def test_run_and_its_folder_write_the_same_tests(tmp_path: Path) -> None:
     assert suite.get("name") == "turn x2"
     assert properties(suite)["friction"] == "0.35"
     assert properties(suite)["seed"] == "7"
+    assert (properties(suite)["driver"], properties(suite)["oracle"]) == ("beamng_like", "sbft")
     for row, case in zip(rows, suite.findall("testcase"), strict=True):
         mark = case.find("failure")
         assert (mark is not None) == (row["test_outcome"] == "FAIL")

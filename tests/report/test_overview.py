@@ -9,7 +9,10 @@ from matplotlib.collections import LineCollection
 
 from roadgpt.errors import UsageError
 from roadgpt.report import overview
-from roadgpt.report.overview import Thumbnail, page_of
+from roadgpt.report.overview import Thumbnail, page_of, pages
+from roadgpt.road import World
+from roadgpt.run import Request, Setup
+from roadgpt.run.card import CARD, Card
 
 OUTCOMES = ["PASS", "FAIL", "INVALID", "ERROR", None]
 
@@ -63,9 +66,13 @@ def test_every_road_lies_on_its_own_map_to_scale() -> None:
 
 def test_the_page_counts_outcomes_in_words(tmp_path: Path) -> None:
     campaign(tmp_path, 5)
-    card = {"request": {"words": "a $strange$ road", "seed": 4, "world": {"map_size": 200.0}}}
-    (tmp_path / "campaign.json").write_text(json.dumps(card))
+    world, setup = World().changed(map_size=200.0, oracle="sbft"), Setup(driver="beamng_like")
+    request = Request(words="a $strange$ road", seed=4, world=world, setup=setup)
+    (tmp_path / CARD).write_text(Card(request=request, roads=5, is_finished=True).model_dump_json())
     assert overview(tmp_path)
+    (drawn,) = pages(tmp_path)
+    about = {text.get_text() for text in drawn.axes[0].texts}
+    assert any("seed 4, driver beamng_like, oracle sbft" in text for text in about), about
     entries = [Thumbnail(1, "PASS", np.empty((0, 2)), None)]
     figure = page_of(entries, ("words", "seed 4"), "page 2 of 3", 200.0)
     said = [text.get_text() for text in figure.axes[0].texts]

@@ -18,20 +18,24 @@ from roadgpt.report.overview import Thumbnail, _thumbnail, overview
 from roadgpt.report.page.gallery import gallery
 from roadgpt.report.places import places_of
 from roadgpt.report.view.scene import scene
-from roadgpt.road import Road
+from roadgpt.road import Road, World
 from roadgpt.run import Run, prove, write_run
 from roadgpt.study.chapters.out_of_lane import outside_sentences, outside_table, passed_roads
 from roadgpt.study.road_record import RoadRecord
 from roadgpt.verdict import SEVERITIES, judge
 
 STRAIGHT = Road.through([[40, 100], [90, 100], [140, 100]])
-ASIDE = {"inside": 0.0, "partly outside": -1.7, "mostly outside": -2.5}  # m to the right of the lane's middle
+ASIDE = {
+    "at most 10 % outside": 0.0,
+    "partly outside": -1.7,
+    "mostly outside": -2.5,
+}  # m to the right of the lane's middle
 
 
 @pytest.fixture(scope="module")
 def runs() -> dict[str, Run]:
     """The same drive, once in its lane and twice beside it; the share is worked out on paper."""
-    run = prove(STRAIGHT, 1)
+    run = prove(STRAIGHT, 1, World().changed(oracle="thesis"))
     drive = run.drive
     assert drive is not None
     made = {}
@@ -68,7 +72,7 @@ def test_every_picture_of_a_run_has_the_colour_of_how_far(runs: dict[str, Run], 
 
 
 def test_the_place_where_most_was_outside_is_named(runs: dict[str, Run]) -> None:
-    assert places_of(runs["inside"]) == []
+    assert places_of(runs["at most 10 % outside"]) == []
     (place,) = places_of(runs["mostly outside"])
     verdict = runs["mostly outside"].verdict
     assert verdict is not None

@@ -33,7 +33,7 @@ def design(side: int = 1) -> Design:
         segments=(
             Segment(distance=50, direction="straight", incline=6),
             Segment(
-                distance=45, direction="left" if side > 0 else "right", incline=2, turn_degrees=side * 65
+                distance=40, direction="left" if side > 0 else "right", incline=2, turn_degrees=side * 65
             ),
             Segment(distance=40, direction="straight", incline=-4),
         ),
@@ -42,7 +42,7 @@ def design(side: int = 1) -> Design:
 
 @pytest.fixture(scope="module")
 def driven() -> Run:
-    run = prove(design(), 7)
+    run = prove(design(), 7, setup=Setup(driver="beamng_like"))
     return replace(run, request=run.request.model_copy(update={"words": EVIL}))
 
 

@@ -18,10 +18,12 @@ from authorities.sbft_official_slow import verdict
 from roadgpt.brief import read
 from roadgpt.campaign.model import Cell
 from roadgpt.check.sbft import radii
+from roadgpt.cli.commands.compete import sbft_command
 from roadgpt.geometry import interpolate
 from roadgpt.road import Site, World
 from roadgpt.run import Setup
-from roadgpt.sbft import RoadGPTTestGenerator
+from roadgpt.sbft import RoadGPTTestGenerator, generator
+from roadgpt.sbft.competition import PLAIN, USUAL
 from roadgpt.sbft.generator import RoadSearch
 
 WORLD = World(site=Site(map_size=200.0))
@@ -107,6 +109,19 @@ def test_what_cannot_be_used_teaches_nothing() -> None:
     told.tell("PASS", [], [])
     silent.ask()
     assert np.array_equal(told.ask().control_points(), silent.ask().control_points())
+
+
+def test_the_competitions_doors_drive_and_judge_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    searched: list[World] = []
+    monkeypatch.setattr(generator, "RoadSearch", lambda *given: searched.append(given[3]) or given)
+    for executor in (SimpleNamespace(), SimpleNamespace(oob_tolerance=0.85)):
+        with pytest.raises(AttributeError):  # the stand-in brings no roads
+            next(RoadGPTTestGenerator(executor).roads())
+    assert [world.limits.oracle for world in searched] == ["thesis", "sbft"]
+    assert (USUAL.limits.oracle, PLAIN.driver) == ("thesis", "beamng_like")
+    words = ["--module-path", ".", "--module-name", "m", "--class-name", "C"]
+    values = sbft_command.make_context("sbft", words).params
+    assert (values["driver"], values["oob_tolerance"]) == ("beamng_like", 0.95)
 
 
 def test_the_tolerance_is_that_of_the_executor() -> None:

@@ -244,4 +244,7 @@ def test_what_is_the_same_in_all_cells_takes_no_column(campaign: Path) -> None:
     assert row["driver"] == DRIVERS[0]
     assert not {"description", "generator", "seed"} & {*row}
     text = (campaign / "report.md").read_text(encoding="utf-8")
-    assert "In all cells: description “a winding road”, generator words, seed 0, friction 1." in text
+    assert (
+        "In all cells: description “a winding road”, generator words, oracle half, seed 0, friction 1."
+        in text
+    )

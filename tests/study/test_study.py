@@ -82,7 +82,10 @@ def test_the_page_tells_what_the_tables_tell(study: Path) -> None:
         assert said in page
         assert said in text
     assert "6 of 6 (100.0 %)" in page
-    assert "roadgpt study thesis --roads 2 --seed 1 --no-drive --out study" in page
+    assert (
+        "roadgpt study thesis --roads 2 --seed 1 --driver beamng_like --oracle thesis --no-drive --out study"
+        in page
+    )
     assert re.search(r"encoder.onnx sha256 [0-9a-f]{16}", page)
     for target in re.findall(r'<a href="([^"#]+)"', page):
         assert (study / target).is_file(), target

@@ -231,6 +231,6 @@ def test_a_driver_that_knows_no_signs_fails_for_that_alone() -> None:
     world = World()
     verdict = judge(route, simulate(route, world, RunsTheSign()), world)
     assert (verdict.outcome, verdict.cause) == ("FAIL", "stop line")
-    assert verdict.margin > 2
+    assert verdict.margin > 1.99  # in the middle of a lane that is 4 m wide
     free = crossroads("straight", "none")
     assert judge(free, simulate(free, world, RunsTheSign()), world).kept

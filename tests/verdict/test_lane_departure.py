@@ -40,9 +40,9 @@ def test_a_pass_that_was_partly_outside_says_so() -> None:
     )
     on_the_line = judge(STRAIGHT, drive_at([-2.0, -0.9, -2.0]), WORLD)
     assert "at most 2 % outside, on the marking" in on_the_line.description
-    assert on_the_line.severity == "partly outside"
+    assert on_the_line.severity == "at most 10 % outside"
     inside = judge(STRAIGHT, drive_at([-2.0, -2.5, -2.0]), WORLD)
-    assert inside.severity == "inside"
+    assert inside.severity == "at most 10 % outside"
     assert "outside" not in inside.description
 
 
@@ -57,14 +57,15 @@ def test_no_share_is_rounded_away() -> None:
 
 
 def test_the_scale_has_three_steps() -> None:
-    assert [severity(share) for share in (0.0, 1e-6, 0.5, 0.501, 1.0)] == [
-        "inside",
+    assert [severity(share) for share in (0.0, 0.1, 0.101, 0.5, 0.501, 1.0)] == [
+        "at most 10 % outside",
+        "at most 10 % outside",
         "partly outside",
         "partly outside",
         "mostly outside",
         "mostly outside",
     ]
-    assert graded("PASS", 0.0) == graded("PASS", None) == "PASS"
+    assert graded("PASS", 0.0) == graded("PASS", None) == graded("PASS", 0.1) == "PASS"
     assert graded("PASS", 0.2) == "PASS (partly outside)"
     assert graded("FAIL", 0.7) == "FAIL"
 
@@ -124,8 +125,8 @@ def test_a_drive_ends_where_a_tyre_departs_and_goes_on_where_it_is_told_to() -> 
 
 def test_the_same_drive_is_judged_as_before_where_departures_do_not_count() -> None:
     road = ROADS[1]
-    drive = simulate(road, World(), BeamngLike())
-    verdict = judge(road, drive, World())
+    drive = simulate(road, WORLD, BeamngLike())
+    verdict = judge(road, drive, WORLD)
     assert verdict.kept
     assert verdict.max_oob > 0
     assert verdict.beyond

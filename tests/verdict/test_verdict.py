@@ -17,7 +17,7 @@ from roadgpt.verdict.margin import LateralExtent, allowed_overhang, margins
 
 STRAIGHT = Road.through([[10, 20], [60, 20], [110, 20]])  # along +x, 100 m, y of its middle is 20
 BOX = Box(4.7, 1.86)
-WORLD = World()
+WORLD = World().changed(oracle="thesis")
 
 
 def drive_at(
@@ -64,7 +64,9 @@ def test_a_car_that_goes_left_fails_where_it_first_did() -> None:
     assert verdict.at_time == pytest.approx(0.06)
     assert verdict.max_oob == pytest.approx(1 - 0.03 / 1.86)
     assert verdict.margin == pytest.approx(0.837 - 0.9)  # its middle may be at +0.837
-    assert verdict.description == "left its lane to the left after 18 m at 36 km/h"
+    assert verdict.description == (
+        "left its lane to the left after 18 m at 36 km/h: more than 95 % of the car was outside"
+    )
     assert verdict.sbft_description == "Car drove out of the lane"
 
 
@@ -83,6 +85,21 @@ def test_the_tolerance_decides_and_the_first_place_moves_with_it() -> None:
     assert (strict.oob_counter, loose.oob_counter) == (2, 2)
     assert strict.margin == pytest.approx(-0.95)  # half of the box: its middle may be on the edge
     assert judge(STRAIGHT, drive, World(limits=Limits(oob_tolerance=1.0))).kept
+
+
+def test_by_default_a_car_fails_where_more_than_half_of_it_is_outside() -> None:
+    # its middle may be on the edge of the lane, which is 2 m from the middle of the lane
+    assert judge(STRAIGHT, drive_at([-2.0] * 5), World()).margin == pytest.approx(2.0, abs=1e-6)
+    kept = judge(STRAIGHT, drive_at([-2.0, -0.01, -2.0]), World())
+    assert kept.description == (
+        "kept its lane within the tolerance of 50 % to the goal after 12 m: at most 49 % outside, 0.86 m "
+        "beyond the marking, 0.01 m from failing"
+    )
+    failed = judge(STRAIGHT, drive_at([-2.0, 0.01, -2.0]), World())
+    assert (failed.outcome, failed.cause, failed.at_s) == ("FAIL", "out of lane", pytest.approx(7.5))
+    assert failed.description == (
+        "left its lane to the left after 8 m at 36 km/h: more than half of the car was outside"
+    )
 
 
 def test_what_comes_first_decides() -> None:
@@ -117,12 +134,8 @@ def test_every_other_end_is_a_failure_with_its_cause(ended: str, cause: str, say
 
 def test_without_a_verge_the_end_of_the_road_is_nearer_than_the_end_of_the_lane() -> None:
     drive = drive_at([-2.0, -2.8, -2.0])
-    assert judge(STRAIGHT, drive, World(section=CrossSection(shoulder=0))).margin == pytest.approx(
-        4 - 2.8 - 0.93
-    )
-    assert judge(STRAIGHT, drive, World(section=CrossSection(shoulder=3))).margin == pytest.approx(
-        2.837 - 0.8
-    )
+    assert judge(STRAIGHT, drive, WORLD.changed(shoulder=0)).margin == pytest.approx(4 - 2.8 - 0.93)
+    assert judge(STRAIGHT, drive, WORLD.changed(shoulder=3)).margin == pytest.approx(2.837 - 0.8)
 
 
 def test_a_drive_ended_at_a_smaller_tolerance_cannot_be_judged_at_a_larger() -> None:

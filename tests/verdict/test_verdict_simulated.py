@@ -117,4 +117,5 @@ def test_the_reference_keeps_its_lane_where_a_car_can() -> None:
         ):
             verdict = judge(road, simulate(road, world, Reference()), world)
             assert verdict.kept
-            assert verdict.margin > (0.7 if world.section.shoulder == 0 else 2.5)
+            # of the 2 m from the middle of its lane to the edge, it uses at most 0.2 m where there is a verge
+            assert verdict.margin > (0.7 if world.section.shoulder == 0 else 1.8)

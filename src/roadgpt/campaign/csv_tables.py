@@ -27,7 +27,7 @@ from roadgpt.run.atomic import write_lines
 RESULTS, CELLS = "results.csv", "cells.csv"
 COLUMNS = (
     "cell", "test", "batch", "origin", "seed", "outcome", "cause", "side", "length_m", "margin_m", "max_oob",
-    "beyond_m", "at_s_m", "description",
+    "beyond_m", "at_s_m", "own_share", "handed_to", "description",
 )  # fmt: skip
 AXES, PER_AXIS = ("MAX_CURV", "STD_SA"), 25
 """The feature map of a cell whose settings define no map: the axes, and the number of bins per axis."""
@@ -112,6 +112,8 @@ def _cell_row(record: Record, cell: Cell, status: CellStatus) -> dict[str, Any]:
         "passed_max_oob": status.max_oob,
         "passed_beyond_m": status.beyond,
         "friction": status.friction,
+        "oracle": status.oracle,
+        "failed_handed_over": status.handed_over,
     }
 
 

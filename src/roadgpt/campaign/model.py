@@ -108,6 +108,10 @@ class Result:
     """Station of the failure, metres along the road; None if the car did not fail."""
     side: Side | None = None
     cause: Cause | None = None
+    own_share: float | None = None
+    """Share of the way, 0 to 1, that the driver drove itself; None if it never handed over."""
+    handed_to: str | None = None
+    """Who drove where the car failed, if the driver had handed over; see ``Verdict.handed_to``."""
     features: Mapping[str, float] = field(default_factory=dict)
     """Features of the road and of the drive, by name: see ``run.features`` and ``campaign.behaviour``."""
 

@@ -33,7 +33,7 @@ class Plan(Frozen):
     prompts: Names = ("",)
     """Descriptions of roads; an empty text if the generator needs no description."""
     designers: Names = ("planner",)
-    drivers: Names = ("beamng_like",)
+    drivers: Names = ("lane_centring",)
     """Names of installed drivers, or ``FILE.py:CLASS``."""
     simulators: Names = ("mujoco",)
     generators: Names = (WITHOUT_GOAL,)

@@ -81,8 +81,9 @@ class WorldTable(_Strict):
     """Width of the shoulder; ``verge`` is its earlier name."""
     friction: Annotated[float, Field(gt=0, le=2)] = 1.0
     speed_limit_kmh: Annotated[float, Field(ge=5, le=300)] = 70.0
-    oob_tolerance: Annotated[float, Field(gt=0, le=1)] = 0.95
-    lane_departure: bool = False
+    oracle: Annotated[str, BeforeValidator(str)] | None = None
+    oob_tolerance: Annotated[float, Field(gt=0, le=1)] | None = None
+    lane_departure: bool | None = None
     min_radius: Positive = 14.326
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
 
@@ -91,7 +92,7 @@ class WorldTable(_Strict):
         give them, so that prompts can set them.
         """
         open_ = {"lanes", "friction", "map_size"} - self.model_fields_set
-        values = self.model_dump(exclude={"speed_limit_kmh", *open_})
+        values = self.model_dump(exclude={"speed_limit_kmh", *open_}, exclude_none=True)
         bank = self.bank / 100 if isinstance(self.bank, float) else self.bank
         return World().changed(**values | {"speed_limit": self.speed_limit_kmh / 3.6, "bank": bank})
 
@@ -101,7 +102,7 @@ class PlanTable(_Strict):
 
     prompts: Texts = ()
     designers: Texts = ("planner",)
-    drivers: Texts = ("beamng_like",)
+    drivers: Texts = ("lane_centring",)
     simulators: Texts = ("mujoco",)
     generators: Texts = ()
     seeds: Seeds = (0,)
@@ -141,6 +142,9 @@ def read_plan(path: Path) -> PlanFile:
     try:
         table = PlanTable.model_validate(data)
         ChatSettings.model_validate(table.chat).came_with(path)
+        table.world.world()
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from error
     except ValidationError as error:
         within = ("chat",) if error.title == ChatSettings.__name__ else ()
         raise UsageError(f"{path}: {_sentence(error, within)}") from error

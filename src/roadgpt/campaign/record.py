@@ -256,7 +256,7 @@ class Store(Record):
         store = cls._opened(folder, "rw")
         try:
             for name in store.missing:  # an older version made this store
-                store._db.execute(f"ALTER TABLE tests ADD COLUMN {name} REAL")
+                store._db.execute(f"ALTER TABLE tests ADD COLUMN {name} {LATER[name]}")
             store._db.execute("PRAGMA journal_mode = WAL")
             store._db.execute("PRAGMA synchronous = NORMAL")
         except sqlite3.Error as error:

@@ -17,7 +17,9 @@ from roadgpt.run.atomic import to_bytes
 if TYPE_CHECKING:
     from roadgpt.network import AnyDesign
 
-MEASURED = ("outcome", "cause", "side", "length", "margin", "max_oob", "beyond", "at_s")
+MEASURED = (
+    "outcome", "cause", "side", "length", "margin", "max_oob", "beyond", "at_s", "own_share", "handed_to",
+)  # fmt: skip
 """The columns of the table ``tests`` that hold the fields of a Result with the same names."""
 SPENT = ("ended", "design_s", "drive_s", "tokens", "cost", "trace")
 """The columns of the table ``tests`` that depend on the clock or on the session."""

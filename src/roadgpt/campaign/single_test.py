@@ -27,7 +27,7 @@ class Allowance(NamedTuple):
 
 BOUNDLESS = Allowance()
 NO_TIME = Seconds()
-OF_VERDICT = ("margin", "max_oob", "beyond", "at_s", "side", "cause")
+OF_VERDICT = ("margin", "max_oob", "beyond", "at_s", "side", "cause", "own_share", "handed_to")
 """The fields that a Result takes over from a Verdict."""
 
 

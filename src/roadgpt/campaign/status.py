@@ -10,7 +10,7 @@ from typing import Any
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.model import Goal
 from roadgpt.campaign.record import Record
-from roadgpt.verdict.severity import MOSTLY
+from roadgpt.verdict.severity import MOSTLY, PARTLY
 
 FRESH = 15.0  # s since the store was last written; a working process writes it every second
 LATELY = 60.0  # s over which the current rate is averaged
@@ -32,7 +32,7 @@ class CellStatus:
     least_margin: float | None
     """Smallest margin of the passed tests, metres. Failed tests are left out; their margins are near 0."""
     partly_outside: int
-    """Number of passed tests in which up to half of the car was outside its lane."""
+    """Number of passed tests in which more than 10 % of the car, up to half, was outside its lane."""
     mostly_outside: int
     """Number of passed tests in which more than half of the car was outside its lane."""
     max_oob: float | None
@@ -45,6 +45,10 @@ class CellStatus:
     goal: Goal | None
     closed: str | None
     """Why the cell was closed before all its tests had been requested; None if it was not closed."""
+    oracle: str = ""
+    """Name of the test oracle: see ``roadgpt.road.ORACLES``."""
+    handed_over: int = 0
+    """Number of failed tests that are no failures of the driver: see ``Verdict.handed_to``."""
     friction: float = 1.0
     """Friction coefficient of the road."""
 
@@ -128,14 +132,15 @@ def cell_statuses(record: Record) -> tuple[CellStatus, ...]:
     counts: dict[str, dict[str, int]] = {}
     passed: dict[str, tuple[Any, ...]] = {}
     grouped = (
-        "SELECT cell, outcome, count(*), min(margin), coalesce(sum(max_oob > 0 AND max_oob <= ?), 0), "
+        "SELECT cell, outcome, count(*), min(margin), coalesce(sum(max_oob > ? AND max_oob <= ?), 0), "
         "coalesce(sum(max_oob > ?), 0), max(max_oob), max(beyond) FROM tests WHERE outcome IS NOT NULL "
         "GROUP BY 1, 2"
     )
-    for cell, outcome, count, *rest in record.stream(grouped, (MOSTLY, MOSTLY)):
+    for cell, outcome, count, *rest in record.stream(grouped, (PARTLY, MOSTLY, MOSTLY)):
         counts.setdefault(cell, {})[outcome] = count
         if outcome == "PASS":
             passed[cell] = tuple(rest)
+    others = dict(record.query("SELECT cell, count(handed_to) FROM tests GROUP BY cell"))
     asked = dict(record.query("SELECT cell, sum(n) FROM batches GROUP BY cell"))
     closed = dict(record.query("SELECT name, closed FROM cells"))
     measured = ("least_margin", "partly_outside", "mostly_outside", "max_oob", "beyond")
@@ -150,6 +155,8 @@ def cell_statuses(record: Record) -> tuple[CellStatus, ...]:
             outcomes=counts.get(cell.name, {}),
             goal=cell.goal,
             closed=closed[cell.name],
+            oracle=cell.request.world.limits.oracle,
+            handed_over=others.get(cell.name, 0),
             friction=cell.request.world.site.friction,
             **dict(zip(measured, passed.get(cell.name, NOTHING), strict=True)),
         )

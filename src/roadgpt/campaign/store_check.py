@@ -25,8 +25,8 @@ FILE = f"(typeof({{0}}) = 'text' AND ({FILES} OR {OLD_FILES}))"
 OUTCOME = "{0} IN ('PASS', 'FAIL', 'INVALID', 'ERROR', 'VALID')"
 SIDE = "{0} IN ('left', 'right')"
 
-LATER = ("beyond",)
-"""Columns of ``tests`` that stores of earlier versions lack."""
+LATER = {"beyond": "REAL", "own_share": "REAL", "handed_to": "TEXT"}
+"""Columns of ``tests`` that stores of earlier versions lack, with their types."""
 TABLES: dict[str, dict[str, str]] = {
     "meta": {"name": TEXT, "value": TEXT},
     "cells": {"name": NAME, "cell": TEXT, "seconds": NUMBER, "closed": f"({{0}} IS NULL OR {TEXT})"},
@@ -38,7 +38,8 @@ TABLES: dict[str, dict[str, str]] = {
         "outcome": f"({{0}} IS NULL OR {OUTCOME})",
         "cause": f"({{0}} IS NULL OR {TEXT})",
         "side": f"({{0}} IS NULL OR {SIDE})",
-        **dict.fromkeys(MEASURED[3:] + SPENT, f"({{0}} IS NULL OR {NUMBER})"),
+        **dict.fromkeys(MEASURED[3:-1] + SPENT, f"({{0}} IS NULL OR {NUMBER})"),
+        "handed_to": f"({{0}} IS NULL OR {TEXT})",
     },
     "details": dict.fromkeys(("cell", "number", "origin", "design", "description", "features", "error"), ""),
     "traces": {"trace": WHOLE, "file": FILE},

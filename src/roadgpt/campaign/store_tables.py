@@ -51,7 +51,8 @@ CREATE TABLE batches(cell TEXT, batch INTEGER, first INTEGER NOT NULL, n INTEGER
   left INTEGER NOT NULL, PRIMARY KEY(cell, batch)) WITHOUT ROWID;
 CREATE TABLE tests(cell TEXT, number INTEGER, batch INTEGER NOT NULL, seed INTEGER NOT NULL,
   given INTEGER NOT NULL, outcome TEXT, cause TEXT, side TEXT, length REAL, margin REAL, max_oob REAL,
-  beyond REAL, at_s REAL, ended REAL, design_s REAL, drive_s REAL, tokens INTEGER, cost REAL, trace INTEGER,
+  beyond REAL, at_s REAL, own_share REAL, handed_to TEXT, ended REAL, design_s REAL, drive_s REAL,
+  tokens INTEGER, cost REAL, trace INTEGER,
   PRIMARY KEY(cell, number)) WITHOUT ROWID;
 CREATE TABLE details(cell TEXT, number INTEGER, origin TEXT NOT NULL, design TEXT, description TEXT,
   features TEXT, error TEXT, PRIMARY KEY(cell, number));

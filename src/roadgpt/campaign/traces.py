@@ -22,9 +22,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.drive import COLUMNS, Box, Columns, Drive
+from roadgpt.drive import COLUMNS, Box, Columns, Drive, Handover
 from roadgpt.errors import UsageError
-from roadgpt.reading import check_unpacked, json_of, opened
+from roadgpt.reading import check_unpacked, json_of, opened, strictly
 from roadgpt.run.atomic import write_whole
 
 TRACES, SUFFIX, OLD_SUFFIX = "traces", ".npz", ".parquet"
@@ -46,7 +46,7 @@ class Trace(NamedTuple):
     """A Drive whose values are integer multiples of small steps, as stored in a file."""
 
     header: dict[str, Any]
-    """Driver, simulator, seed, how the drive ended, and the dimensions of the car."""
+    """Driver, simulator, seed, how the drive ended, the dimensions of the car, and handovers, if any."""
     columns: dict[str, Whole]
 
 
@@ -58,6 +58,7 @@ def trace_of(drive: Drive) -> Trace:
         "seed": drive.seed,
         "ended": drive.ended,
         "car": drive.car._asdict(),
+        **({"handovers": drive.handovers} if drive.handovers else {}),
     }
     return Trace(header, {name: _whole(drive[name], STEPS[name]) for name in COLUMNS})
 
@@ -68,6 +69,7 @@ def drive_of(trace: Trace) -> Drive:
     A value differs from that of the original drive by at most half the rounding step of its column.
     """
     header = dict(trace.header)
+    header["handovers"] = strictly(tuple[Handover, ...], header.get("handovers", ()))
     columns = Columns({name: _number(trace.columns[name], STEPS[name]) for name in COLUMNS})
     return Drive(columns=columns, **{**header, "car": Box(**header["car"])})
 

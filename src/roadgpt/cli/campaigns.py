@@ -10,7 +10,7 @@ import click
 
 from roadgpt.cli.next_steps import lines, of_status
 from roadgpt.cli.progress import duration, progress
-from roadgpt.cli.result_row import COLOURS, metres
+from roadgpt.cli.result_row import COLOURS, driver_and_oracle, metres
 from roadgpt.cli.streams import apart, resumable
 
 if TYPE_CHECKING:
@@ -87,6 +87,10 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
     if found is not None and found.failures:
         yield f"  {found.headline}"
     yield f"  {outcomes_line(status.outcomes)}"
+    if other := sum(cell.handed_over for cell in status.cells):
+        yield f"  in {other:,} FAIL the driver had handed over: they are not its failures"
+    if {"PASS", "FAIL"} & status.outcomes.keys():
+        yield f"  {driver_and_oracle([cell.driver for cell in status.cells], status.cells[0].oracle)}"
     if found is not None and found.them:
         first = "" if found.is_tested else "how many faults these are, "
         yield f"  {first}why, how often again, and pictures: roadgpt faults {status.folder}"

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from roadgpt.run.model import Request
 
 LONGEST = 120  # letters of a suite's name
-IN_CASE = ("seed", "max_oob", "beyond_m", "margin_m", "length_m", "at_s_m", "side")  # columns of a row
+IN_CASE = ("seed", "max_oob", "beyond_m", "margin_m", "length_m", "at_s_m", "side", "own_share", "handed_to")
 UNKNOWN = "roads that were given"
 
 
@@ -49,7 +49,6 @@ def _suites(folder: Path) -> Iterator["Suite"]:
 
 
 def _of_folder(folder: Path) -> Iterator["Suite"]:
-    """Yields a suite for each cell."""
     from roadgpt.campaign.folder_record import open_record
     from roadgpt.report.junit import Suite
 
@@ -63,7 +62,6 @@ def _of_folder(folder: Path) -> Iterator["Suite"]:
 
 
 def _of_cell(folder: Path, cell: "Cell") -> Iterator["Case"]:
-    """Yields the tests of a cell; reads them one at a time."""
     from roadgpt.campaign.folder_record import open_record
     from roadgpt.campaign.model import NumberedTest
 
@@ -96,6 +94,7 @@ def common(request: "Request") -> "Properties":
         "designer": setup.designer,
         "driver": setup.driver,
         "simulator": setup.simulator,
+        "oracle": world.limits.oracle,
         "oob_tolerance": world.limits.oob_tolerance,
         "lane_departure": str(world.limits.lane_departure).lower(),
         "speed_limit_kmh": round(world.limits.speed_limit * 3.6, 6),

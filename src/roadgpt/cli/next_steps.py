@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 FEWEST = 5  # passed drives; if there are fewer, it is no surprise that none failed
 FRICTIONS = {"wet": "a wet road", "snow": "snow"}
 SPEEDS = (100.0, 130.0)  # km/h
-TOLERANCE = 0.5  # of the competition on test selection
 SEARCHED = 200  # tests of a search
 GOALS = ("failures", "hardest")
 HEAD = "No road failed. What may find one that does:"
@@ -29,10 +28,8 @@ class WithoutFailure:
     request: "Request"
     tests: int
     passed: int
-    mostly: int = 0
-    """Number of passed tests in which more than half of the car was outside its lane."""
     outside: int = 0
-    """Number of passed tests in which any part of the car was outside its lane."""
+    """Number of passed tests in which more than 10 % of the car was outside its lane."""
     goal: str | None = None
     """What the campaign searched for, such as 'failures'; None if it did not search."""
     is_search: bool = False
@@ -64,18 +61,14 @@ def lines(quiet: WithoutFailure | None) -> Iterator[str]:
 
 def _steps(quiet: WithoutFailure) -> Iterator[tuple[str, str]]:
     from roadgpt.brief.words import SURFACES
+    from roadgpt.road.oracles import oracle_limits
 
     world = quiet.request.world
     if not world.limits.lane_departure:
         why = "fail where a front tyre passes the lane marking (UN R157)"
         if quiet.outside:
             why += f"; {quiet.outside:,} of {quiet.passed:,} passed with the car partly or mostly outside"
-        yield why, _command(quiet, lane_departure=True)
-    if world.limits.oob_tolerance > TOLERANCE:
-        why = "fail where more than half of the car is outside its lane"
-        if quiet.mostly:
-            why += f", as it was on {quiet.mostly:,} of {quiet.passed:,} that passed"
-        yield why, _command(quiet, oob_tolerance=TOLERANCE)
+        yield why, _command(quiet, **oracle_limits("departure"))
     for surface, name in FRICTIONS.items():
         if SURFACES[surface].friction < world.site.friction:
             yield name, _command(quiet, friction=SURFACES[surface].friction)
@@ -109,20 +102,18 @@ def of_status(status: "Status") -> WithoutFailure | None:
 
     with open_record(Path(status.folder)) as record:
         first = record.cells()[0]
-    partly = sum(cell.partly_outside for cell in status.cells)
-    mostly = sum(cell.mostly_outside for cell in status.cells)
+    outside = sum(cell.partly_outside + cell.mostly_outside for cell in status.cells)
     tests, is_search = first.budget.tests or SEARCHED, not first.in_sequence
     passed = status.outcomes["PASS"]
-    outside = partly + mostly
-    return WithoutFailure(first.request, tests, passed, mostly, outside, first.goal, is_search, first.brief)
+    return WithoutFailure(first.request, tests, passed, outside, first.goal, is_search, first.brief)
 
 
 def of_rows(request: "Request", brief: "Brief | None", roads: int, rows: Any) -> WithoutFailure | None:
     """Summarises result rows; returns None if any road failed."""
-    from roadgpt.verdict.severity import MOSTLY
+    from roadgpt.verdict.severity import PARTLY
 
     if any(row.test_outcome == "FAIL" for row in rows):
         return None
     shares = [row.max_oob or 0.0 for row in rows if row.test_outcome == "PASS"]
-    outside, mostly = sum(share > 0 for share in shares), sum(share > MOSTLY for share in shares)
-    return WithoutFailure(request, roads, len(shares), mostly, outside, brief=brief)
+    outside = sum(share > PARTLY for share in shares)
+    return WithoutFailure(request, roads, len(shares), outside, brief=brief)

@@ -76,10 +76,11 @@ class Option(click.Option):
         self.key, self.guard, self.unit = key or self.flag[2:].replace("-", "_"), guard, unit
         self.advice = advice
 
-    def under(self, heading: Heading) -> "Option":
-        """Returns a copy of this option under another heading. Both --help and --help-all list the copy."""
+    def but(self, **values: Any) -> "Option":
+        """Returns a copy of this option with other attributes, such as ``default``. Both --help and
+        --help-all list the copy."""
         twin = copy(self)
-        twin.heading, twin.is_rare = heading, False
+        vars(twin).update(is_rare=False, **values)
         return twin
 
     @property

@@ -59,9 +59,11 @@ WORLD = (
            measure(50, 10_000, "metres")),
     _judged("--speed-limit", "Speed limit, km/h.", measure(5, 300, "km/h"), 70, unit=3.6,
             key="speed_limit_kmh"),
-    _judged("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
-            0.95),
-    _judged("--lane-departure", "Also fail if a front tyre crosses the lane marking.", bool),
+    _judged("--oracle", "FAIL when more of the car than this is outside its lane: half, sbft (85 %), thesis "
+            "(95 %), 0.7 ...; departure: a front tyre over the marking.", str, "half", metavar="ORACLE"),
+    _judged("--oob-tolerance", "Share of the car that may be outside its lane. [default: that of --oracle]",
+            measure(0, 1, above=True), is_rare=True),
+    _judged("--lane-departure", "Also fail if a front tyre crosses the lane marking.", bool, is_rare=True),
     _world("--lanes", "Own + oncoming lanes. [default: 1+1, or as described]",
            lanes),
     _world("--lane-width", "Width of every lane, m.", measure(2, 10, "metres"), 4),
@@ -80,7 +82,7 @@ SETUP = (
          "only).", str, "model", guard=reader_guard),
     _run("--designer", "Designs roads: planner (a search), or thesis (a language model, as in RoadGPT's "
          "thesis).", str, "planner", guard=designer_guard),
-    _run("--driver", "A name, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
+    _run("--driver", "A name, or FILE.py:CLASS.", driver, "lane_centring", heading=Heading.DRIVE,
          guard=driver_guard),
     _run("--simulator", "What simulates the car.", str, "mujoco", heading=Heading.DRIVE),
     _run("--keep-driving", "Continue to the end after the car leaves its lane.", bool, heading=Heading.DRIVE),
@@ -271,6 +273,16 @@ def world_of(values: dict[str, Any]) -> "World":
     from roadgpt.road import World
 
     given = {each.field: each.read(values.pop(each.field)) for each in WORLD if each.field in values}
+    if "oracle" in given:  # what is typed precedes what files set, and this the default oracle
+        from roadgpt.road.oracles import oracle_limits
+
+        limits, source_of = oracle_limits(), click.get_current_context().get_parameter_source
+        found = {name: given.pop(name) for name in ("oracle", *limits)}
+        for source in (ParameterSource.DEFAULT, ParameterSource.DEFAULT_MAP, ParameterSource.COMMANDLINE):
+            some = {name: found[name] for name in found if source_of(name) is source}
+            some = {name: value for name, value in some.items() if value is not None}
+            limits = oracle_limits(**some) if "oracle" in some else limits | some
+        given |= limits
     return World().changed(**{name: value for name, value in given.items() if value is not None})
 
 

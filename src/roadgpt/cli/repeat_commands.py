@@ -10,6 +10,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.cli import options
 from roadgpt.cli.option import Option, named, words_of
 from roadgpt.road import World
+from roadgpt.road.oracles import oracle_limits
 from roadgpt.run.model import Request, Run, Setup
 
 # The options of ``roadgpt drive`` that set fields of the Setup; the road's file determines the geometry.
@@ -60,7 +61,9 @@ def option_words(
     layers = options.layers()
     told = {each.key for each in options.SETTABLE if each.found(layers) is not None} | also
     words = words_of(of_setup, dict(setup), told=told)
-    words += words_of(options.WORLD, world.values(), World().values(), told)
+    told |= {"oracle"} if told & {*oracle_limits()} else set()
+    values = world.values() | dict.fromkeys(oracle_limits()) | {"oracle": world.limits.oracle}
+    words += words_of(options.WORLD, values, World().values(), told)
     if asks and setup.chat:
         words += words_of(options.CHAT, dict(setup.chat), dict(type(setup.chat)()))
     return words

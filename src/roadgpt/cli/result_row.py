@@ -27,7 +27,7 @@ WIDEST = max(len(name) for name in (*COLOURS, "FAIL (out of lane)"))
 MOST_TOLD = len("PASS (100 % out, 10.00 m)")
 IN_JSON = (
     "file", "is_valid", "validation_message", "findings", "test_outcome", "description", "max_oob",
-    "beyond_m", "margin_m", "length_m", "seconds",
+    "beyond_m", "margin_m", "length_m", "own_share", "handed_to", "seconds",
 )  # fmt: skip
 
 
@@ -66,6 +66,10 @@ class Row:
     """Station of the failure, metres along the road; None if the car did not fail."""
     side: str | None = None
     """The side on which the car left its lane."""
+    own_share: float | None = None
+    """Share of the way, 0 to 1, that the driver drove itself; None if it never handed over."""
+    handed_to: str | None = None
+    """Who drove where the car failed, if the driver had handed over."""
     seconds: float = 0.0
     name: str = ""
     """A shorter name, which is printed instead of ``file``; if empty, ``file`` is printed."""
@@ -81,7 +85,8 @@ class Row:
     def outcome(self) -> str:
         """The outcome with cause or qualifier, such as 'FAIL (out of lane)' or 'PASS (mostly outside)'."""
         if self.cause:
-            return f"{self.test_outcome} ({self.cause})"
+            other = f", {self.handed_to} drove" if self.handed_to else ""
+            return f"{self.test_outcome} ({self.cause}{other})"
         from roadgpt.verdict import graded
 
         return graded(self.test_outcome, self.max_oob)
@@ -110,6 +115,8 @@ class Row:
         length = "" if self.length_m is None else f"{self.length_m:6.1f} m"
         margin = "" if self.margin_m is None else f"margin {metres(self.margin_m)}"
         line = f"{self.told:<{MOST_TOLD}} {length:>9}  {margin:<15}  {self.name or self.file}"
+        if self.own_share is not None:
+            line += f"  drove {100 * self.own_share:.0f} % itself"
         if self.test_outcome in ("INVALID", "ERROR"):
             return f"{line}  {self.description.removeprefix(f'{self.file}: ')}"
         if not self.findings:
@@ -117,6 +124,13 @@ class Row:
         rest = len(self.findings) - 1  # the road was driven in spite of them
         more = f" and {rest} more finding{'s' * (rest > 1)}" if rest else ""
         return f"{line}  finding: {self.findings[0]}{more}"
+
+
+def driver_and_oracle(drivers: Sequence[str], oracle: str) -> str:
+    """Returns the line of text that says who drove, and when a test fails."""
+    from roadgpt.road.oracles import oracle_in_words
+
+    return f"driver {' and '.join(dict.fromkeys(drivers))}, oracle {oracle_in_words(oracle)}"
 
 
 def outside(share: float | None, beyond: float | None) -> str:
@@ -207,7 +221,8 @@ def row_of_result(result: "Result", words: str, seed: int, name: str) -> Row:
 
 def _measured(found: "Verdict | Result") -> dict[str, Any]:
     measures = {"max_oob": found.max_oob, "beyond_m": found.beyond, "margin_m": found.margin}
-    return {**measures, "cause": found.cause, "at_s_m": found.at_s, "side": found.side}
+    whose = {"own_share": found.own_share, "handed_to": found.handed_to}
+    return {**measures, **whose, "cause": found.cause, "at_s_m": found.at_s, "side": found.side}
 
 
 def unreadable(file: str, error: Exception) -> Row:

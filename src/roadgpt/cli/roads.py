@@ -193,10 +193,10 @@ def source_of(file: str, world: "World") -> tuple["Blueprint", "World", tuple[st
     blueprint, remarks, stated, *_ = read_source(file)
     context = click.get_current_context(silent=True)
     told, values, usual = typed(context) if context else set(), world.values(), World().values()
-    given = [each for each in WORLD if each.field in told or values[each.field] != usual[each.field]]
+    given = [each for each in WORLD if each.field in told or values.get(each.field) != usual.get(each.field)]
     own = [each.flag for each in given if each.field in LANES] if getattr(blueprint, "profile", None) else []
     for each in given:
-        if each.flag not in own and stated.get(each.field, values[each.field]) != values[each.field]:
+        if each.flag not in own and each.field in stated and stated[each.field] != values[each.field]:
             of_file = f"the {stated[each.field] * each.unit:.6g} of the file"
             pair = (of_file, f"{each.flag} of the configuration")
             remarks += (" goes before ".join((each.flag, of_file) if each.field in told else pair),)

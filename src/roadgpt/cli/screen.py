@@ -13,7 +13,7 @@ import click
 
 from roadgpt import stopping
 from roadgpt.cli.progress import progress
-from roadgpt.cli.result_row import WIDEST, Row, colour_of, row_of, summary
+from roadgpt.cli.result_row import WIDEST, Row, colour_of, driver_and_oracle, row_of, summary
 from roadgpt.cli.streams import apart, is_coloured
 
 if TYPE_CHECKING:
@@ -38,8 +38,9 @@ class Screen:
         verbose: bool = False,
     ) -> None:
         self.total, self.as_json, self.quiet, self.verbose = total, as_json, quiet, verbose
-        self.junit: tuple[Path, Request] | None = None
-        """The JUnit file to write, and the request of the roads; None: none is written."""
+        self.request: Request | None = None
+        """The request of the roads, if there is one; the table of outcomes names its driver and oracle."""
+        self.junit: Path | None = None
         self.rows: list[Row] = []
         if quiet:
             logging.getLogger("roadgpt").setLevel(logging.ERROR)
@@ -103,13 +104,15 @@ class Screen:
 
     def close(self) -> None:
         """Prints the table of outcomes, and writes the JUnit file if one was requested."""
-        if self.junit is not None:
+        if self.junit is not None and self.request is not None:
             from roadgpt.cli.junit import write_rows
 
-            write_rows(*self.junit, self.rows)
+            write_rows(self.junit, self.request, self.rows)
         if self.quiet or self.as_json or not self.rows:
             return
         _show("")
+        if self.request is not None and any(row.max_oob is not None for row in self.rows):
+            _show(driver_and_oracle([self.request.setup.driver], self.request.world.limits.oracle))
         _show(f"{'outcome':<{WIDEST}} {'roads':>7} {'share':>7}  {'least margin':>12}  {'most outside':>18}")
         for outcome, count, share, least, most in summary(self.rows):
             told = click.style(f"{outcome:<{WIDEST}}", fg=colour_of(outcome))

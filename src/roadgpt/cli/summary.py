@@ -17,9 +17,10 @@ from roadgpt.chat import Spent
 from roadgpt.check.measures import ups_and_downs
 from roadgpt.cli.campaigns import as_line, cell_lines, faults_of, outcomes_line, told
 from roadgpt.cli.repeat_commands import replay_lines
-from roadgpt.cli.result_row import WIDEST, Row, metres, row_of, row_of_result, spending
+from roadgpt.cli.result_row import WIDEST, Row, driver_and_oracle, metres, row_of, row_of_result, spending
 from roadgpt.cli.roads import NamedRoad, roads_named
 from roadgpt.errors import UsageError
+from roadgpt.road.oracles import oracle_in_words
 from roadgpt.run.folder import read_run, run_folder
 from roadgpt.run.model import Run
 from roadgpt.verdict.severity import percent
@@ -85,9 +86,9 @@ def _lines(path: Path | str, choice: Choice | None) -> Iterator[str]:
 
 
 def _cell_lines(place: Selection) -> Iterator[str]:
-    """Yields a cell of a campaign and its first tests."""
     (cell,) = [cell for cell in status_of(place.folder).cells if cell.name == place.cell]
     yield from cell_lines([cell])
+    yield driver_and_oracle([cell.driver], cell.oracle)
     with open_record(place.folder) as record:
         for result in islice(record.results(place.cell), MOST_TESTS):
             name = place.of(NumberedTest(place.cell, result.number)).said
@@ -104,7 +105,6 @@ def _one_line(named: NamedRoad) -> str:
 
 
 def _line_of(row: Row) -> str:
-    """Returns a line of a list of roads: name, outcome, length, margin and a sentence."""
     margin = "" if row.margin_m is None else metres(row.margin_m)
     measured = f"{row.outcome:<{WIDEST}} {row.length_m or 0:>5.0f} m {margin:>9}"
     return f"{row.file or row.name}  {measured}  {row.description}"
@@ -147,9 +147,9 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
         beyond = "an unknown distance" if verdict.beyond is None else f"{verdict.beyond:.2f} m"
         yield (
             f"  verdict   at most {percent(verdict.max_oob)} of the car outside its lane, {beyond} "
-            f"beyond the marking, tolerance {percent(limits.oob_tolerance)}"
-            f"{', lane departures count' * limits.lane_departure}, margin {metres(verdict.margin)}"
+            f"beyond the marking, margin {metres(verdict.margin)}"
         )
+        yield f"  oracle    {oracle_in_words(limits.oracle)}"
     yield from _asked_lines(run)
     yield f"  seed      {run.seed}" + (f" (road {run.index} of seed {run.request.seed})" if run.words else "")
     yield f"  versions  {', '.join(f'{name} {number}' for name, number in run.versions.items())}"
@@ -179,7 +179,6 @@ def _road_line(run: Run) -> str:
 
 
 def _folder_lines(folder: Path) -> Iterator[str]:
-    """Yields the runs of a folder of runs."""
     counts: Counter[str] = Counter()
     spent = Spent()
     with open_record(folder) as record:
@@ -200,4 +199,6 @@ def _folder_lines(folder: Path) -> Iterator[str]:
         yield f"language model: {spending(spent)}"
     roads = cell.budget.most
     rest = f"; {roads - counts.total()} of {roads} still to be made" if counts.total() < roads else ""
+    if cell.request.setup.drives:
+        yield driver_and_oracle([cell.request.setup.driver], cell.request.world.limits.oracle)
     yield outcomes_line(counts) + rest

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from roadgpt import plugins
 from roadgpt.drive.continuity import check_motion
-from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended
+from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended, Handover
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, View
 from roadgpt.errors import UsageError
@@ -39,6 +39,7 @@ __all__ = [
     "Drive",
     "Driver",
     "Ended",
+    "Handover",
     "JunctionAhead",
     "Simulator",
     "View",
@@ -52,7 +53,9 @@ class Driver(Protocol):
 
     A driver may also have a method ``start(road, world, seed)``. This method is called once before time 0.
     A driver may have an attribute ``name``. The Drive records this name; without a name, the Drive records
-    the name of the driver's class.
+    the name of the driver's class. A driver that lets somebody else drive for a while, such as the person at
+    the wheel, names them in an attribute ``handed_to``, which is None while it drives itself. The Drive
+    records it, and the Verdict says whose a failure is.
     """
 
     def steer(self, view: View) -> Command:

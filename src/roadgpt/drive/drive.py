@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.errors import UsageError
-from roadgpt.reading import check_unpacked, opened
+from roadgpt.reading import check_unpacked, opened, strictly
 
 FloatArray = NDArray[np.float64]
 Ended = Literal["goal", "out_of_lane", "fell", "stuck", "timeout"]
@@ -74,6 +74,15 @@ class Box(NamedTuple):
     """Height in metres of the centre of gravity above the underside of the car."""
 
 
+class Handover(NamedTuple):
+    """A part of a drive, from ``start`` to ``end`` in seconds, in which the driver had handed over; ``by``
+    names whoever drove, such as "reference"."""
+
+    start: float
+    end: float
+    by: str
+
+
 class Columns(Mapping[str, FloatArray]):
     """Maps names to read-only arrays of equal length."""
 
@@ -113,6 +122,8 @@ class Drive:
     columns: Columns
     ended: Ended
     car: Box
+    handovers: tuple[Handover, ...] = ()
+    """When the driver had handed over, in order; empty if it drove all the way itself."""
 
     def __repr__(self) -> str:
         way = f"{self['s'][-1]:.1f} m in {self.duration:.2f} s, {len(self)} steps"
@@ -144,6 +155,22 @@ class Drive:
         counts."""
         return float(self.columns["outside"][: self.lane_steps].max())
 
+    def handed_to(self, step: int) -> str | None:
+        """Returns the name of whoever drove up to this step in the driver's place; None for the driver."""
+        time = self["time"][step] - 5e-4  # stored times are rounded to a millisecond
+        return next((each.by for each in self.handovers if each.start < time <= each.end), None)
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Share of the way, 0 to 1, that each drove, by name, the driver first; empty if the driver never
+        handed over."""
+        if not self.handovers:
+            return {}
+        way = np.hypot(np.diff(self["x"]), np.diff(self["y"]))
+        by = np.array([self.handed_to(step) or self.driver for step in range(1, len(self))])
+        names, whole = dict.fromkeys([self.driver, *(each.by for each in self.handovers)]), way.sum() or 1.0
+        return {name: float(way[by == name].sum() / whole) for name in names}
+
     def corners(self, step: int) -> FloatArray:
         """Returns the four corners of the car's box in plan at one step, shape (4, 2), counter-clockwise.
 
@@ -168,6 +195,7 @@ class Drive:
             "seed": self.seed,
             "ended": self.ended,
             "car": self.car._asdict(),
+            **({"handovers": self.handovers} if self.handovers else {}),
         }
         buffer = io.BytesIO()
         with zipfile.ZipFile(buffer, "w") as archive:
@@ -218,6 +246,7 @@ def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
         columns=Columns({name: arrays[name] for name in COLUMNS}),
         ended=header["ended"],
         car=Box(**{name: float(value) for name, value in header["car"].items()}),
+        handovers=strictly(tuple[Handover, ...], header.get("handovers", ())),
     )
 
 

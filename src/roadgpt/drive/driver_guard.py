@@ -24,6 +24,7 @@ import traceback
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from roadgpt.drive.drive import Handover
 from roadgpt.drive.view import View
 from roadgpt.errors import DriverError
 
@@ -76,6 +77,8 @@ class DriverGuard:
         self._before_start = before_start
         self._used = 0.0
         self._due = math.inf
+        self.handed_to: str | None = None
+        self.handovers: list[Handover] = []
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Calls the driver's ``start``, if it has one.
@@ -98,14 +101,23 @@ class DriverGuard:
                 answers together have taken longer than the limit for one drive.
         """
         begun = time.perf_counter()
-        answer = self._timed(self._steer, (view,), self._one_answer, view.time)
+        answer, by = self._timed(self._answer, (view,), self._one_answer, view.time)
         self._used += time.perf_counter() - begun
         if self._used > self._whole_drive:
             raise DriverError(
                 f"driver '{self.name}' took more than {self._whole_drive:g} s for one drive: "
                 "make steer() faster"
             )
+        before, self.handed_to = self.handed_to, by
+        if by:
+            start = self.handovers.pop().start if before == by else view.time
+            self.handovers.append(Handover(start, view.time + view.dt, by))
         return self._checked(answer, view.time)
+
+    def _answer(self, view: View) -> tuple[Any, str | None]:
+        answer = self._steer(view)  # type: ignore[misc]
+        by = getattr(self._driver, "handed_to", None)
+        return answer, None if by is None or by == self.name else _short(by, quoted=not str(by).isprintable())
 
     def _timed(self, method: Any, given: tuple[Any, ...], limit: float, at: float, late: str = "") -> Any:
         """Calls a method of the driver, and stops it after ``limit`` seconds; ``at`` is the time in seconds

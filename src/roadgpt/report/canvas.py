@@ -17,7 +17,7 @@ from roadgpt.network import has_no_route
 from roadgpt.report.text_width import fitted, inches
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
-from roadgpt.verdict import Severity, graded
+from roadgpt.verdict import SEVERITIES, Severity, graded
 
 Format = Literal["png", "svg", "pdf"]
 """File format of a picture: PNG in pixels; SVG and PDF can be scaled."""
@@ -39,11 +39,11 @@ GRASS = "#cfdcc0"
 # Okabe and Ito's colours, which colour-blind people can distinguish; a word or a symbol is always shown, too.
 BLUE, ORANGE, GREEN, VERMILLION, PURPLE = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#aa4499"
 YELLOW = "#d0bf00"
-SEVERE: dict[Severity, str] = {"inside": GREEN, "partly outside": YELLOW, "mostly outside": ORANGE}
+SEVERE: dict[Severity, str] = dict(zip(SEVERITIES, (GREEN, YELLOW, ORANGE), strict=True))
 """Colours that show how far outside its lane the car was."""
 OUTCOMES = {
     "PASS": GREEN,
-    **{f"PASS ({name})": colour for name, colour in SEVERE.items() if name != "inside"},
+    **{f"PASS ({name})": SEVERE[name] for name in SEVERITIES[1:]},
     "FAIL": VERMILLION,
     "INVALID": SOFT,
     "ERROR": PURPLE,
@@ -163,13 +163,14 @@ def _badge(run: Run) -> float:
 
 def origin(run: Run) -> str:
     """Returns one line with the seed and number of the road, its length in metres (or "no route") and, if
-    there is a drive, the driver and the simulator.
+    there is a drive, the driver, the simulator and the oracle.
     """
     seed = f"seed {run.request.seed}"
     said = [f"{seed}, road {run.index}"] if run.words else [seed] if run.drive is not None else []
     said.append("no route" if run.road and has_no_route(run.road) else f"{run.length:.0f} m")
     if run.drive is not None:
         said.append(f"driven by {run.drive.driver} in {run.drive.simulator}")
+        said.append(f"oracle {run.world.limits.oracle}")
     return "   ·   ".join(said)
 
 

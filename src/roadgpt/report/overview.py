@@ -34,6 +34,7 @@ from roadgpt.report.canvas import (
 from roadgpt.report.plan_view import ASPHALT, GROUND
 from roadgpt.report.text_width import fitted, inches
 from roadgpt.road import World
+from roadgpt.run.card import CARD, read_card
 from roadgpt.run.execution import FIELDS
 from roadgpt.run.folder import run_of_test
 from roadgpt.verdict import graded, percent
@@ -104,16 +105,13 @@ def pages(folder: Path | str) -> Iterator[Figure]:
 
 
 def _about(folder: Path) -> tuple[tuple[str, str], float]:
-    """Returns description and seed of the campaign, and the side of its map in metres."""
-    card = folder / "campaign.json"
-    if not card.is_file():
+    """Returns the campaign's description, its seed, driver and oracle, and the side of its map in metres."""
+    if not (folder / CARD).is_file():
         return (folder.name, ""), World().site.map_size
-    try:
-        request = _loaded(card)["request"]
-        size = float(request["world"]["map_size"])
-        return (str(request["words"]), f"seed {request['seed']}"), size
-    except (TypeError, ValueError, LookupError) as error:
-        raise UsageError(f"{card} cannot be read ({error!r}); remove it or make the roads again") from error
+    request = read_card(folder).request
+    world, driver = request.world, Path(request.setup.driver).name
+    by = f", driver {driver}, oracle {world.limits.oracle}" if request.setup.drives else ""
+    return (request.words, f"seed {request.seed}{by}"), world.site.map_size
 
 
 def _thumbnail(path: Path) -> Thumbnail:
@@ -208,7 +206,6 @@ def _header(axes: Axes, about: tuple[str, str], part: str, counts: Counter[str],
 
 
 def _key(axes: Axes, entries: list[Thumbnail]) -> None:
-    """Draws the key to the signs on the maps: where a road starts, and where the car failed."""
     x = MARGIN + 0.06
     if any(len(entry.points) for entry in entries):
         axes.scatter(x, KEY, s=20, c=INK, marker="o", lw=0)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from roadgpt.road.builder import Geometry, build
 from roadgpt.road.design import Design, Segment, read_design
 from roadgpt.road.moving import moved
+from roadgpt.road.oracles import ORACLES
 from roadgpt.road.profile import Edges, Profile
 from roadgpt.road.road import Road, Samples
 from roadgpt.road.short_segments import in_short_segments
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from roadgpt.road.opendrive import ImportedRoad, read_opendrive
 
 __all__ = [
+    "ORACLES",
     "CrossSection",
     "Design",
     "Edges",

@@ -14,6 +14,7 @@ from pydantic import AfterValidator, Field, model_serializer, model_validator
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.road.design import FrozenFields
+from roadgpt.road.oracles import oracle_limits, oracle_name
 from roadgpt.road.profile import Marking, Profile
 from roadgpt.road.road import Road
 from roadgpt.road.superelevation import superelevation
@@ -144,7 +145,7 @@ class Limits(FrozenFields):
 
     speed_limit: Positive = 70 / 3.6
     """Speed limit in m/s. The default is the competition's 70 km/h."""
-    oob_tolerance: Annotated[float, Field(gt=0, le=1)] = 0.95
+    oob_tolerance: Annotated[float, Field(gt=0, le=1)] = oracle_limits()["oob_tolerance"]
     """Fraction of the car's area, 0 to 1, that may be outside its lane before the test fails."""
     lane_departure: bool = False
     """Whether the test also fails as soon as a front tyre crosses the outer edge of a lane marking.
@@ -157,6 +158,11 @@ class Limits(FrozenFields):
     """Steepest grade, uphill or downhill, that the validity rules allow, as a ratio."""
     min_length: NotNegative = 20.0
     """Minimum length of a road in metres."""
+
+    @property
+    def oracle(self) -> str:
+        """Name of the test oracle, such as "half", or the share of the car that may be outside its lane."""
+        return oracle_name(self.oob_tolerance, self.lane_departure)
 
     @property
     def design_radius(self) -> float:
@@ -190,9 +196,14 @@ EARLIER = {key: name for name, key in KEYS.items()}
 def _in_parts(values: Mapping[str, Any]) -> dict[str, Any]:
     """Groups the values of a flat table by the part of a World that they belong to.
 
-    Unknown values stay at the top level, as does a value that is given twice, or whose part is given as a
-    whole as well; pydantic refuses them there.
+    ``oracle``, as in ``roadgpt.road.oracles``, stands for two of the Limits. Unknown values stay at the top
+    level, as does a value that is given twice, or whose part is given as a whole as well; pydantic refuses
+    them there.
     """
+    if "oracle" in values:
+        oracle, values = values["oracle"], {name: values[name] for name in values if name != "oracle"}
+        given = {name: values[name] for name in oracle_limits() if name in values}
+        values |= oracle_limits(str(oracle), **given)
     out = {name: value for name, value in values.items() if name in ("site", "section", "limits")}
     flat: dict[str, Any] = {}
     for key, value in values.items():
@@ -272,6 +283,7 @@ class World(FrozenFields):
             pydantic.ValidationError: There is no such field, or its value is invalid.
         """
         named = {EARLIER.get(name, name) for name in values}
+        named |= {*oracle_limits()} if "oracle" in named else set()
         kept = {
             name: value
             for name, value in self.values().items()

@@ -38,7 +38,7 @@ class Setup(Frozen):
     reader: str = "model"
     designer: str = "planner"
     rules: Literal["strict", "sbft"] = "strict"
-    driver: str = "beamng_like"
+    driver: str = "lane_centring"
     """Name of a driver plug-in, or FILE.py:CLASS."""
     simulator: str = "mujoco"
     geometry: Geometry = "arcs"
@@ -89,6 +89,9 @@ class Request(Frozen):
 
         See ``Setup.came_with``.
         """
+        given = self.setup.model_fields_set | self.world.limits.model_fields_set
+        if not given >= {"driver", "oob_tolerance"}:
+            raise UsageError(f"{file} lacks driver or oob_tolerance, whose defaults have changed; add them")
         return self.model_copy(update={"setup": self.setup.came_with(file)})
 
 

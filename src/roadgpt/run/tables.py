@@ -115,6 +115,7 @@ def write_description(request: Request, roads: int, folder: Path) -> None:
     setup = request.setup
     asked = {} if setup.chat is None else {"chat": setup.chat.model_dump_json(exclude_defaults=True)}
     named = {key: value for key, value in setup.model_dump().items() if key not in ELSEWHERE}
+    named["oracle"] = request.world.limits.oracle
     ours = {"description": request.words, "roads": roads, "seed": request.seed, **named, **asked}
     write_settings(request, {"module_name": "roadgpt", "class_name": setup.designer}, ours, folder)
 

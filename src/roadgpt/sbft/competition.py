@@ -13,7 +13,7 @@ import numpy as np
 from roadgpt.check import Finding, sbft_verdict
 from roadgpt.check.sbft import TOO_FEW
 from roadgpt.errors import PartError, RoadGPTError, UsageError
-from roadgpt.road import Road, Site, World
+from roadgpt.road import ORACLES, Limits, Road, Site, World
 from roadgpt.run import Draw, Request, Run, Seconds, Setup, check_parts, prove
 from roadgpt.run.lost_drives import LostDrives
 from roadgpt.sbft.client import Message
@@ -22,9 +22,9 @@ from roadgpt.sbft.generator_process import GeneratorExitedError, GeneratorProces
 from roadgpt.sbft.results import LOG, Results, new_folder
 from roadgpt.stopping import look
 
-USUAL = World(site=Site(map_size=200.0))
+USUAL = World(site=Site(map_size=200.0), limits=Limits(**ORACLES["thesis"]))
 GROUND = 0.0  # m: the competition's roads are level, and points without heights are at this height
-PLAIN = Setup(rules="sbft")
+PLAIN = Setup(rules="sbft", driver="beamng_like")
 WARM = [[60.0, 100.0], [100.0, 100.0], [140.0, 100.0]]  # a road to compile the simulator on
 LARGEST_ID = 999_999_999
 LOADING = 120.0  # s of wall time for a generator's module to be imported

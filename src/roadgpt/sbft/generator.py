@@ -28,7 +28,7 @@ from roadgpt.check import sbft_verdict
 from roadgpt.design import draft_road
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.geometry import interpolate
-from roadgpt.road import Design, Road, Site, World, build
+from roadgpt.road import ORACLES, Design, Limits, Road, Site, World, build
 from roadgpt.run import Request, Setup, brief_of, perform
 from roadgpt.run.features import FEWEST_RECORDS, features_of, features_of_drive
 from roadgpt.sbft.client import ClientTestGenerator
@@ -156,8 +156,8 @@ class RoadGPTTestGenerator(ClientTestGenerator):
     """Whether outcomes steer the choice of roads. Without a search, or with another designer than
     ``planner``, roads are drafted one after another."""
     oob_tolerance: float | None = None
-    """Share of the car, 0 to 1, that may be outside its lane; None: the executor's ``oob_tolerance``, or the
-    World's default if the executor has none.
+    """Share of the car, 0 to 1, that may be outside its lane; None: the executor's ``oob_tolerance``, or 0.95
+    if the executor has none.
     """
 
     def __init__(self, executor: Any = None, map_size: int | None = None) -> None:
@@ -201,7 +201,7 @@ class RoadGPTTestGenerator(ClientTestGenerator):
             DesignError: no valid road was found in 20 attempts in a row.
             ChatError: a language model cannot be used, or its answers are not usable.
         """
-        world = World(site=Site(map_size=float(self.map_size)))
+        world = World(site=Site(map_size=float(self.map_size)), limits=Limits(**ORACLES["thesis"]))
         setup = Setup(reader=self.reader, designer=self.designer, drives=False, chat=_chat(self))
         brief = brief_of(self.description, world, setup)
         if brief.friction is not None:

@@ -90,6 +90,8 @@ def _summary(record: Record, first: Request, status: Status, cells: Sequence[Cel
     out = [f"{status.done:,} tests: {told or 'nothing yet'}."]
     if driven:
         out.append(f"The car failed on {share_of(failed, driven)} of the roads that were driven.")
+        if other := sum(cell.handed_over for cell in status.cells):
+            out.append(f"On {other:,} of them the driver had handed over: they are not its failures.")
         best = max(cells, key=_failing)
         if len(cells) > 1:
             out.append(f"Most fail in {best.name}: {percent(_failing(best))} of its driven roads.")
@@ -169,6 +171,7 @@ def _about(of: CellStatus) -> dict[str, str]:
         "description": of.words or "roads that were given",
         "generator": of.generator,
         "driver": of.driver,
+        "oracle": of.oracle,
         "seed": str(of.seed),
         "friction": f"{of.friction:g}",
     }

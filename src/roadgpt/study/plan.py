@@ -12,7 +12,7 @@ from roadgpt.brief.model import Frozen
 from roadgpt.chat import asks_a_model
 from roadgpt.errors import UsageError, explained
 from roadgpt.reading import json_of, read_model, read_text
-from roadgpt.road import World
+from roadgpt.road import ORACLES, Limits, World
 from roadgpt.run import Setup
 from roadgpt.run.atomic import LOCK, PART, json_text, write_whole
 from roadgpt.run.folder_names import slug
@@ -59,8 +59,8 @@ class StudyPlan(Frozen):
     roads: int = Field(ge=1)
     """Number of roads for each prompt and designer."""
     seed: int = 0
-    world: World = World()
-    setup: Setup = Setup()
+    world: World = World(limits=Limits(**ORACLES["thesis"]))
+    setup: Setup = Setup(driver="beamng_like")
     """Reader, driver, simulator and language model. ``setup_of`` fills in the designer and selects the
     strict rules."""
     source: str = ""

@@ -12,6 +12,7 @@ from roadgpt.reading import read_json
 from roadgpt.report.page import write
 from roadgpt.report.page.model import Page, Section
 from roadgpt.road import World
+from roadgpt.road.oracles import oracle_in_words
 from roadgpt.run import Setup
 from roadgpt.run.atomic import json_text, write_whole
 from roadgpt.run.card import read_card
@@ -209,6 +210,7 @@ def card_of(
     out["reader"] = setup.reader + _hashes(setup.reader)
     if setup.drives:
         out["driven by"] = f"{setup.driver} in {setup.simulator}"
+        out["oracle"] = oracle_in_words(world.limits.oracle)
     if setup.chat is not None and setup.chat.model:
         out["language model"] = setup.chat.model
     out["world"] = ", ".join(_said(name, value) for name, value in world.model_dump().items())

@@ -1,11 +1,13 @@
 """Judges a Drive on a road, and returns a Verdict. Main function: ``judge``.
 
-The test oracle is that of the SBFT tool competition. The car fails if the share of its bounding box outside
-its lane exceeds the tolerance at any control step, if it falls off the road, if it moves less than 1 m in
-10 s, or if a time limit is exceeded. It passes if it comes within 8 m of the end of the road. Any other lane
-and the shoulder count as outside. If ``World.limits.lane_departure`` is set, the car also fails as soon as a
-front tyre crosses a lane marking. Every verdict states how far outside its lane the car was, on the scale of
-``roadgpt.verdict.severity``.
+The test oracle is that of the SBFT tool competition, with a tolerance of 0.5 by default; others have names in
+``roadgpt.road.ORACLES``. The car fails if the share of its bounding box outside its lane exceeds the
+tolerance at any control step, if it falls off the road, if it moves less than 1 m in 10 s, or if a time limit
+is exceeded. It passes if it comes within 8 m of the end of the road. Any other lane and the shoulder count as
+outside. If ``World.limits.lane_departure`` is set, the car also fails as soon as a front tyre crosses a lane
+marking. Every verdict states how far outside its lane the car was, on the scale of
+``roadgpt.verdict.severity``. If the driver handed over, as some do near junctions, the verdict says who drove
+which share of the way, and whether the driver itself drove where the car failed.
 
 On a route through junctions a verdict also lists wrong turns, driving against the direction of the lane,
 tyres off the road, and stop signs that were passed without a stop (``roadgpt.verdict.incidents``).

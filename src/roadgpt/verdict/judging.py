@@ -1,13 +1,14 @@
 """Turns a Drive into a Verdict."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.network import is_route
+from roadgpt.road.oracles import share_in_words
 from roadgpt.verdict.incident import Incident
 from roadgpt.verdict.margin import EPSILON, margins
 from roadgpt.verdict.oracle import consult, has_departed, is_outside
@@ -102,11 +103,12 @@ def judge(
     if cause == "fell":
         least = min(least, -EPSILON)
     beyond = most_beyond(road, drive, world)
+    handed_to = drive.handed_to(step) if cause else None
     if cause is None:
-        description = _kept(road, drive, world, least, beyond)
+        description = _kept(drive, world, least, beyond)
     else:
         description = _failed(road, drive, world, step, cause, side)
-    description += _counted(incidents or (), cause)
+    description += _counted(incidents or (), cause) + _who_drove(drive.shares, handed_to)
     return Verdict(
         outcome="FAIL" if cause else "PASS",
         cause=cause,
@@ -121,6 +123,8 @@ def judge(
         at_time=float(drive["time"][step]) if cause else None,
         side=side,
         incidents=incidents,
+        own_share=drive.shares.get(drive.driver),
+        handed_to=handed_to,
     )
 
 
@@ -181,12 +185,21 @@ def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
     return "".join(f"; {each}" for each in words)
 
 
+def _who_drove(shares: Mapping[str, float], handed_to: str | None) -> str:
+    if not shares:
+        return ""
+    (own, share), *others = shares.items()
+    told = " and ".join(f"{name} for {percent(part)}" for name, part in others)
+    excuse = f"; {handed_to} drove where the car failed, so the failure is not {own}'s" if handed_to else ""
+    return f"; {own} drove {percent(share)} of the way and handed over to {told}{excuse}"
+
+
 def far_beyond(beyond: float) -> str:
     """Returns in words how far a car was outside its lane; ``beyond`` is in metres beyond the marking."""
     return f"{beyond:.2f} m beyond the marking" if beyond >= LEAST else "on the marking"
 
 
-def _kept(road: "Road", drive: "Drive", world: "World", margin: float, beyond: float) -> str:
+def _kept(drive: "Drive", world: "World", margin: float, beyond: float) -> str:
     """Describes a PASS. The text also states how far outside its lane the car was, because the tolerance
     allows this up to a limit.
     """
@@ -209,6 +222,8 @@ def _failed(road: "Road", drive: "Drive", world: "World", step: int, cause: Caus
         where=", into the next lane of its direction," if is_beside else "",
         reached=f"after {drive['s'][step]:.0f} m",
         fast=f"at {drive['speed'][step] * 3.6:.0f} km/h",
-        how=": a front tyre passed the marking" if has_crossed else "",
+        how=": a front tyre passed the marking"
+        if has_crossed
+        else f": more than {share_in_words(world.limits.oob_tolerance)} was outside",
         length=road.length,
     )

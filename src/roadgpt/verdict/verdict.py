@@ -69,6 +69,12 @@ class Verdict:
 
     A drive that passed may have incidents, too, because a tyre off the road fails no test.
     """
+    own_share: float | None = None
+    """The share of the way, 0 to 1, that the driver drove itself; None if it never handed over."""
+    handed_to: str | None = None
+    """Who drove where the car failed, if the driver had handed over: such a failure is not one of the driver.
+    None for other failures, and if the car did not fail.
+    """
 
     @property
     def counts(self) -> dict[str, int]:

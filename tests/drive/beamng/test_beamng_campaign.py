@@ -58,7 +58,7 @@ def test_twenty_roads_and_ten_faults_lose_nothing(
 ) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS, faults=FAULTS)
     settings(monkeypatch, home, port, recycle=8)
-    setup = Setup(reader="plan", simulator="beamng")
+    setup = Setup(reader="plan", simulator="beamng", driver="beamng_like")
     made = campaign(SHORTEST, ROADS, 5, World(), setup, tmp_path / "out")
     outcomes = [run.outcome for run in made]
     assert outcomes == ["PASS"] * ROADS

@@ -85,10 +85,11 @@ def _located(record: Record, some: Sequence[NumberedTest]) -> Iterator[LocatedFa
                 if road is None:
                     continue
                 world, station = cell.request.world, its.at_s or 0.0
-                around = surroundings(road, world, station, f"{its.cause} {its.side} {system}")
+                whose = f"{system} {its.handed_to or ''}"
+                around = surroundings(road, world, station, f"{its.cause} {its.side} {whose}")
                 manner = manner_of(road, world, station, its.cause, its.side)
                 test = NumberedTest(name, its.number)
-                yield LocatedFailure(test, around, system, manner, station, its.max_oob, its.beyond)
+                yield LocatedFailure(test, around, whose, manner, station, its.max_oob, its.beyond)
 
 
 def system_of(world: World, setup: Setup) -> str:

@@ -80,6 +80,7 @@ class LateDriver:
         if len(self._seen) > round(self._delay / view.dt) + 1:
             self._seen.popleft()
         command: Command = self._driver.steer(self._seen[0])
+        self.handed_to = getattr(self._driver, "handed_to", None)
         return command
 
 

@@ -48,7 +48,7 @@ PARAMETERS = (
     *named(options.SETUP, "reader", "designer"),
     Option("--driver drivers", "Name of a driver, or FILE.py:CLASS; repeat the option for more drivers. If "
            "FILE.toml lists a driver file, RoadGPT runs it only if you name it here, too.", driver,
-           ("beamng_like",), multiple=True, heading=Heading.DRIVE, table="run", guard=driver_guard),
+           ("lane_centring",), multiple=True, heading=Heading.DRIVE, table="run", guard=driver_guard),
     *named(options.SETUP, "simulator", "keep_driving"),
     *options.WORLD,
     *named(options.SETUP, "geometry", "rules"),

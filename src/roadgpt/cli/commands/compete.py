@@ -58,7 +58,8 @@ OPTIONS = (
     Option("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
            0.95, heading=Heading.DRIVE),
     Option("--speed-limit", "Speed limit, km/h.", measure(10, 300, "km/h"), 70, heading=Heading.DRIVE),
-    *named(options.SETUP, "driver", "simulator"),
+    named(options.SETUP, "driver")[0].but(default="beamng_like"),
+    *named(options.SETUP, "simulator"),
     *options.BEAMNG,
     options.seed("Seed for the driver.", 0),
     Option("--patience", "Seconds that the generator may take for one test.",
@@ -106,6 +107,7 @@ def sbft_command(
     work = compete(Experiment(**experiment), world, setup, seed, out, draw)
     crashes_go_to(work.folder)
     screen = Screen(work.experiment.test_budget or 0, as_json, quiet, verbose)
+    screen.request = work.request
     screen.say(f"{work.experiment.class_name} of {work.experiment.module_name}, into {work.folder}")
     return _watched(work, screen, () if no_plot else picture_formats)
 
@@ -145,8 +147,8 @@ def sdc_command(port: int, host: str, quiet: bool) -> None:
     """Start a gRPC server that selects and ranks tests by how likely the car is to leave its lane.
 
     The likelihood is estimated from the distance between the middle of the lane and the line that RoadGPT's
-    default driver plans to drive. Nothing is driven. Once the client has sent enough outcomes, the estimate
-    is fitted to them and also uses the curvature of the roads. Ctrl-C ends the service.
+    driver beamng_like plans to drive. Nothing is driven. Once the client has sent enough outcomes, the
+    estimate is fitted to them and also uses the curvature of the roads. Ctrl-C ends the service.
 
     \b
     roadgpt compete sdc --port 4545

@@ -36,7 +36,7 @@ OPTIONS = (
     *named(options.SETUP, "driver", "simulator", "keep_driving", "geometry", "rules"),
     *options.BEAMNG,
     Option("--again", "Drive tests of a campaign again.", bool, heading=Heading.AGAIN),
-    *(each.under(Heading.AGAIN) for each in OF_AGAIN),
+    *(each.but(heading=Heading.AGAIN) for each in OF_AGAIN),
     *(options.JUNIT, *options.SCREEN),
 )
 ONLY_AGAIN = {each.field for each in OF_AGAIN}
@@ -82,8 +82,7 @@ def command(
         check_parts(setup, world)  # reports a missing driver before any road is read
     asked = Request(seed=seed, world=world, setup=setup)
     screen = Screen(len(files), as_json, quiet, verbose)
-    if junit is not None:
-        screen.junit = junit, asked
+    screen.request, screen.junit = asked, junit
     losses: LostDrives[str] = LostDrives()
     each_road(files, screen, lambda file: _driven(screen, file, asked, losses))
     return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0

@@ -124,8 +124,7 @@ def carry_out(
         seed = secrets.randbelow(SEEDS)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         work = campaign(brief, roads, seed, world, setup, out, draw, meter)
-    if junit is not None:
-        screen.junit = junit, work.request
+    screen.request, screen.junit = work.request, junit
     screen.say(understood(brief, work.request.world, world))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)

@@ -32,14 +32,19 @@ DESIGNERS = Option(
     multiple=True, heading=Heading.DESIGN, table="run", guard=designer_guard,
 )
 ROADS_EACH = partial(Option, "--roads -n", "Roads per description.", ROADS)
+THESIS = {"driver": "beamng_like", "oracle": "thesis"}
+"""Defaults of studies, which drive and judge as the thesis did."""
+DRIVEN = [
+    each.but(default=THESIS[each.field]) if each.field in THESIS else each
+    for each in (*named(options.SETUP, *SHOWN), *options.WORLD)
+]
 STUDY_OPTIONS = (
     DESIGNERS,
     options.seed("The same seed gives the same files.", 1),
     options.out("Folder for the study. [default: in roadgpt-runs]"),
     Option("--workers", "Number of descriptions processed in parallel; the files do not depend on it.",
            whole(1, 64, "processes"), 2),
-    *named(options.SETUP, *SHOWN),
-    *options.WORLD,
+    *DRIVEN,
     options.FORMAT,
     Option("--no-plot", "Draw no pictures of single runs.", bool, heading=Heading.FILES),
     Option("--quiet -q", "Print only errors and the path of the report.", bool, heading=Heading.OUTPUT),
@@ -141,13 +146,12 @@ def _plan(
 
 
 def _command(plan: "StudyPlan", place: Path) -> str:
-    """Returns the command that repeats the study."""
     from roadgpt.cli.repeat_commands import option_words
 
     words = ["roadgpt", "study", plan.kind, *([plan.source] if plan.source else [])]
     words += ["--roads", str(plan.roads), "--seed", str(plan.seed), *DESIGNERS.written(plan.designers)]
-    told = {"friction"} & plan.world.site.model_fields_set
-    words += option_words(plan.setup, plan.world, named(options.SETUP, *SHOWN), also=told)
+    told = {*THESIS} | ({"friction"} & plan.world.site.model_fields_set)
+    words += option_words(plan.setup, plan.world, DRIVEN[: len(SHOWN)], also=told)
     if plan.setup.drives != (plan.kind == "thesis"):
         words.append("--drive" if plan.setup.drives else "--no-drive")
     return shlex.join([*words, "--out", str(place)])

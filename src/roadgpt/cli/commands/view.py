@@ -28,7 +28,7 @@ OPTIONS = (
     *options.CHOICES,
     Option("--out", f"The page, or the folder for pictures. [default: {PAGE}, {PLOTS}]", PATH, metavar="PATH",
            heading=Heading.FILES),
-    options.OPEN.under(Heading.FILES),
+    options.OPEN.but(heading=Heading.FILES),
     Option("--format formats", "Draw pictures instead of the page: png, svg, pdf.", picture_formats,
            metavar="FORMAT,...", heading=Heading.FILES),
     *(options.AXES, *named(options.WORLD, "map_size"), *named(options.SETUP, "geometry"), options.QUIET),
@@ -96,7 +96,6 @@ def _draw_pictures(
 
 
 def _place(out: Path, name: str) -> Path:
-    """Makes and returns a new folder for one road's pictures."""
     with explained(UsageError, f"cannot make a folder in {out}", "give another one with --out"):
         for place in (out / own for own in numbered(name)):
             try:

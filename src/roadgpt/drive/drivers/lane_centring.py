@@ -83,6 +83,7 @@ class LaneCentring:
         """Computes the middle of the lane, and forgets the last road."""
         self._by_person = [(way.start - TAKEN_OVER, way.end + GIVEN_BACK) for way in passages(road)]
         self._person, self._is_person = Reference(), False
+        self.handed_to: str | None = None
         if self._by_person:
             self._person.start(road, world, seed)
         s = stations(road)
@@ -102,6 +103,7 @@ class LaneCentring:
         command = self._centred(view)
         is_near = any(first <= view.s <= last for first, last in self._by_person)
         self._is_person = is_near or (self._is_person and view.speed > self._speed)
+        self.handed_to = self._person.name if self._is_person else None
         return self._person.steer(view) if self._is_person else command
 
     def _centred(self, view: View) -> Command:

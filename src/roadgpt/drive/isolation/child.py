@@ -106,7 +106,7 @@ class _DriverHost:
         picture = None if image is None else self._picture
         ahead = self._outlook.at(place[STATION])
         view = View._make((*place, self._road, self._world, *motion, picture, *ahead))
-        return {"command": self._guard.ask(view)}
+        return {"command": self._guard.ask(view), "handed_to": self._guard.handed_to}
 
     def forget(self) -> None:
         """Discards the driver; if it has left threads running, ends the process."""

@@ -39,6 +39,7 @@ class IsolatedDriver:
         self._road: Road | None = None
         self._world: World | None = None
         self._picture: Any = None
+        self.handed_to: str | None = None
         self._process = self._made(spec, limit)
         # not at exit, when all processes end by themselves
         weakref.finalize(self, give_back, self._process).atexit = False
@@ -92,6 +93,7 @@ class IsolatedDriver:
         elif image is not None:
             self._picture, image = image, np.array(image, np.uint8)
         answer = self._asked(ONE_ANSWER, view.time, "steer", view[:9], view[11:15], image)
+        self.handed_to = answer["handed_to"]
         return Command(*answer["command"])
 
     def _show(self, road: "Road", world: "World") -> None:
@@ -128,6 +130,5 @@ def _not_made(spec: str, limit: float, error: GoneError) -> RoadGPTError:
 
 
 def _error(told: dict[str, Any]) -> RoadGPTError:
-    """Returns the exception for an error that the driver's process reports."""
     kind = UsageError if told["is_users"] else RemoteDriverError
     return kind(str(told["said"]))

@@ -15,7 +15,7 @@ from roadgpt.report.view.network import network_values
 from roadgpt.road import Road, World
 from roadgpt.road.profile import DASH, GAP, LINE
 from roadgpt.run import Run
-from roadgpt.verdict.severity import MOSTLY, SEVERITIES
+from roadgpt.verdict.severity import MOSTLY, PARTLY
 
 MOST_STEPS = 6000  # of a drive; drives of up to 2 minutes are complete, longer drives are thinned
 DRIVE = {
@@ -38,9 +38,9 @@ DRIVE = {
 WORLD = ("map_size", "friction", "speed_limit", "oob_tolerance", "z_floor")
 
 
-SCALE = {"mostly": MOSTLY, "colours": [SEVERE[name] for name in SEVERITIES[1:]], "failed": VERMILLION}
-"""The colours that show how far the car is outside its lane, and the share of the car outside from which the
-page says "mostly".
+SCALE = {"partly": PARTLY, "mostly": MOSTLY, "colours": [*SEVERE.values()][1:], "failed": VERMILLION}
+"""The colours that show how far the car is outside its lane, and the shares of the car outside from which the
+page says "partly" and "mostly".
 """
 OF_FIRST_ROAD = "; height and curvature are those of the first road of the map"
 """Text that the page adds for a map without a route."""

@@ -10,7 +10,7 @@ from roadgpt.road import World
 from roadgpt.study.chapters.wording import decimal, row, share_cell, share_of
 from roadgpt.study.road_record import RoadRecord
 from roadgpt.verdict import SEVERITIES, Severity, percent
-from roadgpt.verdict.severity import MOSTLY
+from roadgpt.verdict.severity import MOSTLY, PARTLY
 
 OLD = "An older version wrote this store without distances; the shares are there."
 
@@ -28,8 +28,8 @@ class Passed(NamedTuple):
 
 
 def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
-    """Groups the passed roads of a study by how far outside its lane the car was: inside, partly outside, or
-    mostly outside. Returns one ``Passed`` per group."""
+    """Groups the passed roads of a study by how far outside its lane the car was, and returns one ``Passed``
+    per grade."""
     kept = [road.verdict for road in roads if road.outcome == "PASS" and road.verdict is not None]
     found = []
     for name in SEVERITIES:
@@ -41,12 +41,12 @@ def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
 
 
 def passed_tests(record: Record) -> list[Passed]:
-    """Groups the passed tests in a campaign's database by how far outside its lane the car was: inside,
-    partly outside, or mostly outside. Returns one ``Passed`` per group."""
+    """Groups the passed tests in a campaign's database by how far outside its lane the car was, and returns
+    one ``Passed`` per grade."""
     rows = record.query(
-        "SELECT (max_oob > 0) + (max_oob > ?), count(*), max(max_oob), max(beyond) FROM tests "
+        "SELECT (max_oob > ?) + (max_oob > ?), count(*), max(max_oob), max(beyond) FROM tests "
         "WHERE outcome = 'PASS' AND max_oob IS NOT NULL GROUP BY 1",
-        (MOSTLY,),
+        (PARTLY, MOSTLY),
     )
     there = {SEVERITIES[at]: rest for at, *rest in rows}
     return [Passed(name, *there.get(name, (0, 0.0, None))) for name in SEVERITIES]
@@ -59,7 +59,7 @@ def outside_sentences(found: Sequence[Passed], world: World) -> list[str]:
     every = sum(each.tests for each in found)
     if not every:
         return []
-    if inside.tests == every:
+    if inside.tests == every and not inside.share:
         return [f"On all {every:,} roads that it passed, the car was never outside its lane."]
     far = [each.beyond for each in found if each.beyond is not None]
     beyond = f", {max(far):.2f} m beyond the marking" if far else ""
@@ -90,6 +90,6 @@ def outside_table(found: Sequence[Passed]) -> list[Table]:
     ]
     heads = ["where the car was", "passed", "share", "outside at most", "beyond the marking, m"]
     is_old = any(each.tests and each.beyond is None for each in found)
-    note = "Partly: up to half of the car was outside its lane; mostly: more than half."
+    note = "Partly: more than 10 % of the car was outside its lane, up to half; mostly: more than half."
     caption = "How far outside its lane the car was where it passed"
     return [Table("outside", caption, heads, rows, f"{note} {OLD}" if is_old else note)]

@@ -171,8 +171,8 @@ def record(
     with loaded.session.watchdog.within(loaded.settings.poll_timeout, "it was driving"):
         ended = recorder.drive(keep_driving)
     columns, lock = recorder.columns()
-    name = AI if guard is None else guard.name
-    return Drive(name, "beamng", seed, columns, ended, loaded.body.box(lock))
+    name, handovers = (AI, ()) if guard is None else (guard.name, tuple(guard.handovers))
+    return Drive(name, "beamng", seed, columns, ended, loaded.body.box(lock), handovers)
 
 
 def _slope(values: FloatArray, time: FloatArray) -> FloatArray:

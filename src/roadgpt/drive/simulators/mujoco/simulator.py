@@ -60,4 +60,4 @@ class MujocoSimulator:
                 step += 1
         table = np.frombuffer(b"".join(rows)).reshape(len(rows), -1)
         columns = Columns({name: table[:, place] for place, name in enumerate(_NAMES)})
-        return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box)
+        return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box, tuple(guard.handovers))

@@ -56,11 +56,11 @@ function speedColour(share) {
 const css = (rgb) => `rgb(${rgb.join(",")})`;
 const MARK = "#d55e00", HERE = "#0072b2";
 
-// The colour of how far outside its lane a car is; null inside. The scale comes with the scene.
+// The colour of how far outside its lane a car is; null up to a tenth of it. The scale comes with the scene.
 function severeColour(scene, share) {
-  const { mostly, colours, failed } = scene.severe;
+  const { partly, mostly, colours, failed } = scene.severe;
   if (share > scene.world.oob_tolerance) return failed;
-  return share > mostly ? colours[1] : share > 0 ? colours[0] : null;
+  return share > mostly ? colours[1] : share > partly ? colours[0] : null;
 }
 
 // Colours of what is drawn on paper, as the style sheet has them by day and by night.
