@@ -94,12 +94,11 @@ class Verdict:
     def to_json(self) -> dict[str, Any]:
         """Returns the fields and ``kept`` as JSON data, for ``Verdict.from_json``.
 
-        The field ``incidents`` is left out for a single road.
+        The fields ``incidents``, ``own_share`` and ``handed_to`` are left out where they are None.
         """
-        data = asdict(self)
-        if self.incidents is None:
-            del data["incidents"]
-        else:
+        optional = {"incidents", "own_share", "handed_to"}
+        data = {key: value for key, value in asdict(self).items() if value is not None or key not in optional}
+        if self.incidents is not None:
             data["incidents"] = [{**asdict(each), "at_xy": list(each.at_xy)} for each in self.incidents]
         data["at_xy"] = None if self.at_xy is None else list(self.at_xy)
         return {"kept": self.kept, **data}
