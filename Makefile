@@ -1,6 +1,7 @@
 # make demo    words to driven roads and pictures, from nothing but Python, pip and make
 # make test    format, types and every test; ends with the seconds it took
 # make bench   the figures of benchmarks/        make docs    the site in site/
+# make figures the outputs and pictures of README and docs, from the commands beside them
 # make judges  ASAM's checker of OpenDRIVE, which wants an environment of its own; make test asks it
 # make format  mend the format                   make clean   remove what make made
 #
@@ -17,7 +18,7 @@ WANTED := $(shell $(PYTHON) -c '$(FIND_VERSION)' 2>/dev/null)
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 INSTALL := $(PIP) install --quiet --constraint constraints.txt
 
-.PHONY: help demo test bench docs judges format clean
+.PHONY: help demo test bench docs figures judges format clean
 .DELETE_ON_ERROR:
 
 help:
@@ -67,6 +68,12 @@ docs: $(VENV)/.installed-docs
 	$(BIN)/python docs/commands.py
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 	@echo "make docs: site/index.html, $(SECONDS_SO_FAR) s"
+
+figures: $(VENV)/.installed-test
+	@$(INSTALL) --no-build-isolation --editable '.[film]'
+	rm -rf roadgpt-runs/figures
+	$(BIN)/python docs/figures.py roadgpt-runs/figures
+	@echo "make figures: $(SECONDS_SO_FAR) s"
 
 judges: judges/.installed
 

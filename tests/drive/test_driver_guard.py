@@ -128,6 +128,23 @@ def test_a_driver_that_hangs_in_another_thread_is_stopped(hang):
     assert "no answer within" in str(caught[0])
 
 
+def test_a_driver_of_our_own_may_wait_for_the_compiler():
+    class Slow(GivesAnswer):
+        def steer(self, view):
+            time.sleep(0.3)
+            return 0.1, 0.0, 0.0
+
+    def asked() -> object:
+        guard = DriverGuard(Slow(None), one_answer=0.1)
+        with guard.watched():
+            return guard.ask(VIEW)
+
+    with pytest.raises(DriverError, match="no answer within"):
+        asked()
+    Slow.__module__ = "roadgpt.drive.drivers.slow"
+    assert asked() == (0.1, 0.0, 0.0)
+
+
 def test_start_is_watched_too():
     class Starts(GivesAnswer):
         def start(self, road, world, seed):

@@ -1,0 +1,59 @@
+"""README, the tutorial and the how-tos show what their commands print and draw today."""
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from PIL import Image
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture(scope="module")
+def figures() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("figures", ROOT / "docs" / "figures.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["figures"] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def work(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("figures")
+
+
+def test_pages_show_what_their_quick_commands_print(figures: ModuleType, work: Path) -> None:
+    shown = 0
+    for page in figures.PAGES:
+        there = (ROOT / page).read_text(encoding="utf-8")
+        shown += sum(not match["slow"] for match in figures.BLOCK.finditer(there))
+        now = figures.renewed(work, page, is_quick=True)
+        assert figures.TIMES.sub("", now) == figures.TIMES.sub("", there), (
+            f"{page} is stale: say make figures"
+        )
+    assert shown >= 5
+
+
+def test_every_command_that_makes_a_picture_stands_on_a_page(figures: ModuleType) -> None:
+    text = "\n".join((ROOT / page).read_text(encoding="utf-8") for page in figures.PAGES)
+    assert [command for command in figures.COMMANDS.values() if command not in text] == []
+
+
+@pytest.mark.parametrize("name", ["switchbacks", "junctions"])
+def test_pictures_are_of_the_roads_that_their_commands_make(
+    figures: ModuleType, work: Path, name: str
+) -> None:
+    """Coarsely: fonts and renderers differ between machines, roads must not."""
+    now = figures.framed(figures.PICTURES[name](work), name)
+    kept = Image.open(figures.IMAGES / f"{name}.png")
+    one, other = (np.asarray(each.convert("L").resize((96, 64)), float) for each in (now, kept))
+    away = np.abs(one - other).mean()
+    turned = np.abs(one - other[:, ::-1]).mean()
+    assert away < 3, f"docs/images/{name}.png is stale: say make figures"
+    assert away < turned / 3  # so a picture of another road would be noticed
