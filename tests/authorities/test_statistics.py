@@ -18,7 +18,9 @@ from roadgpt.study.statistics import (
     conover,
     exact,
     friedman,
+    holm,
     krippendorff,
+    mcnemar,
     spearman,
     trend,
     wilcoxon,
@@ -193,6 +195,33 @@ def test_conovers_own_example() -> None:
     assert p[0, 1] / 6 < 0.05
     assert p[0, 2] / 5 < 0.05
     assert p[1, 3] / 4 > 0.05
+
+
+def test_cochrans_q_of_conovers_own_example() -> None:
+    """Practical nonparametric statistics, 3rd edition, 4.6: three sportsmen predict twelve games; Q = 2.8."""
+    from statsmodels.stats.contingency_tables import cochrans_q
+
+    right = ["111", "111", "010", "110", "000", "111", "111", "110", "001", "010", "111", "111"]
+    table = [[float(one) for one in game] for game in right]
+    found = friedman(table)
+    assert (found.statistic, found.freedom) == (pytest.approx(2.8), 2)
+    assert found.p == pytest.approx(math.exp(-1.4))  # chi-squared with 2 degrees of freedom
+    assert found.statistic == pytest.approx(cochrans_q(np.array(table)).statistic)
+
+
+@settings(max_examples=30)
+@given(b=st.integers(0, 40), c=st.integers(0, 40))
+def test_mcnemars_exact_test_counts_coins(b, c) -> None:
+    ways = [math.comb(b + c, k) for k in range(b + c + 1)]
+    assert mcnemar(b, c) == pytest.approx(min(1.0, 2 * sum(ways[: min(b, c) + 1]) / sum(ways)))
+
+
+@settings(max_examples=30)
+@given(p=st.lists(st.floats(0, 1), min_size=1, max_size=8))
+def test_holm_is_that_of_statsmodels(p) -> None:
+    from statsmodels.stats.multitest import multipletests
+
+    assert holm(p) == pytest.approx(multipletests(p, method="holm")[1])
 
 
 def test_ratings_that_say_nothing() -> None:

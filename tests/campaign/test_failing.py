@@ -5,6 +5,7 @@ import json
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,10 +13,12 @@ from click.testing import CliRunner, Result
 
 from roadgpt.campaign.faults import fault as fault_module
 from roadgpt.campaign.faults import fault_log, remedy, told_apart
-from roadgpt.campaign.faults.failures import failures_of
-from roadgpt.campaign.faults.fault import faults_in
-from roadgpt.campaign.faults.fault_log import FailureAnalysis
+from roadgpt.campaign.faults.distinct import Surroundings
+from roadgpt.campaign.faults.failures import LocatedFailure, failures_of
+from roadgpt.campaign.faults.fault import Fault, faults_in
+from roadgpt.campaign.faults.fault_log import FailureAnalysis, instructive
 from roadgpt.campaign.faults.minimise import Simplest
+from roadgpt.campaign.faults.reason import Manner
 from roadgpt.campaign.faults.remedy import REMEDIES, Removed
 from roadgpt.campaign.faults.stability import Repeated, Stability, disturbance_of
 from roadgpt.campaign.model import NumberedTest
@@ -23,6 +26,7 @@ from roadgpt.campaign.rerun import kept_run, read_trace, run_again
 from roadgpt.campaign.workers.in_process import InProcess
 from roadgpt.cli import app
 from roadgpt.errors import UsageError
+from roadgpt.road.opendrive import read_opendrive
 from roadgpt.run import Run
 
 CUTS = ["--driver", "beamng_like", "--oracle", "thesis"]  # cuts the inside of bends
@@ -206,7 +210,8 @@ def test_failures_that_one_small_change_removes_are_one_fault(
     monkeypatch.setattr(fault_module, "MOST_FIRST", 1)
     monkeypatch.setattr(fault_module, "CHECKED", 2)
     folder = shutil.copytree(many, tmp_path / "c")
-    roadgpt("faults", folder, "--repeat", 1, "--no-plot", "-q")
+    news = roadgpt("faults", folder, "--repeat", 1, "--no-plot").stderr
+    assert ["round 1:" in news, "round 2:" in news] == [True, True], "each round is announced"
     found = faults_in(folder)
     (first,) = [fault for fault in found.them if fault.remedy]
     assert str(first.remedy).split()[0] in ("wider", "eased"), "both make the bend less tight"
@@ -216,15 +221,15 @@ def test_failures_that_one_small_change_removes_are_one_fault(
     sampled = faults_in(folder, 9)
     assert (sampled.sentence, sampled.compared) == (found.sentence, found.failures)
     told = json.loads(roadgpt("show", folder, "--json").stdout)["distinct"]
-    assert (told["faults"], told["groups"]) == (1, len(found.them) - 1)
+    assert (told["faults"], told["groups"]) == (1, len(found.alone))
     roadgpt("report", folder)
     text = (folder / "report.md").read_text(encoding="utf-8")
     assert "## Distinct faults" in text
     assert f"Disappears with {first.removed_by}." in text
     rows = table(folder / "faults" / "faults.csv")
-    assert [row["removed_by"] for row in rows] == [first.remedy] + [""] * (len(found.them) - 1)
+    assert [row["removed_by"] for row in rows] == [first.remedy], "groups without a fault are not exported"
     faults = {row["fault"] for row in table(folder / "faults" / "failures.csv")}
-    assert faults == {str(fault.number) for fault in found.them}
+    assert faults == ({"1", ""} if found.alone else {"1"})
     spoilt = next((folder / "faults" / "remedies").rglob("*.json"))
     spoilt.write_text('{"station": 1}', encoding="utf-8")
     done = CliRunner().invoke(app, ["show", str(folder)])
@@ -244,6 +249,7 @@ def test_a_fault_is_tested_on_twelve_more_failures_and_those_that_stay_leave_it(
     monkeypatch.setattr(fault_module, "stored_remedies", lambda folder, each: tested.get(each.name))
     found = faults_in(many)
     first = len(found.to_test)
+    assert found.to_come == first + 12, "what is announced"
     while found.to_test:
         assert not found.is_tested
         assert not any(each.name in tested for each in found.to_test), "no failure is tested twice"
@@ -259,7 +265,45 @@ def test_a_fault_is_tested_on_twelve_more_failures_and_those_that_stay_leave_it(
     assert len(tested) < found.failures, "a fault is known before all its failures are tested"
     assert stays
     assert not stays & inside
-    assert sum(len(each.members) for each in found.them) == found.failures
+    assert sum(len(each.members) for each in (*found.them, *found.alone)) == found.failures
+
+
+def test_the_most_instructive_failures_are_written_for_a_paper(looked: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(looked, tmp_path / "c")
+    done = roadgpt("faults", folder, "--repeat", 2, "--no-plot", "--top", 3)
+    place = folder / "faults" / "top"
+    assert f"the 2 most instructive failures, for a paper: {place}" in done.stdout
+    rows = table(place / "top.csv")
+    assert {row["test"] for row in rows} == {"c01/1", "c01/2"}
+    for row in rows:
+        of = {path.suffix: path for path in place.glob(f"{row['number']}.*")}
+        assert of.keys() >= {".pdf", ".png", ".txt", ".xodr"}
+        assert of[".png"].read_bytes()[:4] + of[".pdf"].read_bytes()[:4] == b"\x89PNG%PDF"
+        assert of[".txt"].read_text(encoding="utf-8").startswith(row["reason"])
+        run = kept_run(folder, "c01", int(row["test"].partition("/")[2]))
+        assert run.road is not None
+        assert read_opendrive(of[".xodr"]).road.length == pytest.approx(run.road.length, abs=0.01)
+        assert (row["driver"], row["oracle"]) == (run.request.setup.driver, run.world.limits.oracle)
+
+
+def failure(number: int, bend: float, station: float, kind: str = "right") -> LocatedFailure:
+    around = Surroundings(np.full(77, bend), np.zeros(77), kind)
+    manner = Manner("wide", "right", 20.0)
+    return LocatedFailure(NumberedTest("", number), around, "", manner, station, None, None)
+
+
+def test_different_faults_come_before_different_curvature_and_this_before_other_places() -> None:
+    some = [failure(1, 0.06, 50), failure(2, 0.059, 90), failure(3, 0.03, 50)]
+    other = [failure(4, 0.061, 50, "left"), failure(5, 0.061, 51, "left"), failure(6, 0.061, 99, "left")]
+    faults = [Fault(n, tuple(own), tuple(own[:1])) for n, own in enumerate((some, other), 1)]
+    looked = {n: SimpleNamespace(name=own[0].name) for n, own in enumerate((some, other), 1)}
+
+    def chosen(most: int) -> list[int]:
+        return [name.number for _, name in instructive(faults, looked, most)]  # type: ignore[arg-type]
+
+    assert chosen(0) == []
+    assert chosen(1) == [1], "the largest fault, its typical failure"
+    assert chosen(9) == [1, 4, 3, 2, 6, 5]
 
 
 def test_of_very_many_failures_an_even_sample_is_compared(many: Path) -> None:

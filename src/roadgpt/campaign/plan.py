@@ -48,6 +48,8 @@ class Plan(Frozen):
     geometry: Geometry = "arcs"
     keep_driving: bool = False
     drives: bool = True
+    paired: bool = False
+    """Whether the drivers are compared on the same roads at the end."""
     world: World = World()
     chat: ChatSettings | None = None
     patience: Annotated[float, Field(gt=0, allow_inf_nan=False)] = PATIENCE
@@ -56,7 +58,7 @@ class Plan(Frozen):
     def essence(self) -> "Plan":
         """Returns the Plan without the settings that may change when the campaign is resumed."""
         chat = self.chat and self.chat.essence()
-        return self.model_copy(update={"chat": chat, "patience": PATIENCE})
+        return self.model_copy(update={"chat": chat, "patience": PATIENCE, "paired": False})
 
     def came_with(self, file: object) -> "Plan":
         """Returns the Plan read from ``file``, and records that another person may have written this file.
@@ -109,8 +111,8 @@ class Plan(Frozen):
 
         Raises:
             UsageError: a plug-in is not installed, there are too many cells, a value is listed twice, no
-                limit is set, the plan has a goal but drives no roads, no generator supports the goal, or the
-                generator ``words`` has no description.
+                limit is set, the plan has a goal but drives no roads, no generator supports the goal, the
+                generator ``words`` has no description, or ``paired`` drivers do not get the same roads.
         """
         cells = math.prod(map(len, self._lists))
         if cells > MOST_CELLS:
@@ -129,8 +131,13 @@ class Plan(Frozen):
                 raise UsageError(
                     f"{twice[0]!r} is listed twice, which would run the same tests twice; list it once"
                 )
+        searches = any(hasattr(plugins.find("generators", name), "goals") for name in self.generators)
+        if self.paired and (searches or not self.drives or len(self.drivers) < 2):
+            raise UsageError(
+                "only two drivers or more that get the same roads can be compared as pairs; name them "
+                "(--drivers a,b), and leave out a search and --no-drive"
+            )
         for name in self.generators:
-            plugins.find("generators", name)
             if name == WITHOUT_GOAL and not all(words.strip() for words in self.prompts):
                 raise UsageError("the generator 'words' needs a description; give one, or another generator")
         if self.goal is not None and not any(self._searches(name) for name in self.generators):

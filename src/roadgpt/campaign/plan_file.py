@@ -115,6 +115,7 @@ class PlanTable(_Strict):
     geometry: Geometry = "arcs"
     keep_driving: bool = False
     drive: bool = True
+    paired: bool = False
     world: WorldTable = WorldTable()
     chat: dict[str, Any] = {}
     settings: dict[str, Any] = {}

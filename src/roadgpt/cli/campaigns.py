@@ -66,7 +66,7 @@ def as_line(status: "Status", found: "Faults | None") -> str:
 
     counts = found and {
         "faults": found.distinct if found.is_tested else None,
-        "groups": len(found.them) - found.distinct,
+        "groups": len(found.alone) or len(found.them) - found.distinct,
         "failures": found.failures,
         "compared": found.compared,
     }

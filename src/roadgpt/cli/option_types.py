@@ -99,6 +99,12 @@ def driver(value: str) -> str:
     return value
 
 
+def drivers(value: str) -> tuple[str, ...]:
+    """Returns the drivers in a value of --drivers, separated by commas, as ``driver`` does."""
+    is_file = Path(f"{value.rpartition('.py')[0]}.py").is_file()  # whose path may have commas
+    return tuple(driver(name.strip()) for name in ((value,) if is_file else value.split(",")))
+
+
 def driver_again(value: str) -> str:
     """Returns the value of --driver with an absolute path, to be compared with the driver recorded in a
     folder.

@@ -52,8 +52,8 @@ class _Lines:
         self._first: tuple[float, int] | None = None
         self._told = time.monotonic()
 
-    def __call__(self, done: int, **_: object) -> None:
-        now = time.monotonic()
+    def __call__(self, done: int, total: int | None = None, **_: object) -> None:
+        now, self._total = time.monotonic(), total or self._total
         if self._first is None:
             self._first = now, done  # the first step includes the start of the workers: others are faster
         elif now - self._told >= EVERY and self._first[1] < done < self._total:

@@ -1,16 +1,15 @@
 """Draws two roads in one figure, with bird's-eye views and heights, as in the survey of RoadGPT's thesis."""
 
-import textwrap
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from roadgpt.geometry.curve import Array
-from roadgpt.report.birds_eye import THESIS, Scale
-from roadgpt.report.canvas import FAINT, HALO, INK, SOFT, dress, in_our_style, new_figure, note
+from roadgpt.report.birds_eye import THESIS, Scale, driven_path, mark
+from roadgpt.report.canvas import FAINT, HALO, INK, SOFT, VERMILLION, dress, in_our_style, new_figure, note
 from roadgpt.report.height import EARTH, SURFACE, THESIS_X, THESIS_Z
+from roadgpt.report.places import places_of
 from roadgpt.report.plan_view import (
     GROUND,
     Frame,
@@ -20,43 +19,70 @@ from roadgpt.report.plan_view import (
     show_from_above,
     stations_of,
 )
+from roadgpt.report.text_width import fitted, inches
 from roadgpt.run import Run
 
 WIDTH, LEFT, RIGHT, BOTTOM, TOP, BETWEEN = 10.6, 0.7, 0.25, 0.62, 0.62, 0.95  # inches
 SIDE = 3.3  # inches, of the square that shows a road from above
+ROW = SIDE + BOTTOM + TOP
+SIZE = (WIDTH, 2 * ROW)  # inches
 MARGIN, LEAST = 14.0, 60.0  # m, around the roads and across the square
-LONGEST = 78  # letters of a title
 STEP_BACK = 17.0  # points from the start to its name
 CORNER = (0.985, 0.97)  # of axes, where it is written that a road goes on
 LOWEST = 6.0  # m that the heights span at least
 
 
 @in_our_style
-def pair(one: Run, other: Run, scale: Scale = "equal") -> Figure:
+def pair(one: Run, other: Run, scale: Scale = "equal", drivers: tuple[str, str] | None = None) -> Figure:
     """Returns a figure that shows two roads, one above the other, on the same scales: axes that fit both
-    ("equal"), or the fixed axes of RoadGPT's thesis.
+    ("equal"), or the fixed axes of RoadGPT's thesis. If ``drivers`` names two drivers, the figure shows how
+    they drove, and how far outside its lane the car was instead of the heights.
     """
     runs = (one, other)
-    row = SIDE + BOTTOM + TOP
-    figure = new_figure(WIDTH, 2 * row)
+    figure = new_figure(*SIZE)
     side = max(LEAST, *(float(np.ptp(_plan(run), axis=0).max()) + 2 * MARGIN for run in runs))
     long = max(run.length for run in runs)
     span = max(LOWEST, *(float(np.ptp(_heights(run))) for run in runs)) * 1.25
     for number, run in enumerate(runs):
-        foot = (1 - number) * row + BOTTOM
+        foot = (1 - number) * ROW + BOTTOM
         frame = THESIS if scale == "thesis" else _square(run, side)
-        _above(_axes(figure, LEFT, foot, SIDE), run, frame)
+        above = _axes(figure, LEFT, foot, SIDE)
+        _above(above, run, frame)
         wide = WIDTH - LEFT - SIDE - BETWEEN - RIGHT
         beside = _axes(figure, LEFT + SIDE + BETWEEN, foot, wide)
-        _beside(beside, run, (long, span), scale)
-        title = textwrap.shorten(run.title, LONGEST, placeholder=" …")
-        at = (foot + SIDE + 0.32) / (2 * row)
-        figure.text(LEFT / WIDTH, at, f"Road {number + 1}", size=11, weight="bold", color=INK)
-        figure.text((LEFT + 0.72) / WIDTH, at, title, size=11, color=INK, parse_math=False)
         seed = f"seed {run.request.seed}, road {run.index}, " if run.words else ""
-        said = f"{seed}{run.length:.0f} m, {run.outcome.lower()}"
-        figure.text(LEFT / WIDTH, at - 0.2 / (2 * row), said, size=8.5, color=SOFT)
+        if drivers is None:
+            name, said = f"Road {number + 1}", run.outcome.lower()
+            _beside(beside, run, (long, span), scale)
+        else:
+            name, said = f"{drivers[number]}: {run.outcome}", run.description
+            _outside(above, beside, run, long)
+        at = (foot + SIDE + 0.32) / SIZE[1]
+        figure.text(LEFT / WIDTH, at, name, size=11, weight="bold", color=INK, parse_math=False)
+        after = LEFT + 0.15 + inches(name, 11, bold=True)
+        title = fitted(run.title, WIDTH - RIGHT - after, 11)
+        figure.text(after / WIDTH, at, title, size=11, color=INK, parse_math=False)
+        said = fitted(f"{seed}{run.length:.0f} m, {said}", WIDTH - LEFT - RIGHT, 8.5)
+        figure.text(LEFT / WIDTH, at - 0.2 / SIZE[1], said, size=8.5, color=SOFT, parse_math=False)
     return figure
+
+
+def _outside(above: Axes, beside: Axes, run: Run, long: float) -> None:
+    """Draws the driven path, and the share of the car outside its lane over the distance."""
+    assert run.drive is not None
+    driven_path(above, run.drive).set(array=None, color=INK)
+    for place in places_of(run):
+        mark(above, run, place)
+    s, share = run.drive["s"], 100 * run.drive["outside"]
+    beside.fill_between(s, share, color=VERMILLION, alpha=0.3, lw=0)
+    beside.plot(s, share, color=VERMILLION, lw=1.8)
+    most = 100 * run.world.limits.oob_tolerance
+    beside.axhline(most, color=INK, lw=1.2, ls=(0, (4, 3)))
+    beside.annotate(f"FAIL above {most:g} %", (long, most), (-4, -4), textcoords="offset points", size=9,
+                    color=INK, ha="right", va="top", path_effects=HALO)  # fmt: skip
+    beside.set(xlim=(0, long), ylim=(0, 105), xlabel="distance along the road, m")
+    beside.set_ylabel("share of the car outside its lane, %")
+    beside.grid(color=FAINT, lw=0.8)
 
 
 def _axes(figure: Figure, left: float, foot: float, wide: float) -> Axes:

@@ -24,6 +24,7 @@ from roadgpt.study.chapters.campaign_tests import (
 )
 from roadgpt.study.chapters.faults import Steps, fault_summaries, faults, headline, what_to_try
 from roadgpt.study.chapters.out_of_lane import outside_sentences, outside_table, passed_tests
+from roadgpt.study.chapters.same_roads import compared, same_roads
 from roadgpt.study.chapters.wording import (
     decimal,
     drawn_share,
@@ -59,7 +60,7 @@ def write_store_report(folder: Path, command: str = "", next_steps: Steps = ()) 
 
 
 def _page(folder: Path, record: Record, status: Status, command: str, next_steps: Steps) -> Page:
-    first = record.cell(record.names()[0]).request
+    first, is_paired = record.cell(record.names()[0]).request, record.plan().paired
     goes_on = first.setup.keep_driving  # whether cars drive on after they have left their lane
     fields = [c for c in status.cells if c.done]
     words = list(dict.fromkeys(c.words for c in status.cells if c.words))
@@ -70,16 +71,18 @@ def _page(folder: Path, record: Record, status: Status, command: str, next_steps
     summaries = fault_summaries(folder, found)
     pairs = nearest(record, [each for each in fields if each.goal == "boundary"][:MOST_CELLS])
     gallery, covered = faults(folder, found, summaries), coverage(record, status.done)
-    sections = [gallery] if gallery else []
+    sections = [same_roads(folder, record)] if is_paired else []
+    sections += [gallery] if gallery else []
     sections += [Section("Feature map", covered)] if covered else []
     sections += what_to_try(next_steps)
-    sections.append(Section("Outcomes", _outcomes(record, status, fields)))
+    sections.append(Section("Outcomes", _outcomes(record, status, fields, is_paired)))
     if any(_driven(each)[1] for each in fields):
         sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS], goes_on)))
         near: list[Block] = [*outside_table(passed_tests(record)), margins(record, goes_on)]
         sections.append(Section("How near to failing", near))
     sections += [Section("At the boundary", boundary(folder, pairs))] if pairs else []
-    summary = headline(found, summaries) if _driven(status)[1] else []
+    summary = compared(record) if is_paired else []
+    summary += headline(found, summaries) if _driven(status)[1] else []
     summary += [*_summary(record, first, status, fields), *nearest_sentence(pairs)]
     return Page(title, summary, sections, _card(command, record, status), lead)
 
@@ -127,7 +130,7 @@ def _failing(of: CellStatus) -> float:
     return failed / driven if driven else 0.0
 
 
-def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> list[Block]:
+def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus], is_paired: bool) -> list[Block]:
     seconds = dict(record.query("SELECT name, seconds FROM cells"))
     differing, note = _what_differs(status.cells)
     rows: list[list[TableCell]] = []
@@ -150,13 +153,14 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
     heads = ["cell", *differing, "tests", "invalid", "error", "failed", "driven", "share", "Wilson 95 %",
              "nearest when kept, m", "s"]  # fmt: skip
     blocks: list[Block] = [Table("outcomes", "Outcomes, cell by cell", heads, rows, note)]
-    if len(cells) > 1:
+    if len(cells) > 1 and not is_paired:  # its test is for roads that are not the same
         found = chi_squared([[failed, driven - failed] for failed, driven in map(_driven, cells)])
         blocks.append(
             f"Do cells differ in how many roads fail? χ² = {found.statistic:.2f} with {found.freedom} "
             f"degrees of freedom, {p_value(found.p)}, Cramér's V = {found.cramers_v:.2f}."
             + ("" if found.is_sound or not found.freedom else " Expected counts are small.")
         )
+    if len(cells) > 1:
         blocks.append(_forest(cells[:MOST_CELLS]))
     beside = [linked(name, name) for name in TABLES if (record.folder / name).is_file()]
     if beside:

@@ -1,7 +1,7 @@
 """Computes the statistical tests and confidence intervals for reports of studies and surveys, with scipy
 where it provides them.
 
-scipy lacks Cochran and Armitage's trend test, Conover's pairwise comparisons with Holm's correction, and
+scipy lacks Cochran and Armitage's trend test, Conover's pairwise comparisons, Holm's correction, and
 Krippendorff's alpha. For Fisher's exact test of large tables and Wilcoxon's test of tied ratings, scipy
 offers only approximations. The tests in ``tests/authorities`` compare each function with other libraries,
 published examples or enumerations.
@@ -254,7 +254,8 @@ def trend(successes: Sequence[int], totals: Sequence[int]) -> Trend:
 
 
 def friedman(ratings: ArrayLike) -> Friedman:
-    """Returns Friedman's test of ratings ``(people, 3 or more)``, corrected for ties."""
+    """Returns Friedman's test of ratings ``(people, 3 or more)``, corrected for ties. For ratings of 0 and 1
+    it is Cochran's Q test."""
     x = _complete(np.asarray(ratings, float))
     people, columns = x.shape
     if people < 2 or not np.ptp(x, axis=1).any():  # or all people rated all columns alike
@@ -286,10 +287,22 @@ def conover(ratings: ArrayLike) -> Array:
         p = np.where(difference > 0, 0.0, 1.0)
     else:
         p = 2 * stats.t.sf(difference / np.sqrt(error), freedom)
-    order = np.argsort(p, kind="stable")
-    scaled = np.minimum(np.maximum.accumulate(p[order] * np.arange(len(p), 0, -1)), 1.0)
-    out[one[order], other[order]] = out[other[order], one[order]] = scaled
+    out[one, other] = out[other, one] = holm(p)
     return out
+
+
+def holm(p: ArrayLike) -> Array:
+    """Returns p-values ``(tests,)`` with Holm's correction for the number of tests."""
+    found = np.asarray(p, float)
+    order = np.argsort(found, kind="stable")
+    scaled = np.minimum(np.maximum.accumulate(found[order] * np.arange(len(order), 0, -1)), 1.0)
+    return scaled[np.argsort(order, kind="stable")]
+
+
+def mcnemar(one: int, other: int) -> float:
+    """Returns the two-sided p of McNemar's exact test; the arguments are the two counts of pairs that
+    differ."""
+    return float(stats.binomtest(one, one + other).pvalue) if one + other else 1.0
 
 
 def wilcoxon(one: ArrayLike, other: ArrayLike) -> Paired:

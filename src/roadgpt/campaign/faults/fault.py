@@ -47,7 +47,7 @@ class Fault:
     """A fault, or a group of similar failures that belongs to no fault or was not tested."""
 
     number: int
-    """Number, from 1. Faults come before groups; in both, those with the most failures come first."""
+    """Number, from 1; those with the most failures come first. 0 if other groups belong to faults."""
     members: tuple[LocatedFailure, ...]
     """All failures of the fault or group, in the order of their tests."""
     typical: tuple[LocatedFailure, ...]
@@ -74,11 +74,15 @@ class Faults:
     """The distinct faults of a folder, and the groups of failures that belong to none."""
 
     them: tuple[Fault, ...]
-    """First the faults, then the groups."""
+    """The faults; if none is known, the groups of similar failures."""
+    alone: tuple[Fault, ...]
+    """The groups that belong to no fault; empty if no fault is known."""
     is_tested: bool
-    """Whether small changes were tried on enough failures; if not, ``them`` holds only groups."""
+    """Whether small changes were tried on enough failures; if not, ``them`` holds groups."""
     to_test: tuple[LocatedFailure, ...]
     """Failures to be driven with small changes next; empty if enough failures were tested."""
+    to_come: int
+    """Estimated number of failures to be driven with small changes in all, those ``to_test`` among them."""
     failures: int
     """Number of all failures in the folder, or in the cell that was chosen."""
     compared: int
@@ -122,18 +126,17 @@ class Faults:
     @property
     def _alone(self) -> str:
         """Says how many failures belong to no fault; empty if there are none, or no faults."""
-        alone = [each for each in self.them if each.remedy is None]
-        if not alone or not self.distinct:
+        if not self.alone:
             return ""
-        count = sum(len(each.members) for each in alone)
+        count = sum(len(each.members) for each in self.alone)
         belong = "belong" if count > 1 else "belongs"
-        return f"; {count:,} of the failures, in {plural(len(alone), 'group')}, {belong} to no fault"
+        return f"; {count:,} of the failures, in {plural(len(self.alone), 'group')}, {belong} to no fault"
 
     @property
     def ways(self) -> list[str]:
         """How the car failed, the most frequent way first: 'ran wide of right bends of R 15 m to 17 m'."""
         found: dict[tuple[Way, str | None], list[LocatedFailure]] = {}
-        for fault in self.them:
+        for fault in (*self.them, *self.alone):
             for each in fault.members:
                 found.setdefault((each.manner.way, each.manner.side), []).append(each)
         ordered = sorted(found.items(), key=lambda item: -len(item[1]))
@@ -168,12 +171,18 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
     tested = _tested(folder, known)
     to_test = [each for group in groups for each in group.tested_first if each.name not in tested]
     joined: list[Fault] = []
+    to_come = min(len(known) - len(tested), len(to_test) + CHECKED)
     if not to_test:
         joined = _joined(groups, tested)
-        to_test = [each for fault in joined if fault.remedy for each in _checked_next(fault, groups, tested)]
+        checks = [_checks(fault, groups, tested) for fault in joined if fault.remedy]
+        to_come = sum(count for _, count in checks)
+        to_test = [each for left, count in checks for each in _spread(left, min(count, AT_A_TIME))]
     is_tested = bool(groups) and not to_test
-    them = tuple(replace(each, number=n) for n, each in enumerate(joined if is_tested else groups, 1))
-    return Faults(them, is_tested, tuple(to_test), failures, len(known))
+    found = joined if is_tested else groups
+    faults = [each for each in found if each.remedy] or found
+    them = tuple(replace(each, number=n) for n, each in enumerate(faults, 1))
+    alone = tuple(found[len(faults) :])
+    return Faults(them, alone, is_tested, tuple(to_test), to_come, failures, len(known))
 
 
 def _grouped(known: Sequence[LocatedFailure]) -> list[Fault]:
@@ -210,15 +219,15 @@ def _tested(folder: Path, known: Sequence[LocatedFailure]) -> Tested:
     return {name: removed for name, removed in stored.items() if removed is not None}
 
 
-def _checked_next(fault: Fault, groups: Sequence[Fault], tested: Tested) -> tuple[LocatedFailure, ...]:
-    """Returns failures of a fault to test next, evenly spread over the untested ones of its groups; none if
-    ``CHECKED`` disappeared besides those tested first."""
+def _checks(fault: Fault, groups: Sequence[Fault], tested: Tested) -> tuple[list[LocatedFailure], int]:
+    """Returns the untested failures of a fault, and how many to test so that ``CHECKED`` disappear besides
+    those tested first."""
     first = {each.name for group in groups for each in group.tested_first}
     members = {each.name for each in fault.members}
     every = [each for group in groups for each in group.members if each.name in members]
     left = [each for each in every if each.name not in tested]
     done = sum(each.name in tested and each.name not in first for each in fault.members)
-    return _spread(left, max(0, min(CHECKED - done, AT_A_TIME, len(left))))
+    return left, max(0, min(CHECKED - done, len(left)))
 
 
 def _joined(groups: Sequence[Fault], tested: Tested) -> list[Fault]:

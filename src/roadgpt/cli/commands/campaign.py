@@ -2,6 +2,7 @@
 
 import sys
 from contextlib import redirect_stdout
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,11 +11,12 @@ import click
 from roadgpt.cli import options
 from roadgpt.cli.campaigns import watch
 from roadgpt.cli.commands.faults import FAULT_OPTIONS, analyse_failures, analysis_options
+from roadgpt.cli.commands.report import write_report
 from roadgpt.cli.configuration import driver_guard
 from roadgpt.cli.junit import write_folder
 from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.option_types import driver, driver_again, measure, whole
+from roadgpt.cli.option_types import driver_again, drivers, measure, whole
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -46,9 +48,12 @@ PARAMETERS = (
     options.out("Folder for the campaign. [default: a new one]"),
     *options.WORKERS,
     *named(options.SETUP, "reader", "designer"),
-    Option("--driver drivers", "Name of a driver, or FILE.py:CLASS; repeat the option for more drivers. If "
-           "FILE.toml lists a driver file, RoadGPT runs it only if you name it here, too.", driver,
-           ("lane_centring",), multiple=True, heading=Heading.DRIVE, table="run", guard=driver_guard),
+    Option("--driver --drivers drivers", "Name of a driver, or FILE.py:CLASS; for more drivers, repeat the "
+           "option or separate them by commas. If FILE.toml lists a driver file, RoadGPT runs it only if you "
+           "name it here, too.", drivers, ("lane_centring",), multiple=True, heading=Heading.DRIVE,
+           table="run", guard=driver_guard, callback=lambda _, __, given: tuple(chain.from_iterable(given))),
+    Option("--paired", "Compare the drivers on the same roads at the end, in a report.", bool,
+           heading=Heading.DRIVE),
     *named(options.SETUP, "simulator", "keep_driving"),
     *options.WORLD,
     *named(options.SETUP, "geometry", "rules"),
@@ -99,12 +104,22 @@ def work_to_the_end(
     ``chat`` has the settings of the language model if the user changed a limit. ``draw`` adds pictures and
     road files to a folder of runs.
     """
+    from roadgpt.campaign.folder_record import is_store
     from roadgpt.campaign.lifecycle import work
+    from roadgpt.campaign.record import Record
 
     steps = work(folder, given["workers"], given["executor"], given["address"], chat, draw)
     watch(folder, steps, given["as_json"], given["quiet"])
     if given["junit"] is not None:
         write_folder(given["junit"], folder)
+    if is_store(folder):
+        with Record.opened(folder) as record:
+            if record.plan().paired:
+                from roadgpt.study.chapters.same_roads import compared
+
+                page = write_report(folder)
+                if not given["quiet"]:
+                    click.echo("\n".join([*compared(record), f"report: {page}"]), err=given["as_json"])
     if look := analysis_options(given):
         analyse_failures(folder, look)
 
@@ -156,6 +171,7 @@ def _described(text: str, rest: dict[str, Any]) -> "Plan":
         geometry=rest["geometry"],
         keep_driving=rest["keep_driving"],
         drives=not rest["no_drive"],
+        paired=rest["paired"],
         world=world,
         chat=chat,
     )
@@ -177,5 +193,6 @@ def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
         for said in world_remarks(brief, plan.world, world):
             click.echo(f"note: {words}: {said}")
     if len(cells) > 1:
-        click.echo(f"{len(cells):,} cells, each with tests of its own")
+        what = "the same roads for each driver" if plan.paired else "each with tests of its own"
+        click.echo(f"{len(cells):,} cells, {what}")
     click.echo(f"{'resuming in' if was_there else 'into'} {out}")

@@ -2,7 +2,7 @@
 
 import os
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -13,12 +13,13 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Heading, Option, words_of
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import folder, whole
-from roadgpt.cli.progress import watched
+from roadgpt.cli.progress import progress, watched
 from roadgpt.cli.streams import resumable
 
 if TYPE_CHECKING:
     from roadgpt.campaign.faults.fault import Faults
     from roadgpt.campaign.faults.fault_log import FailureAnalysis, FailureDrawing
+    from roadgpt.campaign.model import NumberedTest
 
 REPEAT = 10  # disturbed drives of each fault, unless the user gives another number
 DRIVES = whole(1, 1000, "drives")
@@ -49,6 +50,8 @@ class AnalysisOptions(NamedTuple):
     is_quiet: bool = False
     groups: bool = False
     """Whether to analyse each group of failures without first finding out which groups are one fault."""
+    top: int | None = None
+    """Number of failures that are written into a folder for a paper."""
     is_apart: bool = False
     """Whether text is printed on standard error, because standard output is reserved for JSON."""
 
@@ -91,7 +94,7 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     """
     from roadgpt.campaign.faults.failures import drivers_of
     from roadgpt.campaign.faults.fault import faults_in
-    from roadgpt.campaign.faults.fault_log import FAILURES, write_tables
+    from roadgpt.campaign.faults.fault_log import FAILURES, instructive, write_tables, write_top
     from roadgpt.campaign.faults.remedy import FOLDER
     from roadgpt.drive.permission import require_permission
 
@@ -105,14 +108,21 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     with resumable(f"finished work is kept; continue with: {go_on}"):
         found = _tested(place, found, look)
         look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
-        looked = _analysed(place, found, look)
-    table = write_tables(found.them, looked, place)
+        looked = _analysed(place, [(each.number, each.names) for each in found.them], look)
+        top = instructive(found.them, looked, look.top or 0)
+        tops = _analysed(place, [(at, (name,)) for at, (_, name) in enumerate(top)], look)
+    table = write_tables(found, looked, place)
     look.say("\n".join(_summary(place, found, looked)))
     look.say(f"tables: {table} and {table.with_name(FAILURES)}")
     if look.formats:
         cells = sorted({fault.typical[0].name.cell for fault in found.them})
         drawn = (f"{place / FOLDER / cell}/*.{kind}" for cell in cells for kind in look.formats)
         look.say(f"pictures: {', '.join(drawn)}")
+    if top:
+        from roadgpt.report.birds_eye import draw_fault
+
+        folder = write_top(place, [(fault, tops[at]) for at, (fault, _) in enumerate(top)], draw_fault)
+        look.say(f"the {len(top)} most instructive failures, for a paper: {folder}")
 
 
 def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
@@ -124,18 +134,24 @@ def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
     from roadgpt.campaign.unordered_map import unordered_map
     from roadgpt.campaign.workers.worker_log import LOG
 
-    while found.to_test and not look.groups:
-        count = len(found.to_test)
-        look.say(f"{found.sentence}; trying small changes on {count:,} of them", is_news=True)
-        steps = unordered_map(partial(try_remedies, place), found.to_test, look.workers, place / LOG)
-        for _ in watched(steps, count, "failures", look.is_quiet):
-            pass
-        found = faults_in(place)
+    done, rounds = 0, 0
+    with progress("failures", None, look.is_quiet) as tell:
+        while found.to_test and not look.groups:
+            rounds, total, later = rounds + 1, done + found.to_come, found.to_come - len(found.to_test)
+            more = f", about {later:,} more in later rounds" * (later > 0)
+            what = f"trying small changes on {len(found.to_test):,} of them{more}"
+            look.say(f"{found.sentence}; round {rounds}: {what}", is_news=True)
+            for _ in unordered_map(partial(try_remedies, place), found.to_test, look.workers, place / LOG):
+                done += 1
+                tell(done, total=total)
+            found = faults_in(place)
     return found
 
 
-def _analysed(place: Path, found: "Faults", look: AnalysisOptions) -> "dict[int, FailureAnalysis]":
-    """Analyses a typical failure of each fault or group; returns the analyses by number."""
+def _analysed(
+    place: Path, what: "Sequence[tuple[int, Sequence[NumberedTest]]]", look: AnalysisOptions
+) -> "dict[int, FailureAnalysis]":
+    """Analyses one of the named failures under each number; returns the analyses by number."""
     from roadgpt.campaign.faults.fault_log import AnalysisTask, analyse
     from roadgpt.campaign.unordered_map import unordered_map
     from roadgpt.campaign.workers.worker_log import LOG
@@ -144,8 +160,8 @@ def _analysed(place: Path, found: "Faults", look: AnalysisOptions) -> "dict[int,
     if look.formats:
         from roadgpt.report.birds_eye import draw_fault as draw
     tasks = [
-        AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw, look.formats)
-        for each in found.them
+        AnalysisTask(place, number, tuple(names), look.repeat, look.minimise, draw, look.formats)
+        for number, names in what
     ]
     steps = unordered_map(analyse, tasks, look.workers, place / LOG)
     return dict(watched(steps, len(tasks), "faults", look.is_quiet))
@@ -164,13 +180,14 @@ def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis
         again = f"{its.stability.failed}/{len(its.stability.drives)}"
         name = f"{its.name!s:<{wide}}"
         yield f"{fault.number:>5} {len(fault.members):>8,} {again:>7}  {name}  {its.reason.sentence}"
-        removed = f"disappears with {fault.removed_by}" if fault.remedy else "a group; it belongs to no fault"
+        alone = "it belongs to no fault" if found.is_tested else "no small changes were tried"
+        removed = f"disappears with {fault.removed_by}" if fault.remedy else f"a group; {alone}"
         yield f"{'':>{wide + 26}}{removed}"
         if its.simplest:
             yield f"{'':>{wide + 26}}simplest: {its.simplest}"
     stable = sum(its.stability.is_stable for its in looked.values())
     yield found.headline
-    what = plural(len(found.them), "fault") + ("" if found.distinct == len(found.them) else " or groups")
+    what = plural(len(found.them), "fault" if found.distinct else "group")
     yield f"{stable:,} of {what} fail again in at least half of the drives"
     if looked:
         yield f"look at one: {shlex.join(['roadgpt', 'view', f'{place}/{looked[1].name}'])}"
@@ -181,6 +198,8 @@ OPTIONS = (
     Option("--repeat", f"{DISTURB}.", DRIVES, REPEAT),
     Option("--minimise", f"{MINIMISE}.", bool),
     Option("--groups", GROUPS, bool),
+    Option("--top", "Also write the N most instructive failures into a folder for a paper: different faults "
+           "first, then different places.", whole(1, 100, "failures")),
     Option("-j workers", "Number of failures analysed in parallel.", whole(1, 256, "processes"), 1),
     *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
 )
@@ -193,6 +212,7 @@ def command(
     repeat: int,
     minimise: bool,
     groups: bool,
+    top: int | None,
     workers: int,
     driver: str | None,
     quiet: bool,
@@ -220,4 +240,4 @@ def command(
     if driver is not None:
         check_named_driver(driver, drivers_of(place), place)
     formats = options.pictures_of(rest)
-    analyse_failures(place, AnalysisOptions(repeat, minimise, workers, formats, quiet, groups))
+    analyse_failures(place, AnalysisOptions(repeat, minimise, workers, formats, quiet, groups, top))

@@ -25,22 +25,26 @@ def command(folder: Path, opens: bool, junit: Path | None) -> None:
     \b
     roadgpt report roadgpt-runs/an-uphill-road-with-3-turns-7 --open
     """
+    page = write_report(folder)
+    if junit is not None:
+        write_folder(junit, folder)
+    click.echo(str(page))
+    if opens:
+        open_page(page)
+
+
+def write_report(folder: Path) -> Path:
+    """Writes the report on a folder of runs, a campaign or a study; returns the path of the HTML page."""
     from roadgpt.campaign.folder_record import is_store
     from roadgpt.campaign.status import status_of
     from roadgpt.study import plan, study_report
     from roadgpt.study.campaign_report import write_store_report
 
     if (folder / plan.CARD).is_file():
-        page = study_report.write_study(folder)
-    else:
-        steps = next_steps(of_status(status_of(folder)))
-        write = write_store_report if is_store(folder) else study_report.write_run_report
-        page = write(folder, command_of(folder), steps)
-    if junit is not None:
-        write_folder(junit, folder)
-    click.echo(str(page))
-    if opens:
-        open_page(page)
+        return study_report.write_study(folder)
+    steps = next_steps(of_status(status_of(folder)))
+    write = write_store_report if is_store(folder) else study_report.write_run_report
+    return write(folder, command_of(folder), steps)
 
 
 def command_of(folder: Path) -> str:

@@ -88,7 +88,7 @@ def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
         return ["No road failed."]
     measured = [each.looked.stability.is_stable for each in summaries if each.looked]
     sure = f"{sum(measured)} of {len(measured)} that were driven again" if measured else ""
-    what = "faults" if found.distinct == len(found.them) else "faults and groups"
+    what = "faults" if found.distinct else "groups"
     again = [f"Of the {what}, {sure} fail every second time or oftener."] if sure else []
     return [as_sentence(found.headline), *again]
 
@@ -158,7 +158,7 @@ def _all(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Bloc
         failed = None if its is None else cell(its.share, f"{its.failed} of {len(its.drives)}")
         removed = each.fault.removed_by or None
         rows.append(row(each.fault.number, len(each.fault.members), name, failed, removed, each.reason))
-    what = "fault" if found.distinct == len(found.them) else "fault or group"
+    what = "fault" if found.distinct else "group"
     heads = [what, "tests", "typical test", "failed again", "disappears with", "why"]
     caption = f"All {len(found.them):,}"
     if len(summaries) < len(found.them):
