@@ -80,7 +80,7 @@ class BrowserTab:
             self.told.append(details.get("exception", {}).get("description", details["text"]))
         elif event == "Log.entryAdded":
             self.told.append(what["entry"]["text"])
-        elif event == "Network.requestWillBeSent":
+        elif event == "Network.requestWillBeSent" and not what["request"]["url"].startswith("data:"):
             self.asked.append(what["request"]["url"])
         elif event == "Page.loadEventFired":
             self.loads += 1

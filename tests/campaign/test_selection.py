@@ -165,7 +165,7 @@ def test_one_wrong_name_does_not_stop_the_others() -> None:
 
 def test_a_page_a_film_pictures_and_a_summary_of_what_is_named() -> None:
     worst = names("two", "worst")[0]
-    assert lines("view", "two", "--worst") == ["roadgpt-view.html"]
+    assert lines("view", "two", "--worst") == [f"two-{worst.replace('/', '-000')}-view.html"]
     assert lines("view", "one/1", "runs/1", "--out", "both.html") == ["both.html"]
     drawn = lines("plot", "two", "--worst")
     assert f"plots/two-{worst.replace('/', '-000')}/birds_eye.png" in drawn
@@ -264,5 +264,5 @@ def test_a_campaign_that_was_moved_needs_no_driver() -> None:
     lines("campaign", *words, "--out", "own")
     shutil.move("own", "elsewhere")
     Path("mine.py").unlink()
-    assert lines("view", "elsewhere/1") == ["roadgpt-view.html"]
+    assert lines("view", "elsewhere/1") == ["elsewhere-c01-0001-view.html"]
     assert lines("export", "elsewhere", "--worst", "--to", "csv")

@@ -84,6 +84,27 @@ def test_edge_lines_follow_the_whole_edge_of_the_carriageway(network: Network) -
     assert shapely.distance(places, lines).max() < LINE
 
 
+def test_lines_lie_on_crests_and_in_sags() -> None:
+    data = {
+        "starting_point": [40, 60, 2],
+        "theta": 0,
+        "road_segment1": {**STRAIGHT, "incline": 5},
+        "road_segment2": {**STRAIGHT, "incline": -5},
+        "junction1": {"after": 2, "kind": "crossroads", "take": "left"},
+        "road_segment3": STRAIGHT,
+    }
+    route = made_from(read_any_design(data)[0], World())
+    assert isinstance(route, Route)
+    road = route.network.roads[0].road
+    assert np.ptp(road.at(np.arange(0.0, road.length))[:, 2]) > 2
+    lines = [stroke.points for stroke in strokes(route.network) if stroke.road == route.network.roads[0].id]
+    assert len(lines) > 5
+    for points in lines:
+        s = points[:, :2] @ [1.0, 0.0] - road.at(0.0)[0]  # the road runs along x
+        places = np.linspace(s.min(), s.max(), 200)
+        assert np.interp(places, s, points[:, 2]) == pytest.approx(road.at(places)[:, 2], abs=0.01)
+
+
 @pytest.mark.parametrize("control", ["stop", "lights"])
 def test_a_stop_line_lies_across_the_arriving_lane_where_the_road_ends(control: str) -> None:
     route = route_of({"kind": "crossroads", "take": "left", "control": control})

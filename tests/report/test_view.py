@@ -19,6 +19,7 @@ from roadgpt.report import view
 from roadgpt.report.view.scene import DRIVE, MOST_STEPS
 from roadgpt.road import CrossSection, Design, Road, Segment, Site, World
 from roadgpt.run import Run, Setup, prove, write_run
+from roadgpt.scene import Scene
 
 EVIL = (
     "</script><script>alert(1)</script><!-- &lt; @@SCRIPT@@ ' \" \\ \u2028 \ud800 "
@@ -97,11 +98,11 @@ def test_the_page_holds_everything_and_fetches_nothing(driven: Run) -> None:
     page = view.page([driven])
     reader = seen(page)
     assert reader.fetched == []
-    assert len(reader.scripts) == 3
+    assert len(reader.scripts) == 4
     assert "default-src 'none'" in page
     assert "@import" not in page
     assert not re.search(r"url\(", page.split("</style>")[0])
-    assert "@@" not in page.replace(reader.scripts[1], "")
+    assert "@@" not in page.replace(reader.scripts[2], "")
 
 
 def test_three_js_comes_with_its_licence(driven: Run) -> None:
@@ -168,7 +169,7 @@ def test_a_road_s_own_lanes_and_bank_are_told_at_each_station() -> None:
     s, lanes = np.array(road["s"]), road["lanes"]
     width = np.interp(s, [0.0, road["length"]], [3.0, 4.0])
     far = np.abs(s - road["length"] / 2) < 1e-9 + road["length"] / 2
-    assert (lanes["against"], lanes["driven"], len(lanes["bounds"])) == (1, 2, 4)
+    assert (lanes["driven"], len(lanes["bounds"])) == (2, 4)
     assert [bound["marking"] for bound in lanes["bounds"]] == ["solid", "solid", "broken", "solid"]
     right = np.array(lanes["bounds"][3]["t"])
     assert right[0] == -6.0
@@ -177,6 +178,18 @@ def test_a_road_s_own_lanes_and_bank_are_told_at_each_station() -> None:
     assert np.array(lanes["rims"]["right"]) == pytest.approx(right - 1.0, abs=2e-3)
     assert np.array(lanes["middle"]) == pytest.approx(0.75 * right, abs=2e-3)
     assert np.abs(lanes["bank"]).max() == pytest.approx(np.arctan(0.06), abs=2e-5)
+
+
+def test_the_landscape_is_that_of_films(driven: Run) -> None:
+    assert driven.road is not None
+    told, film = view.scene(driven)["land"], Scene.of(driven.road, driven.world)
+    steps = np.reshape(told["heights"], film.land.heights.shape)
+    heights = told["unit"] * steps.cumsum(axis=0).cumsum(axis=1)
+    assert heights == pytest.approx(film.land.heights, abs=0.01)
+    assert np.array(told["x"]) == pytest.approx(film.land.x, abs=0.06)
+    trees = np.reshape(told["trees"], (-1, 7))
+    assert trees[:, :3] / 10 == pytest.approx(film.trees.places, abs=0.06)
+    assert trees[:, 5].tolist() == film.trees.looks.tolist()
 
 
 def test_the_drive_is_that_of_the_run(driven: Run) -> None:
@@ -283,7 +296,7 @@ def test_wrong_words_get_advice(
     done = CliRunner().invoke(app, ["view", *words])
     assert done.exit_code in (1, 2)
     assert said in done.output
-    assert not (folder / "roadgpt-view.html").exists()
+    assert not [*folder.glob("*.html")]
 
 
 def test_the_test_file_of_a_campaign_stands_for_its_run(
@@ -292,17 +305,19 @@ def test_the_test_file_of_a_campaign_stands_for_its_run(
     monkeypatch.chdir(folder)
     done = CliRunner().invoke(app, ["view", "campaign/test.0001.json"])
     assert done.exit_code == 0, done.output
-    (shown,) = data_of((folder / "roadgpt-view.html").read_text(encoding="utf-8"))
+    (shown,) = data_of((folder / "test.0001-view.html").read_text(encoding="utf-8"))
     assert shown["drive"] is not None
 
 
-def test_the_page_has_a_name_of_its_own(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_page_is_named_after_its_roads(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
     monkeypatch.setattr("webbrowser.open", lambda address: False)
     done = CliRunner().invoke(app, ["view", "road.json", "--open"])
-    assert done.exit_code == 0
-    assert "no browser could be started" in done.stderr
-    assert (folder / "roadgpt-view.html").is_file()
+    assert (done.exit_code, done.stdout) == (0, "road-view.html\n")
+    assert "no browser could be started; open road-view.html" in done.stderr
+    done = CliRunner().invoke(app, ["view", "road.json", "campaign/runs/0001"])
+    assert (done.exit_code, done.stdout) == (0, "road-and-0001-view.html\n")
+    assert len(data_of((folder / "road-and-0001-view.html").read_text(encoding="utf-8"))) == 2
 
 
 def test_the_car_stands_on_the_inclined_surface() -> None:

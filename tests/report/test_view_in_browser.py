@@ -237,11 +237,25 @@ def test_keys(page: BrowserTab) -> None:
     assert page.run("keys.open")
 
 
-def test_lines_on_the_land_are_for_who_looks_from_above(page: BrowserTab) -> None:
-    assert page.run("roadgpt.grids") == [False]
+def test_from_above_the_land_is_grass_without_lines(page: BrowserTab) -> None:
     page.key("3")
-    page.settle()
-    assert page.run("roadgpt.grids") == [True]
+    picture = page.picture(".stage .scene")[..., :3]
+    high, wide = picture.shape[:2]
+    # below the road, between the legend and the hint
+    land = picture[int(0.85 * high) :, int(0.34 * wide) : int(0.45 * wide)]
+    assert (land.argmax(axis=-1) == 1).mean() > 0.99
+    assert land.max() < 0.7
+
+
+def test_clouds_stand_in_the_sky_and_trees_on_the_horizon(page: BrowserTab) -> None:
+    picture = page.picture(".stage .scene")[..., :3]
+    high, wide = picture.shape[:2]
+    sky = picture[int(0.03 * high) : int(0.25 * high), wide // 2 :]
+    assert (sky.argmax(axis=-1) == 2).mean() > 0.9
+    assert sky[..., 0].std(axis=1).max() > 0.02, "the same all around"
+    green = picture[..., 1] - picture[..., 2]
+    above = green[int(0.25 * high) : int(0.4 * high)]
+    assert (above > 0.05).any(axis=0).mean() > 0.3, "no crowns over the horizon"
 
 
 def test_asphalt_has_grain_and_the_road_begins_on_the_ground(page: BrowserTab) -> None:
@@ -271,13 +285,13 @@ def test_the_page_would_be_stopped_from_fetching(page: BrowserTab) -> None:
     page.asked[:] = [address for address in page.asked if address.startswith("file:")]
 
 
-def test_plates_that_stand_close_together_do_not_cover_each_other(
+def test_plates_stay_in_the_picture_and_do_not_cover_each_other(
     tab: BrowserTab, driven: Run, tmp_path: Path
 ) -> None:
     assert driven.road is not None
     made = view.scene(driven)
     place = driven.road.at(40.0)
-    texts = ["left its lane\nto the right", "too tight", "overlaps itself", "leaves the map"]
+    texts = ["left its lane\nto the right, and that " + "very " * 9 + "far", "too tight", "overlaps itself"]
     made["places"] = [
         {"x": float(place[0]) + n, "y": float(place[1]), "s": 40.0 + n, "text": text, "time": None}
         | {"colour": "#c04f00", "letters": "#c04f00"}
@@ -285,19 +299,23 @@ def test_plates_that_stand_close_together_do_not_cover_each_other(
     ]
     path = tmp_path / "plates.html"
     path.write_text(view.page_of([made]), encoding="utf-8")
-    tab.size(1000, 700)
-    tab.open(path)
-    for camera in ("behind", "free"):
-        tab.run(f"roadgpt.player.choose('{camera}'); 0")
-        tab.settle()
-        assert tab.run("roadgpt.player.camera") == camera
-        (plates,) = tab.run("roadgpt.plates")
-        assert len(plates) == len(texts)
-        for n, one in enumerate(plates):
-            for other in plates[n + 1 :]:
-                beside = one["right"] <= other["left"] or other["right"] <= one["left"]
-                over = one["bottom"] >= other["top"] - 1e-9 or other["bottom"] >= one["top"] - 1e-9
-                assert beside or over
+    boxes = """['.stage .scene', '.plate'].map(name => [...document.querySelectorAll(name)].map(each =>
+        (r => [r.left, r.top, r.right, r.bottom])(each.getBoundingClientRect())))"""
+    for wide, high, is_phone in ((1000, 700, False), (390, 844, True)):
+        tab.size(wide, high, is_phone)
+        tab.open(path)
+        for camera in ("behind", "free"):
+            tab.run(f"roadgpt.player.choose('{camera}'); 0")
+            tab.settle()
+            (stage,), plates = tab.run(boxes)
+            assert len(plates) == len(texts)
+            for n, one in enumerate(plates):
+                assert stage[0] <= one[0] < one[2] <= stage[2]
+                assert stage[1] <= one[1] < one[3] <= stage[3]
+                for other in plates[n + 1 :]:
+                    beside = one[2] <= other[0] or other[2] <= one[0]
+                    over = one[3] <= other[1] or other[3] <= one[1]
+                    assert beside or over
     assert tab.told == []
 
 

@@ -152,6 +152,7 @@ def test_signs_face_the_traffic_that_arrives() -> None:
         assert [face.colour for face in heads] == ["green", "dim yellow", "dim red"]  # lights are green
         assert heads[0].points[:, 2].mean() < heads[2].points[:, 2].mean()
         for face in heads:
+            assert np.ptp(face.points[:, 2]) == pytest.approx(0.3, abs=0.01)  # m: the large lens of EN 12368
             normal = np.cross(face.points[1] - face.points[0], face.points[2] - face.points[1])
             assert normal @ ahead < -0.99 * np.linalg.norm(normal)
 

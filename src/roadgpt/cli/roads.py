@@ -247,21 +247,13 @@ def on_a_map(
     return moved(road, x, y, z), size, (x, y, z), tuple(remarks)
 
 
-def shown_runs(
-    files: Sequence[str],
-    choice: "Choice | None",
-    world: "World",
-    geometry: "Geometry",
-    most: int,
-    what: str,
-) -> "list[Run]":
-    """Returns the named Runs, to show them together; a road file becomes a Run without a drive.
+def shown_roads(files: Sequence[str], choice: "Choice | None", most: int, what: str) -> list[NamedRoad]:
+    """Returns the named roads, to show them together.
 
-    ``world`` and ``geometry`` are for road files. The output can show at most ``most`` Runs; ``what``
-    names the output in messages, such as 'a page'.
+    The output can show at most ``most`` roads; ``what`` names the output in messages, such as 'a page'.
 
     Raises:
-        UsageError: A name is wrong, a road cannot be read, or there are more than ``most``.
+        UsageError: A name is wrong, or there are more than ``most``.
     """
     if len(files) > most:
         raise UsageError(f"{what} shows one road or two side by side; {len(files)} are given")
@@ -273,7 +265,7 @@ def shown_runs(
         )
     if len(named) < len(files):  # the same road twice, side by side
         named = [each for file in files for each in roads_named([file], choice)]
-    return [run_of(each, world, geometry) for each in named]
+    return named
 
 
 def run_of(named: NamedRoad, world: "World", geometry: "Geometry", quiet: bool = False) -> "Run":

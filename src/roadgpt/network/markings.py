@@ -6,6 +6,7 @@ give way has a line across the end of its road. Where traffic gives way to a rou
 outer edge of the ring instead.
 """
 
+import math
 from collections.abc import Iterator
 from typing import Any, Literal, NamedTuple
 
@@ -22,6 +23,7 @@ from roadgpt.road.profile import DASH, GAP, LINE
 BLOCK, BLOCK_GAP = 0.5, 0.25  # m, lengths of a block and of a gap in a give-way line (Germany, RMS-1)
 BEFORE = 1.0  # m, from a sign to the junction
 BESIDE = 0.6  # m, from the outer edge of the shoulder to the middle of a sign
+ABOVE = 0.003  # m, about the largest distance in height between the chords of a line and the road
 SHORTEST = 0.3  # m; shorter pieces of lines come from rounding
 CIRCLE = 64  # segments in a quarter of the circle on which a give-way line lies
 
@@ -75,7 +77,9 @@ def signs(network: Network) -> tuple[JunctionSign, ...]:
 def _of_road(network: Network, member: NetworkRoad) -> Iterator[PaintedStroke]:
     """Yields the lines of a road's profile; crosswalks interrupt the lines between lanes."""
     road, profile = member.road, member.profile
-    s = stations_of(road)
+    metres = np.linspace(0.0, road.length, math.ceil(road.length) + 1)
+    chords = np.cumsum(np.sqrt(np.abs(road.vertical_curvature(metres)) / (8 * ABOVE)))
+    s = np.union1d(stations_of(road), np.interp(np.arange(1.0, chords[-1]), chords, metres))
     first, last = between_crosswalks(network, member)
     painted, boundaries = profile.markings(s), profile.boundaries(s)
     outer = {n for n, at in ((0, 0), (len(painted) - 1, -1)) if boundaries[at][0] == "solid"}

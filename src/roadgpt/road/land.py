@@ -115,11 +115,13 @@ def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple
         mean = (padded[:-2, 1:-1] + padded[2:, 1:-1] + padded[1:-1, :-2] + padded[1:-1, 2:]) / 4
         heights = np.where(fixed, kept, mean)
     away = away * cell
-    return heights + _hills(*np.meshgrid(x, y)) * np.clip((away - 4) / 90, 0.0, 1.0), away
+    return heights + _hills(*np.meshgrid(x, y), cell) * np.clip((away - 4) / 90, 0.0, 1.0), away
 
 
-def _hills(x: Array, y: Array) -> Array:
-    swell = np.sin(x / 37 + 1.3) * np.sin(y / 43 + 0.4) + 0.5 * np.sin(x / 17 - y / 21)
+def _hills(x: Array, y: Array, cell: float) -> Array:
+    """Returns waves of several lengths, without those that are too short for the cells, in metres."""
+    swell = np.sin(x / 37 + 1.3) * np.sin(y / 43 + 0.4) * (cell < 44)
+    swell = swell + 0.5 * np.sin(x / 17 - y / 21) * (cell < 20)
     return np.asarray(3.4 * (swell - 0.3) + 5.5 * np.sin(x / 71 + 2.0) * np.sin(y / 83 + 0.9))
 
 

@@ -14,12 +14,13 @@ SignColour = Literal["grey", "white", "red", "yellow", "green", "black", "dim re
 POLE, POLE_SIDES = 0.04, 6  # radius of a post in m, and number of its sides
 FOOT = 0.5  # m by which a post reaches into the ground
 LAYER = 0.012  # m between two colours of a sign
-MIDDLE = {"stop": 2.45, "yield": 2.4, "priority": 2.35, "lights": 2.6}
+MIDDLE = {"stop": 2.45, "yield": 2.4, "priority": 2.35, "lights": 2.75}
 """Height in metres of the middle of each sign above the foot of its post."""
 OCTAGON = np.pi / 8 + np.arange(8) * np.pi / 4
 TRIANGLE = np.pi / 2 + np.arange(3) * 2 * np.pi / 3 + np.pi
 DIAMOND = np.arange(4) * np.pi / 2
-BAR = 0.032  # m, width of the bars of letters
+CIRCLE = np.arange(24) * np.pi / 12
+BAR = 0.045  # m, width of the bars of letters
 TALL, WIDE = 0.26, 0.13  # m, of a letter
 LETTERS = {
     "S": ("top", "upper left", "middle", "lower right", "foot"),
@@ -29,7 +30,8 @@ LETTERS = {
 }
 """The bars of the letters of a stop sign, in the order of the word."""
 APART = 0.18  # m, from the middle of a letter to that of the next
-BOX, LENS = (0.32, 0.96, 0.25), 0.11  # m: width, height and depth of a traffic light; radius of a lens
+BOX, LENS = (0.42, 1.2, 0.25), 0.15  # m: width, height and depth of a traffic light; radius of a lens
+LENS_APART, BOARD, RIM = 0.38, 0.09, 0.13  # m: lens to lens; board and its white rim, beyond the box
 
 
 class SignFace(NamedTuple):
@@ -110,17 +112,20 @@ def _tube(sign: JunctionSign, radius: float, low: float, high: float) -> Iterato
 
 
 def _lights(sign: JunctionSign, middle: float) -> Iterator[SignFace]:
-    """Yields the faces of a traffic light: a box with three lenses, of which the green one is lit."""
+    """Yields the faces of a traffic light: a box before a black board with a white rim, and three lenses, of
+    which the green one is lit."""
     wide, high, deep = BOX
-    x, y = np.array([-1, 1, 1, -1]) * wide / 2, np.array([-1, -1, 1, 1]) * high / 2
-    front = _placed(sign, np.column_stack([x, y]), middle, deep)
-    back = _placed(sign, np.column_stack([x, y]), middle, 0.0)
+    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    board, rim = (corners * [wide / 2 + more, high / 2 + more] for more in (BOARD, RIM))
+    yield SignFace("grey", _placed(sign, rim[::-1], middle, POLE))
+    yield SignFace("white", _placed(sign, rim, middle, POLE))
+    yield SignFace("black", _placed(sign, board, middle, POLE + LAYER))
+    back, front = (_placed(sign, corners * [wide / 2, high / 2], middle, ahead) for ahead in (POLE, deep))
     yield SignFace("black", front)
-    yield SignFace("black", back[::-1])
     for k in range(4):
         n = (k + 1) % 4
         yield SignFace("black", np.array([back[k], back[n], front[n], front[k]]))
-    lens = _polygon(np.arange(12) * np.pi / 6, LENS)
+    lens = _polygon(CIRCLE, LENS)
     colours: tuple[SignColour, ...] = ("green", "dim yellow", "dim red")
     for k, colour in enumerate(colours):
-        yield SignFace(colour, _placed(sign, lens + [0.0, (k - 1) * 0.29], middle, deep + LAYER))
+        yield SignFace(colour, _placed(sign, lens + [0.0, (k - 1) * LENS_APART], middle, deep + LAYER))

@@ -182,10 +182,15 @@ def _shoulder(area: JunctionSurface, station: float) -> list[Patch]:
     All corners of the whole may lie at the carriageway, as those between two ways do; between corners without
     any distance from it, it would be all gravel.
     """
+    near, far = near_and_far(area)
+    out = [] if near.is_empty else [_level(near, area.height, ROAD, station, area.paved)]
+    return out if far.is_empty else [*out, _level(far, area.height, GRASS, 0.0)]
+
+
+def near_and_far(area: JunctionSurface) -> tuple[Area, Area]:
+    """Returns the shoulder of a junction within ``BARE`` metres of its carriageway, and beyond."""
     near = area.paved.buffer(BARE, quad_segs=ROUND)
-    parts = polygons(area.shoulder.intersection(near)), polygons(area.shoulder.difference(near))
-    out = [] if parts[0].is_empty else [_level(parts[0], area.height, ROAD, station, area.paved)]
-    return out if parts[1].is_empty else [*out, _level(parts[1], area.height, GRASS, 0.0)]
+    return polygons(area.shoulder.intersection(near)), polygons(area.shoulder.difference(near))
 
 
 def _level(area: Area, height: float, kind: int, station: float, beside: "Area | None" = None) -> Patch:

@@ -31,6 +31,18 @@ Image = NDArray[np.uint8]
 FARTHEST = 1e7  # m or rad; greatest number in a pose
 
 
+def landscape(road: Road, world: World) -> tuple[Land, Trees]:
+    """Returns the land around a road, or around all roads of a route's network, and the trees on it."""
+    if not isinstance(road, Route):
+        land, line = Land.around(road, world), road.centreline(LONGEST_STEP)
+        return land, plant(line[:, :2], world.profile_of(road).reach, land)
+    parts = NetworkSurface.of(road.network)
+    line = np.concatenate([each.road.centreline(LONGEST_STEP) for each in road.network.roads])
+    # without shoulders, the roads float above flat land
+    land = Land.beneath(line, parts.reach if parts.shoulder > 0 else None, world.site.z_floor)
+    return land, plant(line[:, :2], parts.reach, land)
+
+
 @dataclass(frozen=True, eq=False)
 class Scene:
     """The scene of one road. It is built once and can then render any number of images, also in several
@@ -57,26 +69,17 @@ class Scene:
             ExportError: the road has a number that is not finite.
         """
         road = world.lay(road)
+        land, trees = landscape(road, world)
+        terrain = LitTerrain(land)
         if isinstance(road, Route):
-            return cls._of_network(road, world)
-        land, profile = Land.around(road, world), world.profile_of(road)
-        terrain = LitTerrain(land)
-        ground = Mesh.of([*road_patches(road, world, terrain), *terrain.patches()])
-        trees = plant(road.centreline(LONGEST_STEP)[:, :2], profile.reach, land)
-        return cls(road, world, land, ground, trees, LaneBoundaries.of(profile, road.length))
-
-    @classmethod
-    def _of_network(cls, route: Route, world: World) -> "Scene":
-        """Returns the scene of a route, with all roads of its network."""
-        parts = NetworkSurface.of(route.network)
-        lines = np.concatenate([each.road.centreline(LONGEST_STEP) for each in route.network.roads])
-        # without shoulders, the roads float above flat land
-        land = Land.beneath(lines, parts.reach if parts.shoulder > 0 else None, world.site.z_floor)
-        terrain = LitTerrain(land)
-        widest = max([0.0, *(float(np.ptp(each.paved.bounds[::2])) for each in parts.areas)])
-        axis = StationAxis.of(route.network, parts.roads, widest)
-        ground = Mesh.of([*network_patches(route, parts, axis, terrain), *terrain.patches()])
-        return cls(route, world, land, ground, plant(lines[:, :2], parts.reach, land), axis.lanes)
+            parts = NetworkSurface.of(road.network)
+            widest = max([0.0, *(float(np.ptp(each.paved.bounds[::2])) for each in parts.areas)])
+            axis = StationAxis.of(road.network, parts.roads, widest)
+            patches, lanes = network_patches(road, parts, axis, terrain), axis.lanes
+        else:
+            patches = road_patches(road, world, terrain)
+            lanes = LaneBoundaries.of(world.profile_of(road), road.length)
+        return cls(road, world, land, Mesh.of([*patches, *terrain.patches()]), trees, lanes)
 
     def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:
         """Returns an RGB image ``(height, width, 3)`` of bytes, as the camera on a car at ``pose`` sees it.

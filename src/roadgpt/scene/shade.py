@@ -22,6 +22,7 @@ from roadgpt.scene.textures import STEPS
 
 THINNEST = 0.008  # m: smallest pixel width for which markings are computed
 HAZE = 1000.0  # m
+AIR = 0.60, 0.71, 0.79  # linear colour of haze
 AMBER = 0.69, 0.80  # m, of a post's reflector
 DARK = 0.62, 0.86  # m, of its dark band
 BLOCK = 4  # pixels side by side that share haze and resolution, which change slowly
@@ -78,8 +79,8 @@ def hazy(r: float, g: float, b: float, thin: float, warm: float) -> Colour:
     """Blends a colour with the colour of haze: ``thin`` (0 to 1) is the weight of the original colour;
     ``warm`` brightens the haze, most of all in the red channel."""
     thick = 1.0 - thin
-    r, g = r * thin + (0.60 + warm) * thick, g * thin + (0.71 + 0.9 * warm) * thick
-    return r, g, b * thin + (0.79 + 0.7 * warm) * thick
+    r, g = r * thin + (AIR[0] + warm) * thick, g * thin + (AIR[1] + 0.9 * warm) * thick
+    return r, g, b * thin + (AIR[2] + 0.7 * warm) * thick
 
 
 @inlined
@@ -254,6 +255,19 @@ def shade(
                 part = 1.0 if is_whole else shares[k] * 0.25
                 red, green, blue = red + r * part, green + g * part, blue + b * part
             picture[row, i, 0], picture[row, i, 1], picture[row, i, 2] = red, green, blue
+
+
+@compiled
+def panorama(tiles: Tiles, lowest: float, picture: NDArray[np.float32]) -> None:
+    """Fills a picture of the whole sky. Its columns go around counter-clockwise from +x. With v from 0 below
+    to 1 above, the elevation of a row is ``lowest`` + (pi / 2 - ``lowest``) v^2 radians."""
+    rows, columns = picture.shape[0], picture.shape[1]
+    for row in range(rows):
+        up = lowest + (math.pi / 2 - lowest) * (1.0 - (row + 0.5) / rows) ** 2
+        for i in range(columns):
+            turn, level = 2 * math.pi * (i + 0.5) / columns, math.cos(up)
+            r, g, b = sky(tiles, level * math.cos(turn), level * math.sin(turn), math.sin(up))
+            picture[row, i, 0], picture[row, i, 1], picture[row, i, 2] = r, g, b
 
 
 @compiled

@@ -54,6 +54,10 @@ WHEEL, TRACK, OIL = 0.79, 0.55, 0.60  # m: from mid-lane to a wheel track; half 
 GRAVEL = 0.45  # m, width of the gravel between asphalt and grass
 STONE = 90.0  # texels of asphalt's grain to a metre
 RIDGES = SIDE / (2.0 * math.pi)  # texels of the far hills to a radian
+ASPHALT, PAINTED, STONES = 0.142, (0.80, 0.80, 0.77), (0.235, 0.215, 0.175)
+"""Linear colours: the brightness of asphalt, road paint, and the gravel beside the asphalt."""
+LUSH, DRIER = (0.078, 0.150, 0.026), (0.115, 0.075, 0.024)
+"""Linear colour of lush grass, and what is added to it where the grass is dry."""
 
 
 @inlined
@@ -90,7 +94,8 @@ def grass(tiles: Tiles, x: float, y: float, level: float) -> Colour:
     blades = fine_noise(tiles, MEADOW, x * 31.0, y * 31.0, level + 4.95)
     dry = min(max(0.42 + 0.27 * wide + 0.06 * blades, 0.0), 1.0)
     tone = max(1.0 + 0.12 * wide + 0.20 * blades, 0.25)
-    return (0.078 + 0.115 * dry) * tone, (0.150 + 0.075 * dry) * tone, (0.026 + 0.024 * dry) * tone
+    r, g, b = LUSH[0] + DRIER[0] * dry, LUSH[1] + DRIER[1] * dry, LUSH[2] + DRIER[2] * dry
+    return r * tone, g * tone, b * tone
 
 
 @inlined
@@ -118,7 +123,7 @@ def asphalt(tiles: Tiles, s: float, t: float, lanes: LaneBoundaries, level: floa
             lane = from_middle
     worn = bump(lane - WHEEL, TRACK) + bump(lane + WHEEL, TRACK)
     tone = 1.0 + 0.20 * grain + 0.06 * patches - (0.17 + 0.04 * patches) * worn - 0.10 * bump(lane, OIL)
-    return 0.142 * max(tone, 0.2)
+    return ASPHALT * max(tone, 0.2)
 
 
 @inlined
@@ -156,7 +161,7 @@ def paved(
     if paint > 0.0:
         worn = 0.93 + 0.06 * fine_noise(tiles, GRAIN, s * 40.0, t * 40.0, level + 5.3)
         paint = min(paint, 1.0) * min(max(worn, 0.0), 1.0)
-        r, g, b = r + (0.80 - r) * paint, g + (0.80 - g) * paint, b + (0.77 - b) * paint
+        r, g, b = r + (PAINTED[0] - r) * paint, g + (PAINTED[1] - g) * paint, b + (PAINTED[2] - b) * paint
     if 1.5 < s < length - 1.5:
         return r, g, b
     # a white line where the driven lane begins, a chequered band where it ends
@@ -178,7 +183,8 @@ def shoulder(tiles: Tiles, x: float, y: float, beside: float, ragged: float, lev
     bare = 1.0 - smooth(0.1, 0.9, beside / GRAVEL + 3.5 * ragged)
     if bare > 0.0:
         tone = 1.0 + 0.22 * fine_noise(tiles, GRAIN, x * 26.0, y * 26.0, level + 4.7)
-        r, g, b = r + (0.235 * tone - r) * bare, g + (0.215 * tone - g) * bare, b + (0.175 * tone - b) * bare
+        r, g = r + (STONES[0] * tone - r) * bare, g + (STONES[1] * tone - g) * bare
+        b += (STONES[2] * tone - b) * bare
     return r, g, b
 
 

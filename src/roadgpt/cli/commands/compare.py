@@ -11,7 +11,7 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
-from roadgpt.cli.roads import check_file, named_in_errors, shown_runs
+from roadgpt.cli.roads import check_file, named_in_errors, run_of, shown_roads
 from roadgpt.errors import RoadGPTError, UsageError, explained
 
 if TYPE_CHECKING:
@@ -66,7 +66,8 @@ def command(
     if not no_plot:
         format_of(out)
     world = options.world_of(rest)
-    runs = [shown_runs([file], None, world, rest["geometry"], 1, "it")[0] for file in (one, other)]
+    named = [shown_roads([file], None, 1, "it")[0] for file in (one, other)]
+    runs = [run_of(each, world, rest["geometry"]) for each in named]
     roads = [run.road for run in runs if run.road is not None]
     if len(roads) < 2:
         missing = one if runs[0].road is None else other

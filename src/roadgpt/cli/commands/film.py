@@ -11,7 +11,7 @@ from roadgpt.cli.option import Argument, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
 from roadgpt.cli.progress import watched
-from roadgpt.cli.roads import NamedRoad, check_file, made, named_in_errors, roads_named, run_of, shown_runs
+from roadgpt.cli.roads import NamedRoad, check_file, made, named_in_errors, roads_named, run_of, shown_roads
 from roadgpt.cli.streams import warn
 from roadgpt.errors import UsageError
 
@@ -119,7 +119,8 @@ def command(
         return
     out = out or FILM
     check_file(out, "film", FILM, ENDINGS)
-    _make(shown_runs(files, choice, world, geometry, MOST, "a film"), out, view, settings, quiet)
+    runs = [run_of(each, world, geometry) for each in shown_roads(files, choice, MOST, "a film")]
+    _make(runs, out, view, settings, quiet)
 
 
 def _films(

@@ -11,7 +11,7 @@ from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH, picture_formats
 from roadgpt.cli.option_types import folder as folder_of
-from roadgpt.cli.roads import NamedRoad, check_file, numbered, open_page, run_of, shown_runs, use_each
+from roadgpt.cli.roads import NamedRoad, check_file, numbered, open_page, run_of, shown_roads, use_each
 from roadgpt.errors import UsageError, explained
 
 if TYPE_CHECKING:
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from roadgpt.road import Geometry, World
 
 MOST = 2  # roads side by side
-PAGE, PLOTS = Path("roadgpt-view.html"), Path("plots")
+PAGE, PLOTS = "-view.html", Path("plots")  # the end of the name of a page
 ENDINGS = (".html", ".htm")
 
 
 ADVICE = "Name a road file or the folder of a run, or two to see them side by side."
 OPTIONS = (
     *options.CHOICES,
-    Option("--out", f"The page, or the folder for pictures. [default: {PAGE}, {PLOTS}]", PATH, metavar="PATH",
-           heading=Heading.FILES),
+    Option("--out", f"The page, or the folder for pictures. [default: ROAD{PAGE}, {PLOTS}]", PATH,
+           metavar="PATH", heading=Heading.FILES),
     options.OPEN.but(heading=Heading.FILES),
     Option("--format formats", "Draw pictures instead of the page: png, svg, pdf.", picture_formats,
            metavar="FORMAT,...", heading=Heading.FILES),
@@ -46,8 +46,9 @@ def command(
     ROAD is a RoadGPT design, an SBFT test, a list of points or an OpenDRIVE file. RUN is a run, such as
     DIR/runs/0001 or DIR/test.0001.json, or a test of a campaign, such as CAMPAIGN/c01/17; its drive is shown.
 
-    Without --format, writes one page that needs no server and no network. With --format, saves pictures of
-    each road (top view, height, curvature and grade) in a subfolder of --out. Prints the names of the files.
+    Without --format, writes one page that needs no server and no network, named after the road. With
+    --format, saves pictures of each road (top view, height, curvature and grade) in a subfolder of --out.
+    Prints the names of the files.
 
     \b
     roadgpt view roadgpt-runs/hairpins-7/runs/0001 --open
@@ -63,11 +64,12 @@ def command(
         return use_each(files, choice, draw_one) or None
     if "axes" in options.typed(ctx):
         raise UsageError("--axes is for pictures; say --format png as well")
-    out = out or PAGE
-    check_file(out, "page", PAGE, ENDINGS)
+    roads = shown_roads(files, choice, MOST, "a page")
+    out = out or Path("-and-".join(each.stem for each in roads) + PAGE)
+    check_file(out, "page", Path(roads[0].stem + PAGE), ENDINGS)
     from roadgpt.report.view import write
 
-    page = write(shown_runs(files, choice, world, geometry, MOST, "a page"), out)
+    page = write([run_of(each, world, geometry) for each in roads], out)
     if not quiet:
         click.echo(str(page))
     if opens:

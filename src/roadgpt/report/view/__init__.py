@@ -15,6 +15,7 @@ from typing import Any
 
 from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.report.view.scene import scene
+from roadgpt.report.view.scenery import scenery
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
 
@@ -63,6 +64,7 @@ def page_of(scenes: Sequence[Mapping[str, Any]]) -> str:
         "LICENCE": _part("three/LICENSE"),
         "THREE": _part("three/three.min.js"),
         "SCRIPT": "\n".join(_part(f"page/{name}") for name in SCRIPTS),
+        "SCENERY": embedded(scenery()),
         "DATA": embedded(scenes),
     }
     # in one pass, so that no text in a description is mistaken for a placeholder

@@ -59,7 +59,6 @@ def _lanes(profile: Profile, s: Array) -> dict[str, Any]:
     shoulder = min((rims.left - edges.left).min(), (edges.right - rims.right).min())
     return {
         "bounds": [{"marking": mark, "t": _offsets(t)} for mark, t in profile.boundaries(s)],
-        "against": 0 if profile.left_hand else profile.count[1],  # so many lanes from the left are shaded
         "driven": profile.boundaries_to_left,
         "middle": _offsets(profile.middle(s)),
         "rims": {"left": _offsets(rims.left), "right": _offsets(rims.right)},

@@ -16,19 +16,9 @@ from roadgpt.network.markings import PaintedStroke, between_crosswalks, signs, s
 from roadgpt.network.paved import Area
 from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
 from roadgpt.report.view.columns import MILLIMETRES, road_columns, rounded
-from roadgpt.road.land import LONGEST_STEP
 from roadgpt.scene.junction_signs import faces_of
+from roadgpt.scene.network_mesh import near_and_far
 
-SIGNS = {
-    "grey": "#b0b4ba",
-    "white": "#f4f4ef",
-    "red": "#c1272d",
-    "yellow": "#f2b90f",
-    "green": "#38d977",
-    "black": "#26282b",
-    "dim red": "#4a1618",
-    "dim yellow": "#524216",
-}
 CENTIMETRES = 2  # digits, of outlines that are only drawn on the plan
 NEAR, ROUGH = 0.01, 0.05  # m, by which outlines may be simplified: in 3-D, and on the plan
 
@@ -40,17 +30,13 @@ def network_values(route: Route) -> dict[str, Any]:
         UsageError: A road of the network has a number that is not finite.
     """
     network, parts = route.network, NetworkSurface.of(route.network)
-    inside = [each for _, junctions in network.nodes for each in network.inside(junctions)]
-    lines = [each.road.centreline(LONGEST_STEP) for each in inside]
     roads = []
     for each in parts.roads:
         columns = road_columns(each.road, each.profile, median=between_crosswalks(network, each))
-        columns["lanes"] |= {"against": 0}  # both lanes look alike: a network has no single direction
         roads.append({**columns, "ends": list(free_ends(network, each))})
     return {
         "roads": roads,
         "areas": [_area(area) for area in parts.areas],
-        "inside": _points(np.concatenate(lines) if lines else np.empty((0, 3))),
         "strokes": [
             {"kind": stroke.kind, "width": stroke.width, "points": _points(_simple(stroke))}
             for stroke in strokes(network)
@@ -60,7 +46,7 @@ def network_values(route: Route) -> dict[str, Any]:
             for arrow in arrows(network)
         ],
         "signs": [
-            {"colour": SIGNS[face.colour], "points": _points(face.points)}
+            {"colour": face.colour, "points": _points(face.points)}
             for sign in signs(network)
             for face in faces_of(sign)
         ],
@@ -82,7 +68,6 @@ def network_values(route: Route) -> dict[str, Any]:
         ],
         "hasRoute": bool(route.legs),
         "shoulder": round(parts.shoulder, MILLIMETRES),
-        "reach": round(parts.reach, MILLIMETRES),
     }
 
 
@@ -96,7 +81,7 @@ def _area(area: JunctionSurface) -> dict[str, Any]:
     return {
         "z": round(area.height, MILLIMETRES),
         "paved": _triangles(area.paved),
-        "shoulder": _triangles(area.shoulder) if has_ground else None,
+        "shoulder": [_triangles(part) for part in near_and_far(area) if not part.is_empty],
         "green": [_triangles(island) for island in area.green] if has_ground else [],
         "kerbed": [{**_triangles(island), "rim": _rings(orient(island), NEAR)[0]} for island in area.kerbed],
         "rims": [_rings(rim, NEAR)[0] for rim in rims],

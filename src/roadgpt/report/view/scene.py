@@ -13,10 +13,14 @@ from roadgpt.report.places import minor_places_of, places_of
 from roadgpt.report.view.columns import FINE, MILLIMETRES, road_columns, rounded
 from roadgpt.report.view.network import network_values
 from roadgpt.road import Road, World
+from roadgpt.road.land import Land
 from roadgpt.road.profile import DASH, GAP, LINE
 from roadgpt.run import Run
+from roadgpt.scene.scene import landscape
+from roadgpt.scene.trees import Trees
 from roadgpt.verdict.severity import MOSTLY, PARTLY
 
+FINEST = 400  # heights of the land are told to this part of the distance between two of its columns
 MOST_STEPS = 6000  # of a drive; drives of up to 2 minutes are complete, longer drives are thinned
 DRIVE = {
     "time": 3,
@@ -64,6 +68,7 @@ def scene(run: Run) -> dict[str, Any]:
         "about": origin(run) + (OF_FIRST_ROAD if has_no_route(run.road) else ""),
         "words": _words(run.road),
         "road": _road(run.road, run.world),
+        "land": _land(*landscape(run.world.lay(run.road), run.world)),
         "world": {name: run.world.values()[name] for name in WORLD},
         "marking": {"width": LINE, "dash": DASH, "gap": GAP},
         "severe": SCALE,
@@ -93,6 +98,22 @@ def _road(road: Road, world: World) -> dict[str, Any]:
     bounds = made["lanes"]["bounds"]
     made["lanes"]["rims"] = {"left": bounds[0]["t"], "right": bounds[-1]["t"]}
     return made
+
+
+def _land(land: Land, trees: Trees) -> dict[str, Any]:
+    """Returns heights row by row from south to north, each in units of ``unit`` metres as its difference from
+    west + south - south-west, which is short; and of each tree x, y, z, height and width in decimetres, the
+    number of its picture, and its brightness in percent."""
+    unit = land.cell / FINEST
+    steps = np.diff(np.diff(np.rint(land.heights / unit), axis=0, prepend=0), axis=1, prepend=0)
+    of_trees = [10 * trees.places, 10 * trees.sizes, trees.looks[:, None], 100 * trees.tints[:, None]]
+    return {
+        "x": rounded(land.x, 1),
+        "y": rounded(land.y, 1),
+        "unit": unit,
+        "heights": steps.astype(int).reshape(-1).tolist(),
+        "trees": np.rint(np.concatenate(of_trees, axis=1)).astype(int).reshape(-1).tolist(),
+    }
 
 
 def _drive(run: Run) -> dict[str, Any] | None:

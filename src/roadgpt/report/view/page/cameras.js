@@ -1,8 +1,7 @@
 // Cameras: behind the car, over its hood, and free. The first two depend on the time alone, so that the slider
 // may jump.
 
-const BEHIND = 8.6, ABOVE = 3.1, AHEAD = 7; // m
-const EYE = { x: 0.98, z: 1.24 }; // m before the middle of the car and over the ground: over the hood
+const AHEAD = 7; // m before the car, where the camera behind it looks
 const FILLED = 0.84; // of the picture, by the road seen as a whole
 const LAG = 0.5; // s by which the camera behind the car turns later than the car
 
@@ -26,11 +25,11 @@ function makeCameras(stage, trip, onDrag) {
     const slope = Math.tan(mix(before.pitch, now.pitch, 0.5));
     const car = spot(now);
     const way = new THREE.Vector3(Math.cos(heading), Math.sin(heading), slope);
-    camera.position.copy(car).addScaledVector(way, -BEHIND);
-    camera.position.z += ABOVE;
+    const { ahead, up } = SCENERY.mounts.chase;
+    camera.position.copy(car).addScaledVector(way, ahead);
+    camera.position.z += up - trip.car.height;
     camera.lookAt(car.clone().addScaledVector(way, AHEAD));
     controls.target.copy(car);
-    near(0.5);
   }
 
   function bonnet(time) {
@@ -39,14 +38,14 @@ function makeCameras(stage, trip, onDrag) {
       .multiply(new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(0, 1, 0), -pose.pitch))
       .multiply(new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(1, 0, 0), pose.roll));
     const car = spot(pose);
-    const eye = new THREE.Vector3(EYE.x + trip.car.ahead, 0, EYE.z - trip.car.height).applyQuaternion(turn);
-    const ahead = new THREE.Vector3(1, 0, camera.aspect < 0.9 ? 0.05 : -0.07).applyQuaternion(turn);
+    const { ahead, up, tilt } = SCENERY.mounts.bonnet;
+    const eye = new THREE.Vector3(ahead, 0, up - trip.car.height).applyQuaternion(turn);
+    const way = new THREE.Vector3(1, 0, camera.aspect < 0.9 ? 0.05 : Math.tan(tilt)).applyQuaternion(turn);
     camera.position.copy(car).add(eye);
     camera.up.set(0, 0, 1).applyQuaternion(turn);
-    camera.lookAt(camera.position.clone().add(ahead));
+    camera.lookAt(camera.position.clone().add(way));
     camera.up.set(0, 0, 1);
     controls.target.copy(car);
-    near(0.2);
   }
 
   // Orbiting needs no update: its controls move the camera when they are used.
@@ -64,7 +63,6 @@ function makeCameras(stage, trip, onDrag) {
     controls.target.copy(stage.middle);
     camera.position.copy(stage.middle).addScaledVector(back, far);
     controls.update();
-    near(0.5);
     isOverview = true;
   }
 
@@ -78,12 +76,6 @@ function makeCameras(stage, trip, onDrag) {
     controls.update();
   }
 
-  function near(distance) {
-    if (camera.near === distance) return;
-    camera.near = distance;
-    camera.updateProjectionMatrix();
-  }
-
   controls.addEventListener("start", () => {
     isHeld = true;
     isOverview = false;
@@ -93,14 +85,14 @@ function makeCameras(stage, trip, onDrag) {
 
   return {
     controls, overview, toCar,
-    get mode() { return mode; },
+    // How far the free camera is from what it looks at.
+    get away() { return mode === "free" ? controls.getDistance() : 0; },
     // On a window of another shape the whole road is shown anew.
     fit() {
       if (mode === "free" && isOverview) overview();
     },
     choose(name) {
       mode = name;
-      near(name === "bonnet" ? 0.2 : 0.5);
     },
     follow(time) {
       if (isHeld) return;

@@ -1,11 +1,18 @@
 // The bar below, the keys, and what the address says after its #.
 
 const RATES = [0.25, 0.5, 1, 2, 4, 8];
+const THUMB = 16; // pixels, of the slider
 
 function wireBar(player) {
   const byId = (id) => document.getElementById(id);
   const [slider, rate] = [byId("slider"), byId("rate")];
   slider.max = String(player.duration);
+  for (const { time, colour } of player.marks) {
+    const tick = document.createElement("i");
+    tick.style.left = `calc(${THUMB / 2}px + ${time / player.duration} * (100% - ${THUMB}px))`;
+    tick.style.background = colour;
+    slider.parentElement.append(tick);
+  }
   slider.addEventListener("input", () => player.moveTo(Number(slider.value)));
   byId("play").addEventListener("click", () => player.toggle());
   rate.addEventListener("change", () => player.setRate(Number(rate.value)));
@@ -40,6 +47,7 @@ function wireKeys(player) {
     2: () => player.choose("bonnet"),
     3: () => player.choose("free"),
     f: () => player.toCar(),
+    n: () => player.toMark(),
     l: () => player.toggleLine(),
     "?": () => { keys.open = !keys.open; },
     Escape: () => { keys.open = false; },

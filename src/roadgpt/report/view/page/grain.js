@@ -1,6 +1,7 @@
 // Grain of surfaces: small pictures of noise that repeat over the ground, the same in every browser.
 
 const GRAIN_SIDE = 256; // pixels
+const MEAN = 190; // of 255, mean level
 
 // Numbers from 0 to 1, drawn from a seed (Marsaglia's xorshift, 32 bits).
 function lotOf(seed) {
@@ -34,14 +35,15 @@ function noiseOf(seed, octaves) {
   return out;
 }
 
-// A texture that lies over so many metres of ground; it only makes the colours of the corners lighter or darker.
+// The look of a surface with grain: a texture that lies over so many metres of ground, and only makes the colours of
+// the corners lighter or darker; its mean is made up for.
 function grainOf(renderer, metres, seed, octaves) {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = GRAIN_SIDE;
   const pen = canvas.getContext("2d");
   const image = pen.createImageData(GRAIN_SIDE, GRAIN_SIDE);
   noiseOf(seed, octaves).forEach((light, at) => {
-    const level = clamp(Math.round(225 * light), 0, 255);
+    const level = clamp(Math.round(MEAN * light), 0, 255);
     image.data.set([level, level, level, 255], 4 * at);
   });
   pen.putImageData(image, 0, 0);
@@ -50,8 +52,9 @@ function grainOf(renderer, metres, seed, octaves) {
   texture.repeat.set(1 / metres, 1 / metres);
   texture.colorSpace = THREE.SRGBColorSpace;
   texture.anisotropy = Math.min(8, renderer.capabilities.getMaxAnisotropy());
-  return texture;
+  const lighter = 1 / (MEAN / 255) ** 2.2;
+  return { map: texture, color: new THREE.Color(lighter, lighter, lighter) };
 }
 
 const asphaltGrain = (renderer) => grainOf(renderer, 5, 11, [[128, 0.34], [256, 0.3], [8, 0.1]]);
-const meadowGrain = (renderer) => grainOf(renderer, 37, 23, [[24, 0.1], [64, 0.16], [256, 0.22]]);
+const meadowGrain = (renderer) => grainOf(renderer, 23, 23, [[96, 0.22], [192, 0.26], [256, 0.2], [16, 0.08]]);

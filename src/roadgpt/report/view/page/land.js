@@ -1,202 +1,135 @@
-// The land around the road, and the sky. Land is scenery: it follows the road and never covers it.
+// The land around the road, its trees and the sky: those of films, which the page holds as data.
 
-const MARGIN = 70; // m around the road
-const CELLS = 150; // along the longer side, at most
-const FAR = [400, 1500, 6000]; // m beyond the margin, so that the land reaches the horizon
-const GRID = [25, 50, 100, 250, 500, 1000, 2500, 5000]; // m between the lines on the land
-const HORIZON = 0xdfe9f0, ZENITH = 0x5b97cf;
-const MEADOW = [0x84a067, 0x89a36b, 0x90a772];
+const COLOURS = Object.fromEntries(Object.entries(SCENERY.colours).map(([name, rgb]) => [name, new THREE.Color(...rgb)]));
+const FAR = 250; // m between columns of the land beyond its hills
+const DOME = 9000; // m, radius of the sky
+const HAZE = 1300; // m, depth in which all becomes haze: about as films have it
 
-// Heights over a net of columns and rows.
-function landOf(scene) {
-  const { world } = scene;
-  const roads = roadsOf(scene);
-  const { reach: rim, shoulder } = scene.network || scene.road.lanes;
-  const all = (name) => roads.flatMap((road) => road[name]);
-  const frame = [extent(all("x"), 40), extent(all("y"), 40)];
-  if (scene.drive) {
-    frame[0] = extent([...frame[0], ...scene.drive.columns.x]);
-    frame[1] = extent([...frame[1], ...scene.drive.columns.y]);
-  }
-  const span = Math.max(frame[0][1] - frame[0][0], frame[1][1] - frame[1][0]) + 2 * MARGIN;
-  const cell = Math.max(2.5, span / CELLS);
-  const [xs, ys] = frame.map(([low, high]) => {
-    const inner = [];
-    for (let v = low - MARGIN; v < high + MARGIN + cell; v += cell) inner.push(v);
-    const last = inner[inner.length - 1];
-    return { inner, all: [...FAR.map((far) => inner[0] - far).reverse(), ...inner, ...FAR.map((far) => last + far)] };
+function pictureOf(address) {
+  const picture = new Image();
+  picture.src = address;
+  return picture;
+}
+
+const PICTURES = { sky: pictureOf(SCENERY.sky.picture), trees: pictureOf(SCENERY.trees) };
+
+// Heights in metres, row by row.
+function heightsOf({ x, unit, heights }) {
+  const wide = x.length;
+  const out = new Float64Array(heights.length);
+  heights.forEach((step, at) => {
+    const [hasWest, hasSouth] = [at % wide > 0, at >= wide];
+    out[at] = step + (hasWest && out[at - 1]) + (hasSouth && out[at - wide]) - (hasWest && hasSouth && out[at - wide - 1]);
   });
-  const net = { xs, ys, cell, wide: xs.inner.length, high: ys.inner.length };
-  const reach = rim + cell * 1.45;
-  if (shoulder <= 0) {
-    const level = Math.min(world.z_floor, extent(all("z"))[0] - 1);
-    net.heights = new Float64Array(net.wide * net.high).fill(level);
-    net.bank = 0;
-    return net;
-  }
-  net.heights = relief(net, scene, reach);
-  const steep = extent(all("grade")).reduce((most, grade) => Math.max(most, Math.abs(grade)), 0);
-  net.bank = 0.9 + steep * reach;
-  return net;
+  return out.map((height) => height * unit);
 }
 
-// Near the road a little below its lowest point in reach; from there on smooth, with gentle hills.
-function relief(net, scene, reach) {
-  const { xs, ys, cell, wide, high } = net;
-  const heights = new Float64Array(wide * high).fill(Infinity);
-  const away = new Float64Array(wide * high).fill(Infinity);
-  const lower = (place, low) => {
-    const [i0, i1] = [place.x - reach, place.x + reach].map((x) => Math.round((x - xs.inner[0]) / cell));
-    const [j0, j1] = [place.y - reach, place.y + reach].map((y) => Math.round((y - ys.inner[0]) / cell));
-    for (let j = Math.max(0, j0); j <= Math.min(high - 1, j1); j++) {
-      for (let i = Math.max(0, i0); i <= Math.min(wide - 1, i1); i++) {
-        const distance = Math.hypot(xs.inner[i] - place.x, ys.inner[j] - place.y);
-        if (distance > reach) continue;
-        const at = j * wide + i;
-        heights[at] = Math.min(heights[at], low - 0.35);
-        away[at] = 0;
-      }
-    }
+// The height of the land at a place; null without land that reaches up to the road.
+function groundOf({ land, network, road }) {
+  if (!((network || road.lanes).shoulder > 0)) return null;
+  const heights = heightsOf(land);
+  const wide = land.x.length;
+  return (x, y) => {
+    const [across, up] = [placeIn(land.x, x), placeIn(land.y, y)];
+    const row = (j) => mix(heights[j * wide + across.i], heights[j * wide + across.i + 1], across.u);
+    return mix(row(up.i), row(up.i + 1), up.u);
   };
-  const step = Math.min(cell / 2, 2);
-  for (const road of roadsOf(scene)) {
-    const count = Math.max(2, Math.ceil(road.length / step));
-    for (let n = 0; n <= count; n++) {
-      const s = (road.length * n) / count;
-      const place = onRoad(road, s, 0);
-      const { left, right } = road.lanes.rims;
-      lower(place, Math.min(place.z, ...(road.lanes.bank ? [left, right] : []).map((t) => onRoad(road, s, offsetAt(road, t, s)).z)));
-    }
-  }
-  for (const [x, y, z] of inGroups(scene.network ? scene.network.inside : [], 3)) lower({ x, y }, z);
-  const fixed = Array.from(away, (distance) => distance === 0);
-  spread(net, heights, away);
-  for (let round = 0; round < 60; round++) smooth(net, heights, fixed);
-  for (let at = 0; at < heights.length; at++) {
-    if (fixed[at]) continue;
-    const x = xs.inner[at % wide];
-    const y = ys.inner[Math.floor(at / wide)];
-    const swell = Math.sin(x / 37 + 1.3) * Math.sin(y / 43 + 0.4) + 0.5 * Math.sin(x / 17 - y / 21);
-    heights[at] += (swell - 0.4) * 3.2 * clamp((away[at] - 4) / 60, 0, 1);
-  }
-  return heights;
 }
 
-// Hands the heights at the road on to the rest, each place taking that of its nearest: two sweeps.
-function spread(net, heights, away) {
-  const { wide, high, cell } = net;
-  const take = (at, from, distance) => {
-    if (away[from] + distance < away[at]) {
-      away[at] = away[from] + distance;
-      heights[at] = heights[from];
-    }
-  };
-  for (const isBack of [false, true, false, true]) {
-    const turn = isBack ? -1 : 1;
-    for (let j = isBack ? high - 1 : 0; j >= 0 && j < high; j += turn) {
-      for (let i = isBack ? wide - 1 : 0; i >= 0 && i < wide; i += turn) {
-        const at = j * wide + i;
-        for (const [di, dj, far] of [[-turn, 0, 1], [0, -turn, 1], [-turn, -turn, 1.414], [turn, -turn, 1.414]]) {
-          if (i + di < 0 || i + di >= wide || j + dj < 0 || j + dj >= high) continue;
-          take(at, at + dj * wide + di, far * cell);
-        }
-      }
-    }
-  }
+// Grass is drier in some places than in others.
+function grassAt(x, y) {
+  const wide = 1.3 * Math.sin(x / 47 + 1.7 * Math.sin(y / 61)) * Math.sin(y / 39 - x / 97) + 0.8 * Math.sin(x / 17 + y / 29) * Math.sin(y / 13 - x / 23);
+  return COLOURS.lush.clone().lerp(COLOURS.dry, clamp(0.42 + 0.27 * wide, 0, 1)).multiplyScalar(1 + 0.12 * wide);
 }
 
-function smooth({ wide, high }, heights, fixed) {
-  for (let j = 0; j < high; j++) {
-    for (let i = 0; i < wide; i++) {
-      const at = j * wide + i;
-      if (fixed[at]) continue;
-      const west = heights[i > 0 ? at - 1 : at];
-      const east = heights[i < wide - 1 ? at + 1 : at];
-      const south = heights[j > 0 ? at - wide : at];
-      const north = heights[j < high - 1 ? at + wide : at];
-      heights[at] = (west + east + south + north) / 4;
-    }
-  }
-}
-
-function landMesh(net, origin, grain) {
+function landMesh({ land }, origin, grain) {
   const shape = new Shape3(origin);
-  const colours = MEADOW.map(colourOf);
-  const { xs, ys, wide, high } = net;
-  const pad = FAR.length;
-  const mean = net.heights.reduce((sum, height) => sum + height, 0) / net.heights.length;
-  ys.all.forEach((y, j) => xs.all.forEach((x, i) => {
-    const inner = clamp(j - pad, 0, high - 1) * wide + clamp(i - pad, 0, wide - 1);
-    const isFar = Math.max(pad - i, pad - j, i - pad - wide + 1, j - pad - high + 1, 0);
-    const level = mix(net.heights[inner], mean, isFar ? [0.5, 0.9, 1][isFar - 1] : 0);
-    const tint = isFar ? 0.5 : 0.5 + 0.5 * Math.sin(x / 23 + 2 * Math.sin(y / 31)) * Math.sin(y / 19);
-    shape.point(x, y, level, colours[1].clone().lerp(colours[tint > 0.5 ? 2 : 0], Math.abs(2 * tint - 1)));
-  }));
-  const row = xs.all.length;
-  for (let j = 0; j + 1 < ys.all.length; j++) {
-    for (let i = 0; i + 1 < row; i++) shape.quad(j * row + i, j * row + i + 1, (j + 1) * row + i + 1, (j + 1) * row + i);
-  }
-  return shape.mesh(THREE.MeshLambertMaterial, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, map: grain });
-}
-
-function heightAt(net, x, y) {
-  const at = (column, v) => clamp((v - column.inner[0]) / net.cell, 0, column.inner.length - 1.001);
-  const [u, v] = [at(net.xs, x), at(net.ys, y)];
-  const [i, j] = [Math.floor(u), Math.floor(v)];
-  const row = (k) => mix(net.heights[k * net.wide + i], net.heights[k * net.wide + i + 1], u - i);
-  return mix(row(j), row(j + 1), v - j);
-}
-
-const lineStep = (span) => GRID.find((step) => span / step <= 24) || GRID[GRID.length - 1];
-
-// For the free camera, which looks from above: lines on the land at whole multiples of a step, those of the plan too; and the border of the map.
-function landGrid(net, world, origin) {
-  const group = new THREE.Group();
-  const ends = [net.xs, net.ys].map(({ inner }) => [inner[0], inner[inner.length - 1]]);
-  const step = lineStep(Math.max(ends[0][1] - ends[0][0], ends[1][1] - ends[1][0]));
-  const points = [];
-  const draw = (into, from, to) => {
-    const parts = Math.max(1, Math.ceil(Math.hypot(to[0] - from[0], to[1] - from[1]) / (net.cell / 2)));
-    for (let n = 0; n < parts; n++) {
-      for (const share of [n / parts, (n + 1) / parts]) {
-        const [x, y] = [mix(from[0], to[0], share), mix(from[1], to[1], share)];
-        into.push(x - origin.x, y - origin.y, heightAt(net, x, y) + 0.12 - origin.z);
-      }
-    }
-  };
-  for (let x = Math.ceil(ends[0][0] / step) * step; x <= ends[0][1]; x += step) draw(points, [x, ends[1][0]], [x, ends[1][1]]);
-  for (let y = Math.ceil(ends[1][0] / step) * step; y <= ends[1][1]; y += step) draw(points, [ends[0][0], y], [ends[0][1], y]);
-  group.add(lines(points, { color: 0xffffff, opacity: 0.34 }));
-  const border = [];
-  const size = world.map_size;
-  const inside = (v, [low, high]) => clamp(v, low, high);
-  const corners = [[0, 0], [size, 0], [size, size], [0, size], [0, 0]];
-  corners.slice(1).forEach(([x, y], i) => {
-    const [x0, y0] = corners[i];
-    const isSeen = x === x0 ? x >= ends[0][0] && x <= ends[0][1] : y >= ends[1][0] && y <= ends[1][1];
-    if (isSeen) draw(border, [inside(x0, ends[0]), inside(y0, ends[1])], [inside(x, ends[0]), inside(y, ends[1])]);
+  const wide = land.x.length;
+  const isFar = ([column, at]) => column[Math.min(at + 1, column.length - 1)] - column[Math.max(at - 1, 0)] >= FAR;
+  heightsOf(land).forEach((z, at) => {
+    const [i, j] = [at % wide, Math.floor(at / wide)];
+    // far columns lie too wide apart for what is dry and what is not
+    shape.point(land.x[i], land.y[j], z, isFar([land.x, i]) || isFar([land.y, j]) ? grassAt(0, 0) : grassAt);
   });
-  group.add(lines(border, { color: 0x2d3a2a, opacity: 0.7 }));
-  return group;
+  for (let j = 0; j + 1 < land.y.length; j++) {
+    for (let i = 0; i + 1 < wide; i++) shape.quad(j * wide + i, j * wide + i + 1, (j + 1) * wide + i + 1, (j + 1) * wide + i);
+  }
+  return shape.mesh(THREE.MeshLambertMaterial, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, ...grain });
 }
 
-function lines(points, look) {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
-  return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ transparent: true, depthWrite: false, ...look }));
+function textureOf(picture) {
+  const texture = new THREE.CanvasTexture(picture);
+  texture.colorSpace = THREE.SRGBColorSpace;
+  return texture;
+}
+
+// Upright pictures, all of them turned to the camera before it looks.
+function trees({ land }, origin) {
+  const map = textureOf(PICTURES.trees);
+  const looks = map.image.naturalWidth / map.image.naturalHeight;
+  const material = new THREE.MeshBasicMaterial({ map, alphaTest: 0.4, side: THREE.DoubleSide });
+  const corners = new THREE.Float32BufferAttribute(12, 3);
+  const group = new THREE.Group();
+  const all = inGroups(land.trees, 7);
+  for (let look = 0; look < looks; look++) {
+    const own = all.filter((tree) => tree[5] === look);
+    const shape = new THREE.BufferGeometry();
+    shape.setAttribute("position", corners);
+    shape.setAttribute("uv", new THREE.Float32BufferAttribute([0, 0, 1, 0, 1, 1, 0, 1].map((v, k) => (k % 2 ? v : (look + v) / looks)), 2));
+    shape.setIndex([0, 1, 2, 0, 2, 3]);
+    const mesh = new THREE.InstancedMesh(shape, material, own.length);
+    own.forEach(([x, y, z, high, wide, , tint], n) => {
+      const size = new THREE.Matrix4().makeScale(wide / 10, wide / 10, high / 10);
+      mesh.setMatrixAt(n, size.setPosition(x / 10 - origin.x, y / 10 - origin.y, z / 10 - origin.z));
+      mesh.setColorAt(n, new THREE.Color(tint / 100, tint / 100, tint / 100));
+    });
+    mesh.frustumCulled = false; // its corners move
+    group.add(mesh);
+  }
+  return {
+    group,
+    face(camera) {
+      const { x, y } = camera.getWorldDirection(new THREE.Vector3());
+      const long = 2 * Math.hypot(x, y) || 1;
+      [[-1, 0], [1, 0], [1, 1], [-1, 1]].forEach(([side, up], k) => corners.setXYZ(k, (side * y) / long, (-side * x) / long, up));
+      corners.needsUpdate = true;
+    },
+  };
 }
 
 function sky() {
-  const material = new THREE.ShaderMaterial({
-    side: THREE.BackSide,
-    depthWrite: false,
-    fog: false,
-    uniforms: { low: { value: colourOf(HORIZON) }, top: { value: colourOf(ZENITH) } },
-    vertexShader: "varying vec3 way; void main() { way = position; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
-    fragmentShader: "uniform vec3 low; uniform vec3 top; varying vec3 way; void main() { float h = max(normalize(way).z, 0.0);"
-      + " gl_FragColor = vec4(mix(low, top, pow(h, 0.55)), 1.0);\n#include <colorspace_fragment>\n}",
-  });
-  const mesh = new THREE.Mesh(new THREE.SphereGeometry(9000, 32, 16), material);
+  const [round, high] = [48, 24];
+  const [points, places, corners] = [[], [], []];
+  for (let j = -1; j <= high; j++) {
+    const v = Math.max(0, j) / high;
+    const up = j < 0 ? -Math.PI / 2 : mix(SCENERY.sky.lowest, Math.PI / 2, v * v);
+    for (let i = 0; i <= round; i++) {
+      const turn = (2 * Math.PI * i) / round;
+      points.push(DOME * Math.cos(up) * Math.cos(turn), DOME * Math.cos(up) * Math.sin(turn), DOME * Math.sin(up));
+      places.push(i / round, v);
+      const at = (j + 1) * (round + 1) + i;
+      if (j < high && i < round) corners.push(at, at + 1, at + round + 2, at, at + round + 2, at + round + 1);
+    }
+  }
+  const shape = new THREE.BufferGeometry();
+  shape.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
+  shape.setAttribute("uv", new THREE.Float32BufferAttribute(places, 2));
+  shape.setIndex(corners);
+  const map = textureOf(PICTURES.sky);
+  map.generateMipmaps = false;
+  map.minFilter = THREE.LinearFilter;
+  const mesh = new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ map, side: THREE.DoubleSide, depthWrite: false, fog: false }));
   mesh.renderOrder = -1;
+  mesh.frustumCulled = false;
   return mesh;
+}
+
+function daylight() {
+  const { sun, direct, above, below } = SCENERY.light;
+  const grey = (light) => new THREE.Color(light, light, light).multiplyScalar(Math.PI);
+  const ambient = new THREE.HemisphereLight(grey(above), grey(below), 1);
+  ambient.position.set(0, 0, 1);
+  const bright = new THREE.DirectionalLight(grey(direct), 1);
+  bright.position.set(...sun);
+  return [ambient, bright];
 }

@@ -10,7 +10,8 @@ const player = {
   rate: 1,
   camera: "behind",
   isPlaying: false,
-  hasLine: true,
+  isLineShown: true,
+  hasLine: () => player.isLineShown,
   moveTo(time) {
     player.time = clamp(time, 0, player.duration);
     stale();
@@ -45,9 +46,12 @@ const player = {
     panels.forEach(({ cameras, trip }) => cameras && cameras.toCar(Math.min(player.time, trip.duration)));
     stale();
   },
+  toMark() {
+    const times = player.marks.map(({ time }) => time);
+    if (times.length) player.moveTo(times.find((time) => time > player.time + 0.01) ?? times[0]);
+  },
   toggleLine() {
-    player.hasLine = !player.hasLine;
-    panels.forEach(({ stage }) => stage && (stage.line.visible = player.hasLine));
+    player.isLineShown = !player.isLineShown;
     stale();
   },
   clock() {
@@ -57,8 +61,12 @@ const player = {
   },
 };
 
+await Promise.all(Object.values(PICTURES).map((picture) => picture.decode()));
 const panels = scenes.map((scene) => makePanel(scene, fastest, player));
 player.duration = Math.max(...panels.map(({ trip }) => trip.duration));
+player.marks = scenes.flatMap(({ places }) => places).filter(({ time, text }) => text && time !== null).sort((a, b) => a.time - b.time);
+["partly", "mostly", "failed"].forEach((name, n) => document.body.style.setProperty(`--${name}`, [...scenes[0].severe.colours, scenes[0].severe.failed][n]));
+document.body.classList.toggle("on-route", scenes.some(({ network }) => network && network.hasRoute));
 const showBar = wireBar(player);
 
 function stale() {
@@ -102,6 +110,5 @@ window.roadgpt = {
   get frames() { return frames; },
   get poses() { return panels.map(({ pose }) => pose); },
   get plates() { return panels.map(({ stage }) => stage && stage.plates); },
-  get grids() { return panels.map(({ stage }) => stage && stage.grid.visible); },
   get eyes() { return panels.map(({ stage }) => stage && stage.camera.position.toArray()); },
 };

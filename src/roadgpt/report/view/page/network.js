@@ -1,9 +1,7 @@
 // Networks: level junctions with their islands, lines, signs, and the lane of the route.
 
-const KERBED = 0xb9b4a8, ON_ROUTE = 0x465260;
+const ON_ROUTE = 0x4f86b5; // as on the plan
 const KERB_HIGH = 0.12; // m of a traffic island
-const FRONT = 0; // three.js's FrontSide: signs are grey behind
-const DOWN = 1.3; // m that a bank runs outwards, for each metre of height
 
 // The roads that are swept along their lines: one, or all of a network outside its junctions.
 const roadsOf = (scene) => (scene.network ? scene.network.roads : [scene.road]);
@@ -33,31 +31,29 @@ function leftOf(line, isClosed) {
   });
 }
 
-// A wall or a bank around a ring that runs counter-clockwise, from height z0 to z1 and outwards.
-function skirt(shape, ring, z0, z1, outwards, colour) {
-  const line = inGroups(ring, 2);
-  const left = leftOf(line, true);
-  const high = line.map(([x, y]) => shape.point(x, y, z0, colour));
-  const low = line.map(([x, y], i) => shape.point(x - outwards * left[i][0], y - outwards * left[i][1], z1, colour));
+// A wall below a ring that runs counter-clockwise, from height z0 to z1.
+function wall(shape, line, z0, z1, colour) {
+  const rows = [z1, z0].map((z) => line.map(([x, y]) => shape.point(x, y, z, colour)));
   line.forEach((_, i) => {
     const next = (i + 1) % line.length;
-    shape.quad(low[i], low[next], high[next], high[i]);
+    shape.quad(rows[0][i], rows[0][next], rows[1][next], rows[1][i]);
   });
 }
 
-function junctions(shape, { areas }, bank) {
-  const [asphalt, gravel, grass, green, kerb, side] = [ASPHALT, GRAVEL, BANK, GREEN, KERBED, SIDE].map(colourOf);
-  for (const { z, paved, shoulder, green: islands, kerbed, rims } of areas) {
-    plain(shape, paved, z, asphalt);
-    if (shoulder) plain(shape, shoulder, z - 0.025, gravel);
-    islands.forEach((island) => plain(shape, island, z - 0.02, green));
+function junctions(paved, verge, { areas }, ground) {
+  const { asphalt, concrete, gravel } = COLOURS;
+  for (const { z, paved: carriageway, shoulder: [bare, ...grown], green, kerbed, rims } of areas) {
+    plain(paved, carriageway, z, asphalt);
+    if (bare) plain(verge, bare, z - 0.02, gravel);
+    [...grown, ...green].forEach((part) => plain(verge, part, z - 0.02, grassAt));
     for (const island of kerbed) {
-      plain(shape, island, z + KERB_HIGH, kerb);
-      skirt(shape, island.rim, z + KERB_HIGH, z, 0, kerb);
+      plain(paved, island, z + KERB_HIGH, concrete);
+      wall(paved, inGroups(island.rim, 2), z + KERB_HIGH, z, concrete);
     }
     for (const rim of rims) {
-      if (shoulder) skirt(shape, rim, z - 0.03, z - bank, bank * DOWN, grass);
-      else skirt(shape, rim, z - 0.001, z - THICK, 0, side);
+      const ring = inGroups(rim, 2).map(([x, y]) => [x, y, z - 0.02]);
+      if (ground) slope(verge, ring, leftOf(ring, true).map(([x, y]) => [-x, -y]), ground, true);
+      else wall(paved, ring, z - 0.001, z - THICK, concrete);
     }
   }
 }
@@ -66,7 +62,7 @@ const ABOVE_ROAD = (order) => ({ polygonOffset: true, polygonOffsetFactor: -orde
 
 // Everything that is painted, and the tint of the lane that the route takes.
 function networkMarkings(scene, origin) {
-  const paint = colourOf(PAINT);
+  const { paint } = COLOURS;
   const lines = new Shape3(origin);
   for (const { width, points } of scene.network.strokes) {
     const line = inGroups(points, 3);
@@ -85,17 +81,8 @@ function networkMarkings(scene, origin) {
   const { bounds, driven } = scene.road.lanes;
   if (scene.network.hasRoute) band(tint, scene.road, scene.road.s, [bounds[driven].t, 0.006], [bounds[driven + 1].t, 0.006], colourOf(ON_ROUTE));
   const group = new THREE.Group();
-  group.add(tint.mesh(THREE.MeshLambertMaterial, ABOVE_ROAD(1)), lines.mesh(THREE.MeshLambertMaterial, ABOVE_ROAD(2)));
+  group.add(tint.mesh(THREE.MeshLambertMaterial, { transparent: true, opacity: 0.3, depthWrite: false, ...ABOVE_ROAD(1) }), lines.mesh(THREE.MeshLambertMaterial, ABOVE_ROAD(2)));
   return group;
-}
-
-function networkSigns({ signs }, origin) {
-  const shape = new Shape3(origin);
-  for (const { colour, points } of signs) {
-    const corners = inGroups(points, 3).map(([x, y, z]) => shape.point(x, y, z, colourOf(colour)));
-    for (let i = 2; i < corners.length; i++) shape.corners.push(corners[0], corners[i - 1], corners[i]);
-  }
-  return shape.mesh(THREE.MeshLambertMaterial, { side: FRONT });
 }
 
 // The network on the plan: px and py turn metres into pixels, scale is pixels in a metre.

@@ -1,5 +1,7 @@
 // Numbers: looking things up in columns, colours, texts.
 
+const SCENERY = JSON.parse(document.getElementById("scenery").textContent);
+
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 const mix = (a, b, u) => a + (b - a) * u;
 const kmh = (speed) => speed * 3.6;

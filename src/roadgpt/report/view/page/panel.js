@@ -1,6 +1,6 @@
 // A panel: one road with its texts, its stage and its strips.
 
-function makePanel(scene, fastest, { moveTo, wentFree }) {
+function makePanel(scene, fastest, { moveTo, wentFree, hasLine }) {
   const section = document.getElementById("panel").content.firstElementChild.cloneNode(true);
   const find = (name) => section.querySelector(name);
   const trip = tripOf(scene);
@@ -38,8 +38,7 @@ function makePanel(scene, fastest, { moveTo, wentFree }) {
       if (stage) {
         stage.place(pose);
         cameras.follow(Math.min(time, trip.duration));
-        stage.grid.visible = cameras.mode === "free";
-        stage.draw();
+        stage.draw(cameras.away, hasLine());
       }
       panel.isStale = false;
     },
@@ -74,8 +73,10 @@ function write(find, scene, trip, fastest) {
   find(".origin").textContent = scene.about;
   find(".words p").textContent = scene.words;
   find(".words").hidden = !scene.words;
-  find(".hint").textContent = "drag to look around, scroll to come nearer";
-  find(".second figcaption").innerHTML = trip.isDriven ? "speed, km/h <i>over distance, m</i>" : "curvature, 1/(100 m) <i>left is up</i>";
+  find(".hint").textContent = matchMedia("(pointer: coarse)").matches
+    ? "drag to look around, pinch to come nearer"
+    : "drag to look around, scroll to come nearer";
+  find(".second figcaption").innerHTML = trip.isDriven ? "speed, km/h <i>over distance, m</i>" : "bends: 100 m / radius <i>left is up</i>";
   find(".legend").hidden = !trip.isDriven;
   find(".legend .high").textContent = Math.round(kmh(fastest));
   const stops = [0, 0.25, 0.5, 0.75, 1].map((share) => css(speedColour(share)));
@@ -89,12 +90,12 @@ function tell(find, scene, trip, pose, time) {
   const isOver = trip.isDriven && time >= trip.duration;
   find(".hud .speed").textContent = trip.isDriven ? `${kmh(pose.speed).toFixed(0)} km/h` : `${pose.s.toFixed(0)} m`;
   find(".hud .place").textContent = trip.isDriven
-    ? `${pose.s.toFixed(0)} of ${scene.road.length.toFixed(0)} m${isOver ? `, ended at ${trip.duration.toFixed(1)} s` : ""}`
+    ? `${pose.s.toFixed(0)} m of ${scene.road.length.toFixed(0)} m${isOver ? `, ended at ${trip.duration.toFixed(1)} s` : ""}`
     : `of ${scene.road.length.toFixed(0)} m`;
   const lane = find(".hud .lane");
   lane.textContent = trip.isDriven
-    ? share > 0 ? `${share} % outside its lane` : `${Math.abs(middle).toFixed(2)} m ${side} of mid-lane`
-    : "nobody drove here: a look along the lane";
+    ? share > 0 ? `${share} % of the car outside its lane` : `${Math.abs(middle).toFixed(2)} m ${side} of the lane's middle`
+    : "nobody drove here: the view follows the lane";
   lane.classList.toggle("out", share > 0);
   lane.style.borderColor = (trip.isDriven && severeColour(scene, pose.outside)) || "transparent";
 }

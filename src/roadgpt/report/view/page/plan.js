@@ -1,5 +1,8 @@
 // The road from above, north up and to scale.
 
+const EDGE = 3; // pixels, from a text to the border
+const GRID = [25, 50, 100, 250, 500, 1000, 2500, 5000, 10000]; // m between the lines on the plan
+
 // A canvas that is sharp on every screen: paints a ground that lasts, and what moves over it.
 function makeSheet(canvas, paintGround, paintOver) {
   const ground = document.createElement("canvas");
@@ -147,7 +150,7 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
     pen.lineCap = "butt";
   }
 
-  function label(pen, { wide, high }, s, text, fill) {
+  function label(pen, { high }, s, text, fill) {
     const { x, y, heading } = onRoad(road, s, 0);
     const sign = s > 0 ? 1 : -1;
     pen.beginPath();
@@ -158,7 +161,7 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
     pen.lineWidth = 1.5;
     pen.stroke();
     const [u, v] = [px(x) + sign * Math.cos(heading) * 18, py(y) - sign * Math.sin(heading) * 14];
-    said(pen, text, clamp(u, 18, wide - 18), clamp(v, 26, high - 10), "center");
+    said(pen, text, u, clamp(v, 26, high - 10), "center");
   }
 
   function scaleBar(pen, { wide }, step) {
@@ -196,12 +199,16 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
   return makeSheet(canvas, ground, over);
 }
 
+// Writes a text, no part of it outside the sheet.
 function said(pen, text, x, y, align, colour = LOOK.ink) {
   pen.font = "11px system-ui, sans-serif";
   pen.textAlign = align;
   pen.textBaseline = "middle";
   pen.lineWidth = 3;
   pen.strokeStyle = LOOK.halo;
+  const wide = pen.measureText(text).width;
+  const before = { left: 0, center: wide / 2, right: wide }[align];
+  x = clamp(x, before + EDGE, pen.canvas.width / pen.getTransform().a - wide + before - EDGE);
   pen.strokeText(text, x, y);
   pen.fillStyle = colour;
   pen.fillText(text, x, y);

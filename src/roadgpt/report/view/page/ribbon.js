@@ -2,9 +2,10 @@
 
 const PINCH = 0.95; // share of the radius; an offset line nearer to the centre of its bend would fold
 const THICK = 0.3; // m of asphalt
-const APRON = 4; // m of shoulder beyond each end of the road
-const ASPHALT = 0x44474d, SIDE = 0x33353a, GRAVEL = 0x8d8672, BANK = 0x7b8a5f, PAINT = 0xf4f4ef, AGAINST = 0x4a4d53;
-const GREEN = 0x7f9a63; // of medians and islands
+const LEAN = 0.6; // m that grain moves sideways for each metre upwards
+const ACROSS = [0, 1 / 6, 1 / 3, 1 / 2, 2 / 3, 5 / 6, 1]; // of an end of the road: where its slope has points
+const BARE = 0.35, GROWN = 0.9; // m beside the asphalt: gravel up to the first, grass from the second on
+const WORN = [[0, 1], [0.15, 1], [0.3, 0.85], [0.5, 0.93], [0.7, 0.85], [0.85, 1], [1, 1]]; // across a lane: share of its width, light
 
 // Gathers triangles of one look; colours are per vertex.
 class Shape3 {
@@ -17,9 +18,11 @@ class Shape3 {
 
   get count() { return this.points.length / 3; }
 
+  // The colour of the point, or a function of the place that gives it.
   point(x, y, z, colour) {
+    const { r, g, b } = typeof colour === "function" ? colour(x, y) : colour;
     this.points.push(x - this.origin.x, y - this.origin.y, z - this.origin.z);
-    this.colours.push(colour.r, colour.g, colour.b);
+    this.colours.push(r, g, b);
     return this.count - 1;
   }
 
@@ -29,8 +32,8 @@ class Shape3 {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(this.points, 3));
     geometry.setAttribute("color", new THREE.Float32BufferAttribute(this.colours, 3));
-    // seen from above, in metres: what carries grain repeats it there
-    const seen = this.points.filter((_, at) => at % 3 < 2);
+    // in metres: what carries grain repeats it there; it leans, since seen from above slopes would stretch it
+    const seen = inGroups(this.points, 3).flatMap(([x, y, z]) => [x + LEAN * z, y - LEAN * z]);
     geometry.setAttribute("uv", new THREE.Float32BufferAttribute(seen, 2));
     geometry.setIndex(this.corners);
     geometry.computeVertexNormals();
@@ -64,15 +67,16 @@ function beside(road, s, t) {
   return [x, y, z];
 }
 
-// A band from offset and height (t0, h0) to (t1, h1), along these stations. t0 lies left of t1: the band faces up.
-function band(shape, road, stations, [t0, h0], [t1, h1], colour) {
+// A band from offset and height (t0, h0) to (t1, h1), along these stations, and from one colour to another.
+// t0 lies left of t1: the band faces up.
+function band(shape, road, stations, [t0, h0], [t1, h1], colour, other = colour) {
   let left = -1;
   let right = -1;
   for (const s of stations) {
     const [x0, y0, z0] = beside(road, s, offsetAt(road, t0, s));
     const [x1, y1, z1] = beside(road, s, offsetAt(road, t1, s));
     const l = shape.point(x0, y0, z0 + h0, colour);
-    const r = shape.point(x1, y1, z1 + h1, colour);
+    const r = shape.point(x1, y1, z1 + h1, other);
     if (left >= 0) shape.quad(right, r, l, left);
     left = l;
     right = r;
@@ -87,70 +91,75 @@ function cap(shape, road, s, left, right, colour, isEnd) {
   shape.quad(...corners);
 }
 
-// Ground at an end of the road: the shoulder goes on a little, then a bank runs down into the land.
-function apron(shape, road, bank, isEnd) {
-  const s = isEnd ? road.length : 0;
-  const rims = [offsetAt(road, road.lanes.rims.left, s), offsetAt(road, road.lanes.rims.right, s)];
-  const beyond = (sign, metres) => ((sign > 0) === isEnd ? rims[0] + metres : rims[1] - metres);
-  const place = placeIn(road.s, s);
-  const heading = read(road.heading, place) + (isEnd ? 0 : Math.PI);
-  const slope = read(road.grade, place) * (isEnd ? 1 : -1);
-  const foot = bank * 1.3;
-  const row = (ahead, metres, down, colour) => [1, -1].map((side) => {
-    const [x, y, z] = beside(road, s, beyond(side, metres));
-    return shape.point(x + ahead * Math.cos(heading), y + ahead * Math.sin(heading), z + Math.min(ahead, APRON) * slope - down, colour);
+// A slope of grass from a line of points down to just below the ground, in the directions `outwards`.
+function slope(shape, line, outwards, ground, isClosed) {
+  const { run, foot, outside } = SCENERY.banks;
+  const sides = line.map(([x, y, z], i) => {
+    const [u, v] = outwards[i];
+    const down = Math.max(0, z - ground(x + outside * u, y + outside * v)) + foot;
+    return [shape.point(x, y, z, grassAt), shape.point(x + run * down * u, y + run * down * v, z - down, grassAt)];
   });
-  const gravel = colourOf(GRAVEL);
-  const grass = colourOf(BANK);
-  const strips = [[row(0, 0, 0.03, gravel), row(APRON, 0, 0.03, gravel)],
-    [row(APRON, 0, 0.03, grass), row(APRON + bank * 1.3, foot, bank, grass)]];
-  for (const [near, far] of strips) shape.quad(near[1], far[1], far[0], near[0]);
-  // the corners between the bank at the end and those beside the road
-  [0, 1].forEach((side) => {
-    const sign = side ? -1 : 1;
-    const at = (ahead, metres, down) => {
-      const [x, y, z] = beside(road, s, beyond(sign, metres));
-      return shape.point(x + ahead * Math.cos(heading), y + ahead * Math.sin(heading), z + Math.min(ahead, APRON) * slope - down, grass);
-    };
-    const corners = [at(0, 0, 0.03), at(APRON, 0, 0.03), at(APRON + bank * 1.3, foot, bank), at(0, foot, bank)];
-    if (side) corners.reverse();
-    shape.quad(...corners);
+  sides.forEach(([top, foot], i) => {
+    const next = sides[i + 1] || (isClosed && sides[0]);
+    if (next) shape.quad(top, foot, next[1], next[0]);
   });
 }
 
-function pavement(scene, origin, bank, grain) {
-  const shape = new Shape3(origin);
-  for (const road of roadsOf(scene)) sweep(shape, road, bank);
-  if (scene.network) junctions(shape, scene.network, bank);
-  return shape.mesh(THREE.MeshLambertMaterial, { map: grain });
+// Asphalt with markings' ground in one mesh, what grows beside it in another: their grain is not the same.
+function pavement(scene, origin, renderer) {
+  const [paved, verge] = [new Shape3(origin), new Shape3(origin)];
+  const ground = groundOf(scene);
+  for (const road of roadsOf(scene)) sweep(paved, verge, road, ground);
+  if (scene.network) junctions(paved, verge, scene.network, ground);
+  const group = new THREE.Group();
+  group.add(paved.mesh(THREE.MeshLambertMaterial, asphaltGrain(renderer)), verge.mesh(THREE.MeshLambertMaterial, meadowGrain(renderer)));
+  return group;
 }
 
 // The surface of one road; `ends` says which of its ends are free, and both are if it says nothing.
-function sweep(shape, road, bank) {
-  const { bounds, against, rims, shoulder, median } = road.lanes;
+function sweep(paved, verge, road, ground) {
+  const { bounds, rims, shoulder, median } = road.lanes;
   const free = road.ends || [true, true];
-  const s = road.s;
+  const { asphalt, concrete, gravel } = COLOURS;
   const [left, right] = [bounds[0].t, bounds[bounds.length - 1].t];
   bounds.slice(1).forEach(({ t }, lane) => {
-    const colour = colourOf(lane < against ? AGAINST : ASPHALT);
-    for (const [a, b, isGreen] of median && median.strip === lane ? stripsOf(road) : [[0, road.length, false]]) {
-      if (b > a) band(shape, road, stationsBetween(road, a, b), [bounds[lane].t, 0], [t, 0], isGreen ? colourOf(GREEN) : colour);
+    const from = bounds[lane].t;
+    if (median && median.strip === lane) {
+      for (const [a, b, isGreen] of stripsOf(road)) {
+        if (b > a) band(isGreen ? verge : paved, road, stationsBetween(road, a, b), [from, 0], [t, 0], isGreen ? grassAt : asphalt);
+      }
+      return;
     }
+    WORN.slice(1).forEach(([share, light], n) => {
+      const [share0, light0] = WORN[n];
+      const [tone0, tone] = [light0, light].map((each) => asphalt.clone().multiplyScalar(each));
+      band(paved, road, road.s, [between(from, t, share0), 0], [between(from, t, share), 0], tone0, tone);
+    });
   });
-  band(shape, road, s, [left, -THICK], [left, 0], colourOf(SIDE));
-  band(shape, road, s, [right, 0], [right, -THICK], colourOf(SIDE));
-  for (const end of [0, road.length].filter((_, i) => free[i])) cap(shape, road, end, offsetAt(road, left, end), offsetAt(road, right, end), colourOf(SIDE), end > 0);
-  if (shoulder > 0) {
-    for (const [side, rim, edge] of [[1, rims.left, left], [-1, rims.right, right]]) {
-      const pair = [[rim, -0.03], [edge, -0.02]];
-      const slope = [[movedBy(rim, side * bank * 1.3), -bank], [rim, -0.03]];
-      if (side < 0) { pair.reverse(); slope.reverse(); }
-      band(shape, road, s, ...pair, colourOf(GRAVEL));
-      band(shape, road, s, ...slope, colourOf(BANK));
+  band(paved, road, road.s, [left, -THICK], [left, 0], concrete);
+  band(paved, road, road.s, [right, 0], [right, -THICK], concrete);
+  for (const end of [0, road.length].filter((_, i) => free[i])) cap(paved, road, end, offsetAt(road, left, end), offsetAt(road, right, end), concrete, end > 0);
+  if (!(shoulder > 0 && ground)) return;
+  const [bare, grown] = [BARE, GROWN].map((metres) => Math.min(1, metres / shoulder));
+  for (const [edge, rim, side] of [[left, rims.left, 1], [right, rims.right, -1]]) {
+    for (const [a, b, one, other] of [[0, bare, gravel, gravel], [bare, grown, gravel, grassAt], [grown, 1, grassAt, grassAt]]) {
+      const pair = [[between(edge, rim, a), -0.02], [between(edge, rim, b), -0.02]];
+      if (side > 0) band(verge, road, road.s, pair[1], pair[0], other, one);
+      else band(verge, road, road.s, ...pair, one, other);
     }
-    for (const isEnd of [false, true].filter((_, i) => free[i])) apron(shape, road, bank, isEnd);
+    const line = road.s.map((s) => beside(road, s, offsetAt(road, rim, s)));
+    const outwards = road.heading.map((heading) => [-side * Math.sin(heading), side * Math.cos(heading)]);
+    slope(verge, line.map(lowered), outwards, ground);
   }
+  [[0, -1], [road.length, 1]].filter((_, i) => free[i]).forEach(([s, way]) => {
+    const [a, b] = [rims.left, rims.right].map((t) => offsetAt(road, t, s));
+    const heading = read(road.heading, placeIn(road.s, s));
+    const line = ACROSS.map((share) => beside(road, s, mix(way > 0 ? a : b, way > 0 ? b : a, share)));
+    slope(verge, line.map(lowered), ACROSS.map(() => [way * Math.cos(heading), way * Math.sin(heading)]), ground);
+  });
 }
+
+const lowered = ([x, y, z]) => [x, y, z - 0.02];
 
 // The median along a road, in pieces: green, but for crosswalks at its ends.
 function stripsOf({ length, lanes: { median } }) {
@@ -169,7 +178,7 @@ function markings(scene, origin) {
   const { road } = scene;
   const { width, dash, gap } = scene.marking;
   const shape = new Shape3(origin);
-  const paint = colourOf(PAINT);
+  const { paint } = COLOURS;
   const dashes = [];
   for (let a = 0; a < road.length; a += dash + gap) dashes.push(stationsBetween(road, a, Math.min(a + dash, road.length)));
   road.lanes.bounds.forEach(({ marking, t }, i, { length }) => {
@@ -182,12 +191,14 @@ function markings(scene, origin) {
   return shape.mesh(THREE.MeshLambertMaterial, { polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 });
 }
 
-// The driven line, coloured by speed, on a white one that tells it from the asphalt.
-function drivenLine(scene, origin, fastest) {
-  const columns = scene.drive.columns;
+// The driven line, coloured by speed, on a white one that tells it from the asphalt; where nobody drove, the middle of
+// the road. `thick` times as wide, and then through everything, it shows from afar where the road is.
+function lineAlong(scene, origin, fastest, thick = 1) {
+  const { road } = scene;
+  const columns = scene.drive ? scene.drive.columns : { ...road, t: road.s.map(() => 0) };
   const group = new THREE.Group();
-  const kept = spaced(columns, 0.25);
-  for (const [width, lift, isCase] of [[0.52, 0.03, true], [0.36, 0.05, false]]) {
+  const kept = spaced(columns, 0.25 * thick);
+  for (const [width, lift, isCase] of [[0.42, 0.03, true], [0.28, 0.05, false]]) {
     const shape = new Shape3(origin);
     let left = -1;
     let right = -1;
@@ -197,9 +208,9 @@ function drivenLine(scene, origin, fastest) {
       const dx = columns.x[after] - columns.x[before];
       const dy = columns.y[after] - columns.y[before];
       const long = Math.hypot(dx, dy) || 1;
-      const [ax, ay] = [(-dy / long) * width / 2, (dx / long) * width / 2];
-      const z = Math.min(onRoad(scene.road, columns.s[i], columns.t[i]).z, columns.z[i]) + lift;
-      const rgb = isCase ? [250, 250, 250] : speedColour(columns.speed[i] / fastest);
+      const [ax, ay] = [(-dy / long) * thick * width / 2, (dx / long) * thick * width / 2];
+      const z = Math.min(onRoad(road, columns.s[i], columns.t[i]).z, columns.z[i]) + lift;
+      const rgb = isCase ? [250, 250, 250] : scene.drive ? speedColour(columns.speed[i] / fastest) : [60, 63, 68];
       const colour = new THREE.Color().setRGB(...rgb.map((v) => v / 255), THREE.SRGBColorSpace);
       const l = shape.point(columns.x[i] + ax, columns.y[i] + ay, z, colour);
       const r = shape.point(columns.x[i] - ax, columns.y[i] - ay, z, colour);
@@ -208,7 +219,10 @@ function drivenLine(scene, origin, fastest) {
       right = r;
     });
     const nearer = isCase ? -3 : -4;
-    group.add(shape.mesh(THREE.MeshBasicMaterial, { polygonOffset: true, polygonOffsetFactor: nearer, polygonOffsetUnits: nearer }));
+    const look = { polygonOffset: true, polygonOffsetFactor: nearer, polygonOffsetUnits: nearer, depthTest: thick === 1, fog: thick === 1 };
+    const mesh = shape.mesh(THREE.MeshBasicMaterial, look);
+    mesh.renderOrder = thick > 1 ? 2 - isCase : 0;
+    group.add(mesh);
   }
   return group;
 }

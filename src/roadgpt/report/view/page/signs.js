@@ -1,8 +1,23 @@
-// Signs: start and goal, posts beside the road, and pins where the car did wrong or a rule objects.
+// Signs beside the road, posts, start and goal, and pins where the car did wrong or a rule objects.
 
 const POST_EVERY = 25; // m; half of what German rules ask for on straights, so that speed is seen
-const PLATE = 0.00082; // of the height of the picture, per pixel of text
-const MINOR = 0.75; // size of a plate whose place caused no failure, of the others'
+const FRONT = 0; // three.js's FrontSide: signs are grey behind
+const AIR = 4; // pixels around a plate
+const CLOSE = 9; // m, from where a pin would stand in the way of the look
+
+// Faces of signs shine by themselves, as if headlamps shone on them; what is grey does not.
+function signMeshes({ network }, origin) {
+  const [plain, bright] = [new Shape3(origin), new Shape3(origin)];
+  for (const { colour, points } of network ? network.signs : []) {
+    const shape = colour === "grey" ? plain : bright;
+    const paint = COLOURS[colour];
+    const corners = inGroups(points, 3).map(([x, y, z]) => shape.point(x, y, z, paint));
+    for (let i = 2; i < corners.length; i++) shape.corners.push(corners[0], corners[i - 1], corners[i]);
+  }
+  const group = new THREE.Group();
+  group.add(plain.mesh(THREE.MeshLambertMaterial, { side: FRONT }), bright.mesh(THREE.MeshBasicMaterial, { side: FRONT }));
+  return group;
+}
 
 function posts(road, origin) {
   const { left, right } = road.lanes.rims;
@@ -52,10 +67,10 @@ function startAndGoal(scene, origin) {
 }
 
 // A pole with a ball and, if there is text, a plate over a place; lower and smaller where it caused no failure.
-function pin(x, y, z, text, colour, isMinor) {
+function pin(plates, x, y, z, { text, letters, isMinor }) {
   const high = isMinor ? 2.4 : 3.4;
   const group = new THREE.Group();
-  const paint = new THREE.MeshLambertMaterial({ color: colour });
+  const paint = new THREE.MeshLambertMaterial({ color: colourOf(letters) });
   const pole = new THREE.Mesh(new THREE.CylinderGeometry(0.045, 0.045, high, 8), paint);
   pole.rotation.x = Math.PI / 2;
   pole.position.set(x, y, z + high / 2);
@@ -63,34 +78,46 @@ function pin(x, y, z, text, colour, isMinor) {
   ball.position.set(x, y, z + high);
   group.add(pole, ball);
   if (!text) return { group };
-  const sprite = plate(text, css(rgbOf(colour)), isMinor ? MINOR : 1);
-  sprite.position.set(x, y, z + high + 0.35);
-  group.add(sprite);
-  return { group, sprite };
+  const plate = document.createElement("div");
+  plate.className = isMinor ? "plate minor" : "plate";
+  plate.textContent = text;
+  plate.style.color = letters;
+  plates.append(plate);
+  return { group, plate, top: new THREE.Vector3(x, y, z + high + 0.3) };
 }
 
-// Moves plates up that would cover another one on the screen: the nearest stays where it is. Gives back where they
-// are, from the middle of the screen, which reaches from -1 to 1 either way.
-function keepApart(pins, camera) {
+// Lays plates over their pins, inside the picture and beside each other, the nearest first, and none over what
+// stands in the corners. Gives back where they are, in pixels from the picture's upper left corner.
+function layPlates(pins, camera, canvas, corners) {
   camera.updateMatrixWorld();
-  const tall = 2 * Math.tan((camera.fov * Math.PI) / 360);
-  const plates = pins.map(({ sprite }) => {
-    const seen = sprite.position.clone().project(camera);
-    const [wide, high] = [(2 * sprite.scale.x) / (tall * camera.aspect), (2 * sprite.scale.y) / tall];
-    return { sprite, x: seen.x, y: seen.y, wide, high, far: camera.position.distanceTo(sprite.position), isSeen: seen.z < 1 };
-  });
-  const placed = [];
-  for (const plate of plates.filter(({ isSeen }) => isSeen).sort((a, b) => a.far - b.far)) {
-    let bottom = plate.y;
-    for (const other of placed) {
-      const isBeside = Math.abs(other.x - plate.x) >= (other.wide + plate.wide) / 2;
-      if (!isBeside && bottom < other.bottom + other.high && bottom + plate.high > other.bottom) bottom = other.bottom + other.high;
-    }
-    placed.push({ ...plate, bottom });
-    placed.sort((a, b) => a.bottom - b.bottom);
-    plate.sprite.center.set(0.5, -(bottom - plate.y) / plate.high);
+  const [wide, high] = [canvas.clientWidth, canvas.clientHeight];
+  const seen = [];
+  for (const { group, plate, top } of pins) {
+    const far = camera.position.distanceTo(group.children[1].position);
+    group.visible = far > CLOSE;
+    if (!plate) continue;
+    const { x, y, z } = top.clone().project(camera);
+    const isSeen = group.visible && z < 1 && Math.abs(x) < 1 && Math.abs(y) < 1;
+    plate.hidden = !isSeen;
+    if (isSeen) seen.push({ plate, far, x: ((1 + x) * wide) / 2, y: ((1 - y) * high) / 2, w: plate.offsetWidth, h: plate.offsetHeight });
   }
-  return placed.map(({ x, bottom, wide, high }) => ({ left: x - wide / 2, right: x + wide / 2, bottom, top: bottom + high }));
+  const placed = corners.map(({ offsetLeft: left, offsetTop: top, offsetWidth: w, offsetHeight: h }) => ({ left, top, right: left + w, bottom: top + h }));
+  const own = [];
+  for (const { plate, x, y, w, h } of seen.sort((a, b) => a.far - b.far)) {
+    const left = clamp(x - w / 2, AIR, Math.max(AIR, wide - w - AIR));
+    const hit = (top) => placed.find((each) => left < each.right && left + w > each.left && top < each.bottom && top + h > each.top);
+    const upwards = (top) => { for (let one; (one = hit(top)); ) top = one.top - h - AIR; return top; };
+    const downwards = (top) => { for (let one; (one = hit(top)); ) top = one.bottom + AIR; return top; };
+    const start = clamp(y - h, AIR, high - h - AIR);
+    let top = upwards(start);
+    if (top < AIR) top = downwards(start);
+    plate.style.transform = `translate(${left}px, ${top}px)`;
+    plate.style.setProperty("--at", `${clamp(x - left, 2, w - 2)}px`);
+    plate.style.setProperty("--leg", `${Math.max(0, y - top - h)}px`);
+    placed.push({ left, top, right: left + w, bottom: top + h });
+    own.push(placed[placed.length - 1]);
+  }
+  return own;
 }
 
 // A dot that tells from afar where the car is.
@@ -104,41 +131,10 @@ function beacon() {
   pen.lineWidth = 8;
   pen.strokeStyle = "#fff";
   pen.stroke();
-  const sprite = onScreen(canvas);
-  sprite.scale.set(0.026, 0.026, 1);
-  return sprite;
-}
-
-// A picture that keeps its size on the screen, whatever its distance.
-function onScreen(canvas) {
   const map = new THREE.CanvasTexture(canvas);
   map.colorSpace = THREE.SRGBColorSpace;
-  return new THREE.Sprite(new THREE.SpriteMaterial({ map, sizeAttenuation: false, depthTest: false, fog: false, transparent: true }));
-}
-
-const rgbOf = (hex) => [(hex >> 16) & 255, (hex >> 8) & 255, hex & 255];
-
-function plate(text, colour, size) {
-  const canvas = document.createElement("canvas");
-  const pen = canvas.getContext("2d");
-  const rows = text.split("\n").slice(0, 4);
-  const font = "600 30px system-ui, sans-serif";
-  pen.font = font;
-  const wide = Math.ceil(Math.max(...rows.map((row) => pen.measureText(row).width))) + 32;
-  const high = rows.length * 36 + 20;
-  canvas.width = wide;
-  canvas.height = high;
-  pen.font = font;
-  pen.fillStyle = "rgba(255,255,255,0.92)";
-  pen.beginPath();
-  pen.roundRect(1, 1, wide - 2, high - 2, 12);
-  pen.fill();
-  pen.fillStyle = colour;
-  pen.textBaseline = "middle";
-  rows.forEach((row, i) => pen.fillText(row, 16, 29 + i * 36));
-  const sprite = onScreen(canvas);
-  sprite.scale.set(wide * PLATE * size, high * PLATE * size, 1);
-  sprite.center.set(0.5, 0);
-  sprite.renderOrder = 10;
+  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map, sizeAttenuation: false, depthTest: false, fog: false, transparent: true }));
+  sprite.scale.set(0.026, 0.026, 1);
+  sprite.renderOrder = 3;
   return sprite;
 }

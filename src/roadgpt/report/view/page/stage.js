@@ -3,6 +3,8 @@
 const ORDINARY_VIEW = 52, TALL_VIEW = 68; // degrees upright, on wide and on tall screens
 
 const SMALL = 70; // m, from where a car can hardly be seen
+const AFAR = 0.8; // of the road's radius, from where the road itself can hardly be seen
+const THICK_LINE = 0.006; // width of the line that shows it then, of the camera's distance
 
 function makeStage(canvas, scene, trip, fastest) {
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
@@ -14,41 +16,36 @@ function makeStage(canvas, scene, trip, fastest) {
   const radius = Math.max(30, Math.hypot(...ends.map(([low, high]) => high - low)) / 2);
 
   const world = new THREE.Scene();
-  world.fog = new THREE.Fog(HORIZON, Math.max(250, 2 * radius), Math.max(2500, 9 * radius));
-  const dome = sky();
-  world.add(dome, new THREE.HemisphereLight(0xf3f8ff, 0x8a9470, 2.1));
-  const sun = new THREE.DirectionalLight(0xfff2dc, 2.0);
-  sun.position.set(-0.45, -0.6, 0.8);
-  world.add(sun);
-
-  const net = landOf(scene);
-  const grid = landGrid(net, scene.world, origin);
-  world.add(landMesh(net, origin, meadowGrain(renderer)), grid);
-  world.add(pavement(scene, origin, net.bank, asphaltGrain(renderer)));
+  world.fog = new THREE.Fog(COLOURS.haze, 0, HAZE);
+  const [dome, wood] = [sky(), trees(scene, origin)];
+  world.add(dome, wood.group, ...daylight());
+  world.add(landMesh(scene, origin, meadowGrain(renderer)), pavement(scene, origin, renderer));
   if (hasEnds(scene)) world.add(startAndGoal(scene, origin));
-  if (scene.network) world.add(networkMarkings(scene, origin), networkSigns(scene.network, origin));
-  else world.add(markings(scene, origin));
+  world.add(scene.network ? networkMarkings(scene, origin) : markings(scene, origin), signMeshes(scene, origin));
   for (const road of roads) if (road.lanes.shoulder > 0.5) world.add(posts(road, origin));
-  const line = scene.drive ? drivenLine(scene, origin, fastest) : new THREE.Group();
-  world.add(line);
+  const line = scene.drive ? lineAlong(scene, origin, fastest) : new THREE.Group();
+  const afar = hasEnds(scene) ? lineAlong(scene, origin, fastest, Math.max(1.01, (2 * radius * THICK_LINE) / 0.42)) : new THREE.Group();
+  world.add(line, afar);
+  const plates = canvas.parentElement.querySelector(".plates");
   const pins = scene.places.map((place) => {
     // a car that took a wrong turn stands on another road, which may be higher
     const z = place.isMinor && trip.isDriven ? trip.at(place.time).z - trip.car.height : onRoad(scene.road, place.s, 0).z;
-    const colour = place.colour === scene.severe.failed ? 0xc04f00 : parseInt(place.letters.slice(1), 16);
-    return pin(place.x - origin.x, place.y - origin.y, z - origin.z, place.text, colour, place.isMinor);
+    const letters = place.colour === scene.severe.failed ? "#c04f00" : place.letters;
+    return pin(plates, place.x - origin.x, place.y - origin.y, z - origin.z, { ...place, letters });
   });
   pins.forEach(({ group }) => world.add(group));
+  const corners = [".hud", ".legend", ".hint"].map((name) => canvas.parentElement.querySelector(name));
   const car = trip.isDriven ? makeCar(trip.car) : makePointer();
   const dot = beacon();
   world.add(car.group, dot);
 
-  const camera = new THREE.PerspectiveCamera(ORDINARY_VIEW, 1, 0.5, 20000);
+  const camera = new THREE.PerspectiveCamera(ORDINARY_VIEW, 1, 0.5, Math.max(20000, 8 * radius));
   camera.up.set(0, 0, 1);
 
   const middle = new THREE.Vector3(0, 0, (ends[2][1] - ends[2][0]) / 2);
 
   return {
-    camera, canvas, origin, radius, line, middle, grid,
+    camera, canvas, origin, radius, line, middle,
     plates: [],
     outline: x.map((each, i) => new THREE.Vector3(each - origin.x, y[i] - origin.y, z[i] - origin.z).sub(middle)),
     fit() {
@@ -63,10 +60,22 @@ function makeStage(canvas, scene, trip, fastest) {
       car.show(pose, origin, severeColour(scene, pose.outside || 0));
       dot.position.copy(car.group.position);
     },
-    draw() {
+    // `away` is how far the free camera is from what it looks at: the road has no haze for it; 0 for the others.
+    draw(away, hasLine) {
+      const least = clamp(away / 50, 0.2, 100); // of what is drawn at all: the larger, the finer are depths told apart
+      if (camera.near !== least) {
+        camera.near = least;
+        camera.updateProjectionMatrix();
+      }
+      world.fog.near = away && away + Math.min(away, radius);
+      world.fog.far = world.fog.near + HAZE + (away && radius);
       dome.position.copy(camera.position);
+      wood.face(camera);
+      const isFar = away > 60 + AFAR * radius;
+      line.visible = hasLine && !isFar;
+      afar.visible = isFar && (hasLine || !scene.drive);
       dot.visible = camera.position.distanceTo(dot.position) > SMALL;
-      this.plates = keepApart(pins.filter(({ sprite }) => sprite), camera);
+      this.plates = layPlates(pins, camera, canvas, corners);
       renderer.render(world, camera);
     },
   };
