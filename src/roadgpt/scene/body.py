@@ -156,13 +156,16 @@ def _on_hull(across: Array, heights: tuple[float, ...], kind: int, end: int, lif
     """Returns a strip on the tail (end -1, from left to right) or on the nose (end 1, from right to left)."""
     x = np.linspace(SECTIONS[0][0], SECTIONS[-1][0], 4701)[::-end]
     table = np.array(SECTIONS)
+    profiles = np.array([_half(*row[1:]) for row in table])
+    n = np.clip(np.searchsorted(table[:, 0], x) - 1, 0, len(table) - 2)
+    share = (x - table[n, 0]) / (table[n + 1, 0] - table[n, 0])
+    y, z = np.moveaxis(profiles[n] + share[:, None, None] * (profiles[n + 1] - profiles[n]), -1, 0)[..., 1:]
     wide = np.empty((len(heights), len(x)))
-    profiles = [_half(*row[1:]) for row in table]
-    for k in range(len(x)):
-        n = int(np.clip(np.searchsorted(table[:, 0], x[k]) - 1, 0, len(table) - 2))
-        share = (x[k] - table[n, 0]) / (table[n + 1, 0] - table[n, 0])
-        y, z = (profiles[n] + share * (profiles[n + 1] - profiles[n])).T
-        wide[:, k] = np.interp(heights, z[1:], y[1:], right=0.0)
+    for row, height in enumerate(heights):
+        rank = np.clip((z <= height).sum(axis=1), 1, z.shape[1] - 1)
+        (y0, y1), (z0, z1) = (np.take_along_axis(v, rank[:, None] - [1, 0], axis=1).T for v in (y, z))
+        between = y0 + (y1 - y0) / (z1 - z0) * np.maximum(height - z0, 0.0)
+        wide[row] = np.where(height > z[:, -1], 0.0, between)
     at = (wide[:, None] >= np.abs(across)[None, :, None]).argmax(axis=-1)
     net = np.stack(np.broadcast_arrays(x[at].T + end * lift, across[:, None], np.array(heights)), axis=-1)
     return surface(net, kind)
