@@ -94,6 +94,18 @@ def test_a_vague_wish_has_several_readings() -> None:
     assert len({plan(brief) for brief in readings}) == len(readings)
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        "8 turns: 4 hairpins and 4 gentle turns",
+        "3 left and 2 right turns, 5 turns in all",
+        "sechs Kurven: zwei Spitzkehren und vier sanfte Kurven",
+    ],
+)
+def test_a_sum_and_its_parts_are_all_used(words: str) -> None:
+    assert READER.read(words).unused == ()
+
+
 def test_words_without_meaning_are_told() -> None:
     assert "purple" in READER.read("two left turns, purple").unused
 

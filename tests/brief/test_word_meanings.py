@@ -52,6 +52,15 @@ def covered(words: str, plan: str) -> set[str]:
         ("two forks", "y_junction // y_junction", {"two"}),
         ("two of them", "y_junction // y_junction // y_junction", set()),
         ("5 arms", "star arms=5", {"5"}),
+        ("8 of them: 4 hairpins, 4 gentle ones", "hairpin x4; turn x4 gentle", {"8", "4"}),
+        ("8 of them: 4 hairpins, 5 gentle ones", "hairpin x4; turn x5 gentle", {"4", "5"}),
+        (
+            "6 of them, 3 left, 3 right",
+            "turn x2 left; straight; turn x3 right; turn left",
+            {"6", "3", "left"},
+        ),
+        ("3 bends and 2 straights, 5 things", "turn x3; straight x2", {"3", "2"}),
+        ("1 bend, 2 bends", "turn; straight; turn | turns=2", {"1", "2"}),
     ],
 )
 def test_what_a_plan_has_is_understood(words: str, plan: str, wanted: set[str]) -> None:

@@ -358,3 +358,28 @@ def test_what_can_be_drawn_is_drawn(line: str) -> None:
     for seed in range(3):
         route = drafted(line, seed)
         assert inspect(route, read_plan(line), USUAL) == ()
+
+
+@pytest.mark.parametrize("junctions", [1, 2, 3, 9, 10, 13, 16])
+@pytest.mark.parametrize("lanes", ["", " lanes=4"])
+def test_however_many_junctions_a_route_has_no_road_is_asked_for_an_empty_range(
+    junctions: int, lanes: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The more junctions, the more haste a draft has; it is a share, and ranges are drawn with it."""
+    hastes: list[float] = []
+    monkeypatch.setattr(NetworkSearch, "_draft", lambda self, haste: hastes.append(haste))
+    brief = read_plan(" // crossroads straight // ".join(["|" + lanes] * (junctions + 1)))
+    assert len(brief.junctions) == junctions
+    search = NetworkSearch(brief, USUAL, np.random.default_rng(1))
+    with pytest.raises(DesignError):
+        search.run(30)
+    assert hastes == sorted(hastes)
+    assert hastes[0] == pytest.approx(min(max(junctions - 2, 0) / 8, 1.0))
+    assert 0 <= hastes[0] <= hastes[-1] <= 1
+    for haste in (hastes[0], hastes[-1]):
+        for _ in range(20):
+            asked = search._open(haste, search._shortest(0, haste))
+            for amount in (asked.length, asked.degrees, asked.turns):
+                assert amount is None or amount.lo <= amount.hi
+            assert asked.length is not None
+            assert 20 < asked.length.lo < asked.length.hi < 180

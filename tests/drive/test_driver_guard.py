@@ -145,6 +145,22 @@ def test_a_driver_of_our_own_may_wait_for_the_compiler():
     assert asked() == (0.1, 0.0, 0.0)
 
 
+@pytest.mark.parametrize("does", [lambda: Command(0.0), fails(ValueError("oh no"))])
+def test_no_thread_outlives_a_driver_that_was_asked_in_another_thread(does):
+    left = []
+
+    def asked():
+        try:
+            ask(does, limit=60.0)
+        finally:
+            left.extend(each.name for each in threading.enumerate() if each.name == "roadgpt-guard")
+
+    begun = time.perf_counter()
+    in_thread(asked)
+    assert left == []
+    assert time.perf_counter() - begun < 5.0
+
+
 def test_start_is_watched_too():
     class Starts(GivesAnswer):
         def start(self, road, world, seed):

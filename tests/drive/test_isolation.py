@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -118,6 +119,47 @@ def test_what_a_driver_does_to_its_process_is_its_own_affair(spec, nuisance: str
     )
     assert went(seen).to_bytes() == undisturbed
     assert Path("seen").read_text() == f"{Path.cwd()} True"
+
+
+def guards() -> int:
+    return sum(each.name == "roadgpt-driver" for each in threading.enumerate())
+
+
+@pytest.mark.parametrize("is_ended", [True, False])
+def test_no_thread_outlives_the_process_of_a_driver(is_ended: bool) -> None:
+    before, one = guards(), process.DriverProcess()
+    assert guards() == before + 1
+    if is_ended:
+        one.end()
+    else:
+        os.kill(one._process.pid, signal.SIGKILL)
+        with pytest.raises(process.GoneError, match="ended its own process"):
+            one.ask(60.0, "show", None, None)
+    due = time.monotonic() + 10 * process.TICK
+    while guards() > before and time.monotonic() < due:
+        time.sleep(0.01)
+    assert guards() == before
+    assert not one.is_alive
+
+
+def test_only_a_driver_that_leaves_a_thread_behind_takes_its_process_with_it(
+    spec, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(process, "_idle", [])
+    pids = []
+    for thread in (
+        "threading.Thread(target=time.sleep, args=(3600,), daemon=True).start()",
+        "t = threading.Thread(target=int); t.start(); t.join()",
+        "pass",
+    ):
+        noted = f"Path('pid').write_text(str(os.getpid())); {thread}"
+        went(spec(f"    def start(self, road, world, seed):\n        {noted}\n{CALM}"))
+        pids.append(int(Path("pid").read_text()))
+    assert pids[0] != pids[1] == pids[2]
+    for one in process._idle:
+        if one._process.pid == pids[0]:
+            assert one._process.wait(10) == 0
+        one.end()
 
 
 @pytest.mark.parametrize(

@@ -92,6 +92,10 @@ def test_poses_are_of_one_length_finite_and_in_time() -> None:
     assert len(Poses.of({**good, "steer": np.zeros(7)})) == 2
     for bad in (
         {"x": np.zeros(3)},
+        {"speed": np.zeros(1)},
+        {"time": np.array([0.0, 1.0, 2.0])},
+        {name: np.zeros(1) for name in good},
+        {name: np.zeros((2, 2)) for name in good},
         {"z": np.array([0.0, np.nan])},
         {"time": np.array([1.0, 1.0])},
     ):

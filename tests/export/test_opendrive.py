@@ -116,6 +116,25 @@ def test_pieces_too_short_to_be_told_leave_no_gap() -> None:
     assert sum(float(each.attrib["length"]) for each in geometries) == pytest.approx(plan.length, abs=1e-12)
 
 
+@pytest.mark.parametrize("short", [2e-6, 1e-4, 0.01])
+def test_the_shortest_pieces_that_are_told_are_told_as_they_are(short: float) -> None:
+    pieces = (
+        Piece(short),
+        Piece(10),
+        Piece(short, 0, 1 / 50),
+        Piece(short, 1 / 50, 1 / 50),
+        Piece(10, 1 / 50, 0),
+    )
+    geometries = list(parsed(Road(PieceCurve(5, 6, 1, pieces), LEVEL)).iter("geometry"))
+    assert [float(each.attrib["length"]) for each in geometries] == [piece.length for piece in pieces]
+
+
+def test_a_road_of_nothing_but_short_pieces_is_one_geometry() -> None:
+    plan = PieceCurve(5, 6, 1, (Piece(0.9e-6),) * 3)
+    (geometry,) = parsed(Road(plan, LEVEL)).iter("geometry")
+    assert numbers(geometry, "s", "length") == [0.0, plan.length]
+
+
 def test_lanes_their_marks_and_their_verges() -> None:
     root = parsed(
         ROADS["arcs"],

@@ -61,13 +61,35 @@ def test_a_cubic_from_another_station_is_the_same_curve(
 
 
 @pytest.mark.parametrize(
-    ("stations", "grades"), [((0.0,), (0.1,)), ((0.0, 1.0), (0.1,)), ((0.0, 1.0, 1.0), (0.1, 0.1, 0.1))]
+    ("stations", "grades"),
+    [((0.0,), (0.1,)), ((0.0, 1.0), (0.1,)), ((0.0, 1.0), (0.1,) * 3), ((0.0, 1.0, 1.0), (0.1,) * 3)],
 )
 def test_profiles_that_make_no_sense_are_refused(
     stations: tuple[float, ...], grades: tuple[float, ...]
 ) -> None:
     with pytest.raises(ValueError, match="stations"):
         GradeProfile(0.0, stations, grades)
+
+
+CUBIC = (1.0, 0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("stations", "rows", "said"),
+    [
+        ((), (), "same number of cubics"),
+        ((0.0, 1.0), (CUBIC,), "same number of cubics"),
+        ((0.0,), (CUBIC, CUBIC), "same number of cubics"),
+        ((0.0, 1.0, 1.0), (CUBIC,) * 3, "must increase"),
+        ((0.0, 1.0), (CUBIC, CUBIC[:3]), "four coefficients"),
+        ((0.0, 1.0), (CUBIC, (*CUBIC, 0.0)), "four coefficients"),
+    ],
+)
+def test_cubics_that_make_no_sense_are_refused(
+    stations: tuple[float, ...], rows: tuple[tuple[float, ...], ...], said: str
+) -> None:
+    with pytest.raises(ValueError, match=said):
+        CubicProfile(stations, rows)  # type: ignore[arg-type]
 
 
 def test_profiles_are_made_of_knots_rows_and_tables() -> None:

@@ -105,6 +105,31 @@ def test_lines_lie_on_crests_and_in_sags() -> None:
         assert np.interp(places, s, points[:, 2]) == pytest.approx(road.at(places)[:, 2], abs=0.01)
 
 
+@pytest.mark.parametrize("network", NETWORKS)
+def test_paint_along_kerbs_lies_beside_the_kerb_to_a_millimetre(network: Network) -> None:
+    """Half of a line of 12 cm lies between its middle and the kerb, but for the tips of pointed islands."""
+    kerb = network.paved.boundary
+    lines = [stroke for stroke in strokes(network) if stroke.kind == "edge" and stroke.road is None]
+    assert {stroke.width for stroke in lines} == {0.12}
+    away, on_left, on_right = [], [], []
+    for stroke in lines:
+        middle = shapely.LineString(stroke.points[:, :2])
+        places = np.arange(0.005, middle.length - 0.005, 0.5)
+        spots, ahead = (shapely.line_interpolate_point(middle, places + step) for step in (0.0, 0.004))
+        away.append(shapely.distance(kerb, spots))
+        at, way = (
+            shapely.get_coordinates(spots),
+            shapely.get_coordinates(ahead) - shapely.get_coordinates(spots),
+        )
+        left = 0.08 * np.column_stack([-way[:, 1], way[:, 0]]) / np.hypot(*way.T)[:, None]
+        on_left.append(shapely.contains_xy(network.paved, at + left))
+        on_right.append(shapely.contains_xy(network.paved, at - left))
+    assert np.concatenate(away).min() > 0.059
+    assert (np.concatenate(away) < 0.061).mean() > 0.98
+    assert np.concatenate(on_left).all()
+    assert np.concatenate(on_right).mean() < 0.05
+
+
 @pytest.mark.parametrize("control", ["stop", "lights"])
 def test_a_stop_line_lies_across_the_arriving_lane_where_the_road_ends(control: str) -> None:
     route = route_of({"kind": "crossroads", "take": "left", "control": control})

@@ -7,6 +7,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from contextlib import suppress
@@ -25,7 +26,7 @@ from roadgpt.drive.simulators.beamng import session as sessions
 from roadgpt.drive.simulators.beamng.compatibility import VERSION_PAIRS, mismatch_advice
 from roadgpt.drive.simulators.beamng.launch import command_line
 from roadgpt.drive.simulators.beamng.session import leave_all
-from roadgpt.drive.simulators.beamng.slots import take
+from roadgpt.drive.simulators.beamng.slots import _user, take
 from roadgpt.drive.simulators.beamng.watchdog import OverdueError, Watchdog
 from roadgpt.errors import PartError, SimulationError, UsageError
 from roadgpt.road import Road, World
@@ -98,6 +99,59 @@ def test_nobody_on_the_port_and_no_home_are_told_of(tmp_path: Path, port: int) -
         drive(BeamngSettings(port=port, home=tmp_path))
     with pytest.raises(UsageError, match="has a space"):
         drive(BeamngSettings(port=port, home=tmp_path, user=tmp_path / "a b"))
+
+
+@pytest.mark.parametrize("number", [0, 1, 2])
+@pytest.mark.parametrize("own", [True, False])
+@pytest.mark.parametrize("launches", [True, False])
+def test_which_user_folder_a_worker_gets(number: int, own: bool, launches: bool, tmp_path: Path) -> None:
+    """The first one gets the user's own, the others get one beside it, or in the temporary folder; where
+    BeamNG is running already, its folder is its own affair.
+    """
+    user = tmp_path / "me" if own else None
+    home = tmp_path / "home" if launches else None
+    found = _user(BeamngSettings(home=home, user=user), number)
+    if not launches or number == 0:
+        assert found == user
+    elif own:
+        assert found == tmp_path / f"me-{number + 1}"
+        assert found.is_dir()
+    else:
+        assert found == Path(tempfile.gettempdir(), f"roadgpt-beamng-user-{number + 1}")
+
+
+def test_a_further_worker_gets_the_licence_from_wherever_the_first_has_it(tmp_path: Path) -> None:
+    user, settings = tmp_path / "me", BeamngSettings(home=tmp_path, user=tmp_path / "me")
+    for place, text in ((user, "mine"), (user / "0.38", "old"), (user / "0.39", "new")):
+        place.mkdir()
+        (place / "tech.key").write_text(text)
+    (user / "0.40").mkdir()
+    (user / "0.39" / "mods.txt").write_text("large")
+    second = _user(settings, 1)
+    assert second is not None
+    copied = {str(path.relative_to(second)): path.read_text() for path in second.rglob("*") if path.is_file()}
+    assert copied == {"tech.key": "mine", "0.38/tech.key": "old", "0.39/tech.key": "new"}
+
+
+@pytest.mark.parametrize("launches", [True, False])
+def test_the_first_free_slot_is_taken_with_the_port_and_folder_of_its_number(
+    launches: bool, tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("roadgpt.drive.simulators.beamng.slots.is_taken", lambda host, at: not launches)
+    home = tmp_path if launches else None
+    settings = BeamngSettings(port=port, home=home, user=tmp_path / "me", host="localhost")
+    taken = [take(settings) for _ in range(3)]
+    try:
+        assert [slot.port for slot in taken] == [port, port + 1, port + 2]
+        names = ["me", "me-2", "me-3"] if launches else ["me"] * 3
+        assert [slot.user for slot in taken] == [tmp_path / name for name in names]
+        taken[1].release()
+        again = take(settings)
+        assert (again.port, again.user) == (port + 1, tmp_path / names[1])
+        taken[1] = again
+    finally:
+        for slot in taken:
+            slot.release()
 
 
 def test_a_beamng_that_ends_at_once_or_never_listens_is_told_of(tmp_path: Path, port: int) -> None:
