@@ -4,6 +4,7 @@ import csv
 import json
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -18,7 +19,7 @@ from roadgpt.campaign.faults.failures import LocatedFailure, failures_of
 from roadgpt.campaign.faults.fault import Fault, faults_in
 from roadgpt.campaign.faults.fault_log import FailureAnalysis, instructive
 from roadgpt.campaign.faults.minimise import Simplest
-from roadgpt.campaign.faults.reason import Manner
+from roadgpt.campaign.faults.reason import Manner, reason_of
 from roadgpt.campaign.faults.remedy import REMEDIES, Removed
 from roadgpt.campaign.faults.stability import Repeated, Stability, disturbance_of
 from roadgpt.campaign.model import NumberedTest
@@ -96,6 +97,69 @@ def test_a_campaign_looks_into_its_failures_when_it_is_done(looked: Path) -> Non
     assert [row["test"] for row in failures] == ["c01/1", "c01/2"]
     assert {row["fault"] for row in failures} == {row["fault"] for row in rows}
     assert found.failures == found.compared == 2
+
+
+def test_every_column_of_failures_is_that_of_the_verdict(many: Path, tmp_path: Path) -> None:
+    """And of the bend that the lane's middle takes there, measured by its heading; every column of faults is
+    that of the analysis, in the unit of its name.
+    """
+    folder = shutil.copytree(many, tmp_path / "c")
+    found = faults_in(folder)
+    analyses = {}
+    for fault in found.them:
+        run = kept_run(folder, *fault.names[0])
+        stability = Stability(
+            tuple(replace(each, failed=each.number > 1) for each in failed_again(run, 8).drives)
+        )
+        analyses[fault.number] = FailureAnalysis(fault.names[0], reason_of(run), stability, "a simple road")
+    fault_log.write_tables(found.them, analyses, folder)
+    fault_of = {each.name: fault.number for fault in found.them for each in fault.members}
+    rows = table(folder / "faults" / "failures.csv")
+    assert [row["test"] for row in rows] == [str(name) for name in sorted(fault_of)]
+    assert len(rows) > 20
+    for row, name in zip(rows, sorted(fault_of), strict=True):
+        run = kept_run(folder, *name)
+        verdict, road = run.verdict, run.road
+        assert verdict is not None
+        assert road is not None
+        assert (verdict.outcome, int(row["fault"])) == ("FAIL", fault_of[name])
+        assert float(row["station_m"]) == pytest.approx(verdict.at_s, abs=0.0501)
+        assert float(row["max_oob"]) == pytest.approx(verdict.max_oob, abs=0.000501)
+        assert float(row["beyond_m"]) == pytest.approx(verdict.beyond, abs=0.000501)
+        s = np.arange(max(verdict.at_s - 25, 0.0), min(verdict.at_s + 5, road.length), 0.1)
+        x, y, _ = road.at(s, -run.world.section.lane_width / 2).T
+        heading = np.unwrap(np.arctan2(np.diff(y), np.diff(x)))
+        turning = np.diff(heading) / np.hypot(np.diff(x), np.diff(y))[1:]
+        tightest = int(np.abs(turning).argmax())
+        if verdict.cause in ("stuck", "timeout"):
+            wanted = {"stuck": "stopped", "timeout": "late"}[verdict.cause], ""
+        elif not row["radius_m"]:
+            wanted = "off", ""
+            assert np.abs(turning).max() < 1 / 150
+        else:
+            side = "left" if turning[tightest] > 0 else "right"
+            wanted = ("inside" if verdict.side == side else "wide"), side
+            radius = 1 / abs(float(road.curvature(s[tightest + 1])))
+            assert float(row["radius_m"]) == pytest.approx(radius, rel=0.02, abs=0.06)
+        assert (row["way"], row["side"]) == wanted
+    for row, fault in zip(table(folder / "faults" / "faults.csv"), found.them, strict=True):
+        reason = analyses[fault.number].reason
+        assert (row["test"], row["failures"]) == (str(fault.names[0]), str(len(fault.members)))
+        assert (row["failed_again"], row["drives"], row["share"]) == ("6", "8", "0.750")
+        assert (row["way"], row["side"]) == (reason.way, reason.side or "")
+        assert (row["reason"], row["simplest"], row["removed_by"]) == (reason.sentence, "a simple road", "")
+        for column, value in (
+            ("fault", fault.number),
+            ("radius_m", reason.radius),
+            ("entered_kmh", reason.entered * 3.6),
+            ("needed_g", reason.needed),
+            ("grade", reason.grade),
+            ("station_m", reason.station),
+        ):
+            step = 0.0501 if column.endswith(("_m", "kmh")) else 0.000501
+            assert (
+                row[column] == "" if value is None else float(row[column]) == pytest.approx(value, abs=step)
+            )
 
 
 def test_a_campaign_leaves_out_the_small_changes_if_asked_to(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from roadgpt import children
 from roadgpt.drive import simulate
 from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.drive.isolation import driver_of, process
+from roadgpt.drive.isolation import child, driver_of, process
 from roadgpt.drive.isolation.proxy import IsolatedDriver
 from roadgpt.drive.loading import load_driver
 from roadgpt.errors import DriverError, UsageError
@@ -143,23 +143,22 @@ def test_no_thread_outlives_the_process_of_a_driver(is_ended: bool) -> None:
 
 
 def test_only_a_driver_that_leaves_a_thread_behind_takes_its_process_with_it(
-    spec, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(process, "_idle", [])
-    pids = []
-    for thread in (
-        "threading.Thread(target=time.sleep, args=(3600,), daemon=True).start()",
-        "t = threading.Thread(target=int); t.start(); t.join()",
-        "pass",
-    ):
-        noted = f"Path('pid').write_text(str(os.getpid())); {thread}"
-        went(spec(f"    def start(self, road, world, seed):\n        {noted}\n{CALM}"))
-        pids.append(int(Path("pid").read_text()))
-    assert pids[0] != pids[1] == pids[2]
-    for one in process._idle:
-        if one._process.pid == pids[0]:
-            assert one._process.wait(10) == 0
-        one.end()
+    ended: list[int] = []
+    monkeypatch.setattr(child.os, "_exit", ended.append)
+    host, done = child._DriverHost(), threading.Event()
+    joined = threading.Thread(target=int)
+    joined.start()
+    joined.join()
+    host.forget()
+    assert ended == []
+    left = threading.Thread(target=done.wait, daemon=True)
+    left.start()
+    host.forget()
+    done.set()
+    left.join()
+    assert ended == [0]
 
 
 @pytest.mark.parametrize(

@@ -56,7 +56,7 @@ def test_the_land_beside_a_road_lies_35_cm_or_more_below_it(land: Land) -> None:
         below = ROAD.at(s)[:, 2] - land.height(x, y)
         assert below.min() > 0.35 - 1e-9
         assert below.max() < 1.5
-    x, y, z = ROAD.at(s).T
+    x, y, _ = ROAD.at(s).T
     assert land.between(land.away, x, y) == pytest.approx(0.0)
 
 
