@@ -11,6 +11,7 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import settings
 
+from named_files import watch_commands
 from roadgpt import provenance
 from roadgpt.campaign.workers.in_process import InProcess
 
@@ -25,6 +26,7 @@ def _no_telemetry(event: str, told: tuple[object, ...]) -> None:
 
 
 sys.addaudithook(_no_telemetry)
+watch_commands()
 
 # Tests that a shell started in the background ignore Ctrl-C, and all that they start would inherit that.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

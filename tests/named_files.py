@@ -1,0 +1,40 @@
+"""The files that a command names: whatever path it prints as written is there when it is done."""
+
+import re
+import tempfile
+from functools import wraps
+from pathlib import Path
+from typing import Any
+
+from click.testing import CliRunner, Result
+
+PATH = re.compile(re.escape(tempfile.gettempdir()) + r"/pytest-[^\s\"'`,;()<>|\\\x1b]+")
+WRITTEN = re.compile(r"\bwritten (?:to|into) ([^\s,;]+)")
+HINT = re.compile(r"\broadgpt [a-z].*|--[a-z-]+ \S+")  # commands to come may name what they will make
+
+
+def lacking(output: str) -> list[str]:
+    """The paths below the folder of tests in what a command printed, but not in its hints, at which nothing
+    is; a pattern with * has to fit a file."""
+    told = HINT.sub("", output)
+    found = [*PATH.findall(told), *WRITTEN.findall(told)]
+    return [path for path in (each.rstrip(".:") for each in found) if not _is_there(Path(path))]
+
+
+def _is_there(path: Path) -> bool:
+    return path.exists() or any(path.parent.glob(path.name)) or any(path.parent.glob(f"{path.name} *"))
+
+
+def watch_commands() -> None:
+    """From now on, a command that ends well and names a file that is not there fails its test."""
+    invoke = CliRunner.invoke
+
+    @wraps(invoke)
+    def watched(*given: Any, **named: Any) -> Result:
+        done = invoke(*given, **named)
+        if done.exit_code == 0:
+            gone = lacking(done.output)
+            assert not gone, f"the command names {', '.join(gone)}, which is not there"
+        return done
+
+    CliRunner.invoke = watched  # type: ignore[method-assign]
