@@ -10,6 +10,7 @@ from click.testing import CliRunner, Result
 
 PATH = re.compile(re.escape(tempfile.gettempdir()) + r"/pytest-[^\s\"'`,;()<>|\\\x1b]+")
 WRITTEN = re.compile(r"\bwritten (?:to|into) ([^\s,;]+)")
+CLASS = re.compile(r"(?<=\.py):\w+$")  # of a driver, PATH.py:CLASS
 HINT = re.compile(r"\broadgpt [a-z].*|--[a-z-]+ \S+")  # commands to come may name what they will make
 
 
@@ -18,7 +19,9 @@ def lacking(output: str) -> list[str]:
     is; a pattern with * has to fit a file."""
     told = HINT.sub("", output)
     found = [*PATH.findall(told), *WRITTEN.findall(told)]
-    return [path for path in (each.rstrip(".:") for each in found) if not _is_there(Path(path))]
+    return [
+        path for path in (CLASS.sub("", each.rstrip(".:")) for each in found) if not _is_there(Path(path))
+    ]
 
 
 def _is_there(path: Path) -> bool:
