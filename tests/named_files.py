@@ -3,6 +3,7 @@
 import re
 import tempfile
 from functools import wraps
+from glob import glob
 from pathlib import Path
 from typing import Any
 
@@ -19,13 +20,8 @@ def lacking(output: str) -> list[str]:
     is; a pattern with * has to fit a file."""
     told = HINT.sub("", output)
     found = [*PATH.findall(told), *WRITTEN.findall(told)]
-    return [
-        path for path in (CLASS.sub("", each.rstrip(".:")) for each in found) if not _is_there(Path(path))
-    ]
-
-
-def _is_there(path: Path) -> bool:
-    return path.exists() or any(path.parent.glob(path.name)) or any(path.parent.glob(f"{path.name} *"))
+    paths = (CLASS.sub("", each.rstrip(".:")) for each in found)
+    return [path for path in paths if not (Path(path).exists() or glob(path) or glob(f"{path} *"))]
 
 
 def watch_commands() -> None:
