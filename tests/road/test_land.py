@@ -1,9 +1,11 @@
 """The terrain around a road: near it below its edges, far away level to the horizon."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from roadgpt.geometry import GradeProfile, Piece, PieceCurve
+from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Road, World
 from roadgpt.road.land import Land
 
@@ -94,3 +96,18 @@ def test_a_short_road_has_terrain_of_40_m_and_the_margins() -> None:
     assert land.cell == 4.0
     long = Road(PieceCurve(0.0, 0.0, 0.0, (Piece(1000.0),)), GradeProfile.level(1000.0))
     assert Land.around(long, World()).cell == pytest.approx(1260 / 160)
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+def test_land_lies_below_the_lower_edge_of_a_banked_road(side: int) -> None:
+    angle = CubicProfile.constant(side * 0.12)
+    profile = replace(World().profile_of(ROAD), superelevation_angle=angle)
+    road = ROAD.with_profile(profile)
+    land, s = Land.around(road, World()), np.linspace(0.0, road.length, 80)
+    rims = [road.at(s, t) for t in profile.rims(s)]
+    lower = np.minimum(rims[0][:, 2], rims[1][:, 2])
+    assert (road.at(s)[:, 2] - lower).min() > 0.5
+    for x, y, _ in (road.at(s).T, rims[0].T, rims[1].T):
+        below = lower - land.height(x, y)
+        assert below.min() > 0.2
+        assert below.max() < 1.5
