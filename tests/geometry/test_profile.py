@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadgpt.geometry import CubicProfile, GradeProfile
+from roadgpt.geometry import CubicProfile, GradeProfile, shifted
 
 
 @st.composite
@@ -55,9 +55,40 @@ def test_a_cubic_from_another_station_is_the_same_curve(
     """numpy.polynomial is the second opinion; the first cubic also applies before its station."""
     profile = CubicProfile(tuple(4.0 * n for n in range(len(rows))), tuple(rows))
     n = min(max(int(s // 4), 0), len(rows) - 1)
-    expected = np.polynomial.Polynomial(rows[n])(s - 4 * n + ahead)
+    cubic, u = np.polynomial.Polynomial(rows[n]), s - 4 * n
+    for found, wanted in (
+        (profile.height(s), cubic(u)),
+        (profile.grade(s), cubic.deriv()(u)),
+        (profile.vertical_curvature(s), cubic.deriv(2)(u)),
+        (shifted(np.array([rows[n]]), u)[0], [cubic.deriv(k)(u) / (1, 1, 2, 6)[k] for k in range(4)]),
+    ):
+        assert found == pytest.approx(wanted, abs=1e-8)
+    expected = cubic(u + ahead)
     assert np.polynomial.Polynomial(profile.cubic(s))(ahead) == pytest.approx(expected, abs=1e-8)
     assert profile.cubics([s]).tolist() == [list(profile.cubic(s))]
+
+
+@given(
+    st.lists(st.tuples(*[st.integers(-8, 8).map(lambda n: n / 4)] * 4), min_size=1, max_size=3),
+    st.floats(-6, 0),
+    st.floats(0, 6),
+)
+def test_what_lies_farthest_outside_a_range_is_found(
+    rows: list[tuple[float, float, float, float]], low: float, high: float
+) -> None:
+    """Between the stations and at both ends of each cubic; behind the last station it is its height there."""
+    profile = CubicProfile(tuple(2.0 * n for n in range(len(rows))), tuple(rows))
+    u = np.linspace(0.0, 2.0, 1001)
+    z = np.array([*(np.polynomial.Polynomial(row)(u) for row in rows[:-1]), np.full(len(u), rows[-1][0])])
+    s = u + 2.0 * np.arange(len(rows))[:, None]
+    s[-1] = s[-1, 0]
+    most = np.maximum(low - z, z - high).max()
+    assert profile.extremes() == (pytest.approx(z.min(), abs=1e-4), pytest.approx(z.max(), abs=1e-4))
+    found = profile.beyond(low, high)
+    assert (found is None) == (most <= 1e-6)
+    if found is not None:
+        assert max(low - found[1], found[1] - high) == pytest.approx(most, abs=1e-4)
+        assert (np.abs(s - found[0]) + np.abs(z - found[1])).min() < 0.01
 
 
 @pytest.mark.parametrize(
