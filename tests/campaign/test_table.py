@@ -30,7 +30,7 @@ def slowly(record: Record) -> str:
     return text.getvalue()
 
 
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(st.data())
 def test_the_table_is_that_of_a_slow_writer(data: st.DataObject) -> None:
     asked = data.draw(st.lists(proposals(), min_size=1, max_size=5))
@@ -72,7 +72,9 @@ def test_numbers_are_handed_on_as_they_are_in_the_store(tmp_path: Path) -> None:
 def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
     """Failing cells are those of failures alone; the least margin is that of drives that kept their lane."""
     places = [("FAIL", 0.01, -0.02), ("FAIL", 0.011, -0.5), ("FAIL", 0.05, -0.03), ("PASS", 0.03, 0.4)]
-    places += [("PASS", 0.06, 0.2), ("INVALID", 0.02, None)]
+    places += [("PASS", 0.06, 0.2), ("INVALID", 0.02, None), ("ERROR", 0.02, None), ("VALID", 0.02, None)]
+    places += [("PASS", 0.03, 0.3), ("INVALID", 0.02, None)]
+    outside = [1.0, 0.96, 0.97, 0.0, 0.7, None, None, None, 0.3, None]
     made = [Proposal(a_design(number), number, "draft") for number in range(len(places))]
     done = [
         Result(
@@ -83,7 +85,9 @@ def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
             "",
             one.design,
             margin=margin,
-            side="left" if outcome == "FAIL" else None,
+            max_oob=outside[number - 1],
+            beyond=None if outside[number - 1] is None else 2 * outside[number - 1],
+            side=(None, "left", "left", "right")[number % 4] if outcome == "FAIL" else None,
             features={"MAX_CURV": curvature, "STD_SA": 3.0},
         )
         for number, (one, (outcome, curvature, margin)) in enumerate(zip(made, places, strict=True), 1)
@@ -94,14 +98,32 @@ def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
         store.keep([("c01", FinishedTest(result)) for result in done], None, [], {})
         write_tables(store, tmp_path)
     (row,) = csv.DictReader((tmp_path / "cells.csv").open())
-    assert (row["failing_cells"], row["least_margin_m"], row["failed_left"]) == ("2", "0.2", "3")
-    assert (row["tests"], row["valid"], row["passed"], row["failed"], row["invalid"]) == (
-        "6",
-        "5",
-        "2",
-        "3",
-        "1",
-    )
+    request = plan(99).cells(BRIEFS)[0].request
+    assert row == {
+        "cell": "c01",
+        "description": request.words,
+        "designer": request.setup.designer,
+        "driver": request.setup.driver,
+        "simulator": request.setup.simulator,
+        "generator": "search",
+        "goal": "",
+        "seed": str(request.seed),
+        "tests": "10",
+        "valid": "7",
+        "passed": "3",
+        "failed": "3",
+        "invalid": "2",
+        "in_error": "1",
+        "not_driven": "1",
+        "failed_left": "2",
+        "failing_cells": "2",
+        "least_margin_m": "0.2",
+        "passed_partly_outside": "1",
+        "passed_mostly_outside": "1",
+        "passed_max_oob": "0.7",
+        "passed_beyond_m": "1.4",
+        "friction": "1.0",
+    }
 
 
 def test_rows_stand_in_the_order_of_cells_and_tests(tmp_path: Path) -> None:
