@@ -53,6 +53,22 @@ def test_a_road_has_the_features_that_it_was_drawn_with() -> None:
     assert set(found) <= set(BOUNDS)
 
 
+def test_sides_and_turns_are_counted_in_driving_order() -> None:
+    brief = read("turn x3", reader="plan")
+    bends = [bend(60, 30), bend(45, 50), bend(-90, 40)]
+    road = road_of(straight(40), bends[0], straight(30), bends[1], straight(30), bends[2], straight(20, -6))
+    found = behaviour_of(road, brief)
+    assert (found["TURNS"], found["LEFT"]) == (3, pytest.approx(2 / 3))
+    assert [found[f"DEGREES_{n}"] for n in (1, 2, 3)] == pytest.approx([60, 45, 90], abs=0.5)
+    assert [found[f"RADIUS_{n}"] for n in (1, 2, 3)] == pytest.approx([30, 50, 40], rel=0.03)
+    assert found["GRADE"] == pytest.approx(6, abs=0.1)
+    assert found["CLIMB"] == pytest.approx(float(road.at(road.length)[2] - road.at(0.0)[2]), abs=0.01)
+    assert found["CLIMB"] < -0.5
+    assert set(behaviour_of(road, None)) == set(found) - {
+        f"{w}_{n}" for w in ("DEGREES", "RADIUS") for n in (1, 2, 3)
+    }
+
+
 @given(st.floats(0, 6.28), st.integers(1, 72))
 def test_directions_are_counted_all_round(start: float, tens: int) -> None:
     """Turning on by so many times 5 degrees passes that many times two half directions."""

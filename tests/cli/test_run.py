@@ -4,6 +4,7 @@ import csv
 import json
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -58,9 +59,23 @@ def test_the_campaign_folder_has_what_the_competition_has() -> None:
         assert row["length_m"] > 20
     with Path("here", "generation_stats.csv").open() as file:
         (stats,) = csv.DictReader(file)
-    assert stats["test_generated"] == "2"
-    for name in ("oob_stats.csv", "experiment_description.csv"):
-        assert Path("here", name).stat().st_size > 0
+    outcomes = Counter(row["test_outcome"] for row in rows)
+    counted = {"passed": "PASS", "failed": "FAIL", "in_error": "ERROR"}
+    assert {name: int(stats[f"test_{name}"]) for name in counted} == {
+        name: outcomes[outcome] for name, outcome in counted.items()
+    }
+    assert (stats["test_generated"], stats["test_valid"], stats["test_invalid"]) == ("2", "2", "0")
+    drives = [json.loads(Path(row["file"]).read_text())["execution_data"] for row in rows]
+    simulated = sum(records[-1][0] for records in drives)
+    assert float(stats["simulated_time_execution"]) == pytest.approx(simulated, abs=0.1)
+    spent = float(stats["real_time_generation"]) + float(stats["real_time_execution"])
+    assert spent == pytest.approx(sum(row["seconds"] for row in rows), abs=0.3)
+    with Path("here", "oob_stats.csv").open() as file:
+        (sides,) = csv.DictReader(file)
+    assert int(sides["total_oob"]) == int(sides["left_oob"]) + int(sides["right_oob"]) == outcomes["FAIL"]
+    with Path("here", "experiment_description.csv").open() as file:
+        (settings,) = csv.DictReader(file)
+    assert (settings["description"], settings["roads"], settings["seed"]) == (WORDS, "2", "7")
 
 
 def test_with_json_the_talk_goes_to_standard_error_and_with_quiet_nowhere() -> None:

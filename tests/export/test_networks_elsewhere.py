@@ -92,6 +92,11 @@ def test_a_map_shows_the_paved_area_with_its_island(tmp_path: Path) -> None:
     assert all(ring[0] == ring[-1] for ring in (outline, *holes))
     area = shapely.Polygon(outline, holes)
     assert area.is_valid
+    paved = shapely.transform(ROUTE.network.paved, lambda at: np.column_stack(degrees(*at.T)))
+    assert shapely.symmetric_difference(area, paved).area < 1e-5 * paved.area
+    line = np.array(features[0]["geometry"]["coordinates"])
+    middle = ROUTE.at(np.linspace(0.0, ROUTE.length, len(line)))
+    assert line == pytest.approx(np.column_stack([*degrees(*middle[:, :2].T), middle[:, 2]]), abs=2e-9)
     assert shapely.LinearRing(outline).is_ccw
     assert not any(shapely.LinearRing(ring).is_ccw for ring in holes)
     x, y = np.array([CENTRE[0], CENTRE[0] + RADIUS + 2.5]), np.array([CENTRE[1], CENTRE[1]])
