@@ -9,10 +9,11 @@ from click.testing import CliRunner, Result
 
 from chat.asker import Turn, on_shelf
 from chat.stub_server import HeardRequest, StubServer, fails, says
+from roadgpt.brief.model import Brief
 from roadgpt.chat import BudgetError, ChatSettings, Message, Meter, Spent, Usage, counting, open_chat
 from roadgpt.chat.prices import PRICES, price_of
 from roadgpt.cli import app
-from roadgpt.run import read_run
+from roadgpt.run import Setup, brief_of, read_run
 
 QUESTION = [Message(role="user", text="How far?")]
 
@@ -144,6 +145,30 @@ def test_two_chats_of_one_campaign_share_its_limit(stub: StubServer) -> None:
             one.ask(QUESTION, Turn)
     assert meter.spent.usage.total == 300
     assert one.spent.calls == two.spent.calls == 1
+
+
+@pytest.mark.parametrize("has_meter", [True, False])
+def test_reading_the_words_counts_and_keeps_to_the_limit(
+    has_meter: bool, stub: StubServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the meter that is given, or else of the limit in the settings, whichever chats the reader opens."""
+    stub.play(says('{"degrees": 5}'))
+
+    def asks_twice(words: str, *given: object) -> Brief:
+        for retries in (0, 1):
+            open_chat(settings(stub, retries=retries)).ask(QUESTION, Turn)
+        return Brief(words=words)
+
+    monkeypatch.setattr("roadgpt.run.read", asks_twice)
+    meter = Meter(max_tokens=10**6) if has_meter else None
+    limit = 10**6 if has_meter else 200
+    setup = Setup(chat=settings(stub, max_tokens=limit))
+    if meter is None:
+        with pytest.raises(BudgetError, match="150 are spent"):
+            brief_of("a left turn", setup=setup)
+    else:
+        assert brief_of("a left turn", setup=setup, meter=meter).words == "a left turn"
+        assert (meter.spent.calls, meter.spent.usage.total) == (2, 300)
 
 
 @pytest.mark.parametrize("price", ["free", "1", "1/2/3", "-1/2", "nan/1", "1/inf"])
