@@ -29,6 +29,51 @@ def test_a_record_has_the_competition_s_17_fields_in_their_order() -> None:
     ) == FIELDS
 
 
+def test_every_field_is_that_of_its_step() -> None:
+    """On columns that all differ; direction and velocity are turned by scipy."""
+    rng = np.random.default_rng(7)
+    given = {name: rng.normal(0.0, 0.4, STEPS) for name in COLUMNS if name not in ("time", "s")}
+    given |= {name: rng.uniform(0, 1, STEPS) for name in ("brake", "throttle", "outside")}
+    given |= {"speed": rng.uniform(0, 30, STEPS), "s": np.linspace(10, 90, STEPS)}
+    driven = replace(drive(**given), car=Box(4.7, 1.86, 0.0, 0.62), ended="timeout")
+    world = WORLD.changed(oob_tolerance=0.6)
+    records = records_of(ROAD, driven, world)
+    assert len(records) > 20
+    worst, count, was_out = 0.0, 0, False
+    for step in range(STEPS):
+        at = {name: float(driven[name][step]) for name in COLUMNS}
+        is_out = at["outside"] > 0.6
+        count += is_out and not was_out
+        worst = at["outside"] if is_out and not was_out else max(worst, at["outside"]) if count else 0.0
+        was_out = is_out
+        found = [record for record in records if record.timer == pytest.approx(at["time"], abs=1e-6)]
+        if not found:
+            continue
+        turned = Rotation.from_euler("ZYX", [at["heading"], -at["pitch"], at["roll"]])
+        wanted = {
+            "timer": at["time"],
+            "pos": [at["x"], at["y"], at["z"]],
+            "dir": turned.apply([1, 0, 0]),
+            "vel": turned.apply([at["vx"], at["vy"], at["vz"]]),
+            "steering": 15 * np.degrees(at["steer"]),
+            "steering_input": min(max(at["steer"] / 0.62, -1), 1),
+            "brake": at["brake"],
+            "brake_input": at["brake"],
+            "throttle": at["throttle"],
+            "throttle_input": at["throttle"],
+            "wheelspeed": abs(at["vx"]),
+            "vel_kmh": round(at["speed"] * 3.6),
+            "is_oob": is_out,
+            "oob_counter": count,
+            "max_oob_percentage": worst,
+            "oob_distance": 2.0 - abs(at["t"] + 2.0),
+            "oob_percentage": at["outside"],
+        }
+        assert tuple(wanted) == FIELDS
+        for name, value in wanted.items():
+            assert getattr(found[0], name) == pytest.approx(value, abs=1e-4), name
+
+
 def test_ten_records_a_second_and_the_last_step() -> None:
     timers = [record.timer for record in records_of(ROAD, drive(), WORLD)]
     assert timers == pytest.approx([0.1 * i for i in range(21)])
