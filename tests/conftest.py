@@ -6,6 +6,8 @@ To hunt for new ones: HYPOTHESIS_PROFILE=hunt python -m pytest
 import os
 import signal
 import sys
+import threading
+import time
 from collections.abc import Iterator
 
 import pytest
@@ -40,6 +42,7 @@ def no_workers(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 OF_LIBRARIES = ("PYTHONBREAKPOINT", "PYGAME_HIDE_SUPPORT_PROMPT")  # set by Ray and by Gymnasium
+WATCHES = ("roadgpt-guard", "roadgpt-beamng", "roadgpt-watch")
 FOR_GOOD = ("PYTEST_", "ORT_DISABLE_TELEMETRY", "RAY_USAGE_STATS_ENABLED", *OF_LIBRARIES)
 
 
@@ -62,3 +65,14 @@ def nothing_was_named() -> Iterator[None]:
     yield
     for names in (provenance.CODE, provenance.SERVERS):
         names.forget()
+
+
+@pytest.fixture(autouse=True)
+def no_watch_is_left() -> Iterator[None]:
+    """Threads that watch a driver, a simulator or workers end with what they watch."""
+    before = {*threading.enumerate()}
+    yield
+    due = time.monotonic() + 5.0
+    while left := [each.name for each in {*threading.enumerate()} - before if each.name in WATCHES]:
+        assert time.monotonic() < due, f"this test leaves {', '.join(left)}"
+        time.sleep(0.02)
