@@ -6,7 +6,7 @@ from roadgpt.brief.outline import Feature, Outline, outline
 from roadgpt.brief.words import FEATURE, ROAD
 from roadgpt.check.measures import MeasuredFeature, Measures, measure
 from roadgpt.check.rules.promises import complaints, inspect
-from roadgpt.road import World
+from roadgpt.road import Road, Segment, World
 
 SEGMENTS = (straight(30, 5), turn(60, incline=5), straight(40, 5), turn(-50, incline=5), straight(30, 5))
 LEFT_RIGHT = road_of(*SEGMENTS)
@@ -142,6 +142,17 @@ def test_several_straights_between_two_turns_are_found_in_their_order() -> None:
     up, down = clause("straight", slope="up"), clause("straight", slope="down")
     assert said(Brief(clauses=(clause(), up, down, clause())), road) == []
     assert "after turn 1" in said(Brief(clauses=(clause(), down, up, clause())), road)[0]
+
+
+def test_one_straight_is_not_two_that_were_asked_for() -> None:
+    def between_turns(*parts: Segment) -> Road:
+        return road_of(straight(30), turn(60), *parts, turn(60), straight(30))
+
+    level, gentle = clause("straight", slope="flat"), clause("straight", slope="nearly_flat")
+    asked = Brief(clauses=(clause(), level, gentle, clause()))
+    assert said(asked, between_turns(straight(50), straight(60, 8), straight(70))) == []
+    (missed,) = said(asked, between_turns(straight(50), straight(60, 8)))
+    assert "asked for a straight after turn 1" in missed
 
 
 def test_a_finding_tells_the_place() -> None:
