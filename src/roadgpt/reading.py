@@ -12,6 +12,7 @@ import zipfile
 from collections.abc import Hashable, Iterable
 from errno import EISDIR
 from functools import cache
+from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar, cast
 
@@ -26,6 +27,7 @@ M = TypeVar("M", bound="BaseModel")
 LARGEST = 50_000_000  # bytes, where a caller gives no other limit
 MOST_OPENED, MOST_COMMAS = 2_000_000, 6_000_000  # brackets and commas of a JSON text, which cost memory
 DIGITS = 300  # of a whole number; a floating-point number has at most 308
+ABSENT = "absent"
 ANY = "a file of this kind"
 HOW = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 
@@ -59,6 +61,28 @@ def opened(path: Path, most: int = LARGEST, what: str = ANY, called: str = "") -
     except BaseException:
         os.close(number)
         raise
+
+
+def digest(path: Path, pattern: str = "*") -> str:
+    """Returns the first 16 digits of the SHA-256 of a file, or of the names and contents of the files in a
+    folder that match a pattern, without bytecode; ``ABSENT`` if it is not there, or cannot be read."""
+    if path.is_dir():
+        files = sorted(
+            file for file in path.rglob(pattern) if file.is_file() and "__pycache__" not in file.parts
+        )
+        names = [(file.relative_to(path).as_posix(), digest(file)) for file in files]
+        return sha256(repr(names).encode()).hexdigest()[:16]
+    try:
+        its = path.stat()
+        return _digest(path, its.st_size, its.st_mtime_ns, its.st_ctime_ns) if path.is_file() else ABSENT
+    except OSError:
+        return ABSENT
+
+
+@cache
+def _digest(path: Path, *_state: int) -> str:
+    with path.open("rb") as file:
+        return file_digest(file, "sha256").hexdigest()[:16]
 
 
 def read_bytes(path: Path, most: int = LARGEST, what: str = ANY) -> bytes:

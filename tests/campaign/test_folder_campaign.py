@@ -132,7 +132,7 @@ def test_a_finished_campaign_is_not_made_again_but_can_grow(designer: FreshDesig
     [
         ({"seed": 8}, "different seed"),
         ({"words": Brief(words="another road")}, "different words"),
-        ({"setup": Setup(designer="double", drives=False, geometry="spline")}, "different setup"),
+        ({"setup": Setup(designer="double", drives=False, geometry="spline")}, "different geometry"),
     ],
 )
 def test_another_campaign_is_left_alone(

@@ -67,7 +67,7 @@ def results(draw: st.DrawFn, number: int, proposal: Proposal) -> Result:
 
 def a_store(folder: Path) -> Store:
     made = plan(99)
-    return Store.new(folder, made.model_dump_json(), made.cells(BRIEFS), {"python": "3"})
+    return Store.new(folder, made.model_dump_json(), made.cells(BRIEFS), {"any": {"python": "3"}})
 
 
 @settings(max_examples=25)

@@ -130,7 +130,7 @@ def test_rows_stand_in_the_order_of_cells_and_tests(tmp_path: Path) -> None:
     """Whichever ended first."""
     wanted = plan(12, cells=2)
     made = [Proposal(a_design(number), number, "draft") for number in range(1, 13)]
-    with Store.new(tmp_path, wanted.model_dump_json(), wanted.cells(BRIEFS), {}) as store:
+    with Store.new(tmp_path, wanted.model_dump_json(), wanted.cells(BRIEFS), {"any": {}}) as store:
         store.begin_session(1)
         for cell in ("c02", "c01"):
             store.add_batch(cell, 0, 1, made)

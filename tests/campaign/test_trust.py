@@ -20,6 +20,7 @@ from roadgpt.campaign.rerun import run_again
 from roadgpt.campaign.workers.in_process import InProcess
 from roadgpt.cli import app
 from roadgpt.errors import UsageError
+from roadgpt.reading import digest
 from roadgpt.road import Limits, Site, World
 from roadgpt.run import Setup, perform, prove, read_run, write_run
 
@@ -66,11 +67,13 @@ def shared(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     Path("mine.py").write_text(DRIVER.format(str(tmp_path / "ran")))
     Path("other.py").write_text(DRIVER.format(str(tmp_path / "other ran")))
     driver = f"{here / 'mine.py'}:Mine"
+    known = '"roadgpt source":', f'"driver:mine.py": "{digest(Path("mine.py"))}", "roadgpt source":'
     card = Path("run/runs/0001/run.json")
-    card.write_text(card.read_text().replace('"lane_centring"', json.dumps(driver)))
+    card.write_text(card.read_text().replace('"lane_centring"', json.dumps(driver)).replace(*known))
     for folder in ("done", "begun"):
         with sqlite3.connect(f"{folder}/campaign.sqlite") as db:
             db.execute("UPDATE meta SET value = replace(value, 'lane_centring', ?)", (driver,))
+            db.execute("UPDATE meta SET value = replace(value, ?, ?)", known)
             db.execute("UPDATE cells SET cell = replace(cell, 'lane_centring', ?)", (driver,))
             db.execute("UPDATE tests SET outcome = 'FAIL' WHERE outcome = 'PASS'")
         db.close()

@@ -159,11 +159,11 @@ COUNT = Path(__file__).with_name("count")
 class Moody:
     def __init__(self):
         COUNT.write_text(COUNT.read_text() + "x" if COUNT.exists() else "x")
-        if len(COUNT.read_text()) == 3:
+        if len(COUNT.read_text()) == 4:
             json.loads("{")
 
     def start(self, road, world, seed):
-        if len(COUNT.read_text()) == 4:
+        if len(COUNT.read_text()) == 5:
             json.loads("[")
 
     def steer(self, view):
@@ -178,7 +178,7 @@ def test_a_driver_that_cannot_be_made_for_the_second_road_costs_that_road_only(
     file.write_text(MOODY)
     put_on_shelf(monkeypatch, double=FreshDesigner())
     setup = Setup(designer="double", driver=f"{file}:Moody", keep_driving=True)
-    # the first one is made for the roll call
+    # two are made before the first road: for the roll call, and for the record of what decides results
     runs = list(campaign(BRIEF, 4, 7, setup=setup, out=tmp_path / "c"))
     assert [run.outcome == "ERROR" for run in runs] == [False, True, True, False]
     assert "cannot be made" in runs[1].description

@@ -103,7 +103,7 @@ def test_run_says_it_writes_it_and_repeats_it(tmp_path: Path) -> None:
     assert "all 2 roads are there" in roadgpt("run", "--plan", WET, "-n", 2, "--out", "a").stdout
     other = CliRunner().invoke(app, ["run", "--plan", WET, "-n", "2", "--out", "a", "--friction", "1"])
     assert other.exit_code == 2
-    assert "holds other roads (different world)" in other.output
+    assert "holds other roads (different friction)" in other.output
     # resumed, it keeps the friction
     for path in (Path("a/test.0002.json"), Path("a/campaign.json")):
         path.write_text(path.read_text().replace('"is_finished": true', '"is_finished": false'))

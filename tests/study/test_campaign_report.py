@@ -64,7 +64,7 @@ def written(folder: Path, goes_on: bool = False) -> Path:
         setup = request.setup.model_copy(update={"driver": driver, "keep_driving": goes_on})
         request = request.model_copy(update={"setup": setup})
         cells.append(Cell(name, request, None, "words", None, budget=CellBudget(tests=TESTS)))
-    store = Store.new(folder, plan.model_dump_json(), cells, {"roadgpt": "1"})
+    store = Store.new(folder, plan.model_dump_json(), cells, dict.fromkeys(DRIVERS, {"roadgpt": "1"}))
     with store:
         store.begin_session(1)
         results = list(drawn(goes_on))
@@ -197,7 +197,7 @@ def test_the_nearest_pairs_of_a_search_for_the_boundary_are_listed(tmp_path: Pat
     plan = Plan(prompts=("a road with a turn",), goal="boundary", budget=CellBudget(tests=5))
     request = Request(words="a road with a turn")
     cell = Cell("c01", request, None, "quality_diversity", "boundary", budget=CellBudget(tests=5))
-    with Store.new(tmp_path, plan.model_dump_json(), [cell], {"roadgpt": "1"}) as store:
+    with Store.new(tmp_path, plan.model_dump_json(), [cell], {"any": {"roadgpt": "1"}}) as store:
         store.begin_session(1)
         proposals = {number: Proposal(design, number, "draft") for number, (_, design) in roads.items()}
         store.add_batch("c01", 0, 1, [*proposals.values()])

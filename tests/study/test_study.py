@@ -86,7 +86,7 @@ def test_the_page_tells_what_the_tables_tell(study: Path) -> None:
         "roadgpt study thesis --roads 2 --seed 1 --driver beamng_like --oracle thesis --no-drive --out study"
         in page
     )
-    assert re.search(r"encoder.onnx sha256 [0-9a-f]{16}", page)
+    assert re.search(r"weights [0-9a-f]{16}", page)
     for target in re.findall(r'<a href="([^"#]+)"', page):
         assert (study / target).is_file(), target
 

@@ -162,6 +162,7 @@ def campaign(
     out: Path | str | None = None,
     draw: Draw | None = None,
     meter: Meter | None = None,
+    again: bool = False,
 ) -> Campaign:
     """Makes many Runs of one description in one folder; each Run is written as soon as it is finished.
 
@@ -179,17 +180,19 @@ def campaign(
             a finished campaign is left unchanged. None makes a new folder under ``roadgpt-runs``.
         draw: writes pictures into the folders, as ``report.drawing()`` does; None: no pictures.
         meter: as for ``perform``; the cost of earlier roads in the folder is added to it.
+        again: whether all roads are made anew; earlier results move into the subfolder ``before-1``.
 
     Raises:
         BriefError: the words cannot be read.
-        UsageError: the folder contains something other than this campaign, or a plug-in is not installed.
+        UsageError: the folder contains something other than this campaign, something that decides results has
+            changed since its first road was made, or a plug-in is not installed.
     """
     meter = meter or Meter.of(setup.chat)
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
     request = Request(words=brief.words, seed=seed, world=world_for(brief, world), setup=setup)
     designer_of(setup.designer, setup.chat)
     check_parts(setup, request.world)
-    made = Campaign.opened(request, brief, n, out)
+    made = Campaign.opened(request, brief, n, out, again)
     made.draw, made.meter = draw, meter
     meter.add(made.spent)
     return made

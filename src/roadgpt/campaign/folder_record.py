@@ -1,5 +1,6 @@
 """Opens tests for reading: those of a campaign, of a folder of runs, or of a single run."""
 
+import json
 import sqlite3
 import time
 from collections.abc import Sequence
@@ -63,17 +64,18 @@ class FolderRecord(FolderStore, Record):
             self._places = {number: run_folder(folder, number) for number in finished(folder)}
         card = read_card(folder) if (folder / CARD).is_file() else None
         first = next(iter(self._places.values()), None)
-        brief, request = None, card and card.request
+        brief, request, versions = None, card and card.request, card and card.versions
         if first is not None:
             try:
                 run = read_run(first)
-                brief, request = run.brief, request or run.request
+                brief, request, versions = run.brief, request or run.request, versions or run.versions
             except UsageError:
                 if request is None:
                     raise
         roads = card.roads if card else max(len(self._places), 1)
         runs = RunFolder(folder, request or Request(), brief, roads)
         super().__init__(folder, {}, [runs.cell("")])
+        self._db.execute("INSERT INTO meta VALUES ('versions', ?)", (json.dumps({**(versions or {})}),))
         if card is None or card.is_finished:
             self.finish()
 

@@ -14,10 +14,10 @@ from roadgpt.brief.model import Brief
 from roadgpt.campaign.csv_tables import CELLS, RESULTS, write_tables
 from roadgpt.campaign.executors import Executor
 from roadgpt.campaign.folder_campaign import campaign
-from roadgpt.campaign.folder_record import has_tests, is_store
+from roadgpt.campaign.folder_record import has_tests, is_store, open_record
 from roadgpt.campaign.jobs import WorkerConfig
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.record import STORE, Store, no_tests
+from roadgpt.campaign.record import STORE, Record, Store, no_tests
 from roadgpt.campaign.scheduler import Progress, Scheduler
 from roadgpt.campaign.single_test import WorkerSetup
 from roadgpt.campaign.store_tables import refusals
@@ -27,14 +27,13 @@ from roadgpt.chat import ChatSettings, Meter, Spent
 from roadgpt.chat.config import key_for
 from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored
-from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.permission import require_permission
 from roadgpt.errors import UsageError
 from roadgpt.road import World
 from roadgpt.run import Draw, brief_of
-from roadgpt.run.atomic import LOCK, alone_in, refuse_links, sweep
+from roadgpt.run.atomic import LOCK, alone_in, is_new, refuse_links, set_aside, sweep
 from roadgpt.run.card import read_card
-from roadgpt.run.model import versions_of
+from roadgpt.run.versions import Versions, versions_now
 
 USER_NAMES = {
     "prompts": "descriptions",
@@ -44,32 +43,34 @@ USER_NAMES = {
 """The names under which users know fields of a Plan."""
 
 
-def begin(plan: Plan, folder: Path) -> bool:
+def begin(plan: Plan, folder: Path, again: bool = False) -> bool:
     """Makes a campaign's folder, and reads its descriptions into Briefs; returns True if the folder already
-    held the same campaign.
+    held the same campaign. With ``again``, the results in the folder are set aside first.
 
     Raises:
-        UsageError: the plan cannot be carried out, or the folder holds something other than this campaign.
+        UsageError: the plan cannot be carried out, the folder holds something other than this campaign, or
+            what decides the results of its tests has changed.
         DriverError: a driver did not finish its constructor in time.
         BriefError: a description cannot be read.
         ChatError: the language model that reads the descriptions did not answer.
     """
     plan.check()
     _admit(plan)
-    there = folder.iterdir() if folder.is_dir() and not (folder / STORE).is_file() else ()
-    if any(path.name != LOCK and not path.name.startswith(STORE) for path in there):
+    _refuse_ignored(plan, plan.world)
+    versions = versions_now(plan.requests())
+    if again:
+        set_aside(folder, STORE)
+    if folder.is_dir() and not (folder / STORE).is_file() and not is_new(folder, STORE):
         raise UsageError(f"{folder} is not empty and holds no campaign; name another folder")
     with alone_in(folder), _without_trace(folder):
         if (folder / STORE).is_file():
-            _same(plan, folder)
+            _same(plan, folder, versions)
             return True
-        _drivers_come(plan)
         briefs, spent = _briefs(plan)
         cells = plan.cells(briefs)
         _refuse_ignored(plan, *(world_for(brief, plan.world) for brief in briefs.values()))
         for name in plan.generators:  # a wrong setting raises an error now
             plugins.find("generators", name)(next(cell for cell in cells if cell.generator == name))
-        versions = versions_of(cells[0].request.setup)
         Store.new(folder, plan.model_dump_json(), cells, versions, spent).close()
         return False
 
@@ -97,14 +98,6 @@ def _admit(plan: Plan) -> None:
         key_for(plan.chat.base_url)
 
 
-def _drivers_come(plan: Plan) -> None:
-    """Loads the drivers and checks the settings of the World before anything is paid for."""
-    _refuse_ignored(plan, plan.world)
-    if plan.drives:
-        for driver in dict.fromkeys(plan.drivers):
-            driver_of(driver)
-
-
 def _refuse_ignored(plan: Plan, *worlds: World) -> None:
     """Raises UsageError if a simulator of the plan cannot apply a setting of one of the Worlds."""
     for simulator in plan.simulators if plan.drives else ():
@@ -120,7 +113,7 @@ def _briefs(plan: Plan) -> tuple[dict[str, Brief], Spent]:
     return {text: brief_of(text, plan.world, request.setup, meter) for text in words}, meter.spent
 
 
-def _same(plan: Plan, folder: Path) -> None:
+def _same(plan: Plan, folder: Path, versions: dict[str, Versions]) -> None:
     with Store.opened(folder) as store:
         there = store.plan()
         kept = there.essence()
@@ -133,9 +126,10 @@ def _same(plan: Plan, folder: Path) -> None:
         if other:
             raise UsageError(
                 f"{folder} holds another campaign (different {', '.join(other)}); "
-                "name another folder, "
+                "name another folder, add --again to make all its tests anew, "
                 f"or resume it as it is: roadgpt resume {folder}"
             )
+        store.refuse_changed(versions)
         store.set_plan(plan.model_dump_json())
 
 
@@ -146,6 +140,7 @@ def work(
     address: str = "",
     chat: ChatSettings | None = None,
     draw: Draw | None = None,
+    again: bool = False,
 ) -> Iterator[Progress]:
     """Runs the remaining tests of a campaign, or of a folder that ``roadgpt run`` made, lazily: they run
     while the caller iterates.
@@ -157,13 +152,14 @@ def work(
         address: address of the workers, for executors that connect to other machines.
         chat: the settings of the language model with changed limits; None: the stored settings.
         draw: draws pictures and saves them in a folder of runs; None: no pictures.
+        again: whether the results in the folder are set aside first, and all its tests are made anew.
 
     Yields:
         The progress of the campaign, after every group of results.
 
     Raises:
         UsageError: there are no tests to run, or another process is working on them, or a plug-in is not
-            installed.
+            installed, or what decides their results has changed.
         ChatError: a language model could not be reached, or a token or cost limit is reached; finished
             tests are stored.
         GivenUpError: the simulator failed three times in a row; these three tests have to be run again.
@@ -171,32 +167,40 @@ def work(
     """
     kind: type[Executor] = plugins.find("executors", executor)
     if not is_store(folder):
-        yield from _make_runs(folder, chat, draw)
+        yield from _make_runs(folder, chat, draw, again)
         return
+    if again:
+        with Record.opened(folder) as record:
+            plan = record.plan()
+        begin(plan, folder, again)
     with alone_in(folder), Store.opened(folder) as store:
         plan = store.plan()
         if chat is not None:
             plan = plan.model_copy(update={"chat": chat})
             store.set_plan(plan.model_dump_json())
-        if not store.meta("finished"):
+        if not (is_finished := bool(store.meta("finished"))):
             _admit(plan)
+        store.refuse_changed(versions_now(plan.requests(), loads=not is_finished))
+        if not is_finished:
             with refusals(folder):
                 _sweep(folder, store)
                 setups = tuple(dict.fromkeys(request.setup for request, _ in plan.requests()))
                 staff = WorkerConfig(workers, WorkerSetup(setups), plan.patience, folder / LOG, address)
                 yield from Scheduler(store, staff, kind, plan.budget.tests, plan.chat).run()
-        if not store.meta("finished") or not all((folder / name).is_file() for name in (RESULTS, CELLS)):
+        if not is_finished or not all((folder / name).is_file() for name in (RESULTS, CELLS)):
             with refusals(folder):
                 write_tables(store, folder)
                 store.finish()
 
 
-def _make_runs(folder: Path, chat: ChatSettings | None, draw: Draw | None) -> Iterator[Progress]:
-    """Makes the missing roads of a folder that ``roadgpt run`` made."""
+def _make_runs(folder: Path, chat: ChatSettings | None, draw: Draw | None, again: bool) -> Iterator[Progress]:
+    """Makes the missing roads of a folder that ``roadgpt run`` made, from the Brief of the others."""
     if not has_tests(folder):
         raise no_tests(folder)
     card = read_card(folder)
     request = card.request
+    with open_record(folder) as record:
+        words = record.cell("").brief or request.words
     if not request.words:
         raise UsageError(
             f"the roads in {folder} were not made from a description, so nothing can be resumed; "
@@ -204,7 +208,7 @@ def _make_runs(folder: Path, chat: ChatSettings | None, draw: Draw | None) -> It
         )
     setup = request.setup if chat is None else request.setup.model_copy(update={"chat": chat})
     require_permission(setup.driver)
-    made = campaign(request.words, card.roads, request.seed, request.world, setup, folder, draw)
+    made = campaign(words, card.roads, request.seed, request.world, setup, folder, draw, again=again)
     progress = Progress(card.roads, Counter(one.result.outcome for one in made.tests.values()))
     for run in made:
         progress.outcomes[run.outcome] += 1

@@ -5,12 +5,13 @@ import sqlite3
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from roadgpt.campaign.model import Cell, NumberedTest, Result
 from roadgpt.campaign.rows import cell_text
-from roadgpt.campaign.single_test import seed_of_driver
+from roadgpt.campaign.single_test import FinishedTest, seed_of_driver
 from roadgpt.campaign.store_check import LATER, check_store, reading_store
 from roadgpt.campaign.store_tables import SCHEMA, Tables, refusals
 from roadgpt.chat import Spent
@@ -21,6 +22,7 @@ from roadgpt.reading import json_of
 from roadgpt.road import Road
 from roadgpt.run import Run
 from roadgpt.run.atomic import refuse_links
+from roadgpt.run.versions import Versions, joined, still
 
 if TYPE_CHECKING:
     from roadgpt.campaign.plan import Plan
@@ -139,9 +141,23 @@ class Record(Tables):
         if road is None:
             raise no_road(self.folder, cell, result)
         drive = self.drive(cell, number) if has_drive else None
+        return stored_run(own, result, road, drive, self.versions(own.request.setup.driver))
+
+    def versions(self, driver: str) -> Versions:
+        """Returns what decided the results of a driver's tests besides the plan, see ``run.versions``."""
         with reading_store(self.path):
-            versions = {str(name): str(value) for name, value in json_of(self.meta("versions")).items()}
-        return stored_run(own, result, road, drive, versions)
+            found = json_of(self.meta("versions"))  # earlier versions stored one record, for all drivers
+            its = found if isinstance(found, dict) else found[self._drivers.index(driver)]
+            return {str(name): str(value) for name, value in its.items()}
+
+    @cached_property
+    def _drivers(self) -> tuple[str, ...]:
+        return self.plan().drivers
+
+    def refuse_changed(self, now: Mapping[str, Versions]) -> None:
+        """Raises UsageError if what decides the results of a driver's tests is not what it was."""
+        for driver, versions in now.items():
+            still(self.versions(driver), versions, driver, self.folder)
 
     def drive(self, cell: str, number: int) -> Drive | None:
         """Returns the stored drive of a test; None if the test was not driven."""
@@ -211,7 +227,7 @@ class Store(Record):
         folder: Path,
         plan: str,
         cells: Sequence[Cell],
-        versions: Mapping[str, str],
+        versions: Mapping[str, Versions],
         spent: Spent | None = None,
     ) -> Self:
         """Makes a store without tests.
@@ -220,7 +236,7 @@ class Store(Record):
             folder: the campaign's folder.
             plan: the campaign's plan as JSON.
             cells: the cells of the plan.
-            versions: versions of RoadGPT and of the libraries that it uses.
+            versions: what decides the results of each driver's tests besides the plan.
             spent: what a language model used to read the descriptions.
 
         Raises:
@@ -231,7 +247,7 @@ class Store(Record):
         with refusals(folder):
             draft.unlink(missing_ok=True)
             db = sqlite3.connect(draft, isolation_level=None)
-            meta = {"plan": plan, "versions": json.dumps(dict(versions)), "finished": ""}
+            meta = {"plan": plan, "versions": json.dumps([*versions.values()]), "finished": ""}
             db.executescript(SCHEMA)
             db.execute("BEGIN")
             db.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
@@ -271,6 +287,17 @@ class Store(Record):
             if self.meta("finished"):
                 self._db.execute("PRAGMA journal_mode = DELETE")
         super().close()
+
+    def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
+        """Stores results; raises UsageError if a file of a driver has changed since an earlier test."""
+        for name, one in ended:
+            driver = self.cell(name).request.setup.driver
+            before = self.versions(driver)
+            if before != (now := joined(before, one.driver_files, self.folder)):
+                every = [now if each == driver else self.versions(each) for each in self._drivers]
+                with self._whole() as db:
+                    db.execute("UPDATE meta SET value = ? WHERE name = 'versions'", (json.dumps(every),))
+        super().keep(ended, *rest)
 
     def set_plan(self, plan: str) -> None:
         """Replaces the stored plan, as JSON, by one that differs only in limits and the like."""

@@ -8,6 +8,7 @@ lock.
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
+from hashlib import sha256
 from pathlib import Path
 from typing import Self
 
@@ -17,13 +18,14 @@ from roadgpt.campaign.single_test import FinishedTest, Task, result_of, run_test
 from roadgpt.chat import Meter, Spent
 from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.road import Design
-from roadgpt.run import Request, Run, read_run
-from roadgpt.run.atomic import LOCK, PART, json_text, missing, refuse_links, sweep, take_away, write_whole
+from roadgpt.run import Request, Run, atomic, read_run
+from roadgpt.run.atomic import LOCK, json_text, missing, refuse_links, sweep, take_away, write_whole
 from roadgpt.run.card import CARD, Card, read_card
 from roadgpt.run.folder import RUNS, Draw, finished, remove_run, run_folder, write_run_folder
 from roadgpt.run.folder_names import HOME, new_folder
 from roadgpt.run.sbft_json import test_name, test_text
 from roadgpt.run.tables import DESCRIPTION, TABLES, Tally, TallyEntry, write_description
+from roadgpt.run.versions import Versions, joined, still, versions_now
 
 GIVEN = "given"  # origin of roads that were not made from a description
 
@@ -62,9 +64,9 @@ class RunWriter:
         """Writes the folder of a Run, and returns its test as a FinishedRun."""
         with writing(self.folders[cell]):
             write_run_folder(run, self.folders[cell], self.draw)
-        result, entry = result_of(run, task, {}), TallyEntry.of(run)
+        result, text, entry = result_of(run, task, {}), test_text(run), TallyEntry.of(run)
         made = FinishedRun(
-            result, None, run.seconds, run.spent, run.trace, run.is_lost, test_text(run), entry
+            result, None, run.seconds, run.spent, run.trace, run.is_lost, run.driver_files, text, entry
         )
         return made if self.meter is None else replace(made, run=run)
 
@@ -102,29 +104,39 @@ class RunFolder:
     """Tokens and money that language models used for the tests of earlier sessions."""
     failure: str = ""
     """Why no road could be designed; empty if a road was designed or none has been tried yet."""
+    versions: Versions = field(default_factory=dict)
+    """What decides the results of the tests besides the request."""
     _tally: Tally = field(default_factory=Tally)
     _held_back: list[FinishedRun] = field(default_factory=list)
 
     @classmethod
-    def opened(cls, request: Request, brief: Brief, roads: int, out: Path | str | None) -> Self:
-        """Opens a folder: a new one, or one that holds tests of the same request.
+    def opened(
+        cls, request: Request, brief: Brief, roads: int, out: Path | str | None, again: bool = False
+    ) -> Self:
+        """Opens a folder: a new one, or one that holds tests of the same request, which ``again`` sets aside.
 
         Raises:
-            UsageError: the folder holds something other than tests of this request, or cannot be created.
+            UsageError: the folder holds something other than tests of this request, what decides their
+                results has changed, or the folder cannot be created.
         """
         if roads < 1:
             raise UsageError(f"{roads} roads cannot be made; ask for 1 or more")
+        read = brief.model_dump_json(exclude={"confidence", "other", "unused"}, exclude_defaults=True)
+        now = versions_now([(request, WITHOUT_GOAL)])[request.setup.driver]
+        now["reading"] = sha256(read.encode()).hexdigest()[:16]
         if out is None:
             made = missing(HOME)
             path = new_folder(request.words, request.seed)
-            return cls(path, request, brief, roads, (path, *made))
+            return cls(path, request, brief, roads, (path, *made), versions=now)
         path = Path(out)
         with explained(UsageError, f"cannot use {path}", "name another folder"):
             made = missing(path)
             path.mkdir(parents=True, exist_ok=True)
-            is_new = all(_may_lie_in_a_new_folder(each) for each in path.iterdir())
-        folder = cls(path, request, brief, roads, made)
-        if not is_new:
+            if again:
+                atomic.set_aside(path, CARD)
+            holds_tests = not atomic.is_new(path, CARD)
+        folder = cls(path, request, brief, roads, made, versions=now)
+        if holds_tests:
             folder.take_up()
         return folder
 
@@ -135,13 +147,15 @@ class RunFolder:
 
     def take_up(self) -> Card:
         """Reads the folder's finished tests that are not in ``tests`` yet; ignores Runs that cannot be read.
-        Raises UsageError if the folder holds Runs of another request, or more than were requested."""
+        Raises UsageError if the folder holds Runs of another request, or more than were requested, or if
+        what decides their results has changed."""
         card = read_card(self.folder)
-        there_was = card.request.essence()
-        other = [name for name, value in self.request.essence() if getattr(there_was, name) != value]
+        there_was = card.request.settings()
+        other = [name for name, value in self.request.settings().items() if there_was[name] != value]
         if other:
             raise UsageError(
-                f"{self.folder} holds other roads (different {' and '.join(other)}); name another folder"
+                f"{self.folder} holds other roads (different {' and '.join(other)}); name another folder, or "
+                "add --again to make all its tests anew"
             )
         there = finished(self.folder)
         if there and there[-1] > self.roads:
@@ -149,6 +163,8 @@ class RunFolder:
                 f"{self.folder} holds road {there[-1]} already; ask for at least so many "
                 "roads or name another folder"
             )
+        if there:
+            self.versions = still(card.versions, self.versions, self.request.setup.driver, self.folder)
         for index in there:
             if index not in self.tests:
                 self._read(index)
@@ -187,8 +203,10 @@ class RunFolder:
         """Writes the file of a test that has ended, and then the tables; returns the tests that were written.
 
         Tests without a road are held back until a road has been designed, so that the folder stays without
-        tests if no road can satisfy the description.
+        tests if no road can satisfy the description. Raises UsageError if a file of the driver has changed
+        since an earlier test.
         """
+        self.versions = joined(self.versions, ended.driver_files, self.folder)
         self._held_back.append(ended)
         if not (self._tally.with_road or (ended.entry and ended.entry.has_road)):
             return []
@@ -200,6 +218,7 @@ class RunFolder:
 
     def keep(self, ended: FinishedRun) -> None:
         """Writes the ``test.NNNN.json`` of a test, after its Run, and the tables; raises OSError."""
+        self.write_card(is_finished=False)
         write_whole(self.folder / test_name(ended.result.number), ended.test_file)
         self._count(ended)
         self._tally.write(self.folder)
@@ -253,10 +272,5 @@ class RunFolder:
 
     def write_card(self, is_finished: bool) -> None:
         """Writes ``campaign.json``; raises OSError."""
-        card = Card(request=self.request, roads=self.roads, is_finished=is_finished)
+        card = Card(request=self.request, roads=self.roads, is_finished=is_finished, versions=self.versions)
         write_whole(self.folder / CARD, json_text(card.model_dump(mode="json")))
-
-
-def _may_lie_in_a_new_folder(path: Path) -> bool:
-    """Returns whether a campaign that was stopped before it had a ``campaign.json`` may leave such a file."""
-    return path.name == LOCK or (path.name.startswith(CARD) and path.name.endswith(PART))

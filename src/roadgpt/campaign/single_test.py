@@ -53,6 +53,8 @@ class FinishedTest:
     """The traceback if the test raised an error; else empty."""
     is_lost: bool = False
     """True if the simulator itself failed, so that the test says nothing about the road."""
+    driver_files: Mapping[str, str] = field(default_factory=dict)
+    """As in the Run."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +104,7 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
         run = error_run(task, cell, sentence, traceback.format_exc())
     trace = trace_of(run.drive) if run.drive is not None else None
     result = result_of(run, task, features_in(run))
-    return FinishedTest(result, trace, run.seconds, run.spent, run.trace, run.is_lost)
+    return FinishedTest(result, trace, run.seconds, run.spent, run.trace, run.is_lost, run.driver_files)
 
 
 def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], meter: Meter) -> Run:

@@ -1,6 +1,6 @@
 """The tables of a campaign, in SQLite: what a session reads and writes while it runs tests.
 
-    meta      format, plan, versions, and whether the campaign is finished
+    meta      format, plan, versions (of each driver's tests), and whether the campaign is finished
     cells     the settings of each cell; how long it has taken; why it was closed early
     batches   which tests were requested together; a batch and its tests are written in one transaction,
               so that no test is requested twice

@@ -11,9 +11,10 @@ import logging
 import os
 import warnings
 from collections.abc import Callable
-from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar, cast
+
+from roadgpt.reading import digest
 
 FUNCTIONS = ("mj_step1", "mj_step2", "mj_kinematics")
 LIBRARIES = ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll")  # by system; names contain the version
@@ -115,13 +116,7 @@ if COMPILES:
     _announce()
 
 
-def _digest() -> str:
-    """Returns a digest of this package's files, whose functions and numbers become part of machine code."""
-    files = sorted(Path(__file__).parent.rglob("*.py"))
-    return sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:12]
-
-
-SOURCES = _digest() if COMPILES else ""
+SOURCES = digest(Path(__file__).parent, "*.py") if COMPILES else ""  # it all becomes part of machine code
 
 
 def compiled(function: Function) -> Function:

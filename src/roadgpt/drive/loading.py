@@ -63,11 +63,7 @@ def _run(path: Path) -> ModuleType:
     sys.modules[name] = module  # dataclasses and pickle look up their module there
     sys.path.insert(0, str(whole.parent))
     try:
-        kept, sys.dont_write_bytecode = sys.dont_write_bytecode, True  # else a quick edit goes unnoticed
-        try:
-            described.loader.exec_module(module)
-        finally:
-            sys.dont_write_bytecode = kept
+        described.loader.exec_module(module)
     except SyntaxError as error:
         del sys.modules[name]
         raise UsageError(

@@ -29,7 +29,8 @@ from roadgpt.network import made_from, refuse_without_route
 from roadgpt.road import Design, Geometry, Road, World, in_short_segments
 from roadgpt.run.card import seed_in
 from roadgpt.run.folder import Draw, read_run, write_run
-from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup, seed_of, versions_of
+from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup, seed_of
+from roadgpt.run.versions import versions_of
 from roadgpt.stopping import look
 from roadgpt.verdict import Verdict, judge
 
@@ -107,7 +108,7 @@ def perform(
     designing = time.perf_counter() - begun
     spent = meter.spent.since(before)
     run = replace(run, spent=spent if spent.calls else None)
-    return _driven(replace(run, versions=versions_of(setup), seconds=Seconds(designing)))
+    return _driven(replace(run, seconds=Seconds(designing)))
 
 
 def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Meter | None = None) -> Brief:
@@ -171,7 +172,7 @@ def prove(
     request = Request(words=brief.words if brief else "", seed=seed, world=world, setup=setup)
     checking = time.perf_counter() - begun
     run = Run(request, index, seed, brief=brief, design=design, road=road, findings=findings)
-    return _driven(replace(run, versions=versions_of(setup), seconds=Seconds(checking)), despite_findings)
+    return _driven(replace(run, seconds=Seconds(checking)), despite_findings)
 
 
 @cache
@@ -230,35 +231,29 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
     The road is not driven if a finding forbids it, or if the setup says that roads are only designed.
     """
     setup = run.request.setup
+    run = replace(run, versions=versions_of([setup]))
     objections = [finding for finding in run.findings if finding.stops or not despite_findings]
     if objections:
         return replace(run, outcome="INVALID", description=objections[0].sentence)
     if run.road is None or not setup.drives:
         return run
-    begun = time.perf_counter()
+    begun, driver = time.perf_counter(), None
     try:
         driver = driver_of(setup.driver)  # a new driver for each road, so that nothing carries over
         drive = simulate(run.road, run.world, driver, run.seed, setup.simulator, setup.keep_driving)
         verdict = judge(run.road, drive, run.world)
+        run = replace(run, outcome=verdict.outcome, description=_sentence(verdict, drive))
+        run = replace(run, drive=drive, verdict=verdict)
     except PartError:
         raise
     except Exception as error:  # whatever a driver or a simulator raises costs this road, not the campaign
-        return replace(
-            run,
-            outcome="ERROR",
-            description=str(error)
-            if isinstance(error, RoadGPTError)
-            else f"the simulation failed: {error!r}",
-            trace=traceback.format_exc(),
-            is_lost=isinstance(error, SimulatorError),
-            seconds=replace(run.seconds, drive=time.perf_counter() - begun),
-        )
+        said = str(error) if isinstance(error, RoadGPTError) else f"the simulation failed: {error!r}"
+        is_lost = isinstance(error, SimulatorError)
+        run = replace(run, outcome="ERROR", description=said, trace=traceback.format_exc(), is_lost=is_lost)
     return replace(
         run,
-        outcome=verdict.outcome,
-        description=_sentence(verdict, drive),
-        drive=drive,
-        verdict=verdict,
+        versions=versions_of([setup], driver),
+        driver_files=getattr(driver, "all_files", dict)(),
         seconds=replace(run.seconds, drive=time.perf_counter() - begun),
     )
 

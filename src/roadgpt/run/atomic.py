@@ -8,10 +8,11 @@ import os
 import shutil
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from itertools import count
 from pathlib import Path
 from typing import Any
 
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, explained
 
 try:
     import fcntl
@@ -20,6 +21,7 @@ except ImportError:  # Windows has no such locks; folders are then not locked
 
 LOCK = "campaign.lock"
 PART = ".part"  # end of the names of unfinished files and folders
+BEFORE = "before-"  # beginning of the names of folders with what was set aside
 LETTERS = "backslashreplace"  # characters that UTF-8 cannot encode are written as escapes
 
 
@@ -124,6 +126,24 @@ def whole_folder(path: Path) -> Iterator[Path]:
 def missing(folder: Path) -> tuple[Path, ...]:
     """Returns the folders that must be created so that ``folder`` exists, the innermost first."""
     return tuple(path for path in (folder, *folder.parents) if not path.exists())
+
+
+def is_new(folder: Path, card: str) -> bool:
+    """Returns whether a folder holds nothing but results that were set aside, and drafts of its ``card``."""
+    names = (path.name for path in folder.iterdir())
+    return all(name == LOCK or name.startswith((BEFORE, f"{card}.")) for name in names)
+
+
+def set_aside(folder: Path, card: str) -> None:
+    """Moves everything in a folder with the file ``card`` into its new subfolder ``before-1`` (or 2, ...),
+    the card last; leaves any other folder alone, since RoadGPT did not make it. Raises UsageError."""
+    if (folder / card).is_file():
+        with alone_in(folder), explained(UsageError, f"cannot empty {folder}", "name another folder"):
+            place = next(at for n in count(1) if not (at := folder / f"{BEFORE}{n}").exists())
+            place.mkdir()
+            for path in sorted(folder.iterdir(), key=lambda path: path.name == card):
+                if path.name != LOCK and not path.name.startswith(BEFORE):
+                    path.replace(place / path.name)
 
 
 def take_away(files: Iterable[Path], folders: Iterable[Path]) -> None:

@@ -1,5 +1,6 @@
 """Reads ``campaign.json``, which stores the request of a campaign so that the campaign can be resumed."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal
 
@@ -17,6 +18,8 @@ class Card(Frozen):
     request: Request
     roads: int
     is_finished: bool
+    versions: Mapping[str, str] = {}
+    """What decided the results of all roads besides the request, see ``run.versions``."""
 
 
 def seed_in(folder: Path) -> int | None:

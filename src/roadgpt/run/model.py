@@ -2,16 +2,12 @@
 and versions.
 """
 
-import platform
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache
-from importlib.metadata import PackageNotFoundError, version
-from typing import TYPE_CHECKING, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 
-from roadgpt import __version__
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
@@ -28,8 +24,6 @@ if TYPE_CHECKING:
 Outcome = Literal["PASS", "FAIL", "INVALID", "ERROR", "VALID"]
 """The outcome of a Run. VALID: the road breaks no rule and was not driven."""
 SEED_BITS = 53  # so that a seed survives every JSON reader
-LIBRARIES = ("numpy", "scipy", "pydantic")
-LIBRARIES_OF_DRIVES = ("mujoco-core", "numba")
 
 
 class Setup(Frozen):
@@ -79,10 +73,9 @@ class Request(Frozen):
     world: World = World()
     setup: Setup = Setup()
 
-    def essence(self) -> "Request":
-        """Returns the Request without the fields that may change when an interrupted campaign is
-        continued."""
-        return self.model_copy(update={"setup": self.setup.essence()})
+    def settings(self) -> dict[str, Any]:
+        """Returns the values that may not change when an interrupted campaign is continued, by name."""
+        return {"words": self.words, "seed": self.seed, **dict(self.setup.essence()), **self.world.values()}
 
     def came_with(self, file: object) -> Self:
         """Returns a copy that is marked as coming from a file of unknown origin.
@@ -138,6 +131,9 @@ class Run:
     spent: Spent | None = None
     """Tokens, seconds and money spent on language models for this road; None if none were used."""
     versions: Mapping[str, str] = field(default_factory=dict)
+    """What decided the results besides the request, see ``run.versions``."""
+    driver_files: Mapping[str, str] = field(default_factory=dict)
+    """Digests of all files that the driver's process has used so far; not written to disk."""
     source: str = ""
     """Name of the file that the road was read from, or the change request; used in headings."""
     trace: str = ""
@@ -201,31 +197,3 @@ def seed_of(seed: int, index: int) -> int:
         raise UsageError(f"{seed} is no seed; give a whole number from 0 up")
     drawn = np.random.SeedSequence([seed, index]).generate_state(1, np.uint64)[0]
     return int(drawn) >> (64 - SEED_BITS)
-
-
-def versions_of(setup: Setup) -> dict[str, str]:
-    """Returns the versions of RoadGPT, Python and the libraries that affect the results, and the platform, so
-    that differences between Runs can be explained.
-
-    For drives in BeamNG, the result also has BeamNG's settings and the version of BeamNG's Python client.
-    The client's version determines the version of BeamNG.
-    """
-    found = {
-        "roadgpt": __version__,
-        "python": platform.python_version(),
-        "machine": f"{platform.system()} {platform.machine()}",
-    }
-    found |= {name: _version(name) for name in LIBRARIES + (LIBRARIES_OF_DRIVES if setup.drives else ())}
-    if setup.drives and setup.simulator == "beamng":
-        from roadgpt.drive.simulators.beamng.settings import BeamngSettings
-
-        found |= {"beamngpy": _version("beamngpy"), "beamng": BeamngSettings.of().summary()}
-    return found
-
-
-@cache
-def _version(name: str) -> str:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return "not installed"

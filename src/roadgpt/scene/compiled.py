@@ -2,10 +2,10 @@
 
 import warnings
 from collections.abc import Callable
-from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar
 
+from roadgpt.reading import digest
 from roadgpt.road.profile import DASH, GAP
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -22,14 +22,8 @@ def _numba() -> Any:
 NUMBA = _numba()
 
 
-def _digest() -> str:
-    """Returns a digest of all that becomes part of compiled code: the files of this package, and constants
-    that it imports from other packages."""
-    files = sorted(Path(__file__).parent.rglob("*.py"))
-    return sha256(b"".join(file.read_bytes() for file in files) + f"{DASH} {GAP}".encode()).hexdigest()[:12]
-
-
-SOURCES = _digest()
+SOURCES = f"{digest(Path(__file__).parent, '*.py')}-{DASH}-{GAP}"
+"""Stands for all that becomes part of compiled code: the files of this package, and constants of others."""
 
 
 def compiled(function: Function) -> Function:

@@ -7,9 +7,7 @@ from pathlib import Path
 from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus, Status, status_of
-from roadgpt.campaign.store_check import reading_store
 from roadgpt.plural import plural
-from roadgpt.reading import json_of
 from roadgpt.report.page import write
 from roadgpt.report.page.forest import forest
 from roadgpt.report.page.model import Block, Figure, Page, Section, Table, TableCell, linked
@@ -206,8 +204,8 @@ def _forest(cells: Sequence[CellStatus]) -> Figure:
 
 
 def _card(command: str, record: Record, status: Status) -> dict[str, str]:
-    with reading_store(record.path):
-        versions = {str(name): str(number) for name, number in json_of(record.meta("versions")).items()}
+    recorded = (record.versions(driver) for driver in {each.driver: None for each in status.cells})
+    versions = (", ".join(f"{name} {its}" for name, its in each.items()) for each in recorded)
     seeds = sorted({each.seed for each in status.cells})
     return {
         **({"command": command} if command else {}),
@@ -216,5 +214,5 @@ def _card(command: str, record: Record, status: Status) -> dict[str, str]:
         "language models": f"{status.tokens:,} tokens, {status.cost_usd:.4f} USD"
         if status.tokens
         else "none",
-        "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
+        "versions": "; ".join(dict.fromkeys(versions)),
     }

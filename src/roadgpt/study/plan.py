@@ -14,7 +14,7 @@ from roadgpt.errors import UsageError, explained
 from roadgpt.reading import json_of, read_model, read_text
 from roadgpt.road import ORACLES, Limits, World
 from roadgpt.run import Setup
-from roadgpt.run.atomic import LOCK, PART, json_text, write_whole
+from roadgpt.run.atomic import is_new, json_text, write_whole
 from roadgpt.run.folder_names import slug
 from roadgpt.study.truth import Truth
 
@@ -103,7 +103,7 @@ def open_folder(plan: StudyPlan, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         if (folder / CARD).is_file():
             _same(read_plan(folder), plan, folder)
-        elif any(path.name not in (CARD, LOCK) and not path.name.endswith(PART) for path in folder.iterdir()):
+        elif not is_new(folder, CARD):
             raise UsageError(f"{folder} is not empty and holds no study; name another folder")
         write_whole(folder / CARD, json_text(plan.model_dump(mode="json", by_alias=True)))
 
@@ -117,7 +117,7 @@ def _same(there: StudyPlan, asked: StudyPlan, folder: Path) -> None:
     wrong = [name for name in differs if name not in free]
     if wrong:
         raise UsageError(
-            f"{folder} holds another study (other {' and '.join(wrong)}); name another folder with --out"
+            f"{folder} holds another study (other {' and '.join(wrong)}); name another folder, or add --again"
         )
     if asked.roads < there.roads:
         raise UsageError(f"{folder} holds a study of {there.roads} roads each; ask for as many or more")

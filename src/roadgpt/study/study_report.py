@@ -1,10 +1,8 @@
 """Writes the report of a study, or of runs made by ``roadgpt run``, from the files in their folder."""
 
 from collections.abc import Mapping, Sequence
-from hashlib import sha256
 from pathlib import Path
 
-from roadgpt import brief
 from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
@@ -39,7 +37,6 @@ from roadgpt.study.plan import Prompt, StudyPart, StudyPlan, read_plan
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord, read_part
 
 PROBLEMS = "problems.json"
-DIGITS = 16  # of a hash
 UNITS = {
     "speed_limit": (3.6, " km/h"),
     "max_grade": (100.0, " %"),
@@ -48,7 +45,6 @@ UNITS = {
     "oob_tolerance": (1.0, ""),
 }
 """Factor and unit with which a field of the World is shown; fields that are not listed are in metres."""
-WEIGHTS = (".onnx", ".npz", ".safetensors", ".bin")
 
 
 def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:
@@ -206,8 +202,8 @@ def card_of(
         "seed": str(seed),
         "roads of each": f"{roads:,}",
         "made by": ", ".join(dict.fromkeys(part.designer for part in parts)),
+        "reader": setup.reader,
     }
-    out["reader"] = setup.reader + _hashes(setup.reader)
     if setup.drives:
         out["driven by"] = f"{setup.driver} in {setup.simulator}"
         out["oracle"] = oracle_in_words(world.limits.oracle)
@@ -237,18 +233,3 @@ def _versions(parts: Sequence[StudyPartRecord]) -> str:
             for name, number in road.versions.items():
                 found.setdefault(name, {})[number] = None
     return ", ".join(f"{name} {' and '.join(numbers)}" for name, numbers in found.items()) or "–"
-
-
-def _hashes(reader: str) -> str:
-    """Returns the hashes of the reader's weights, which show whether two studies used the same reader."""
-    name, _, folder = reader.partition(":")
-    if name != "model":
-        return ""
-    place = Path(folder) if folder else Path(brief.__file__).parent / "readers" / "model" / "weights"
-    if not place.is_dir():
-        return ""
-    files: Mapping[str, bytes] = {
-        path.name: path.read_bytes() for path in sorted(place.iterdir()) if path.suffix in WEIGHTS
-    }
-    told = (f"{name} sha256 {sha256(data).hexdigest()[:DIGITS]}" for name, data in files.items())
-    return f" ({', '.join(told)})" if files else ""

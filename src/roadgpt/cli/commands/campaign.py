@@ -28,7 +28,7 @@ MOST_TESTS = 10_000_000
 TESTS = whole(1, MOST_TESTS, "the number of tests")
 SECONDS = measure(0, 1e8, "s", above=True)
 BESIDE_A_FILE = {
-    "words", "out", "workers", "executor", "address", "drivers", "faults", "minimise", "repeat",
+    "words", "out", "again", "workers", "executor", "address", "drivers", "faults", "minimise", "repeat",
     "groups", "junit", "as_json", "quiet",
 }  # fmt: skip
 
@@ -46,6 +46,7 @@ PARAMETERS = (
     Option("--seconds", "Start no more tests after this many seconds.", SECONDS),
     options.seed("The same seed gives the same table.", 0),
     options.out("Folder for the campaign. [default: a new one]"),
+    options.AGAIN,
     *options.WORKERS,
     *named(options.SETUP, "reader", "designer"),
     Option("--driver --drivers drivers", "Name of a driver, or FILE.py:CLASS; for more drivers, repeat the "
@@ -89,7 +90,7 @@ def command(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **g
     if out is None:
         out = new_folder(Path(text).stem if text.endswith(".toml") else text, plan.seeds[0])
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
-        was_there = begin(plan, out)
+        was_there = begin(plan, out, given.pop("again"))
     if not given["quiet"] and not given["as_json"]:
         _tell(out, plan, was_there)
     work_to_the_end(out, given)
@@ -108,7 +109,8 @@ def work_to_the_end(
     from roadgpt.campaign.lifecycle import work
     from roadgpt.campaign.record import Record
 
-    steps = work(folder, given["workers"], given["executor"], given["address"], chat, draw)
+    again = given.get("again", False)
+    steps = work(folder, given["workers"], given["executor"], given["address"], chat, draw, again)
     watch(folder, steps, given["as_json"], given["quiet"])
     if given["junit"] is not None:
         write_folder(given["junit"], folder)

@@ -171,9 +171,8 @@ def drive_again(
         click.echo(f"{run.outcome:<8} {name}  {written}  {one_line(run.description)}")
         if not is_same(run, result):
             said = f"{result.outcome} before ({one_line(result.description)})"
-            warn(
-                f"test {name} was {said}; it was driven with another version of roadgpt or on another machine"
-            )
+            changed = "its driver, RoadGPT or the machine has changed: compare the versions that show prints"
+            warn(f"test {name} was {said}; {changed}")
 
 
 def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":

@@ -89,21 +89,23 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     """Finds and prints the distinct faults of a folder of runs or a campaign, with an analysis of each.
 
     Raises:
-        UsageError: There are no roads, or a file cannot be read.
+        UsageError: There are no roads, a file cannot be read, or the driver or something else that decides
+            drives has changed since the failures.
         RoadGPTError: A file cannot be written.
     """
-    from roadgpt.campaign.faults.failures import drivers_of
     from roadgpt.campaign.faults.fault import faults_in
     from roadgpt.campaign.faults.fault_log import FAILURES, instructive, write_tables, write_top
     from roadgpt.campaign.faults.remedy import FOLDER
-    from roadgpt.drive.permission import require_permission
+    from roadgpt.campaign.folder_record import open_record
+    from roadgpt.run.versions import versions_now
 
     found = faults_in(place)
     if not found.failures:
         look.say("no road failed, so there is no fault to analyse")
         return
-    for driver in sorted(drivers_of(place)):
-        require_permission(driver)  # here, where the user can be asked, and not in each of the workers
+    with open_record(place) as record:
+        asked = ((cell.request, cell.generator) for cell in record.cells())
+        record.refuse_changed(versions_now(asked))  # the user is asked for permission here, not in workers
     go_on = shlex.join(["roadgpt", "faults", str(place), *look.words])
     with resumable(f"finished work is kept; continue with: {go_on}"):
         found = _tested(place, found, look)

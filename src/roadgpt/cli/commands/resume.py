@@ -24,6 +24,7 @@ OPTIONS = (
     Option("--base-url", "Address of the server. Repeat it here if the campaign used one: for safety, your "
            "API key is not sent to an address just because a folder refers to it.", heading=Heading.MODEL),
     *FAULT_OPTIONS,
+    options.AGAIN,
     options.AXES,
     options.JUNIT,
     options.json_option("Print one JSON object at the end.", heading=Heading.OUTPUT),

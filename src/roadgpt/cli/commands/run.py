@@ -31,6 +31,7 @@ OPTIONS = (
     Option("-n --roads", "Number of roads.", ROADS, 1),
     options.seed("The same seed gives the same roads. [default: random]"),
     options.out("Folder for the runs. [default: a new one]"),
+    options.AGAIN,
     options.PLAN,
     Option(
         "--route",
@@ -88,6 +89,7 @@ def carry_out(
     roads: int,
     seed: int | None,
     out: Path | None,
+    again: bool,
     junit: Path | None,
     route: str,
     axes: "Scale",
@@ -123,7 +125,7 @@ def carry_out(
     if seed is None:
         seed = secrets.randbelow(SEEDS)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
-        work = campaign(brief, roads, seed, world, setup, out, draw, meter)
+        work = campaign(brief, roads, seed, world, setup, out, draw, meter, again)
     screen.request, screen.junit = work.request, junit
     screen.say(understood(brief, work.request.world, world))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))

@@ -42,6 +42,7 @@ STUDY_OPTIONS = (
     DESIGNERS,
     options.seed("The same seed gives the same files.", 1),
     options.out("Folder for the study. [default: in roadgpt-runs]"),
+    options.AGAIN,
     Option("--workers", "Number of descriptions processed in parallel; the files do not depend on it.",
            whole(1, 64, "processes"), 2),
     *DRIVEN,
@@ -94,18 +95,21 @@ def _study(kind: "Kind", prompts: "Sequence[Prompt]", source: str, drives: bool,
     """Carries out a study, writes its report, prints the report's path, and returns the exit status."""
     from roadgpt.plural import plural
     from roadgpt.run import check_parts
+    from roadgpt.run.atomic import set_aside
     from roadgpt.run.folder import finished
     from roadgpt.study.execution import work
-    from roadgpt.study.plan import open_folder
+    from roadgpt.study.plan import CARD, open_folder
     from roadgpt.study.study_report import keep_problems, write_study
 
-    workers, quiet, out = rest.pop("workers"), rest.pop("quiet"), rest.pop("out")
+    workers, quiet, out, again = (rest.pop(name) for name in ("workers", "quiet", "out", "again"))
     draw = options.drawing_of(options.pictures_of(rest))
     place = out or Path("roadgpt-runs") / f"study-{kind}-{rest['seed']}"
     plan = _plan(kind, prompts, source, drives, rest)
     plan = plan.model_copy(update={"command": _command(plan, place)})
     for designer in plan.designers:
         check_parts(plan.setup_of(designer), plan.world)
+    if again:
+        set_aside(place, CARD)
     open_folder(plan, place)
     total = len(plan.parts()) * plan.roads
     if not quiet:

@@ -20,6 +20,7 @@ from typing import Any
 
 from roadgpt.children import private_streams
 from roadgpt.drive.camera_sensor import camera_of
+from roadgpt.drive.driver_files import DriverFiles
 from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.isolation import protocol
 from roadgpt.drive.loading import load_driver
@@ -73,6 +74,7 @@ class _DriverHost:
 
     def __init__(self) -> None:
         self._start = _InitialState()
+        self._files: Any = None
         self._guard: Any = None
         self._road: Any = None
         self._world: Any = None
@@ -83,10 +85,17 @@ class _DriverHost:
         """Creates a driver; ``surroundings`` are the folder, environment and module path of RoadGPT's
         process."""
         self._start.restore(*surroundings)
+        self._files = self._files or DriverFiles(spec)  # a process serves one spec alone
+        self._files.begin()
         driver = load_driver(spec)
         camera = camera_of(driver)
         self._guard = DriverGuard(driver)
-        return {"name": self._guard.name, "camera": camera}
+        self._files.add(getattr(driver, "uses", ()))
+        return {"name": self._guard.name, "camera": camera, "files": self._files.told()}
+
+    def files(self) -> dict[str, Any]:
+        """Returns the names of all files that the process has used for drivers so far."""
+        return dict(self._files.told(is_early=False))
 
     def show(self, road: Road, world: World) -> dict[str, Any]:
         """Keeps the road and the world for the views to come."""
@@ -96,7 +105,7 @@ class _DriverHost:
     def start(self, seed: int) -> dict[str, Any]:
         """Calls the driver's ``start``."""
         self._guard.start(self._road, self._world, seed)
-        return {}
+        return {"files": self._files.told()}
 
     def steer(self, place: tuple[float, ...], motion: tuple[float, ...], image: Any) -> dict[str, Any]:
         """Asks the driver for a command; ``place`` has the fields of a View before ``road`` and ``world``,
@@ -118,6 +127,7 @@ class _DriverHost:
 def main() -> None:
     """Answers the requests of RoadGPT's process until that process closes the connection."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the asking process handles Ctrl-C and ends this one
+    sys.dont_write_bytecode = True  # else a quick edit goes unnoticed
     heard, said = private_streams()
     up, down = said.fileno(), heard.fileno()
     threading.Thread(target=_stay_while, args=(os.getppid(),), daemon=True).start()

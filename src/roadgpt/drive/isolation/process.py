@@ -13,7 +13,9 @@ from subprocess import PIPE, SubprocessError, run
 from typing import Any
 
 from roadgpt import children
+from roadgpt.drive.driver_files import WRITTEN, folder_of
 from roadgpt.drive.isolation import protocol
+from roadgpt.reading import digest
 
 TICK = 0.2  # s between two checks of the clock and the memory
 SHARE = 0.5  # of the machine's memory that a driver may take
@@ -31,14 +33,10 @@ class GoneError(Exception):
 
 
 class DriverProcess:
-    """A child process that holds one driver at a time."""
+    """A child process that holds one driver at a time, and no other than ``spec``."""
 
-    def __init__(self) -> None:
-        """Starts the process.
-
-        Raises:
-            OSError: the system cannot start the process.
-        """
+    def __init__(self, spec: str) -> None:
+        """Starts the process; raises OSError if the system cannot."""
         self._process = children.python("roadgpt.drive.isolation.child", stderr=None)
         assert self._process.stdin is not None
         assert self._process.stdout is not None
@@ -47,6 +45,7 @@ class DriverProcess:
         self._why, self._is_late = "", False
         self._most = memory_limit()
         self.is_broken = False
+        self.spec, self.files = spec, dict[str, str]()  # digests of the files that its drivers have used
         self.has_served = False
         """Whether the process has already held a driver."""
         self._ends = threading.Event()
@@ -145,35 +144,30 @@ _idle: list[DriverProcess] = []
 _lock = threading.Lock()
 
 
-def take() -> DriverProcess:
-    """Returns an idle driver process, or starts a new one.
-
-    Raises:
-        OSError: the system cannot start a process.
-    """
+def take(spec: str) -> DriverProcess:
+    """Returns an idle process of a driver, or starts a new one; raises OSError if the system cannot."""
     with _lock:
-        while _idle:
-            process = _idle.pop()
-            if process.is_alive:
+        for process in [each for each in _idle if each.spec == spec]:
+            _idle.remove(process)
+            files = process.files.items()  # it may have loaded them, so they must still be the same
+            is_current = all(its in (WRITTEN, digest(folder_of(spec) / name)) for name, its in files)
+            if process.is_alive and is_current:
                 return process
             process.end()
-    return DriverProcess()
+    return DriverProcess(spec)
 
 
 def give_back(process: DriverProcess) -> None:
-    """Discards the driver of a process, and keeps the process for another driver.
-
-    If MOST_IDLE other processes (the maximum) are idle already, the process is ended instead.
-    """
+    """Discards the driver of a process, and keeps the process for the next drive. If more than MOST_IDLE
+    processes are idle then, the one that has been idle longest is ended."""
     if not process.is_alive:
         process.end()
         return
     process.forget()
     with _lock:
-        if len(_idle) < MOST_IDLE:
-            _idle.append(process)
-            return
-    process.end()
+        _idle.append(process)
+        if len(_idle) > MOST_IDLE:
+            _idle.pop(0).end()
 
 
 if hasattr(os, "register_at_fork"):  # a fork of this process must not use its pipes

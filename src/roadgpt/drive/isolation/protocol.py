@@ -10,7 +10,7 @@ import struct
 
 HEAD = struct.Struct("<I")
 ROOM = 1 << 16  # bytes that are read at once, as many as a pipe holds
-MOST = 1 << 20  # bytes, the largest answer that the driver's process may send
+MOST = 1 << 24  # bytes, the largest answer that the driver's process may send
 SAME_PICTURE = "same"
 """Sent instead of an image that is the same as in the previous request."""
 

@@ -3,16 +3,20 @@
 import os
 import sys
 import weakref
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from roadgpt.drive.driver_files import WRITTEN, folder_of
 from roadgpt.drive.driver_guard import BEFORE_START, ONE_ANSWER, RemoteDriverError
 from roadgpt.drive.isolation import protocol
 from roadgpt.drive.isolation.process import DriverProcess, GoneError, give_back, take
+from roadgpt.drive.loading import absolute_spec
 from roadgpt.drive.view import CameraSpec, Command, View
 from roadgpt.errors import DriverError, RoadGPTError, UsageError
+from roadgpt.reading import digest
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -31,7 +35,8 @@ class IsolatedDriver:
     """A driver that runs in another process."""
 
     def __init__(self, spec: str, limit: float = BEFORE_START) -> None:
-        """Creates the driver in another process.
+        """Creates the driver in another process; ``files`` has the digests of the files that the driver uses
+        until its ``start`` ends, by their names (see ``drive.driver_files``).
 
         Raises:
             PartError, UsageError, DriverError: as for ``isolation.driver_of``.
@@ -48,7 +53,7 @@ class IsolatedDriver:
         task = (spec, str(Path.cwd()), {**os.environ}, [*sys.path])
         while True:
             try:
-                process = take()
+                process = take(absolute_spec(spec, Path.cwd()))
             except OSError as error:
                 raise RoadGPTError(f"no process for a driver can be started: {error.strerror}") from error
             is_used = process.has_served
@@ -63,11 +68,23 @@ class IsolatedDriver:
                 raise
             process.has_served = True
             if "said" in answer:
-                give_back(process)
+                process.end()  # it may have loaded modules that the user will correct
                 raise _error(answer) from _TraceError(answer["trace"])
             self.name: str = answer["name"]
             self.camera = None if answer["camera"] is None else CameraSpec(*answer["camera"])
+            self._note(process, answer["files"])
             return process
+
+    def _note(self, process: DriverProcess, names: dict[str, list[str]]) -> None:
+        found = {name: digest(folder_of(process.spec) / name) for name in names["used"]}
+        process.files = found | dict.fromkeys(names["written"], WRITTEN)
+        self.files = {name: process.files[name] for name in names["early"]}
+
+    def all_files(self) -> dict[str, str]:
+        """Returns the digests of all files that the driver's process has used, also in earlier drives."""
+        with suppress(GoneError):
+            self._note(self._process, self._process.ask(BEFORE_START, "files"))
+        return self._process.files
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Sends the road to the driver and calls its ``start``.
@@ -76,7 +93,7 @@ class IsolatedDriver:
             DriverError: the driver raised an exception, hung or ended its process.
         """
         self._show(road, world)
-        self._asked(BEFORE_START, 0.0, "start", seed)
+        self._note(self._process, self._asked(BEFORE_START, 0.0, "start", seed)["files"])
 
     def steer(self, view: View) -> Command:
         """Returns the driver's command.
