@@ -87,6 +87,7 @@ def test_an_old_campaign_is_told_and_gets_the_columns_that_it_lacks(old: Path) -
     assert (result.own_share, result.handed_to) == (None, None)
     said = roadgpt("show", "campaign").stdout
     assert "driver beamng_like, oracle thesis: FAIL when more than 95 %" in said
+    Store.opened(old / "campaign").close()
     with Store.opened(old / "campaign") as store:
         assert [*store.results("c01")] == [result]
         assert not store.missing

@@ -64,7 +64,7 @@ def written(folder: Path, goes_on: bool = False) -> Path:
         setup = request.setup.model_copy(update={"driver": driver, "keep_driving": goes_on})
         request = request.model_copy(update={"setup": setup})
         cells.append(Cell(name, request, None, "words", None, budget=CellBudget(tests=TESTS)))
-    store = Store.new(folder, plan.model_dump_json(), cells, dict.fromkeys(DRIVERS, {"roadgpt": "1"}))
+    store = Store.new(folder, plan.model_dump_json(), cells, {key: {"roadgpt": "1"} for key in DRIVERS})
     with store:
         store.begin_session(1)
         results = list(drawn(goes_on))
