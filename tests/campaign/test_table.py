@@ -123,6 +123,8 @@ def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
         "passed_max_oob": "0.7",
         "passed_beyond_m": "1.4",
         "friction": "1.0",
+        "failed_handed_over": "0",
+        "oracle": "half",
     }
 
 
