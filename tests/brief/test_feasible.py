@@ -47,7 +47,7 @@ IMPOSSIBLE = {
     "less than no turn": Brief(clauses=(Clause(kind="turn", count=exactly(-2)),)),
     "too many for a map": Brief(clauses=(Clause(kind="hairpin", count=exactly(60)),)),
     "straight longer than the map": Brief(clauses=(Clause(kind="straight", length=exactly(900)),)),
-    "radius wider than the map": Brief(clauses=(turns(1, radius=exactly(600)),)),
+    "radius too wide for the map": Brief(clauses=(turns(1, radius=exactly(3000)),)),
     "more than any map": Brief(turns=exactly(1000)),
     "tighter than every turn may be": Brief(clauses=(turns(1, radius=exactly(18)),), radius=at_least(40)),
     "wider than every turn may be": Brief(clauses=(turns(1, radius=exactly(60)),), radius=at_most(45)),
@@ -120,7 +120,7 @@ def test_a_larger_map_holds_more() -> None:
         ("hairpin 90", "140 degrees"),
         ("turn x2.5", "whole number"),
         ("turn down; turn x2 up | up", "downhill"),
-        ("turn x99999999999999", "200"),
+        ("turn x99999999999999", "400"),
     ],
 )
 def test_plans_that_ask_for_the_impossible(line: str, reason: str) -> None:

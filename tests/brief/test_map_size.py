@@ -51,12 +51,12 @@ def test_other_lengths_stay(words: str) -> None:
 
 
 def test_a_map_is_neither_tiny_nor_huge() -> None:
-    with pytest.raises(BriefError, match="a map of 5 m by 5 m cannot be made; ask for one of 50 to 10000 m"):
+    with pytest.raises(BriefError, match="a map of 5 m by 5 m cannot be made; ask for one of 50 to 40000 m"):
         read("three crossroads on a map of 5 m")
     with pytest.raises(BriefError, match="this gives only the size of the map; say what the road should be"):
         read("on a map of 500 m")
-    with pytest.raises(BriefError, match="a map of 20000 m by 20000 m"):
-        read("three crossroads on a map of 20 km")
+    with pytest.raises(BriefError, match="a map of 50000 m by 50000 m"):
+        read("three crossroads on a map of 50 km")
 
 
 @pytest.mark.parametrize(
@@ -113,7 +113,7 @@ def test_plans_give_the_size_of_the_map(line: str) -> None:
     ("line", "message"),
     [
         ("turn | map_size=300..400", "a map has one size"),
-        ("turn | map_size=20", "a map is 50 to 10000 m wide, not 20; write for example map_size=500"),
+        ("turn | map_size=20", "a map is 50 to 40000 m wide, not 20; write for example map_size=500"),
         ("| map_size=300 // crossroads", "a route lies on one map; write map_size= after"),
         ("turn | map_size=300 map_size=400", "map_size twice"),
     ],

@@ -18,7 +18,7 @@ PLAN = Setup(reader="plan")
 CASES = (
     ("serpentine | len=367", 150, 571),
     ("turn x3 sharp | hills=3.. len=985", 150, 975),
-    ("| turns=1.. up len=287..", 120, 342),
+    ("| turns=1.. up len=500..", 120, 342),
     ("straight | turns=0 len=2283", 200, 18),
 )
 """Plans for which the map has no room, the map's size in m, and a seed."""

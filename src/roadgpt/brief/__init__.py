@@ -18,7 +18,7 @@ from roadgpt import plugins
 from roadgpt.brief import beside
 from roadgpt.brief.expressions import said_map_size, says_motorway, with_driving_side
 from roadgpt.brief.feasible import check, is_possible
-from roadgpt.brief.map_fit import LARGEST_MAP, ROAD_WIDTH
+from roadgpt.brief.map_fit import ROAD_WIDTH
 from roadgpt.brief.model import (
     Amount,
     Brief,
@@ -45,9 +45,9 @@ from roadgpt.brief.refusal import (
     TooMuchError,
 )
 from roadgpt.brief.sentence import sentence
-from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP
+from roadgpt.brief.words import LARGEST_MAP, LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP
 from roadgpt.chat import ChatSettings, plugin_of
-from roadgpt.errors import PartError
+from roadgpt.errors import BriefError, PartError
 
 __all__ = [
     "SURE",
@@ -162,7 +162,10 @@ def read(
         brief = brief.model_copy(update={"words": words, "other": other, **size})
     if brief.map_size is not None and not is_map_fixed:
         map_size, is_map_fixed = brief.map_size, True
-    check(brief, map_size if is_map_fixed else LARGEST_MAP, min_radius, max_grade, road_width)
+    try:
+        check(brief, map_size if is_map_fixed else LARGEST_MAP, min_radius, max_grade, road_width)
+    except BriefError as error:
+        raise error if reader == PLAN or isinstance(error, NoRoomError) else _doubted(error, brief) from None
     is_usual = map_size is not None and map_size <= USUAL_MAP and min_radius >= LEAST_RADIUS
     if too_much is not None and is_map_fixed and is_usual:
         raise too_much
@@ -173,6 +176,15 @@ def read(
     if reader != PLAN:
         brief = with_driving_side(brief, words)
     return brief.model_copy(update={"motorway": True}) if is_road and says_motorway(words) else brief
+
+
+def _doubted(error: BriefError, brief: Brief) -> BriefError:
+    """Returns a refusal for the words behind a Brief; where the plan contradicts itself, it is a doubt."""
+    what, _, advice = str(error).partition("; ")
+    if advice.startswith("ask for") and brief.confidence >= SURE:
+        return error  # only a number that was said is out of range
+    said = f"I read this, perhaps wrongly, as '{sentence(brief)[:-1]}'"
+    return BriefError(f"{said}: {what}; say it in other words")
 
 
 def alternatives(

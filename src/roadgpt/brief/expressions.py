@@ -9,12 +9,10 @@ import re
 from itertools import pairwise
 from typing import NamedTuple
 
-from roadgpt.brief.map_fit import LARGEST_MAP
 from roadgpt.brief.model import Brief
-from roadgpt.brief.words import unaccented
+from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, unaccented
 from roadgpt.errors import BriefError
 
-SMALLEST_MAP = 50.0  # metres
 MAP = r"(?:maps?|karten?|landkarten?|cartes?|mapas?|mapp[ae])"
 GROUND = (
     r"(?:areas?|sites?|plots?|terrains?|grounds?|fl[äa]chen?|gel[äa]nden?|areale?n?|gebiet(?:en|es)?|zones?|"

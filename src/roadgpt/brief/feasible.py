@@ -19,6 +19,7 @@ from roadgpt.brief.words import (
     LEAST_RADIUS,
     LEAST_STRAIGHT,
     LENGTH_SLACK,
+    LONGEST_ROAD,
     MOST_LANES,
     ROAD_LENGTH_SLACK,
     SHARPNESS,
@@ -32,8 +33,7 @@ from roadgpt.errors import BriefError
 LARGEST_ANGLE = 240.0  # degrees; a longer turn would cross its own beginning
 SMALLEST_ANGLE = 10.0  # degrees; a smaller turn is measured as straight
 SHORTEST_ROAD = 20.0  # metres
-LONGEST_ROAD = 5000.0  # metres, of roads whose length is open
-MOST_TURNS = 200.0
+MOST_TURNS = 400.0
 MOST_TURNING = 3000.0  # degrees of all turns together
 GRADES = {slope: meaning.grade or Range() for slope, meaning in SLOPES.items()}
 RISING = tuple(slope for slope, grade in GRADES.items() if grade.lo > 0)
@@ -119,7 +119,7 @@ def _lanes(brief: Brief) -> None:
     if not meets(brief.against, Range(0, MOST_LANES)):
         raise BriefError(f"a road has 0 to {MOST_LANES} oncoming lanes, not {brief.against}; change it")
     if brief.against is not None and span(brief.against).hi == 0 and (brief.divided or brief.centre):
-        raise BriefError("a one-way road has no oncoming lanes, so leave its median or centre line out")
+        raise BriefError("a one-way road has no oncoming lanes; leave its median or centre line out")
 
 
 def _counts(brief: Brief) -> None:
@@ -372,6 +372,8 @@ def _length(brief: Brief, limits: _Limits) -> None:
         raise BriefError(f"a road of {most:g} m is too short; ask for {SHORTEST_ROAD:g} m or more")
     if least > longest:
         raise BriefError(f"{most:g} m is too short for all that; ask for {least:.0f} m or for fewer turns")
+    if max(least, span(brief.length).lo * (1 - ROAD_LENGTH_SLACK)) > LONGEST_ROAD:
+        raise BriefError(f"no road is longer than {LONGEST_ROAD:g} m; ask for a shorter one")
     climb, grade = span(brief.climb), min(limits.steepest, span(brief.steepest).hi)
     for way, height in (("climb", climb.lo), ("fall", -climb.hi)):
         if height > longest * grade / 100:

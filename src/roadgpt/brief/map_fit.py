@@ -1,12 +1,19 @@
 """Checks from the numbers of a Brief whether its road can fit on the map, and proposes what would fit."""
 
-from math import ceil, floor, inf, radians, sqrt
+from math import ceil, floor, inf, pi, prod, radians, sin, sqrt
 
 from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.normal import STRAIGHT, total, turns_of
 from roadgpt.brief.refusal import NoRoomError
-from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, LENGTH_SLACK, ROAD_LENGTH_SLACK, SHARPNESS, SIZES
-from roadgpt.errors import BriefError
+from roadgpt.brief.words import (
+    KINDS,
+    LARGEST_MAP,
+    LEAST_STRAIGHT,
+    LENGTH_SLACK,
+    ROAD_LENGTH_SLACK,
+    SHARPNESS,
+    SIZES,
+)
 
 ROAD_WIDTH = 8.0  # metres: two lanes of 4 m
 EDGE = 0.3  # metres kept free between ribbon and border of the map, for rounding and the bulge of splines
@@ -14,7 +21,6 @@ WIDTH_OF_A_TURN = 40.0  # metres: lanes of 8 m, shoulders, and the width of the 
 SIDES_OF_ROAD = 1.3  # a road with turns fits if it is this many sides of the map long
 BESIDE_TURNS = 0.6  # share of the longest straight that still fits on a road with turns
 ROUND_MAP = 50.0  # metres: map sizes are proposed in these steps
-LARGEST_MAP = 10_000.0  # metres
 WAY_OF_A_TURN = 30.0  # metres that a turn and the straight after it need at least
 GAP = 16.0  # metres of straight between two turns to the same side
 
@@ -32,16 +38,9 @@ def check_room(brief: Brief, map_size: float, min_radius: float, road_width: flo
 
     Raises:
         NoRoomError: the road cannot fit; the message says what would fit.
-        BriefError: a radius is larger than the map.
     """
     _straights(brief, map_size, road_width)
-    for clause in brief.clauses:
-        radius = span(clause.radius).lo
-        if radius > map_size:
-            raise BriefError(
-                f"a radius of {radius:g} m is wider than the map of {map_size:g} m;"
-                f" ask for {map_size / 2:g} m"
-            )
+    _turns(brief, map_size, road_width)
     least = least_length(brief, min_radius)
     metres = max(least, span(brief.length).lo * (1 - ROAD_LENGTH_SLACK))
     if metres > map_size * map_size / WIDTH_OF_A_TURN:
@@ -52,6 +51,21 @@ def check_room(brief: Brief, map_size: float, min_radius: float, road_width: flo
             " or a larger map",
             brief,
         )
+
+
+def _turns(brief: Brief, map_size: float, road_width: float) -> None:
+    """Checks that the ends of each turn of required radius are no farther apart than two corners."""
+    for clause in brief.clauses:
+        said = span(clause.radius).lo
+        if said <= 0 or clause.kind in STRAIGHT:
+            continue
+        degrees, radius = _bend(clause, 0.0)
+        if 2 * radius * sin(radians(min(degrees, 180.0) / 2)) > longest_straight(map_size, road_width):
+            raise NoRoomError(
+                f"a turn with a radius of {said:g} m has no room on a map of {map_size:g} m;"
+                f" ask for {map_size / 2:g} m or a larger map",
+                brief,
+            )
 
 
 def _straights(brief: Brief, map_size: float, road_width: float) -> None:
@@ -100,6 +114,12 @@ def _way(clause: Clause, min_radius: float) -> float:
         least = (1 - LENGTH_SLACK) * span(clause.length).lo
         return least if least > -inf else size.lo if size else LEAST_STRAIGHT
     least, _ = turns_of(clause)
+    arc = prod(_bend(clause, min_radius), start=pi / 180)
+    return least * max(arc + (0 if clause.kind in ("s_bend", "chicane") else GAP), WAY_OF_A_TURN * 0.8)
+
+
+def _bend(clause: Clause, min_radius: float) -> tuple[float, float]:
+    """Returns the least angle in degrees and the least radius in metres of each turn of a clause."""
     own, sharp = KINDS[clause.kind].degrees, SHARPNESS[clause.sharpness] if clause.sharpness else None
     angle = clause.degrees.lo if clause.degrees and clause.degrees.lo else own.lo if own else 25.0
     if sharp and sharp.degrees and not clause.degrees and clause.kind == "turn":
@@ -107,5 +127,4 @@ def _way(clause: Clause, min_radius: float) -> float:
     radius = sharp.radius.lo if sharp and sharp.radius else 0.0
     if clause.radius and clause.radius.lo:
         radius = (1 - LENGTH_SLACK) * clause.radius.lo
-    arc = radians(angle) * max(radius, min_radius)
-    return least * max(arc + (0 if clause.kind in ("s_bend", "chicane") else GAP), WAY_OF_A_TURN * 0.8)
+    return angle, max(radius, min_radius)

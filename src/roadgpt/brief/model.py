@@ -11,7 +11,7 @@ from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exa
 from roadgpt.brief.beside import BESIDE, friction_of
 from roadgpt.brief.junctions import JunctionClause, MapClause, Side
 from roadgpt.brief.ranges import Range, nearest
-from roadgpt.brief.words import MOST_LANES, Kind, Sharpness, Size, Slope
+from roadgpt.brief.words import LARGEST_MAP, MOST_LANES, SMALLEST_MAP, Kind, Sharpness, Size, Slope
 
 __all__ = [
     "OTHER_SIDE",
@@ -147,7 +147,7 @@ class Brief(Frozen):
     """The line between the directions: "solid" forbids overtaking."""
     left_hand: bool = False
     """Whether traffic drives on the left."""
-    map_size: Annotated[float, Field(ge=50, le=10_000)] | None = None
+    map_size: Annotated[float, Field(ge=SMALLEST_MAP, le=LARGEST_MAP)] | None = None
     """The side of the square map in metres; None if the description does not give it."""
     map: MapClause | None = None
     """The map of roads that is required instead of one road. A plan then gives no other requirements than

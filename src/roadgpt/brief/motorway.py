@@ -13,10 +13,9 @@ m, grades up to 4, 4.5, 4.5 and 6 percent.
 
 from math import ceil, radians
 
-from roadgpt.brief.map_fit import LARGEST_MAP
 from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.normal import STRAIGHT, normal, total, turns_of
-from roadgpt.brief.words import LENGTH_SLACK, MOTORWAY_GRADE, MOTORWAY_RADIUS, ROAD_LENGTH_SLACK
+from roadgpt.brief.words import LARGEST_MAP, LENGTH_SLACK, MOTORWAY_GRADE, MOTORWAY_RADIUS, ROAD_LENGTH_SLACK
 
 OPEN_KINDS = frozenset({"turn", "s_bend", "winding"})
 """The kinds of turns whose radius is not fixed by their kind."""

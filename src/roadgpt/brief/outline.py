@@ -42,7 +42,8 @@ LARGEST_TURN = 270.0  # degrees, if only a lower bound was given
 USUALLY_WIDEST = 300.0  # metres: a wider bend is not a turn, unless such turns are asked for
 ROOMY = 150.0  # metres: a map of this side holds a sweeping turn of 60 m radius with its straights
 EASIER = 0.75  # the usual grades of a word are kept if the least of them is at most this share of a limit
-WIDER = 1.5  # times the least radius asked for: a wider bend is not a turn
+WIDER, WIDER_THAN_MOST = 1.5, 1.1
+"""Ratios to the least and to the greatest radius that is asked for; a wider bend is not a turn."""
 NO_LIMIT = Range()
 OF_SEVERAL = frozenset(kind.names[0] for kind in KINDS.values() if kind.turns and kind.turns.lo > 1)
 """The names of features that consist of several turns, such as 'S-bend'."""
@@ -146,8 +147,9 @@ class Outline:
         """The largest radius in metres at which a bend of this road counts as a turn."""
         ends = (end for end in (self.starts, self.ends) if end)
         features = (self.each_turn, *(group.feature for group in self.groups), *ends)
-        radii = (feature.radius.lo for feature in features if feature.radius)
-        return max(USUALLY_WIDEST, WIDER * max(radii, default=0.0))
+        radii = [feature.radius for feature in features if feature.radius]
+        most = [WIDER_THAN_MOST * radius.hi for radius in radii if radius.hi < inf]
+        return max([USUALLY_WIDEST, *most, *(WIDER * radius.lo for radius in radii)])
 
     @property
     def names_all_turns(self) -> bool:

@@ -18,7 +18,7 @@ from roadgpt.brief.junctions import MAP, JunctionKind, Side
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, exactly, span
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.refusal import refused
-from roadgpt.brief.words import Kind, Sharpness, Size, Slope
+from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, Kind, Sharpness, Size, Slope
 from roadgpt.errors import BriefError
 
 KINDS = frozenset(get_args(Kind))
@@ -284,9 +284,10 @@ def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> Non
         amount = read_amount(value)
         if not amount.exact:
             raise BriefError(f"a map has one size, not '{value[:40]}'; write for example {MAP_SIZE}500")
-        if not 50 <= (amount.lo or 0) <= 10_000:
+        if not SMALLEST_MAP <= (amount.lo or 0) <= LARGEST_MAP:
             raise BriefError(
-                f"a map is 50 to 10000 m wide, not {value[:40]}; write for example {MAP_SIZE}500"
+                f"a map is {SMALLEST_MAP:g} to {LARGEST_MAP:g} m wide, not {value[:40]}; write for example "
+                f"{MAP_SIZE}500"
             )
         _set(fields, "map_size", amount.lo)
     elif word in WORDS:

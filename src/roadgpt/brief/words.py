@@ -139,6 +139,8 @@ MOTORWAY_GRADE = 5.0  # percent, up or down, at its steepest place
 
 LEAST_RADIUS = 14.326  # metres: 47 ft, the tightest turn of the SBFT competition
 USUAL_MAP = 250.0  # metres along one side, the default: the map of RoadGPT's thesis
+LONGEST_ROAD = 50_000.0  # metres
+SMALLEST_MAP, LARGEST_MAP = 50.0, 40_000.0  # metres along one side
 STEEPEST = 15.0  # percent, up or down: the system prompt of RoadGPT's thesis
 
 PERCENT_SLACK = 1.0  # percentage points, around a grade that was given as a number

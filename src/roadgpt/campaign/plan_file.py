@@ -19,6 +19,7 @@ from pydantic import (
     ValidationError,
 )
 
+from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
 from roadgpt.campaign.model import MOST_TESTS, PATIENCE, WITH_GOAL, WITHOUT_GOAL, CellBudget, Goal
 from roadgpt.campaign.plan import Plan, Seed
 from roadgpt.chat import ChatSettings
@@ -71,7 +72,7 @@ class _Strict(BaseModel):
 class WorldTable(_Strict):
     """The table ``[world]`` of a plan file, in the units of the command line."""
 
-    map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
+    map_size: Annotated[float, Field(ge=SMALLEST_MAP, le=LARGEST_MAP)] = USUAL_MAP
     lanes: Lanes = "1+1"
     lane_width: Annotated[float, Field(ge=2, le=10)] = 4.0
     lane_width_end: Annotated[float, Field(ge=2, le=10)] | None = None

@@ -37,7 +37,7 @@ from roadgpt.geometry import interpolate
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.nearness import Complex
 from roadgpt.road import Design
-from roadgpt.road.road import control_stations
+from roadgpt.road.road import MOST_CONTROL_POINTS, control_stations
 
 TRIES = 6  # mutations that are tried for one sketch, until one fits on the map
 ROUNDS = 3  # rounds of mutations that turn a draft into a wild one
@@ -113,8 +113,12 @@ def _driven_line(room: PlacedPlan, setting: VariationContext) -> Complex:
     """
     if not setting.is_interpolated:
         return room.line.z
-    between = len(control_stations(float(room.line.s[-1]))) - 1
-    points = walk(room.elements, FINER * between).z[::FINER]
+    knots, bends, _ = bends_of(room.elements)
+    stations = control_stations(room.line.s, np.interp(room.line.s, knots, bends, right=0.0))
+    if len(stations) < MOST_CONTROL_POINTS:
+        points = walk(room.elements, FINER * (len(stations) - 1)).z[::FINER]
+    else:  # unequally spaced
+        points = room.line.z[np.unique(np.round(stations / room.line.s[1]).astype(int))]
     x, y = interpolate(np.stack([points.real, points.imag], axis=1)).T
     return np.asarray(x + 1j * y)
 

@@ -56,7 +56,7 @@ _files = partial(Option, heading=Heading.FILES)
 # fmt: off
 WORLD = (
     _world("--map-size", "Side of the map, m. [default: 250, more if needed]",
-           measure(50, 10_000, "metres")),
+           measure(50, 40_000, "metres")),
     _judged("--speed-limit", "Speed limit, km/h.", measure(5, 300, "km/h"), 70, unit=3.6,
             key="speed_limit_kmh"),
     _judged("--oracle", "FAIL when more of the car than this is outside its lane: half, sbft (85 %), thesis "

@@ -217,7 +217,7 @@ def on_a_map(
     many metres the road was moved, and remarks. These are whole metres, so that the file's coordinates are
     those here less the movement, exactly but for the last digit where one is closer to 0 in the file.
     """
-    from roadgpt.brief.map_fit import LARGEST_MAP
+    from roadgpt.brief.words import LARGEST_MAP
     from roadgpt.check.extremes import lowest
     from roadgpt.check.ribbon import extent
     from roadgpt.check.sbft import SPLINE_REACH

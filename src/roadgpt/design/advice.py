@@ -7,12 +7,13 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from math import ceil, floor, inf, log10
+from typing import Any
 
 from roadgpt.brief import NoRoomError
-from roadgpt.brief.map_fit import LARGEST_MAP, ROUND_MAP, least_length
+from roadgpt.brief.map_fit import ROUND_MAP, least_length
 from roadgpt.brief.model import Amount, Brief
 from roadgpt.brief.outline import Outline
-from roadgpt.brief.words import ROAD
+from roadgpt.brief.words import LARGEST_MAP, ROAD
 from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.grade_correction import TOO_ABRUPT
 from roadgpt.road import World
@@ -30,12 +31,13 @@ LARGER = 1.3  # ratio of each map size tried to the one before
 FIRST_SIZES = 2  # map sizes that are tried before the largest, on which an open count of turns may not fit
 FEWEST_METRES = 30.0
 
-Fits = Callable[[Brief, World], bool]
-"""A function that returns whether a road for a Brief can be drafted with each of several seeds."""
+Trial = Callable[[Brief, World], Any]
+"""A function that drafts a road for a Brief with each of several seeds and returns the first search that
+failed; None if all found one. Its ``boxes`` are the sides in metres of squares around too large drafts."""
 
 
 def advice(
-    brief: Brief, outline: Outline, world: World, failed: Counter[str], boxes: Sequence[float], fits: Fits
+    brief: Brief, outline: Outline, world: World, failed: Counter[str], boxes: Sequence[float], trial: Trial
 ) -> str:
     """Returns one sentence that says which requirement could not be met, and what to do.
 
@@ -45,7 +47,7 @@ def advice(
     reason = main_reason(failed)
     wishes = _wishes_of(outline)
     if reason in FOR_ROOM:
-        found = _offer(brief, world, fits, roomier(world, boxes))
+        found = _offer(brief, world, trial, roomier(world, boxes))
         where = f"on a {world.site.map_size:g} m map" + (
             " without crossing" if reason == "over itself" else ""
         )
@@ -108,28 +110,28 @@ def roomier(world: World, boxes: Sequence[float]) -> float:
 
 
 @lru_cache(maxsize=64)
-def _offer(brief: Brief, world: World, fits: Fits, likely: float) -> str:
+def _offer(brief: Brief, world: World, trial: Trial, likely: float) -> str:
     """Returns advice for a Brief that does not fit on the map, as the end of a sentence.
 
     ``likely`` is the side in metres of a map that may be large enough.
     """
-    larger = larger_map(brief, world, fits, likely)
-    less = f"ask for {_less(brief, world, fits) or 'less'}"
+    larger = larger_map(brief, world, trial, likely)
+    less = f"ask for {_less(brief, world, trial) or 'less'}"
     return f"{less} or use --map-size {larger:g}" if larger else less
 
 
-def no_room(error: NoRoomError, world: World, fits: Fits) -> str:
+def no_room(error: NoRoomError, world: World, trial: Trial) -> str:
     """Returns the message for a road that does not fit on the map.
 
     If the message suggests a length or a map size, a road was drafted with it. The result is the message of
     ``error`` if no length of the road or of a straight is required, or if the road must have no turns.
-    ``fits`` tests whether roads can be drafted for a Brief on a map, as ``road_search.fits`` does.
+    ``trial`` is ``road_search.failed_trial``.
     """
     brief = error.brief
     if _asked(brief) is None or (brief.turns and brief.turns.hi == 0):
         return str(error)  # of a straight road, the longest is known
     metres = metres_of(brief, world)
-    found = _offer(brief, world, fits, LIKELY * metres)
+    found = _offer(brief, world, trial, LIKELY * metres)
     room = f"a map of {world.site.map_size:g} m has no room for"
     if brief.length is None:
         return f"{room} a straight of {_asked(brief):g} m and what else is asked for; {found}"
@@ -142,7 +144,7 @@ def metres_of(brief: Brief, world: World) -> float:
     return max(least_length(brief, world.limits.min_radius), said)
 
 
-def _less(brief: Brief, world: World, fits: Fits) -> str | None:
+def _less(brief: Brief, world: World, trial: Trial) -> str | None:
     """Returns, as text, the greatest length of the road that could be drafted; None if none could.
 
     If the Brief requires no length of the road, the text gives the length of its longest straight instead.
@@ -151,36 +153,39 @@ def _less(brief: Brief, world: World, fits: Fits) -> str | None:
     if asked is None:
         return None
     failed, share = 1.0, min(1.0, SIDES * world.site.map_size / asked) * SHORTER
-    while not fits(_scaled(brief, share), world):
+    while trial(_scaled(brief, share), world) is not None:
         failed, share = share, SHORTER * share
         if asked * share < FEWEST_METRES:
             return None
     for _ in range(HALVINGS):
         middle = (share + failed) / 2
-        share, failed = (middle, failed) if fits(_scaled(brief, middle), world) else (share, middle)
+        share, failed = (middle, failed) if trial(_scaled(brief, middle), world) is None else (share, middle)
     metres = _round(SURE * asked * share)
-    while not fits(_scaled(brief, metres / asked), world):
+    while trial(_scaled(brief, metres / asked), world) is not None:
         metres = _round(SHORTER * metres)
         if metres < FEWEST_METRES:
             return None
     return f"{metres:g} m" if brief.length else f"a straight of {metres:g} m"
 
 
-def larger_map(brief: Brief, world: World, fits: Fits, likely: float) -> float | None:
+def larger_map(brief: Brief, world: World, trial: Trial, likely: float) -> float | None:
     """Returns the side in metres of a larger map on which roads can be drafted; None if none was found.
 
     ``likely`` is the side in metres of a map that may be large enough, the first size to be tried.
     """
-    if likely > 2 * LARGEST_MAP or world.site.map_size == LARGEST_MAP:
-        return None
-    size = ceil(max(likely, world.site.map_size + ROUND_MAP) / ROUND_MAP) * ROUND_MAP
-    tried = 0
-    while size < LARGEST_MAP and not fits(brief, world.changed(map_size=size)):
+    largest = world.changed(map_size=LARGEST_MAP)
+    size, tried = max(likely, world.site.map_size + ROUND_MAP), 0
+    while world.site.map_size < LARGEST_MAP and likely <= 2 * LARGEST_MAP:
+        size = min(ceil(size / ROUND_MAP) * ROUND_MAP, LARGEST_MAP)
+        larger = world.changed(map_size=size)
+        failed = trial(brief, larger)
+        if failed is None:
+            return size
         tried += 1
-        if tried == FIRST_SIZES and not fits(brief, world.changed(map_size=LARGEST_MAP)):
-            return None  # no larger map would help either
-        size = ceil(LARGER * size / ROUND_MAP) * ROUND_MAP
-    return min(size, LARGEST_MAP)
+        if size == LARGEST_MAP or (tried == FIRST_SIZES and trial(brief, largest) is not None):
+            break  # no larger map would help either
+        size = max(LARGER * size, roomier(larger, failed.boxes))
+    return None
 
 
 def _round(metres: float) -> float:

@@ -4,7 +4,6 @@ lead-in | turn | joining straight | turn | required straight | turn | lead-out
 """
 
 from collections.abc import Sequence
-from itertools import pairwise
 from math import inf
 
 import numpy as np
@@ -25,9 +24,8 @@ from roadgpt.design.draw import (
     narrowed_turns,
     with_one_at_bound,
 )
-from roadgpt.design.sequence import TurnSequence, is_hairpin
+from roadgpt.design.sequence import TurnSequence
 from roadgpt.design.windows import Windows
-from roadgpt.road import World
 
 LEAD_MEAN = 26.0  # m by which a lead-in or lead-out exceeds its least length on average
 JOIN_MEAN = 16.0  # m by which a straight between turns exceeds its least length on average
@@ -61,23 +59,19 @@ def composed(order: TurnSequence, task: DraftTask) -> list[Element] | None:
         narrowed = with_one_at_bound(narrowed, order.turns, task)
     turns: list[Element | None] = list(drawn_turns(narrowed, task))
     elements: list[Element] = []
-    between = [is_hairpin(a) and is_hairpin(b) for a, b in pairwise(order.turns)]
-    legs = [False, *between, False][: len(order.gaps)]
+    legs = map(order.is_leg, range(len(order.gaps)))
     for before, gap, after, leg in zip([None, *turns], order.gaps, [*turns, None], legs, strict=True):
-        if leg and not gap and task.haste < CRAMPED:
-            elements.append(Element(free_straight(LEG, LEG_MEAN, task)))
-        else:
-            elements += gap_between(before, gap, after, task)
+        elements += gap_between(before, gap, after, task, leg)
         if after:
             elements.append(after)
     if outline.hills:
         elements = _with_hills(elements, outline.hills, task.rng)
-    length = _asked_length(outline, task.windows)
+    length = asked_length(outline, task.windows)
     whole = _with_length(elements, length, task) if length else elements
     if whole is None or (order.turns and any(group.feature.kind == "turn" for group in outline.groups)):
         return whole
     whole = _evened(whole, [wish for gap in order.gaps for wish in gap])
-    return _from_corner_to_corner(whole, task.world) if outline.turns.hi == 0 else whole
+    return _from_corner_to_corner(whole, task) if outline.turns.hi == 0 else whole
 
 
 def _evened(elements: list[Element], wishes: Sequence[Feature]) -> list[Element]:
@@ -100,14 +94,20 @@ def _evened(elements: list[Element], wishes: Sequence[Feature]) -> list[Element]
     ]
 
 
-def _from_corner_to_corner(elements: list[Element], world: World) -> list[Element]:
-    """Returns the straights of a road without turns, shortened if they do not fit on the map's diagonal."""
+def _from_corner_to_corner(elements: list[Element], task: DraftTask) -> list[Element]:
+    """Returns the straights of a road without turns, shortened if they do not fit on the map's diagonal;
+    unchanged, so that the road is too large for the map, if they would be shorter than required.
+    """
+    world, whole = task.world, sum(element.length for element in elements)
     longest = longest_straight(world.site.map_size, world.section.road_width) - ROUNDING
-    keep = longest / sum(element.length for element in elements)
-    return [element._replace(straight=min(keep, 1.0) * element.length) for element in elements]
+    keep = min(longest / whole, 1.0)
+    asked = [(whole, task.outline.length), *((each.length, each.required_length) for each in elements)]
+    if any(span and keep * length < span.lo for length, span in asked):
+        return elements
+    return [element._replace(straight=keep * element.length) for element in elements]
 
 
-def _asked_length(outline: Outline, windows: Windows) -> Range | None:
+def asked_length(outline: Outline, windows: Windows) -> Range | None:
     """Returns the range of lengths in metres that the road may have; None if any length will do.
 
     If a climb but no length is required, the range begins at the length that the climb needs at a moderate
@@ -122,13 +122,20 @@ def _asked_length(outline: Outline, windows: Windows) -> Range | None:
 
 
 def gap_between(
-    before: Element | None, wishes: Sequence[Feature], after: Element | None, task: DraftTask
+    before: Element | None,
+    wishes: Sequence[Feature],
+    after: Element | None,
+    task: DraftTask,
+    is_leg: bool = False,
 ) -> list[Element]:
     """Returns the straights between two turns, or between a turn and an end of the road.
 
-    ``before`` is None at the start, and ``after`` at the end; ``wishes`` are required here, in order.
+    ``before`` is None at the start, and ``after`` at the end; ``wishes`` are required here, in order. If
+    ``is_leg``, both turns are hairpins.
     """
     outline, windows, rng = task.outline, task.windows, task.rng
+    if is_leg and not wishes and task.haste < CRAMPED:
+        return [Element(free_straight(LEG, LEG_MEAN, task))]
     if wishes:
         few = outline.turns.hi <= 1 and len(wishes) == 1
         return _asked_gap(before, wishes, after, LONELY_MEAN if few else JOIN_MEAN, task)

@@ -17,6 +17,9 @@ LANES_DIFFER = (
     "have different numbers of lanes"
 )
 """The reason why a draft fails if a lane does not continue at a junction (rule ``unreachable``)."""
+RUN_TOGETHER = "two of its roads would meet where no junction is, and bridges cannot be built yet"
+"""The reason why a draft fails if two roads overlap outside junctions (rule ``conflicting_overlap``)."""
+REASONS = {"unreachable": LANES_DIFFER, "conflicting_overlap": RUN_TOGETHER}
 NUMBER = re.compile(r"\d[\d.]*")
 PLACE = re.compile(r"^at s = [\d.]+ m: | near \([^)]*\)")
 """Matches the place of a fault in a message; it is cut out, because the user never sees the draft."""
@@ -52,6 +55,6 @@ def first_accepted(
             if not findings:
                 return draft
             first = findings[0]
-            why = LANES_DIFFER if first.rule == "unreachable" else PLACE.sub("", first.sentence)
+            why = REASONS.get(first.rule) or PLACE.sub("", first.sentence)
             failed[reasons.setdefault(first.rule, why)] += 1
     return None

@@ -17,25 +17,27 @@ from roadgpt.brief.element import Element, Elements
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.ranges import Range
-from roadgpt.design.compose import NEAR_NUMBER, gap_between
+from roadgpt.design.compose import NEAR_NUMBER, asked_length, gap_between
 from roadgpt.design.draw import ANY_TURN, DraftTask, drawn_turn, hand_of, longest_turn, narrowed_turns
-from roadgpt.design.layout import COARSENESS, NEIGHBOURS, SPARE, MapPose, PlacedPlan, PlanLine, walk
+from roadgpt.design.layout import COARSENESS, SPARE, MapPose, PlacedPlan, PlanLine, meets, walk
 from roadgpt.design.sequence import TurnSequence, may_repeat_last_turn
 from roadgpt.geometry.curve import Array
-from roadgpt.geometry.nearness import Complex, meeting
+from roadgpt.geometry.nearness import Complex
 from roadgpt.road.road import CONTROL_SPACING, MOST_CONTROL_POINTS
 
 TRIED = 14  # candidates for each turn
-AHEAD = 45.0  # m straight on from the end of a turn that must be free
+AHEAD, FAR_AHEAD = 45.0, 400.0  # m straight on from the end of a turn that must be free: at least; at most
+LATE = 3.0  # haste for each part of the length that the turns to come are too long
 COARSE = 3.0  # m between the points that are compared with the border and the road
 MOST_TURNS = 400
 EXTRA = {"winding": (10.0, 70.0)}  # m by which straights between turns are longer than needed, on average
 EXTRA_OF_OTHERS = (30.0, 160.0)
 UNEVEN = (0.2, 1.8)  # factors on that average
 OFF_TIGHTEST = 1.2  # ratio of the least radius drawn to the least allowed
-OFF_BY_SPACING = 1.3  # metres added to the radius for each metre added between points of the spline
+OF_TIGHT = 0.7  # of the range of a radius with an upper limit: no more is kept off its lower end
+OFF_BY_SPACING = 0.6  # metres added to the radius for each metre added between points of the spline
 BULGE = 0.5  # m by which the walked line may differ from the road that is built
-DEAD_ENDS = 30  # after which an attempt is given up
+DEAD_ENDS = 20  # without progress, after which an attempt is given up
 LEAST_LEFT = 25.0  # m of road behind the last turn
 
 
@@ -66,15 +68,14 @@ class _Way(NamedTuple):
 def grown(order: TurnSequence, task: DraftTask) -> PlacedPlan | None:
     """Returns a road of the required length, drafted turn by turn; None if it found no room on the map.
 
-    Also returns None if no length is required, if there are no turns, or if a sum of all turning angles is
-    required.
+    Also returns None if there are no turns, or if a sum of all turning angles is required.
     """
-    asked = task.outline.length
-    if asked is None or asked.lo <= 0 or not order.turns or task.outline.turning:
+    asked = asked_length(task.outline, task.windows) or Range(0.0)
+    if not order.turns or task.outline.turning:
         return None
     near = asked.around(NEAR_NUMBER)
     low, high = near.lo + 1, min(near.hi - 1, 1.3 * near.lo)
-    target = low + (high - low) * (0.3 + 0.4 * task.rng.random())
+    target = low + (high - low) * (0.3 + 0.4 * task.rng.random()) if near.lo > 0 else 0.0
     return _Growth(order, task, target, asked).run()
 
 
@@ -102,12 +103,14 @@ class _Growth:
         return PlacedPlan(way.elements, walk(way.elements), place)
 
     def _grown(self, start: _Way) -> _Way | None:
-        """Returns the whole road; None after too many dead ends.
+        """Returns the whole road; None after too many dead ends without any progress.
 
-        If the road cannot be continued, the last turns are removed and others are tried.
+        If the road cannot be continued, the last turns are removed and others are tried; the longer without
+        progress, the more turns.
         """
         steps: list[tuple[_Way, Element | None]] = [(start, None)]
-        for back in range(1, DEAD_ENDS + 1):
+        most, stuck = 0, 0
+        while stuck < DEAD_ENDS:
             while (following := self._turn(len(steps) - 1, steps[-1][0].length)) is not None:
                 way, before = steps[-1]
                 step = self._step(way, before, *following, len(steps) - 1)
@@ -118,7 +121,8 @@ class _Growth:
                 whole = self._out(*steps[-1])
                 if whole is not None:
                     return whole
-            del steps[max(1, len(steps) - 1 - int(self.rng.integers(1, 3 + back))) :]
+            most, stuck = (len(steps), 0) if len(steps) > most else (most, stuck + 1)
+            del steps[max(1, len(steps) - 1 - int(self.rng.integers(1, 4 + stuck))) :]
         return None
 
     def _start(self) -> tuple[complex, complex]:
@@ -148,29 +152,36 @@ class _Growth:
         hand, degrees = hand_of(asked), asked.degrees or ANY_TURN
         if at >= len(self.order.turns) and before:
             hand = -1 if (before.turn > 0) != self.has_open_sides else 1
-        extra = self._extra(way.length, at)
+        extra, least = self._extra(way.length, at)
         for number in range(TRIED):
             if self.has_open_sides and number % 2 == 0:
                 hand = 1 if self.rng.random() < 0.5 else -1
             elif self.has_open_sides:
                 hand = -hand
-            haste = number / TRIED
-            angle = degrees.lo + self.rng.random() * (degrees.hi - degrees.lo)
+            haste = max(number / TRIED, least)
+            angle = degrees.lo + (1 - least) * self.rng.random() * (degrees.hi - degrees.lo)
             sided = replace(asked, side="left" if hand > 0 else "right")
             turn = drawn_turn(sided, angle, self.longest, self.task._replace(haste=haste))
-            gap = gap_between(before, wishes, turn, self.task._replace(haste=0.5 + haste / 2))
+            task = self.task._replace(haste=max(haste, 0.5 * (number > 0)))
+            gap = gap_between(before, wishes, turn, task, self.order.is_leg(at))
             elements = _stretched(gap, extra * (1 - haste) * self.rng.uniform(*UNEVEN))
+            if not self._is_on_map(way.end + way.heading * sum(element.length for element in elements)):
+                continue
             line = walk([*elements, turn])
-            if self._is_free(way, line, AHEAD):
+            if self._is_free(way, line, max(AHEAD, min(extra, FAR_AHEAD) * (1 - haste))):
                 return way.with_([*elements, turn], line), turn
         return None
 
-    def _extra(self, so_far: float, at: int) -> float:
-        """Returns by how many metres the straight before the next turn may be longer than needed."""
-        if self.more and self.outline.turns.lo <= len(self.order.turns):
-            return self.extra
+    def _extra(self, so_far: float, at: int) -> tuple[float, float]:
+        """Returns by how many metres the straight before the next turn may be longer than needed, and the
+        least haste, from 0 to 1, with which the required length can still be kept.
+        """
+        if self.more and self.outline.turns.hi == inf and self.outline.turns.lo <= len(self.order.turns):
+            return self.extra, 0.0
         turns = max(len(self.order.turns) - at, 0)
-        return max(self.target - so_far - turns * (self.longest / 2 + LEAST_LEFT), 0.0) / (turns + 1)
+        needed, left = turns * (self.longest / 2 + LEAST_LEFT), self.target - so_far
+        late = 1 - left / needed if needed and self.target else 0.0
+        return max(left - needed, 0.0) / (turns + 1), min(max(LATE * late, 0.0), 1.0)
 
     def _out(self, way: _Way, before: Element | None) -> _Way | None:
         """Returns the road with its last straight; None if there is no room for it."""
@@ -195,11 +206,12 @@ class _Growth:
         s = np.concatenate([s, line.s[-1:], line.s[-1] + on]) + way.length
         z = np.concatenate([z, line.z[-1:], line.z[-1] + on * (last / abs(last))])
         z = way.end + way.heading * z
-        border = self.world.section.road_width / 2 + EDGE + BULGE
-        low, high = border, self.world.site.map_size - border
-        if min(z.real.min(), z.imag.min()) < low or max(z.real.max(), z.imag.max()) > high:
-            return False
-        return not len(meeting(z, s, way.z, way.s, self.apart, NEIGHBOURS)[0])
+        return self._is_on_map(z) and not meets(z, s, way.z, way.s, self.apart)
+
+    def _is_on_map(self, z: Complex | complex) -> bool:
+        low = self.world.section.road_width / 2 + EDGE + BULGE
+        x_and_y = np.array([np.real(z), np.imag(z)])
+        return bool(x_and_y.min() >= low and x_and_y.max() <= self.world.site.map_size - low)
 
 
 def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:
@@ -217,11 +229,12 @@ def _roomy(turn: Feature, metres: float) -> Feature:
 
     The competition's files hold few points: on a road of 10 km, the spline has one every 20 m.
     """
-    if turn.radius is None or turn.radius.hi < inf:
+    if turn.radius is None or turn.radius.number is not None:
         return turn
     spacing = max(CONTROL_SPACING, metres / MOST_CONTROL_POINTS)
     least = turn.radius.lo * OFF_TIGHTEST + OFF_BY_SPACING * (spacing - CONTROL_SPACING)
-    return replace(turn, radius=Range(least))
+    low, high = turn.radius.lo, turn.radius.hi
+    return replace(turn, radius=Range(max(low, min(least, low + OF_TIGHT * (high - low))), high))
 
 
 def _has_open_sides(outline: Outline) -> bool:

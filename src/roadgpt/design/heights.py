@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import inf
+from math import copysign, inf
 
 import numpy as np
 
@@ -25,6 +25,7 @@ STEADY = 0.5  # probability that an element keeps the grade of the one before, i
 UNCLEAR = 0.2  # percentage points around the edge of flat, where rounding would decide
 ROLL = 60.0  # m, least distance for which a rolling road keeps its grade
 HILL = 34.0  # m: the shortest climb or fall of a hilly road
+LONG, SPREAD = 1500.0, 0.7  # m: hills of a longer road take this share of an equal part of it, or more
 HILL_GRADES = (4.0, 8.5)  # percent
 CREST = Range(2.5, 4.5)  # percent: climb of a straight before a bend of a hard road, and fall in the bend
 STEADY_SHARE = Range(0.75, 1.25)  # of the mean grade, on a road with hairpins
@@ -99,8 +100,9 @@ def _grades(
     if outline.hard and all(element.required_grade in (None, windows.base) for element in plan):
         return _crests(plan, windows, rng)
     if not windows.base and not any(element.required_grade for element in plan):
-        free = _steady_grades if _is_mountainous(outline) else _free_grades
-        return free(plan, windows, rng)
+        if _is_mountainous(outline):
+            return _steady_grades(plan, outline.climb, windows, rng)
+        return _free_grades(plan, windows, rng)
     out: list[float] = []
     last: tuple[Range | None, float] = (None, 0.0)
     for element, is_level in zip(plan, _are_level(plan, outline, windows), strict=True):
@@ -170,11 +172,15 @@ def _is_mountainous(outline: Outline) -> bool:
     return sum(group.lo for group in outline.groups if is_hairpin(group.feature)) > 1
 
 
-def _steady_grades(plan: Sequence[Element], windows: Windows, rng: np.random.Generator) -> list[float]:
-    """Returns grades that all climb or all fall, some steeper than others."""
+def _steady_grades(
+    plan: Sequence[Element], climb: Range | None, windows: Windows, rng: np.random.Generator
+) -> list[float]:
+    """Returns grades that all climb or all fall, some steeper than others, as the ``climb`` requires."""
     top = min(STEEP, windows.limit.hi)
     low = min(2 * GENTLE, top)
     way = float(rng.choice((-1, 1))) * (low + rng.random() * (top - low))
+    if climb and climb.lo * climb.hi > 0:
+        way = copysign(way, climb.lo)
     return [way * _between(STEADY_SHARE, rng) for _ in plan]
 
 
@@ -186,16 +192,18 @@ def _hilly(plan: Sequence[Element], hills: Range, rng: np.random.Generator) -> l
     out: list[list[Element]] = []
     sign, wanted, so_far = float(rng.choice((-1, 1))), 0, 0.0
     most = hills.hi if hills.hi < inf else hills.lo + 2
+    whole = sum(element.length for element in plan)
+    hill = max(HILL, SPREAD * whole / (most + 1)) if whole > LONG else HILL
     for element in plan:
         asked = element.required_grade
-        parts = 1 if element.turn or asked else max(1, int(element.length / HILL))
+        parts = 1 if element.turn or asked else max(1, int(element.length / hill))
         own: list[Element] = []
         for _ in range(parts):
             length = element.length / parts
             if asked and not (asked.lo < 0 < asked.hi):
                 way = float(np.sign(asked.lo + asked.hi))
                 wanted, sign, so_far = wanted + (way != sign and bool(out or own)), way or sign, 0.0
-            elif so_far >= HILL and wanted < most:
+            elif so_far >= hill and wanted < most:
                 wanted, sign, so_far = wanted + 1, -sign, 0.0
             so_far += length
             size = abs(_between(asked.around(0.0), rng)) if asked and 0 not in asked else None

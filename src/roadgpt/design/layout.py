@@ -22,11 +22,12 @@ from roadgpt.road import Design, Road, World, build
 STEP = 1.0  # m between points of the walked line
 COARSE = 3  # points of the walked line from one point of the test for overlap to the next
 NEIGHBOURS = 26.0  # m along the road: closer places cannot meet (half a circle of 14 m radius is 44 m)
+OF_WIDE = 1.2  # the same for wide roads, as a multiple of the distance that they keep
 COARSENESS = 0.6  # m by which coarse points may overestimate a distance
 SPARE = 0.7  # m between two carriageways, where there is no room for the shoulders
 DIAGONALS = np.array([45.0, 135.0, 225.0, 315.0])  # degrees: headings at which a straight has most room
 HEADINGS = 72  # number of headings that are tried if the first one does not fit on the map
-MOST_POINTS = 700  # a line with twice as many or more is thinned before its smallest box is computed
+MOST_POINTS = 700  # of a line with twice as many or more, only the convex hull is looked at
 LEAST_EDGE = 0.1  # m between ribbon and border of a moved road, for rounding and the bulge between samples
 BEYOND = 1.05  # m by which SBFT's spline may run on behind either end
 CENTIMETRE, HUNDREDTH = 100.0, 100.0  # per metre, per degree: starts are rounded to these units
@@ -100,7 +101,22 @@ def keeps_clear(line: PlanLine, world: World, with_shoulders: bool) -> bool:
     """
     apart = world.section.road_width + (world.section.shoulder if with_shoulders else SPARE) + COARSENESS
     s, z = line.s[::COARSE], line.z[::COARSE]
-    return not len(meeting(z, s, z, s, apart, NEIGHBOURS)[0])
+    return not meets(z, s, z, s, apart)
+
+
+def meets(z: Complex, s: Array, earlier: Complex, earlier_s: Array, apart: float) -> bool:
+    """Returns whether a part of a road comes closer than ``apart`` metres to an earlier part, or to itself.
+
+    The arguments are those of ``geometry.nearness.meeting``.
+    """
+    return bool(len(meeting(z, s, earlier, earlier_s, apart, neighbours(apart))[0]))
+
+
+def neighbours(apart: float) -> float:
+    """Returns the distance in metres along a road within which no two places can come closer to each other
+    than ``apart`` metres because the road comes back.
+    """
+    return max(NEIGHBOURS, OF_WIDE * apart)
 
 
 def place(line: PlanLine, world: World, rng: np.random.Generator, reach: float = 0.0) -> MapPose | None:
@@ -111,10 +127,11 @@ def place(line: PlanLine, world: World, rng: np.random.Generator, reach: float =
     half = max(world.section.road_width / 2, reach)
     room = world.site.map_size - 2 * half - 2 * EDGE
     turns = rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
-    chosen = first_that_fits(line.z, turns[:1], room)
+    z = outermost(line.z)
+    chosen = first_that_fits(z, turns[:1], room)
     if chosen is None:
         rng.shuffle(turns)
-        chosen = first_that_fits(line.z[::2], turns, room - 0.2)
+        chosen = first_that_fits(line.z[::2] if z is line.z else z, turns, room - 0.2)
     if chosen is None and not line.z.imag.any():
         chosen = first_that_fits(line.z, rng.permutation(DIAGONALS), room)
     if chosen is None:
@@ -124,6 +141,13 @@ def place(line: PlanLine, world: World, rng: np.random.Generator, reach: float =
     x = border - left + rng.random() * max(room - width, 0.0)
     y = border - low + rng.random() * max(room - height, 0.0)
     return MapPose(round(x, 2), round(y, 2), round(theta % 360, 1) % 360)
+
+
+def outermost(z: Complex) -> Complex:
+    """Returns the points of a long line that can touch a box around it; all points of a shorter line."""
+    if len(z) < 2 * MOST_POINTS or not z.imag.any():
+        return z
+    return np.asarray(z[ConvexHull(np.stack([z.real, z.imag], axis=1)).vertices])
 
 
 def drawn_ground(world: World, rng: np.random.Generator) -> float:
@@ -158,7 +182,7 @@ def first_that_fits(
 
 def smallest_box(line: PlanLine) -> float:
     """Returns the side in metres of the smallest square around the line, over headings 5 degrees apart."""
-    _, _, width, height = boxes(line.z[:: max(1, len(line.z) // MOST_POINTS)], np.arange(0.0, 90.0, 5.0))
+    _, _, width, height = boxes(outermost(line.z), np.arange(0.0, 90.0, 5.0))
     return float(np.maximum(width, height).min())
 
 

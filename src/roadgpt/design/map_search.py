@@ -57,6 +57,7 @@ class MapSearch:
         assert brief.map is not None
         self.brief, self.asked, self.world, self.rng = brief, brief.map, world, rng
         self.failed: Counter[str] = Counter()
+        self.boxes: list[float] = []
 
     def run(self, drafts: int = DRAFTS) -> MapDesign:
         """Returns the first of up to ``drafts`` drafts that is accepted.

@@ -61,14 +61,9 @@ def room_for_network(brief: Brief, world: World) -> float | None:
         failed = _failed(brief, world) if likely <= world.site.map_size else None
         if likely <= world.site.map_size and (failed is None or not failed.lacks_room):
             return None
-        return larger_map(brief, world, network_fits, likely)
+        return larger_map(brief, world, _failed, likely)
     except RoadGPTError:  # the design itself refuses what cannot be built, with its reason
         return None
-
-
-def network_fits(brief: Brief, world: World) -> bool:
-    """Returns whether each of two short searches with different seeds finds a network."""
-    return _failed(brief, world) is None
 
 
 def _failed(brief: Brief, world: World) -> NetworkSearch | MapSearch | None:

@@ -9,18 +9,19 @@ from collections import Counter
 from collections.abc import Sequence
 from itertools import accumulate, pairwise
 from math import inf
+from typing import TypeVar
 
 import numpy as np
 
 from roadgpt.brief.amount import at_least, between, exactly, span
 from roadgpt.brief.junction_check import check_junction
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
-from roadgpt.brief.map_fit import LARGEST_MAP
-from roadgpt.brief.model import Brief
+from roadgpt.brief.model import Brief, Clause
+from roadgpt.brief.words import LARGEST_MAP, ROAD_LENGTH_SLACK
 from roadgpt.check.route_promises import length_range
 from roadgpt.design.advice import main_reason
 from roadgpt.design.continuing import with_roads_continued
-from roadgpt.design.first_accepted import LANES_DIFFER, first_accepted
+from roadgpt.design.first_accepted import LANES_DIFFER, RUN_TOGETHER, first_accepted
 from roadgpt.design.junction_draft import drawn_junction
 from roadgpt.design.lane_draft import (
     SHORT_ROAD,
@@ -31,7 +32,7 @@ from roadgpt.design.lane_draft import (
     main_roads,
     with_side_of_change,
 )
-from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, drawn_ground, place
+from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, drawn_ground, place, smallest_box
 from roadgpt.design.network_heights import climbing
 from roadgpt.design.network_sketch import is_clear, sketched
 from roadgpt.design.road_search import DraftSearch
@@ -62,7 +63,7 @@ CURVED = 0.4  # share of roads without requirements that have a turn
 SHORTEST = 30.0  # m, least length of a road without requirements
 SHORTEST_WITH_LANES = 80.0  # m, where lanes end, begin or are changed
 TRIED_LARGER = 40  # drafts on the largest map, which show whether only room is missing
-SHORTEST_BETWEEN_RAMPS = 2 * BESIDE + 40.0  # m, where a ramp that leaves lies before one that joins
+BETWEEN_RAMPS = 40.0  # m, more than the roads beside it, of a road that begins and ends at a ramp
 ROOM = 360.0  # m of roads without requirements on the usual map, all together
 MOST = 130.0  # m, greatest length of one such road
 TURNING = 45.0  # m more for such a road with a turn
@@ -73,6 +74,7 @@ NO_LENGTH = "the length that was asked for leaves too little for the roads betwe
 FOR_ROOM = (TOO_LARGE, OVERLAPS, UNDRAFTED)
 """Reasons for failure that may disappear on a larger map."""
 
+Asked = TypeVar("Asked", Brief, Clause)
 Draft = tuple[DraftSearch, PlacedPlan]
 """The search for a road between junctions, and the plan of the road that it found."""
 
@@ -99,6 +101,7 @@ class NetworkSearch:
         self.others = Shapes().of(())
         check_lanes_across(brief.junctions, self.lanes)
         self.failed: Counter[str] = Counter()
+        self.boxes: list[float] = []
 
     def run(self, drafts: int | None = None) -> NetworkDesign:
         """Returns the first of up to ``drafts`` drafts that is accepted; None stands for the usual number.
@@ -202,7 +205,9 @@ class NetworkSearch:
         """
         places = self.brief.junctions
         n = number if places[number].kind == "diverge" else number + 1
-        asked = self.brief.roads[n].length
+        road = self.brief.roads[n]
+        beside = road.clauses[-1 if n == number else 0] if road.clauses else None
+        asked = (beside.length if beside and beside.kind == "straight" else None) or road.length
         if asked is None:
             return inf
         is_shared = 0 < n < len(places) and (places[n - 1].kind, places[n].kind) == ("merge", "diverge")
@@ -249,10 +254,11 @@ class NetworkSearch:
         The larger ``haste``, from 0 to 1, the shorter a road with several lanes on which none ends, begins or
         is changed.
         """
-        around = self.brief.junctions[max(n - 1, 0) : n + 1]
-        if [place.kind for place in around] == ["diverge", "merge"]:
-            return SHORTEST_BETWEEN_RAMPS
-        if any(place.kind in LANE_KINDS for place in around):
+        kinds = [place.kind for place in self.brief.junctions[max(n - 1, 0) : n + 1]]
+        if len(kinds) == 2 and all(kind in RAMPS for kind in kinds) and kinds != ["merge", "diverge"]:
+            # beside this road lie those that the route does not take
+            return BESIDE * ((kinds[0] == "diverge") + (kinds[1] == "merge")) + BETWEEN_RAMPS
+        if any(kind in LANE_KINDS for kind in kinds):
             return SHORTEST_WITH_LANES
         return max(SHORTEST_WITH_LANES * (1 - haste), SHORTEST) if self.lanes[n].forward > 1 else SHORTEST
 
@@ -341,6 +347,7 @@ class NetworkSearch:
         pose = place(line, self.world, self.rng, float(sketch.reach.max()))
         if pose is None:
             self.failed[TOO_LARGE] += 1
+            self.boxes.append(smallest_box(line))
         return pose
 
     def _advice(self) -> str:
@@ -362,6 +369,7 @@ class NetworkSearch:
             )
         advice = {
             LANES_DIFFER: "give the roads at each junction as many lanes",
+            RUN_TOGETHER: "change the turns or the lengths between the junctions",
             NO_LENGTH: "ask for a longer route",
         }
         what = advice.get(why, "leave something out")
@@ -370,12 +378,22 @@ class NetworkSearch:
 
 def _without_ramps(asked: Brief, n: int, places: Sequence[PlaceDesign]) -> Brief:
     """Returns the requirements for the part of the road number ``n`` that is not beside a lane of a ramp."""
-    around = [(place, "merge") for place in places[max(n - 1, 0) : n]]
-    around += [(place, "diverge") for place in places[n : n + 1]]
-    less = sum(
-        length_beside(place) for place, kind in around if isinstance(place, RampDesign) and place.kind == kind
-    )
-    if asked.length is None or not less:
+    around = [(place, "merge", 0) for place in places[max(n - 1, 0) : n]]
+    around += [(place, "diverge", -1) for place in places[n : n + 1]]
+    for passed, kind, end in around:
+        if isinstance(passed, RampDesign) and passed.kind == kind:
+            less, clauses = length_beside(passed), [*asked.clauses]
+            if clauses and clauses[end].kind == "straight":
+                clauses[end] = _shorter(clauses[end], less, ROAD_LENGTH_SLACK)
+            asked = _shorter(asked.model_copy(update={"clauses": tuple(clauses)}), less, 0.0)
+    return asked
+
+
+def _shorter(asked: Asked, less: float, slack: float) -> Asked:
+    """Returns the requirements with a length that is ``less`` metres shorter and differs by ``slack``."""
+    if asked.length is None:
         return asked
     low, high = span(asked.length).lo - less, span(asked.length).hi - less
+    if asked.length.exact:
+        low, high = low - slack * (low + less), high + slack * (high + less)
     return asked.model_copy(update={"length": between(max(low, 0.0), max(high, SHORT_ROAD))})

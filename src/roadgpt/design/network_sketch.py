@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.design.layout import PlanLine
-from roadgpt.geometry.nearness import Complex
+from roadgpt.geometry.nearness import Complex, meeting
 from roadgpt.network import JunctionDesign
 from roadgpt.network.arm_design import STUB
 from roadgpt.network.design import PlaceDesign
@@ -158,12 +158,15 @@ def _way(z: Complex) -> complex:
 def is_clear(sketch: NetworkSketch) -> bool:
     """Returns whether all parts of a sketch keep clear of each other, except where they meet."""
     z, part, reach = sketch.z, sketch.part, sketch.reach
+    start = np.zeros(len(z))  # the station of all points, so that each pair of points counts
     first = np.searchsorted(part, np.arange(len(sketch.near) + 1))
     may_meet = np.triu(_boxes_touch(sketch, first[:-1]) & ~sketch.joined)
     for number in np.flatnonzero(may_meet.any(axis=1)).tolist():
         own, those = slice(first[number], first[number + 1]), np.flatnonzero(may_meet[number][part])
-        dx, dy = z.real[own, None] - z.real[those], z.imag[own, None] - z.imag[those]
-        one, other = np.nonzero(dx * dx + dy * dy < (reach[own, None] + reach[those] + MARGIN) ** 2)
+        apart = reach[own].max() + reach[those].max() + MARGIN
+        one, other = meeting(z[own], start[own], z[those], start[those], apart, neighbours=-1.0)
+        is_near = np.abs(z[own][one] - z[those[other]]) < reach[own][one] + reach[those[other]] + MARGIN
+        one, other = one[is_near], other[is_near]
         if not sketch.near[number, part[those[other]]].all():
             return False
         here, there = z[own][one], z[those[other]]

@@ -7,6 +7,7 @@ draft, so that a later draft can meet requirements that leave little room.
 """
 
 from collections import Counter
+from collections.abc import Iterator
 from functools import lru_cache, partial
 
 import numpy as np
@@ -38,12 +39,16 @@ ALIKE = 120  # drafts like earlier roads, after which the least similar one is t
 ALIKE_STRAIGHTS = 12  # the same for a road without turns, where only the length can differ
 CHOOSY = 1 / 8  # share of these drafts during which roads that only continue an earlier one count as alike
 CROWDED = 400  # number of earlier roads above which this share is divided by three
-FINISHED = 100  # drafts that fit but fail a requirement or rule, after which the search is given up
+FINISHED, FEWEST_FINISHED = 100, 12  # drafts that fit and fail a rule, after which the search is given up
+FINISHED_METRES = 100_000.0  # m of such drafts; long roads take long to check
+MANY_TURNS, OF_MANY = 12, 5  # of a road that is mostly grown; of its other drafts in haste, one in five
+HASTIEST, HOPELESS = 4, 1.1  # drafts in the greatest haste; their least ratio to a map that is too small
 LAST_RESORTS = 20  # drafts like earlier roads that are finished if there are no others
-TRIALS = (1, 2, 3, 4)  # seeds with which ``fits`` tests whether there is room
+TRIALS = (1, 2, 3, 4)  # seeds with which ``failed_trial`` tests whether there is room
+MANY_METRES = 2000.0  # m, of a long road: the first two seeds do
 TRIED = 110  # drafts for each of these seeds
 GROWN = 20  # grown drafts of a road of required length, if no composed draft was accepted
-GROWN_ON_TRIAL = 5  # grown drafts in a search of fewer than ``DRAFTS`` drafts, as in ``fits``
+GROWN_ON_TRIAL = 5  # grown drafts in a search of fewer than ``DRAFTS`` drafts, as in ``failed_trial``
 NO_HASTE = 16  # drafts without haste
 SHOULDERS = 0.6  # share of the drafts in which the road must also keep off its own shoulders
 FAILED_ON_HEIGHTS = 40  # drafts that failed on their slopes, after which lower speed limits are tried
@@ -52,22 +57,18 @@ EASES_OF_BUMPS = (0.12, 0.08, 0.0)  # shares of comfort that are also tried wher
 
 
 @lru_cache(maxsize=64)  # the advice for a road that did not fit asks again
-def fits(brief: Brief, world: World) -> bool:
-    """Returns whether each of four searches, with different seeds and up to 110 drafts each, finds a road."""
-    try:
-        return _failed_trial(brief, world) is None
-    except DesignError:
-        return False
-
-
-def _failed_trial(brief: Brief, world: World) -> "DraftSearch | None":
-    """Returns the first of the searches of ``fits`` that finds no road; None if all find one.
+def failed_trial(brief: Brief, world: World) -> "DraftSearch | None":
+    """Returns the first of four searches (of a long road, of two), with different seeds and up to 110 drafts
+    each, that finds no road; None if all find one.
 
     Raises:
         DesignError: the requirements contradict each other.
     """
+    from roadgpt.design.advice import metres_of
+
     others = Shapes().of(())
-    searches = [DraftSearch(brief, world, others, np.random.default_rng(seed)) for seed in TRIALS]
+    seeds = TRIALS if metres_of(brief, world) < MANY_METRES else TRIALS[:2]
+    searches = (DraftSearch(brief, world, others, np.random.default_rng(seed)) for seed in seeds)
     return next((search for search in searches if search.found(TRIED) is None), None)
 
 
@@ -77,29 +78,18 @@ def sufficient_map(brief: Brief, world: World) -> float | None:
 
     Returns None if the World's map is large enough, or if no larger map would help.
     """
-    try:
-        check_room(normal(brief), world.site.map_size, world.limits.min_radius, world.section.road_width)
-        failed = _failed_trial(brief, world)
-    except NoRoomError:
-        return _larger_map(brief, world)
-    except RoadGPTError:
-        return None
-    return None if failed is None else _larger_map(brief, world, failed)
-
-
-def _larger_map(brief: Brief, world: World, failed: "DraftSearch | None" = None) -> float | None:
-    """Returns the side in metres of a map large enough for a road that the World's map has no room for.
-
-    Returns None if no larger map would help. ``failed`` is a search that found no road; None if none was
-    made, because the map is clearly too small.
-    """
     from roadgpt.design.advice import FOR_ROOM, LIKELY, larger_map, main_reason, metres_of, roomier
 
-    if failed is None:
-        return larger_map(brief, world, fits, LIKELY * metres_of(brief, world))
-    if main_reason(failed.failed) not in FOR_ROOM:
+    try:
+        check_room(normal(brief), world.site.map_size, world.limits.min_radius, world.section.road_width)
+        failed = failed_trial(brief, world)
+        if failed is None or main_reason(failed.failed) not in FOR_ROOM:
+            return None
+        return larger_map(brief, world, failed_trial, roomier(world, failed.boxes))
+    except NoRoomError:  # no draft is needed to see that it is too small
+        return larger_map(brief, world, failed_trial, LIKELY * metres_of(brief, world))
+    except RoadGPTError:
         return None
-    return larger_map(brief, world, fits, roomier(world, failed.boxes))
 
 
 class DraftSearch:
@@ -140,28 +130,22 @@ class DraftSearch:
         slower = self._speed_that_would_do()
         if slower:
             raise DesignError(too_fast(self.world, slower))
-        raise DesignError(advice(self.brief, self.outline, self.world, self.failed, self.boxes, fits))
+        raise DesignError(advice(self.brief, self.outline, self.world, self.failed, self.boxes, failed_trial))
 
     def found(self, drafts: int = DRAFTS) -> tuple[Design, Road] | None:
         """Returns the first of ``drafts`` drafts that is accepted, as in ``run``; None if none is accepted.
 
-        If the length of the road is required, additional drafts are grown turn by turn; a long road (see
-        ``is_long``) has only grown drafts.
+        See ``_hastes`` for the order of the drafts.
         """
         alike: list[tuple[float, int, PlacedPlan]] = []
         finished = 0
         most_alike = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS
         choosy = CHOOSY * most_alike / (3 if len(self.others.reach) > CROWDED else 1)
-        grows = is_long(self.outline)
-        growths = GROWN if drafts == DRAFTS else GROWN_ON_TRIAL
-        most = growths if grows else drafts + (growths if self.outline.length else 0)
-        for number in range(most):
-            haste = max(0.0, (number - NO_HASTE) / (drafts - NO_HASTE))
-            is_grown = grows or number >= drafts
-            drafted = self._growth() if is_grown else self._plan(haste)
+        for number, haste in enumerate(self._hastes(drafts)):
+            drafted = self._growth() if haste is None else self._plan(haste)
             if drafted is None:
                 continue
-            if not is_grown and not keeps_clear(drafted.line, self.world, number < SHOULDERS * drafts):
+            if haste is not None and not keeps_clear(drafted.line, self.world, number < SHOULDERS * drafts):
                 self.failed["over itself"] += 1
                 continue
             shape = shape_of(drafted.line.s, drafted.line.z)
@@ -176,7 +160,7 @@ class DraftSearch:
             found = self._finished(drafted)
             if found:
                 return found
-            if finished == FINISHED:
+            if finished >= max(FEWEST_FINISHED, min(FINISHED, FINISHED_METRES / drafted.line.s[-1])):
                 break
         for _, _, drafted in sorted(alike)[:LAST_RESORTS]:
             found = self._finished(drafted)
@@ -184,9 +168,37 @@ class DraftSearch:
                 return found
         return None
 
-    def _sequence(self, plain: bool, haste: float) -> tuple[TurnSequence, DraftTask]:
-        order = drawn_sequence(self.outline, self.rng, plain)
-        task = DraftTask(self.outline, self.windows, self.world, self.rng, haste)
+    def _hastes(self, drafts: int) -> Iterator[float | None]:
+        """Yields the haste of each of ``drafts`` drafts that are composed; None for drafts that are grown.
+
+        If the length of the road is required, drafts are grown after the composed ones; if it has many turns,
+        so that a composed draft hardly keeps clear of itself, before most of them. A long road (see
+        ``is_long``) has only grown drafts. No more are composed if the first ones are hopelessly too large.
+        """
+        hastes = [max(0.0, (n - NO_HASTE) / (drafts - NO_HASTE)) for n in range(drafts)]
+        growths = [None] * (GROWN if drafts == DRAFTS else GROWN_ON_TRIAL)
+        if is_long(self.outline):
+            hastes = []
+        yield from hastes[:NO_HASTE]
+        others = [] if self.failed["too large"] == NO_HASTE and self._is_hopeless() else hastes[NO_HASTE:]
+        if hastes and self.outline.turns.lo >= MANY_TURNS:
+            yield from (*growths, *others[::OF_MANY])
+        else:
+            yield from (*others, *(growths if self.outline.length else ()))
+
+    def _is_hopeless(self) -> bool:
+        """Returns whether drafts in the greatest haste, too, are too large for the map."""
+        rng = self.rng.spawn(1)[0]  # so that other drafts stay the same
+        drafts = [composed(*self._sequence(True, 1.0, rng)) for _ in range(HASTIEST)]
+        boxes = [smallest_box(walk(draft)) for draft in drafts if draft is not None]
+        return len(boxes) == HASTIEST and min(boxes) > HOPELESS * self.world.site.map_size
+
+    def _sequence(
+        self, plain: bool, haste: float, rng: np.random.Generator | None = None
+    ) -> tuple[TurnSequence, DraftTask]:
+        rng = rng or self.rng
+        order = drawn_sequence(self.outline, rng, plain)
+        task = DraftTask(self.outline, self.windows, self.world, rng, haste)
         if not self.outline.alike:
             return order, task
         from roadgpt.design.like_parts import with_like_parts
@@ -210,8 +222,8 @@ class DraftSearch:
         if self.failed_on_heights < FAILED_ON_HEIGHTS:
             return None
         limits = [kmh for kmh in SLOWER if kmh / 3.6 < self.world.limits.speed_limit]
-        worlds = [self.world.changed(speed_limit=kmh / 3.6) for kmh in limits]
-        return next((k for k, w in zip(limits, worlds, strict=True) if fits(self.brief, w)), None)
+        worlds = {kmh: self.world.changed(speed_limit=kmh / 3.6) for kmh in limits}
+        return next((kmh for kmh in limits if failed_trial(self.brief, worlds[kmh]) is None), None)
 
     def _plan(self, haste: float) -> PlacedPlan | None:
         elements = composed(*self._sequence(plain=haste > 0.5, haste=haste))

@@ -34,6 +34,10 @@ class TurnSequence(NamedTuple):
     turns: tuple[Feature, ...]
     gaps: tuple[tuple[Feature, ...], ...]
 
+    def is_leg(self, gap: int) -> bool:
+        """Returns whether a gap, counted from 0, lies between two hairpins or switchbacks."""
+        return 0 < gap < len(self.turns) and all(map(is_hairpin, self.turns[gap - 1 : gap + 1]))
+
 
 def is_hairpin(feature: Feature) -> bool:
     """Returns whether the description calls the turn a hairpin or a switchback."""

@@ -48,9 +48,7 @@ class Windows:
             self.base = overlap(self.base, self.limit) or self.base
             if self.base.lo > self.base.hi:
                 most = f"the {self.limit.hi + UNDER_LIMIT:.3g} % that it may have"
-                raise DesignError(
-                    f"a road of {outline.grade_range} % is steeper than {most}; change one of them"
-                )
+                raise DesignError(f"a road of {outline.grade_range} % is steeper than {most}; ask for less")
 
     def of(self, feature: Feature) -> Range | None:
         """Returns the range of grades for the design of a feature, a little inside its required range.
@@ -65,16 +63,14 @@ class Windows:
         own = overlap(feature.grade.drawn_in(MARGIN, MARGIN_SHARE), self.limit) or self.limit
         if own.lo > own.hi:
             most = f"the {self.limit.hi + UNDER_LIMIT:.3g} % that the road may have"
-            raise DesignError(
-                f"a {feature.name} of {feature.grade} % is steeper than {most}; change one of them"
-            )
+            raise DesignError(f"a {feature.name} of {feature.grade} % is steeper than {most}; ask for less")
         meets = overlap(own, self.base) or own
         if meets.lo <= meets.hi:
             return meets
         if own.hi <= self.allowed.lo or own.lo >= self.allowed.hi:
             whole = f"a road that is {self.way} all the way"
             raise DesignError(
-                f"a {feature.name} of {feature.grade} % contradicts {whole}; change one of them"
+                f"a {feature.name} of {feature.grade} % contradicts {whole}; leave one of them out"
             )
         return own
 

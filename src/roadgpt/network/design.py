@@ -30,6 +30,7 @@ from roadgpt.network.lane_design import RAMP_TAPER, RARE, LanesChangeDesign, Lan
 from roadgpt.network.pose import mirrored_point
 from roadgpt.road import Segment, read_design
 from roadgpt.road.design import (
+    MAX_SEGMENTS,
     OTHER_DIRECTION,
     Finite,
     FrozenFields,
@@ -76,7 +77,7 @@ Part = TypeVar("Part", bound=BaseModel)
 class JunctionDesign(FrozenFields):
     """A junction on the route."""
 
-    after: Annotated[int, Field(ge=1, le=500)]
+    after: Annotated[int, Field(ge=1, le=MAX_SEGMENTS)]
     """Number of segments of the route before the junction."""
     kind: PlainKind
     take: Take

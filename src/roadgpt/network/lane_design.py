@@ -15,7 +15,7 @@ from pydantic import Field, StrictBool
 
 from roadgpt.brief.junctions import LaneKind, Side
 from roadgpt.brief.words import MOST_LANES
-from roadgpt.road.design import OTHER_DIRECTION, FrozenFields
+from roadgpt.road.design import MAX_SEGMENTS, OTHER_DIRECTION, FrozenFields
 from roadgpt.road.profile import Marking
 
 ACCELERATION = 130.0  # m, length of an acceleration or deceleration lane without its taper
@@ -26,7 +26,7 @@ LEAST_WIDTH = 1.5  # m; where a lane is narrower than this, no car can drive in 
 
 RARE = {"divided": False, "edge": "solid"}
 """Fields of a LanesDesign that are written only if they differ from these values."""
-After = Annotated[int, Field(ge=1, le=500)]
+After = Annotated[int, Field(ge=1, le=MAX_SEGMENTS)]
 LaneLength = Annotated[float, Field(ge=10, le=2000, allow_inf_nan=False)]
 
 

@@ -21,7 +21,7 @@ from roadgpt.road.profile_json import ONLY_NETWORKS
 
 MAX_INCLINE = 15.0  # percent, RoadGPT's system prompt
 MAX_TURN = 70.0  # degrees in one segment, RoadGPT's system prompt
-MAX_SEGMENTS = 500
+MAX_SEGMENTS = 2000
 REQUIRED = ("distance", "direction", "incline", "turn_degrees")  # fields of each segment in a file
 FITS = 0.99  # a remark is made if less than this share of a given vertical radius can be built
 KEY = re.compile(r"road_segment(\d{1,6})")

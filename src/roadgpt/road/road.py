@@ -7,6 +7,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roadgpt.brief.words import LONGEST_ROAD
 from roadgpt.errors import UsageError
 from roadgpt.geometry import (
     CubicProfile,
@@ -25,8 +26,10 @@ from roadgpt.road.profile_json import ONLY_NETWORKS, profile_from_json, profile_
 
 CONTROL_SPACING = 2.0  # m, so that SBFT's spline keeps the designed radii (14.8 m nominal is accepted)
 MOST_CONTROL_POINTS = 500  # SBFT rule
-LONGEST = 50_000.0  # m, of a road
 FARTHEST = 25_000_000.0  # m, of a coordinate; Web Mercator reaches 20,037,508
+OF_RADIUS = 0.25  # spacing of the control points of a longer road, as a share of the radius of a bend
+WIDEST_SPACING = 4.0  # the same beside wide bends, as a multiple of the mean spacing
+GRADUALLY = 0.4  # m of spacing that is gained for each metre along the road
 SHORTEST = 1e-3  # m
 SHARPEST = 1e3  # 1/m, greatest curvature in a file
 STEEPEST = 10.0  # metres up or down for each metre forward
@@ -104,7 +107,7 @@ class Road:
         (x0, y0), (x1, y1) = self.plan.at(np.array([0.0, self.length]))
         ends = f"({x0:.1f}, {y0:.1f}, {low:.1f}) to ({x1:.1f}, {y1:.1f}, {high:.1f})"
         sharpest = float(np.abs(self.sample().curvature).max())
-        bends = f"radius {1 / sharpest:.1f} m or more" if sharpest > 1 / LONGEST else "straight"
+        bends = f"radius {1 / sharpest:.1f} m or more" if sharpest > 1 / LONGEST_ROAD else "straight"
         return f"Road({self.length:.1f} m, from {ends}, {bends})"
 
     @property
@@ -216,13 +219,13 @@ class Road:
 
         For a road that was not built from points, the control points are sampled from the centre line at most
         2 m apart, so that the spline preserves the radii of the road. The SBFT rules allow only 500 points;
-        on a road longer than 998 m, these points are farther apart.
+        on a road longer than 998 m, these points are farther apart, least so in tight bends.
         """
         if self.road_points is not None:
             return self.road_points
         if self.nodes is not None:
             return self.nodes[:, :2]
-        return self.plan.at(control_stations(self.length))
+        return self.plan.at(control_stations(self.sample().s, self.sample().curvature))
 
     def to_json(self) -> dict[str, Any]:
         """Returns the road as JSON data, from which ``Road.from_json`` restores it exactly."""
@@ -286,10 +289,23 @@ class Road:
             ) from error
 
 
-def control_stations(length: float) -> Array:
-    """Returns the stations in metres of a road's control points, for a road of this length in metres."""
-    count = min(MOST_CONTROL_POINTS, max(4, int(np.ceil(length / CONTROL_SPACING)) + 1))
-    return np.linspace(0.0, length, count)
+def control_stations(s: Array, curvature: Array) -> Array:
+    """Returns the stations in metres of a road's control points.
+
+    The road has the given curvatures in 1/m at stations ``s`` in metres, which are equally spaced.
+    """
+    length = float(s[-1])
+    count = max(4, int(np.ceil(length / CONTROL_SPACING)) + 1)
+    if count <= MOST_CONTROL_POINTS:
+        return np.linspace(0.0, length, count)
+    most = WIDEST_SPACING * length / MOST_CONTROL_POINTS
+    spacing = np.clip(OF_RADIUS / np.maximum(np.abs(curvature), 1e-9), CONTROL_SPACING, most)
+    # towards a bend, and away from it, points become closer or farther apart only gradually
+    ahead = np.minimum.accumulate(spacing - GRADUALLY * s) + GRADUALLY * s
+    behind = np.minimum.accumulate((spacing + GRADUALLY * s)[::-1])[::-1] - GRADUALLY * s
+    density = 1 / np.minimum(ahead, behind)
+    points = np.append(0.0, np.cumsum((density[1:] + density[:-1]) / 2))
+    return np.interp(np.linspace(0.0, points[-1], MOST_CONTROL_POINTS), points, s)
 
 
 def _profile(data: Mapping[str, Any]) -> tuple[ElevationProfile, list[float]]:
@@ -304,8 +320,8 @@ def _profile(data: Mapping[str, Any]) -> tuple[ElevationProfile, list[float]]:
 
 def check_length(length: float) -> None:
     """Raises UsageError if the length in plan of a road is below 1 mm or above 50 km."""
-    if not SHORTEST <= length <= LONGEST:
-        longest = f"give one of up to {LONGEST / 1000:g} km"
+    if not SHORTEST <= length <= LONGEST_ROAD:
+        longest = f"give one of up to {LONGEST_ROAD / 1000:g} km"
         raise UsageError(f"the road is {length:.7g} m long in plan; {longest}")
 
 

@@ -8,9 +8,10 @@ import numpy as np
 
 from roadgpt.geometry import wrap_angle
 from roadgpt.road.builder import STUB, build
-from roadgpt.road.design import MAX_SEGMENTS, Design, Direction, Segment
+from roadgpt.road.design import Design, Direction, Segment
 
 GROWS = 2  # segments with a reduced grade after the stub
+MOST_HOPS = 500
 HOP = 2.0  # m; a spline through points this dense keeps a radius of 14.8 m above SBFT's least, 14.33 m
 
 
@@ -24,7 +25,7 @@ def in_short_segments(design: Design) -> Design:
     """
     road = build(design)
     first = min(STUB, road.length / 2)
-    count = min(MAX_SEGMENTS, max(2, math.ceil((road.length - first) / HOP)))
+    count = min(MOST_HOPS, max(2, math.ceil((road.length - first) / HOP)))
     ways = np.diff(road.at(np.linspace(first, road.length, count + 1)), axis=0)
     distances = np.hypot(ways[:, 0], ways[:, 1])
     headings = np.arctan2(ways[:, 1], ways[:, 0])

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import AfterValidator, Field, model_serializer, model_validator
 
+from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.road.design import FrozenFields
@@ -63,7 +64,7 @@ Lanes = Annotated[str, AfterValidator(lanes_in)]
 class Site(FrozenFields):
     """The map on which roads are built: its size, its ground, and the friction of its asphalt."""
 
-    map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
+    map_size: Annotated[float, Field(ge=SMALLEST_MAP, le=LARGEST_MAP)] = USUAL_MAP
     """Side length of the square map in metres. One corner of the map is at (0, 0)."""
     friction: Annotated[float, Field(gt=FRICTIONS[0], le=FRICTIONS[1])] = 1.0
     """Friction coefficient: 1.0 for dry asphalt, about 0.6 wet, 0.35 on snow, 0.1 on ice.

@@ -20,7 +20,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.chat import Meter, ReplyError, counting
 from roadgpt.check import inspect, rules_of
 from roadgpt.design import check_designer, designer_of
-from roadgpt.design.road_search import fits
+from roadgpt.design.road_search import failed_trial
 from roadgpt.design.room import world_for
 from roadgpt.drive import Drive, refuse_ignored, simulate
 from roadgpt.drive.isolation import driver_of
@@ -129,7 +129,7 @@ def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Mete
         except NoRoomError as error:
             from roadgpt.design.advice import no_room
 
-            raise BriefError(no_room(error, world, fits)) from error
+            raise BriefError(no_room(error, world, failed_trial)) from error
 
 
 def prove(

@@ -2,11 +2,11 @@
 
 Source: the SBFT competition's rule against roads that cross themselves. The surface is divided into quads
 about 1 m long. A quad that is not convex shows that the surface folds: the radius of the bend is smaller than
-half the road width. Without folds, quads that are close together along the road cannot overlap (Schur's
-comparison theorem), so only quads farther apart along the road are compared. The curved edge of the road
-bulges slightly beyond the straight edges of the quads, so the gap between two quads must be more than twice
-this bulge. Where quads nearly touch, the competition's own quads are checked as well, in both driving
-directions, because the competition's spline may run up to a metre beyond the last point.
+half the road width. Without folds, quads that are closer together along the road than half a circle of the
+tightest radius cannot overlap (Schur's comparison theorem), so only quads farther apart are compared. The
+curved edge of the road bulges slightly beyond the straight edges of the quads, so the gap between two quads
+must be more than twice this bulge. Where quads nearly touch, the competition's own quads are checked as well,
+in both driving directions, because the competition's spline may run up to a metre beyond the last point.
 """
 
 import numpy as np
@@ -16,6 +16,8 @@ from roadgpt.check.finding import Finding
 from roadgpt.check.ribbon import bulge, gaps, is_convex, near_pairs, quads_of, sides
 from roadgpt.check.sbft import SPLINE_REACH, edges, keeps_clear, splines
 from roadgpt.road import Road, World
+
+SURELY = 0.9  # of the tightest radius: between the samples, a bend may be a little tighter
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
@@ -40,9 +42,13 @@ def overlap_with_itself(road: Road, world: World) -> tuple[tuple[int, str] | Non
         return (int(folded[0]), "the road folds onto itself; widen the bend"), 0, 0.0
     slack = 2 * bulge(samples, offsets)
     narrowest = min(offsets.left.min(), -offsets.right.max())
-    half_turn = np.pi * narrowest / max(float(samples.s[1] - samples.s[0]), 1e-9)
+    tightest = 1 / max(float(np.abs(samples.curvature).max()), 1e-9)
+    radius = SURELY * tightest
+    if radius < max(offsets.left.max(), -offsets.right.min()):
+        radius = narrowest  # as the surface does not fold, no bend is tighter
+    half_turn = np.pi * radius / max(float(samples.s[1] - samples.s[0]), 1e-9)
     nearest = (np.inf, 0)
-    for i, j in near_pairs(quads, reach=SPLINE_REACH, apart=max(2, int(half_turn))):
+    for i, j in near_pairs(quads, reach=SPLINE_REACH, apart=max(2, int(min(half_turn, len(quads))))):
         gap = gaps(quads, i, j)
         lies_over = gap <= slack
         if lies_over.any():

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.design.fit.limits import Aim
-from roadgpt.design.layout import NEIGHBOURS
+from roadgpt.design.layout import neighbours
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.nearness import Complex, Indices, meeting
 from roadgpt.road import Segment
@@ -204,7 +204,7 @@ def _meeting(z: Complex, lengths: Array, aim: Aim) -> tuple[Indices, Indices]:
     s = np.concatenate([[0.0], np.cumsum((lengths / count)[owner])])[::SPARSE]
     moved = np.concatenate([[0], np.cumsum(aim.free[owner])])[::SPARSE]
     points, apart = z[::SPARSE], aim.world.section.road_width + aim.margins.clear
-    other, one = meeting(points, s, points, s, apart, NEIGHBOURS)
+    other, one = meeting(points, s, points, s, apart, neighbours(apart))
     free = moved[other] > moved[one]
     return SPARSE * one[free], SPARSE * other[free]
 

@@ -10,12 +10,13 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from roadgpt.brief.words import LONGEST_ROAD
 from roadgpt.errors import UsageError
 from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.elevation import Cubic
 from roadgpt.road.opendrive.numbers import number
-from roadgpt.road.road import LONGEST, check_length
+from roadgpt.road.road import check_length
 
 KNOWN = ("line", "arc", "spiral", "poly3", "paramPoly3")
 SHORTEST = 1e-3  # m; shorter elements are merged with the previous ones
@@ -125,7 +126,7 @@ def reference_line(road: Element) -> list[GeometryElement]:
     kept = [_element(node) for node in _long_enough(nodes)]
     if not kept:
         raise UsageError("its <planView> has no geometry; add the reference line")
-    if abs(kept[0].s) > LONGEST:
+    if abs(kept[0].s) > LONGEST_ROAD:
         raise UsageError(f"its line begins at s = {kept[0].s:g}; let it begin at 0")
     out = []
     for each, following in pairwise(kept):
