@@ -9,10 +9,13 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
+from click.testing import CliRunner, Result
 from hypothesis import settings
 
+from hints import HintCollector
 from named_files import watch_commands
 from roadgpt import provenance
 from roadgpt.campaign.workers.in_process import InProcess
@@ -76,3 +79,22 @@ def no_watch_is_left() -> Iterator[None]:
     while left := [each.name for each in {*threading.enumerate()} - before if each.name in WATCHES]:
         assert time.monotonic() < due, f"this test leaves {', '.join(left)}"
         time.sleep(0.02)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def hints(tmp_path_factory: pytest.TempPathFactory) -> Iterator[HintCollector]:
+    """Each command line that a command prints in any test is typed, one of each shape in all processes."""
+    base = tmp_path_factory.getbasetemp()
+    seen = (base.parent if os.environ.get("PYTEST_XDIST_WORKER") else base) / "hints"
+    seen.mkdir(exist_ok=True)
+    found, invoke = HintCollector(seen, base), CliRunner.invoke
+
+    def looked_at(self: CliRunner, cli: Any, args: Any = None, *more: Any, **rest: Any) -> Result:
+        result = invoke(self, cli, args, *more, **rest)
+        if args is not None and not isinstance(args, str):
+            found.look([str(word) for word in args], result)
+        return result
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(CliRunner, "invoke", looked_at)
+        yield found

@@ -65,6 +65,12 @@ class GivenUpError(RoadGPTError):
         return f"{self.why}; {self.again}"
 
 
+class GateError(RoadGPTError):
+    """The results do not meet what the user demands with ``--fail-on`` or ``--baseline``."""
+
+    exit_status = 6
+
+
 class PartError(UsageError):
     """A plug-in cannot be loaded, or no installed package registers a plug-in of the requested name."""
 
@@ -123,6 +129,11 @@ def explained(kind: type[RoadGPTError], what: str, advice: str) -> Iterator[None
         yield
     except OSError as error:
         raise kind(f"{what}: {error.strerror or error}; {advice}") from error
+
+
+def command_line(*words: object) -> str:
+    """Returns a command that can be typed in the present folder; in messages it follows a colon, and ends."""
+    return shlex.join(["roadgpt", *map(str, words)])
 
 
 def to_install(extra: str) -> str:

@@ -164,7 +164,8 @@ def test_a_driver_that_was_named_by_a_relative_path_is_named_so_again(
     name = str(tmp_path / "own.py:Mine") if name == "whole" else name
     result = invoke(*words, "--driver", name)
     assert result.exit_code == 0, result.output
-    assert "is driven by own.py:Mine, not by" in invoke(*words, "--driver", "own.py:Other").stderr
+    mine = tmp_path / "own.py:Mine"
+    assert f"is driven by {mine}, not by" in invoke(*words, "--driver", "own.py:Other").stderr
 
 
 def test_a_driver_that_is_gone_is_told_and_has_not_failed(

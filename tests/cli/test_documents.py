@@ -6,6 +6,8 @@ import importlib.util
 import json
 import os
 import re
+import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,9 +15,10 @@ from pathlib import Path
 
 import click
 import pytest
-from click.testing import CliRunner
+from click.testing import CliRunner, Result
 
 import roadgpt
+from roadgpt import provenance
 from roadgpt.brief.feasible import check
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
@@ -53,6 +56,41 @@ def test_the_driver_in_the_docs_drives(tmp_path: Path, monkeypatch: pytest.Monke
     Path("road.json").write_text(json.dumps([[60, 100], [100, 100], [130, 110], [150, 140]]))
     result = CliRunner().invoke(app, ["drive", "road.json", "--driver", "my_driver.py:MyDriver", "--json"])
     assert json.loads(result.stdout)["test_outcome"] == "PASS"
+
+
+@pytest.mark.usefixtures("no_workers")
+def test_the_workflow_for_continuous_integration_works_as_printed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page = "docs/how-to/continuous-integration.md"
+    (workflow,), (prepared,) = blocks(page, "yaml"), blocks(page, "sh")
+    steps = pytest.importorskip("yaml").safe_load(workflow)["jobs"]["drive"]["steps"]
+    drive, campaign = [step["run"] for step in steps if step.get("run", "").startswith("roadgpt")]
+    (code,) = blocks("docs/how-to/own-driver.md", "python")
+    monkeypatch.chdir(tmp_path)
+
+    def typed(line: str) -> Result:
+        provenance.CODE.forget()
+        line = re.sub(r"-n \d+", "-n 1", line.replace("${{ github.run_number }}", "17"))
+        return CliRunner().invoke(app, shlex.split(line)[1:])
+
+    Path("my_driver.py").write_text(code)
+    for line in prepared.splitlines():
+        assert not line.startswith("roadgpt") or typed(line).exit_code == 0, line
+    passed = typed(drive)
+    assert passed.exit_code == 0, passed.output
+    assert "1 of 1 road compared with baseline\n" in passed.stdout
+    shutil.rmtree("now")
+    Path("my_driver.py").write_text(code.replace("30 / 3.6", "60 / 3.6"))
+    failed = typed(drive)
+    assert failed.exit_code == 6
+    (told,) = [line for line in failed.stderr.splitlines() if "driven road" in line]
+    for one, five in (("1 of 1 driven road", "5 of 5 driven roads"), ("1 road worse", "5 roads worse")):
+        told = told.replace(one, five)
+    assert f"\n{told}, ...\n" in (ROOT / page).read_text(encoding="utf-8")
+    assert typed(campaign).exit_code == 0
+    assert Path("roads.xml").is_file()
+    assert Path("new.xml").is_file()
 
 
 def test_the_rule_in_the_docs_objects_to_a_straight_road() -> None:
@@ -143,7 +181,7 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     from roadgpt.chat.providers.openai import MOST_REQUESTS
     from roadgpt.drive.drive import UNPACKED
     from roadgpt.drive.driver_guard import BEFORE_START, ONE_ANSWER, WHOLE_DRIVE
-    from roadgpt.errors import ChatError, GivenUpError
+    from roadgpt.errors import ChatError, GateError, GivenUpError
     from roadgpt.network.source import LARGEST
     from roadgpt.report.overview import MOST_PAGES, PER_PAGE
     from roadgpt.road.design import MAX_SEGMENTS
@@ -176,7 +214,7 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     statuses = {int(status) for status in re.findall(r"^\| (\d+) \| [^\d]", text, re.MULTILINE)}
     signals = {128 + signal.SIGINT, 128 + signal.SIGTERM}
     stopped = {ChatError.exit_status, GivenUpError.exit_status, cli_app.NO_READER, *signals}
-    assert statuses == {0, 2, 3, *stopped, cli_app.REFUSED, cli_app.INTERNAL}
+    assert statuses == {0, 2, 3, GateError.exit_status, *stopped, cli_app.REFUSED, cli_app.INTERNAL}
 
 
 def test_the_columns_of_results_in_the_docs_are_those_of_the_table() -> None:

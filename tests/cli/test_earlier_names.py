@@ -147,10 +147,6 @@ def test_options_of_files_and_of_tests_are_not_mixed(folder: Path) -> None:
         (["drive", "--again", "c", "1", "--friction", "0.5"], "leave out --friction"),
         (["drive", "--again", "c", "1", "--seed", "5"], "leave out --seed"),
         (
-            ["drive", "road.json", "--out", "x"],
-            "--out is for tests of a campaign, which are driven with --again",
-        ),
-        (
             ["drive", "road.json", "--worst"],
             "--worst is for tests of a campaign, which are driven with --again",
         ),

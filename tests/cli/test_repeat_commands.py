@@ -14,6 +14,7 @@ from roadgpt.cli import app
 from roadgpt.cli.options import CHAT, SETUP, WORLD, world_of
 from roadgpt.cli.repeat_commands import replay_lines
 from roadgpt.cli.summary import show
+from roadgpt.drive.loading import absolute_spec
 from roadgpt.road import CrossSection, Limits, Road, Site, World
 from roadgpt.run import Request, Run, Setup, prove, write_run
 from run.doubles import folder_of
@@ -94,14 +95,18 @@ def test_the_command_line_reads_from_the_lines_what_the_run_was_made_with(
     assert (params["words"], params["roads"], params["seed"]) == ((words,), 4, 5)
     assert world_of(params) == world
     assert params["no_drive"] is not setup.drives
-    assert all(params[flag.field] == getattr(setup, flag.field) for flag in SETUP)
+    driver = absolute_spec(setup.driver, Path.cwd())
+    assert {flag.field: params[flag.field] for flag in SETUP} == {
+        flag.field: driver if flag.field == "driver" else getattr(setup, flag.field) for flag in SETUP
+    }
     assert len(lines) == 1 + setup.drives
     for line in lines[1:]:
         params = parsed(line)
         assert (params["files"], params["seed"]) == ((str(PLACE / "road.json"),), 11)
         assert world_of(params) == world
-        for field in ("driver", "simulator", "rules", "keep_driving"):
+        for field in ("simulator", "rules", "keep_driving"):
             assert params[field] == getattr(setup, field)
+        assert params["driver"] == absolute_spec(setup.driver, Path.cwd())
 
 
 def test_the_defaults_of_the_options_are_those_of_world_and_setup() -> None:

@@ -359,16 +359,13 @@ def test_show_of_a_campaign_tells_the_cause_of_a_failure() -> None:
 
 
 @pytest.mark.parametrize("command", ["drive", "check"])
-def test_the_folder_of_a_campaign_is_answered_with_its_roads(command: str) -> None:
-    invoke(WORDS, "--seed", "7", "--no-drive", "--no-plot", "--out", "here")
-    result = CliRunner().invoke(app, [command, "here"])
-    assert result.exit_code == 2
-    assert (
-        result.stderr
-        == f"roadgpt: here is a folder of runs; give the runs themselves: {Path('here', 'runs')}/*\n"
-    )
-    assert result.stdout == ""
-    assert CliRunner().invoke(app, [command, "here/runs/0001"]).exit_code == 0
+def test_the_folder_of_a_campaign_stands_for_its_roads(command: str) -> None:
+    invoke(WORDS, "-n", "2", "--seed", "7", "--no-drive", "--no-plot", "--out", "here")
+    result = CliRunner().invoke(app, [command, "here", "--json"])
+    rows = [json.loads(line) for line in result.stdout.splitlines()]
+    assert [row["file"] for row in rows] == ["here/1", "here/2"]
+    single = json.loads(CliRunner().invoke(app, [command, "here/runs/0002", "--json"]).stdout)
+    assert {**rows[1], "file": "", "seconds": 0} == {**single, "file": "", "seconds": 0}
 
 
 def test_pictures_of_a_campaign_of_one_road_are_of_that_road_and_of_more_are_refused() -> None:

@@ -1,3 +1,5 @@
+from collections.abc import Callable
+
 from roadgpt.campaign.single_test import Allowance
 from roadgpt.chat import ChatSettings, Spent
 
@@ -34,14 +36,15 @@ class BudgetAllocator:
             self._spent[0] += spent.usage.total
             self._spent[1] += spent.cost or 0.0
 
-    def sentence(self, folder: object) -> str:
-        """Returns a message that says which limit was reached and how to continue the campaign."""
+    def sentence(self, to_resume: Callable[..., str]) -> str:
+        """Returns a message that says which limit was reached, and how to go on with twice this limit;
+        ``to_resume`` returns the command that continues the campaign, with further options."""
         tokens, cost = self._limits
-        limit = (
-            f"{cost:g} USD" if tokens is None or (cost and self.share().cost == 0) else f"{tokens:,} tokens"
-        )
+        is_cost = tokens is None or (cost is not None and self.share().cost == 0)
+        limit = f"{cost:g} USD" if is_cost else f"{tokens:,} tokens"
+        more = ("--max-cost", f"{2 * (cost or 0):g}") if is_cost else ("--max-tokens", 2 * (tokens or 0))
         so_far = f"{self._spent[0]:,.0f} tokens and {self._spent[1]:.4f} USD are spent"
         return (
             f"the limit of {limit} leaves no room for the next question ({so_far}); "
-            f"continue with: roadgpt resume {folder} and a higher --max-cost or --max-tokens"
+            f"continue with a higher one, such as: {to_resume(*more)}"
         )

@@ -13,7 +13,7 @@ from roadgpt.campaign.record import STORE, Record, no_tests
 from roadgpt.campaign.run_folder import RunFolder, finished_run
 from roadgpt.errors import UsageError
 from roadgpt.road import Road
-from roadgpt.run import Request, Run, read_run
+from roadgpt.run import Request, Run, Setup, read_run
 from roadgpt.run.atomic import is_locked
 from roadgpt.run.card import CARD, read_card
 from roadgpt.run.folder import RUNS, finished, is_run, run_folder
@@ -41,6 +41,12 @@ def open_record(folder: Path) -> Record:
     if not has_tests(folder) and not is_run(folder):
         raise no_tests(folder)
     return FolderRecord(folder)
+
+
+def setups_of(folder: Path) -> list[Setup]:
+    """Returns the Setup of each cell of a campaign, a folder of runs or a run; see ``open_record``."""
+    with open_record(folder) as record:
+        return [cell.request.setup for cell in record.cells()]
 
 
 class FolderRecord(FolderStore, Record):

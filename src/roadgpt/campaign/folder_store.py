@@ -47,12 +47,11 @@ class FolderStore(Tables):
             self.add_batch(cell, number - 1, number, [made])
         super().keep([(cell, one) for one in ended.values()], None, (), {})
 
-    @property
-    def how_to_continue(self) -> str:
-        """The end of an error message: how to continue the campaign."""
+    def to_resume(self, *more: object) -> str:
+        """Returns the command that continues the tests, with further options."""
         if all(each.folder == self.folder for each in self._folders.values()):
-            return super().how_to_continue
-        return f"continue with the same command and --out {self.folder}"
+            return super().to_resume(*more)
+        return " ".join(map(str, ("the same command with --out", self.folder, *more)))
 
     def names(self) -> list[str]:
         """Returns the names of all cells."""

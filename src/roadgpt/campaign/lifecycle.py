@@ -28,7 +28,7 @@ from roadgpt.chat.config import key_for
 from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored
 from roadgpt.drive.permission import require_permission
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, command_line
 from roadgpt.road import World
 from roadgpt.run import Draw, brief_of
 from roadgpt.run.atomic import LOCK, alone_in, is_new, refuse_links, set_aside, sweep
@@ -127,7 +127,7 @@ def _same(plan: Plan, folder: Path, versions: dict[str, Versions]) -> None:
             raise UsageError(
                 f"{folder} holds another campaign (different {', '.join(other)}); "
                 "name another folder, add --again to make all its tests anew, "
-                f"or resume it as it is: roadgpt resume {folder}"
+                f"or resume it as it is: {store.to_resume()}"
             )
         store.refuse_changed(versions)
         store.set_plan(plan.model_dump_json())
@@ -182,13 +182,13 @@ def work(
             _admit(plan)
         store.refuse_changed(versions_now(plan.requests(), loads=not is_finished))
         if not is_finished:
-            with refusals(folder):
+            with refusals(folder, store):
                 _sweep(folder, store)
                 setups = tuple(dict.fromkeys(request.setup for request, _ in plan.requests()))
                 staff = WorkerConfig(workers, WorkerSetup(setups), plan.patience, folder / LOG, address)
                 yield from Scheduler(store, staff, kind, plan.budget.tests, plan.chat).run()
         if not is_finished or not all((folder / name).is_file() for name in (RESULTS, CELLS)):
-            with refusals(folder):
+            with refusals(folder, store):
                 write_tables(store, folder)
                 store.finish()
 
@@ -204,7 +204,7 @@ def _make_runs(folder: Path, chat: ChatSettings | None, draw: Draw | None, again
     if not request.words:
         raise UsageError(
             f"the roads in {folder} were not made from a description, so nothing can be resumed; "
-            f"roadgpt show {folder} shows them"
+            f"to see them: {command_line('show', folder)}"
         )
     setup = request.setup if chat is None else request.setup.model_copy(update={"chat": chat})
     require_permission(setup.driver)

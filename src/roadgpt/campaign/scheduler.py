@@ -225,7 +225,7 @@ class Scheduler:
         one = self._underfunded.pop(0)
         everything = self._allocator.share()
         if one.task.allowance == everything:
-            self._error = BudgetError(self._allocator.sentence(self._store.folder))
+            self._error = BudgetError(self._allocator.sentence(self._store.to_resume))
             return
         self._hand_out(one.schedule, [one.task], everything)
 
@@ -263,7 +263,7 @@ class Scheduler:
             self._store.reopen(lost.schedule.cell.name, lost.task.number, lost.task.batch)
         self.progress.outcomes["ERROR"] -= len(self._losses.lost)
         reason = ended.result.description
-        self._error = self._losses.given_up(reason, f"fix it and {self._store.how_to_continue}")
+        self._error = self._losses.given_up(reason, "fix it and continue")
 
     def _is_due(self) -> bool:
         waited = time.monotonic() - (self._oldest if self._pending else self._looked)

@@ -41,7 +41,8 @@ from roadgpt.campaign.rows import (
 from roadgpt.campaign.single_test import FinishedTest, Task
 from roadgpt.campaign.store_check import reading_store
 from roadgpt.chat import Spent
-from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.errors import RoadGPTError, UsageError, command_line
+from roadgpt.run.model import permissions
 
 SCHEMA = """
 CREATE TABLE meta(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -202,15 +203,15 @@ class Tables:
         tests, other = (self.query(sql + table)[0] for table in ("tests", "sittings"))
         return tests[0] + other[0], tests[1] + other[1]
 
-    @property
-    def how_to_continue(self) -> str:
-        """The end of an error message: how to continue the campaign."""
-        return f"continue with: roadgpt resume {self.folder}"
+    def to_resume(self, *more: object) -> str:
+        """Returns the command that continues the campaign, with further options."""
+        permitted = permissions([cell.request.setup for cell in self.cells()], asks=True)
+        return command_line("resume", self.folder, *permitted, *more)
 
     @contextmanager
     def _whole(self) -> Iterator[sqlite3.Connection]:
         """Makes a ``with`` block one transaction."""
-        with refusals(self.folder):
+        with refusals(self.folder, self):
             self._db.execute("BEGIN IMMEDIATE")
             try:
                 yield self._db
@@ -335,12 +336,12 @@ class Tables:
 
 
 @contextmanager
-def refusals(folder: Path) -> Iterator[None]:
-    """Turns errors of SQLite or the operating system in a ``with`` block into one clear error message."""
+def refusals(folder: Path, store: Tables | None = None) -> Iterator[None]:
+    """Turns errors of SQLite or the operating system in a ``with`` block into one clear error message, which
+    says how to continue the campaign in ``store``."""
     try:
         yield
     except (sqlite3.Error, OSError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or error
-        raise RoadGPTError(
-            f"cannot write into {folder}: {reason}; make room there, then say: roadgpt resume {folder}"
-        ) from error
+        again = f"then say: {store.to_resume()}" if store else "and repeat the command"
+        raise RoadGPTError(f"cannot write into {folder}: {reason}; make room there, {again}") from error

@@ -17,7 +17,7 @@ from roadgpt.cli.command_table import COMMANDS, EARLIER, HEADINGS, renamed
 from roadgpt.cli.crash import report_crash
 from roadgpt.cli.option_groups import dash_advice
 from roadgpt.cli.streams import OutputError, drop_output, is_coloured, warn
-from roadgpt.errors import RoadGPTError
+from roadgpt.errors import RoadGPTError, command_line
 from roadgpt.provenance import USER
 
 INTERRUPTED = 130  # exit status if the user broke off the input; after a signal, that of ``stopping.status``
@@ -79,7 +79,7 @@ class Commands(click.Group):
             advice = "to make roads from a description, say:"
         elif near:
             raise click.UsageError(f"No such command '{name}'. Did you mean '{near[0]}'?", ctx)
-        raise click.UsageError(f'{advice} roadgpt run "{name}"', ctx)
+        raise click.UsageError(f"{advice} {command_line('run', *args)}", ctx)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parses the arguments after ``roadgpt``.
@@ -92,8 +92,8 @@ class Commands(click.Group):
                 return super().parse_args(ctx, args)
         except click.NoSuchOption as error:
             raise click.UsageError(
-                f"No such option '{error.option_name}' here. Options follow the command that they belong to: "
-                "roadgpt run DESCRIPTION --seed 7",
+                f"No such option '{error.option_name}' here. Options follow the command that they belong to, "
+                f"for example: {command_line('run', 'an uphill road with 3 turns', '--seed', 7)}",
                 ctx,
             ) from error
 

@@ -12,11 +12,13 @@ from roadgpt.cli.next_steps import lines, of_status
 from roadgpt.cli.progress import duration, progress
 from roadgpt.cli.result_row import COLOURS, driver_and_oracle, metres
 from roadgpt.cli.streams import apart, resumable
+from roadgpt.errors import command_line
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from roadgpt.campaign.faults.fault import Faults
+    from roadgpt.campaign.gate import Gate
     from roadgpt.campaign.scheduler import Progress
     from roadgpt.campaign.status import CellStatus, Status
 
@@ -29,24 +31,28 @@ LONGEST = 60  # letters of a description, in a line of a table
 MOST_WATCHED, MOST_WORKERS = 12, 16  # rows of the screen
 
 
-def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool) -> None:
+def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool, gate: "Gate") -> None:
     """Runs a campaign, shows its progress and prints its results; after Ctrl-C, prints how to resume it."""
-    advice = f"finished tests are kept; continue with: roadgpt resume {folder}"
+    from roadgpt.campaign.folder_record import is_store
+    from roadgpt.campaign.status import status_of
+    from roadgpt.cli.repeat_commands import to_resume
+
+    advice = f"finished tests are kept; continue with: {to_resume(folder)}"
     with resumable(advice), progress("tests", None, quiet, has_lines=False) as tell:
         for step in apart(steps):
             tell(step.done, total=step.total, rate=outcomes_line(step.outcomes))
-    from roadgpt.campaign.folder_record import is_store
-    from roadgpt.campaign.status import status_of
-
     status = status_of(folder)
     found = None if quiet and not as_json else faults_of(status)
+    gate.add_folder(folder)
     if as_json:
-        click.echo(as_line(status, found))
+        click.echo(as_line(status, found, gate))
     elif not quiet:
         for line in told(status, found):
             click.echo(line)
         tables = f"tables: {folder / 'results.csv'} and {folder / 'cells.csv'}"
         click.echo(tables if is_store(folder) else f"tests and tables: {folder}")
+    if gate.remark and not quiet:
+        click.echo(gate.remark, err=as_json)
 
 
 def faults_of(status: "Status") -> "Faults | None":
@@ -60,8 +66,8 @@ def faults_of(status: "Status") -> "Faults | None":
     return faults_in(Path(status.folder), COMPARED)
 
 
-def as_line(status: "Status", found: "Faults | None") -> str:
-    """Returns a campaign's status as one line of JSON."""
+def as_line(status: "Status", found: "Faults | None", gate: "Gate | None" = None) -> str:
+    """Returns a campaign's status as one line of JSON; ``gate`` has received its tests."""
     import json
 
     counts = found and {
@@ -70,7 +76,8 @@ def as_line(status: "Status", found: "Faults | None") -> str:
         "failures": found.failures,
         "compared": found.compared,
     }
-    return json.dumps({**status.to_json(), "distinct": counts})
+    judged = {"gate": gate.sentence, "worse": gate.worse} if gate else {}
+    return json.dumps({**status.to_json(), "distinct": counts, **judged})
 
 
 def outcomes_line(outcomes: Mapping[str, int]) -> str:
@@ -83,6 +90,10 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
     """Yields a campaign's status as lines of text: progress, distinct faults, outcomes, and what to do
     next.
     """
+    from roadgpt.campaign.folder_record import setups_of
+    from roadgpt.cli.repeat_commands import to_resume
+    from roadgpt.run.model import permissions
+
     yield headline(status)
     if found is not None and found.failures:
         yield f"  {found.headline}"
@@ -93,11 +104,12 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
         yield f"  {driver_and_oracle([cell.driver for cell in status.cells], status.cells[0].oracle)}"
     if found is not None and found.them:
         first = "" if found.is_tested else "how many faults these are, "
-        yield f"  {first}why, how often again, and pictures: roadgpt faults {status.folder}"
+        look = command_line("faults", status.folder, *permissions(setups_of(Path(status.folder))))
+        yield f"  {first}why, how often again, and pictures: {look}"
     if status.tokens:
         yield f"  language model: {status.tokens:,} tokens, {status.cost_usd:.4f} USD"
     if not status.is_finished and not status.is_running:
-        yield f"  continue with: roadgpt resume {status.folder}"
+        yield f"  continue with: {to_resume(Path(status.folder))}"
     yield from cell_lines(status.cells[:MOST_CELLS])
     if len(status.cells) > MOST_CELLS:
         yield f"and {len(status.cells) - MOST_CELLS:,} more cells; --json tells of all"

@@ -1,6 +1,6 @@
 """``--junit``: writes tests as JUnit XML, for continuous integration."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -25,8 +25,9 @@ def write_rows(path: Path, request: "Request", rows: Sequence[Row]) -> None:
     write_junit(path, [Suite(_named(request.words), common(request), lambda: map(_case, rows))])
 
 
-def write_folder(path: Path, folder: Path) -> None:
-    """Writes the tests of a folder of runs, a campaign or a study as a JUnit file.
+def write_folder(path: Path, folder: Path, worse: Mapping[str, str]) -> None:
+    """Writes the tests of a folder of runs, a campaign or a study as a JUnit file; ``worse`` says of some, by
+    names such as DIR/c01/17, in what they are worse than in a baseline.
 
     Raises:
         UsageError: The folder is none of these, or one of its files cannot be read.
@@ -34,21 +35,21 @@ def write_folder(path: Path, folder: Path) -> None:
     """
     from roadgpt.report.junit import write_junit
 
-    write_junit(path, _suites(folder))
+    write_junit(path, _suites(folder, worse))
 
 
-def _suites(folder: Path) -> Iterator["Suite"]:
+def _suites(folder: Path, worse: Mapping[str, str]) -> Iterator["Suite"]:
     from roadgpt.study import plan
 
     if not (folder / plan.CARD).is_file():
-        yield from _of_folder(folder)
+        yield from _of_folder(folder, worse)
         return
     for part in plan.read_plan(folder).parts():
         if (folder / part.name).is_dir():
-            yield from _of_folder(folder / part.name)
+            yield from _of_folder(folder / part.name, worse)
 
 
-def _of_folder(folder: Path) -> Iterator["Suite"]:
+def _of_folder(folder: Path, worse: Mapping[str, str]) -> Iterator["Suite"]:
     from roadgpt.campaign.folder_record import open_record
     from roadgpt.report.junit import Suite
 
@@ -58,10 +59,10 @@ def _of_folder(folder: Path) -> Iterator["Suite"]:
             name = _named(cell.request.words)
             shown = name if len(cells) == 1 else f"{cell.name}: {name}"
             of_cell = {"cell": cell.name, "generator": cell.generator, "goal": cell.goal} if cell.name else {}
-            yield Suite(shown, {**common(cell.request), **of_cell}, partial(_of_cell, folder, cell))
+            yield Suite(shown, {**common(cell.request), **of_cell}, partial(_of_cell, folder, cell, worse))
 
 
-def _of_cell(folder: Path, cell: "Cell") -> Iterator["Case"]:
+def _of_cell(folder: Path, cell: "Cell", worse: Mapping[str, str]) -> Iterator["Case"]:
     from roadgpt.campaign.folder_record import open_record
     from roadgpt.campaign.model import NumberedTest
 
@@ -75,9 +76,10 @@ def _of_cell(folder: Path, cell: "Cell") -> Iterator["Case"]:
         said: dict[int, str] = dict(record.query(errors, (cell.name,)))
         for result in record.results(cell.name):
             number, file = result.number, record.file(result.number)
-            name = Path(file).name or str(NumberedTest(cell.name, number))
-            row = row_of_result(result, cell.request.words, record.seed(result), name)
+            test = str(NumberedTest(cell.name, number))
+            row = row_of_result(result, cell.request.words, record.seed(result), Path(file).name or test)
             row = replace(row, seconds=took.get(number, 0.0), file=file, trace=str(said.get(number, "")))
+            row = replace(row, worse=worse.get(f"{folder}/{test}", ""))
             yield _case(row, result.proposal.origin if cell.name else None)
 
 
@@ -107,7 +109,10 @@ def _case(row: Row, origin: str | None = None) -> "Case":
 
     numbers = {name: getattr(row, name) for name in IN_CASE}
     properties = {"words": row.words or None, "origin": origin, **numbers}
+    outcome, says = row.test_outcome, row.description
+    if row.worse:
+        outcome = "ERROR" if outcome == "ERROR" else "FAIL"
+        says = f"worse than in the baseline: {row.worse}; {says}"
     return Case(
-        row.name or row.file, row.test_outcome, row.description, row.cause or "", row.seconds, row.file,
-        row.trace, properties,
-    )  # fmt: skip
+        row.name or row.file, outcome, says, row.cause or "", row.seconds, row.file, row.trace, properties
+    )

@@ -1,12 +1,12 @@
 """Suggests commands that make tests harder, for results in which the driver failed on no road."""
 
-import shlex
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roadgpt.cli import options
+from roadgpt.errors import command_line
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
@@ -89,7 +89,7 @@ def _command(quiet: WithoutFailure, **world: Any) -> str:
 
     request = quiet.request.model_copy(update={"world": quiet.request.world.changed(**world)})
     verb = ["campaign", *(["--goal", quiet.goal] if quiet.goal else [])] if quiet.is_search else ["run"]
-    return shlex.join(["roadgpt", *verb, *request_words(request, quiet.tests, quiet.brief)])
+    return command_line(*verb, *request_words(request, quiet.tests, quiet.brief))
 
 
 def of_status(status: "Status") -> WithoutFailure | None:

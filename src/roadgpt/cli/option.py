@@ -27,6 +27,7 @@ class Heading(StrEnum):
     FILES = "Files"
     FAILURES = "Failures"
     WORKERS = "Workers"
+    GATE = "Continuous integration"
     MODEL = "Language model"
     BEAMNG = "BeamNG"
     OUTPUT = "Output and help"

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
+from itertools import takewhile
 from typing import Any
 
 import click
@@ -12,6 +13,7 @@ from roadgpt.cli import options
 from roadgpt.cli.command_table import renamed_options
 from roadgpt.cli.option import FROM_FILES, LAYERS, Heading, Option
 from roadgpt.cli.streams import warn
+from roadgpt.errors import command_line
 
 
 @contextmanager
@@ -23,34 +25,15 @@ def dash_advice(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
     try:
         yield
     except click.UsageError as error:
-        words = _description(given)
-        if words is None:
-            raise
-        raise click.UsageError(
-            f'put words that begin with a dash last, after two dashes: {_command_line(ctx)} -- "{words}"', ctx
-        ) from error
-
-
-def _command_line(ctx: click.Context) -> str:
-    """Returns the command with the arguments that stand before its last one, such as ``roadgpt edit RUN``."""
-    if ctx.parent is None:
-        return "roadgpt run"
-    arguments = [each for each in ctx.command.params if isinstance(each, click.Argument)]
-    return " ".join(["roadgpt", str(ctx.info_name), *(str(each.name).upper() for each in arguments[:-1])])
-
-
-def _description(args: Sequence[str]) -> str | None:
-    """Returns the first word that looks like a description rather than an option or its value; else None."""
-    before = ""
-    for word in args:
-        if word == "--":
-            break
-        if re.match(r"-+\s*[\w.,]+.*\s", word) and not word.startswith("--"):
-            return word
-        if re.match(r"-\d", word) and not before.startswith("-"):
-            return f"{word} ..."
-        before = word
-    return None
+        for at, word in enumerate(given[: given.index("--")] if "--" in given else given):
+            is_number = re.match(r"-\d", word) and not (at and given[at - 1].startswith("-"))
+            if is_number or re.match(r"-\s*[\w.,]+.*\s", word):
+                words = [word, *takewhile(lambda each: not re.match("--?[a-z]", each), given[at + 1 :])]
+                rest = [ctx.info_name if ctx.parent else "run", *given[:at], *given[at + len(words) :]]
+                again = command_line(*rest, "--", " ".join(words))
+                sentence = f"put words that begin with a dash last, after two dashes: {again}"
+                raise click.UsageError(sentence, ctx) from error
+        raise
 
 
 WHOLE = 20  # a command with at most this many options lists all of them under --help

@@ -1,5 +1,6 @@
 """Converts and checks the texts of options: numbers within bounds, folders, files, drivers and formats."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
@@ -91,27 +92,21 @@ def file(value: str) -> Path:
 
 
 def driver(value: str) -> str:
-    """Returns the value of --driver; if it names a file, permits the file's code to be run."""
-    if ".py" in value:
-        from roadgpt.drive.permission import permit
+    """Returns the value of --driver; of a driver's file with an absolute path, so that it is found from any
+    folder, and permits its code to be run."""
+    if ".py" not in value:
+        return value
+    from roadgpt.drive.loading import absolute_spec
+    from roadgpt.drive.permission import permit
 
-        permit(value)
-    return value
+    permit(found := absolute_spec(value, Path.cwd()))
+    return found
 
 
 def drivers(value: str) -> tuple[str, ...]:
     """Returns the drivers in a value of --drivers, separated by commas, as ``driver`` does."""
     is_file = Path(f"{value.rpartition('.py')[0]}.py").is_file()  # whose path may have commas
     return tuple(driver(name.strip()) for name in ((value,) if is_file else value.split(",")))
-
-
-def driver_again(value: str) -> str:
-    """Returns the value of --driver with an absolute path, to be compared with the driver recorded in a
-    folder.
-    """
-    from roadgpt.drive.loading import absolute_spec
-
-    return driver(absolute_spec(value, Path.cwd()))
 
 
 def formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
@@ -122,6 +117,15 @@ def formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
     if not names:
         raise click.BadParameter("no format is given; 'roadgpt config plugins' lists the exporters")
     return names
+
+
+def gate_rules(value: str | tuple[str, ...]) -> tuple[str, ...]:
+    """Converts comma-separated rules, such as 'error,10%', to a tuple."""
+    rules = value if isinstance(value, tuple) else tuple("".join(value.split()).upper().split(","))
+    for rule in rules:
+        if not re.fullmatch(r"FAIL|INVALID|ERROR|(\d{1,2}(\.\d+)?|100)%", rule, re.ASCII):
+            raise click.BadParameter(f"'{rule}' is not possible; give fail, invalid, error or N%, as 10%")
+    return rules
 
 
 def picture_formats(value: str | tuple[str, ...]) -> tuple[str, ...]:

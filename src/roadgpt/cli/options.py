@@ -25,10 +25,10 @@ from roadgpt.cli.option_types import (
     SEED,
     bank,
     driver,
-    driver_again,
     file,
     folder,
     formats,
+    gate_rules,
     lanes,
     measure,
     picture_formats,
@@ -174,8 +174,8 @@ AGAIN = _files("--again", "Make all tests of the folder anew, for example with a
                "ones are moved into its subfolder before-1 (or 2, ...).", bool)
 DRIVER_AGAIN = Option(
     "--driver", "File of the driver. If the run used a driver's file, name it here again: for safety, "
-    "RoadGPT does not run a file just because a run folder refers to it.", driver_again,
-    metavar="FILE.py:CLASS", heading=Heading.DRIVE,
+    "RoadGPT does not run a file just because a run folder refers to it.", driver,
+    metavar="FILE.py:CLASS", multiple=True, heading=Heading.DRIVE,
 )
 
 _output = partial(Option, kind=bool, heading=Heading.OUTPUT)
@@ -241,6 +241,15 @@ def formats_option(names: str, sentence: str, **more: Any) -> Option:
 EXPORT = formats_option(
     "--export formats", "Also write road files: opendrive, csv, ...", heading=Heading.FILES, table="run"
 )
+_gate = partial(Option, heading=Heading.GATE, is_rare=True)
+GATE = (
+    _gate("--fail-on", "Exit status 6 if a road is FAIL, INVALID or ERROR, or if more than N % of the driven "
+          "roads FAIL.", gate_rules, metavar="fail|invalid|error|N%,...", multiple=True,
+          callback=EXPORT.callback),
+    _gate("--baseline", "Exit status 6 if a road has a worse result than in this folder.", folder),
+    _gate("--margin-loss", "Loss of margin that is not worse than the baseline, m. [default: 0.1]",
+          measure(0, 100)),
+)  # fmt: skip
 MAKING = (
     *named(SETUP, "reader", "designer", "driver", "simulator", "keep_driving"),
     *WORLD,

@@ -1,14 +1,16 @@
-"""Builds the two commands that repeat a Run. ``roadgpt run`` makes the road from the description again;
-``roadgpt drive`` drives the road file again.
-"""
+"""Builds the commands that repeat a Run, and those that continue or change the present command."""
 
-import shlex
+import os
 from collections.abc import Sequence, Set
 from pathlib import Path
+
+import click
+from click.core import ParameterSource
 
 from roadgpt.brief.model import Brief
 from roadgpt.cli import options
 from roadgpt.cli.option import Option, named, words_of
+from roadgpt.errors import command_line
 from roadgpt.road import World
 from roadgpt.road.oracles import oracle_limits
 from roadgpt.run.model import Request, Run, Setup
@@ -22,10 +24,10 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
     lines = []
     request = run.request
     if run.words:
-        lines.append(shlex.join(["roadgpt", "run", *request_words(request, run.index, run.brief)]))
+        lines.append(command_line("run", *request_words(request, run.index, run.brief)))
     if folder is not None and run.road is not None and request.setup.drives:
-        again = ["roadgpt", "drive", str(folder / "road.json"), "--seed", str(run.seed)]
-        lines.append(shlex.join(again + option_words(request.setup, request.world, OF_DRIVES, asks=False)))
+        words = option_words(request.setup, request.world, OF_DRIVES, asks=False)
+        lines.append(command_line("drive", folder / "road.json", "--seed", run.seed, *words))
     return lines
 
 
@@ -66,4 +68,25 @@ def option_words(
     words += words_of(options.WORLD, values, World().values(), told)
     if asks and setup.chat:
         words += words_of(options.CHAT, dict(setup.chat), dict(type(setup.chat)()))
+    return words
+
+
+def to_resume(folder: Path) -> str:
+    """Returns the command that continues the tests in a folder, with what the user typed in this command."""
+    from roadgpt.campaign.folder_record import open_record
+
+    root = click.get_current_context().find_root()
+    resume = root.command.get_command(root, "resume") if isinstance(root.command, click.Group) else None
+    with open_record(folder) as record:
+        return record.to_resume(*typed_words(resume.params if resume else ()))
+
+
+def typed_words(own: Sequence[click.Parameter]) -> list[str]:
+    """Returns the arguments with which the user gave these options in this command, without permissions."""
+    ctx, words = click.get_current_context(), list[str]()
+    for each in own:
+        is_typed = ctx.get_parameter_source(str(each.name)) is ParameterSource.COMMANDLINE
+        if isinstance(each, Option) and is_typed and each.field not in ("driver", "base_url"):
+            value = ctx.params.get(each.field, os.environ.get(each.variable))
+            words += each.written(bool(value) if each.is_flag else value, is_set=True)
     return words

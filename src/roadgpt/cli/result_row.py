@@ -80,6 +80,8 @@ class Row:
     """The seed of this road."""
     trace: str = ""
     """The traceback, if a driver or a simulator failed."""
+    worse: str = ""
+    """In what the result is worse than in the baseline."""
 
     @property
     def outcome(self) -> str:
@@ -106,6 +108,8 @@ class Row:
         if self.spent is not None:
             told |= {"tokens": self.spent.usage.total, "model_seconds": _rounded(self.spent.seconds)}
             told["cost_usd"] = self.spent.cost
+        if self.worse:
+            told["worse"] = self.worse
         return json.dumps(told)
 
     def to_line(self) -> str:
@@ -117,6 +121,8 @@ class Row:
         line = f"{self.told:<{MOST_TOLD}} {length:>9}  {margin:<15}  {self.name or self.file}"
         if self.own_share is not None:
             line += f"  drove {100 * self.own_share:.0f} % itself"
+        if self.worse:
+            line += f"  worse: {self.worse}"
         if self.test_outcome in ("INVALID", "ERROR"):
             return f"{line}  {self.description.removeprefix(f'{self.file}: ')}"
         if not self.findings:

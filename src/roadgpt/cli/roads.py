@@ -17,6 +17,7 @@ from roadgpt.cli.result_row import Row, unreadable
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
 from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError, explained
+from roadgpt.plural import plural
 
 if TYPE_CHECKING:
     from roadgpt.campaign.selection import Choice, Selection
@@ -30,7 +31,9 @@ LANES = ("lanes", "lane_width", "lane_width_end", "shoulder", "bank")
 WITHOUT_MAP = (".xodr", ".csv", ".tsv")  # endings of formats that know no map
 ROOM = 20.0  # m kept free around a road that is moved onto the map
 ROUND_MAP = 50.0  # m, to which the size of a map is rounded up
-ENDINGS = (".json", ".xodr", ".csv", ".tsv", ".sbft")
+ENDINGS = (".json", ".jsonl", ".xodr", ".csv", ".tsv", ".sbft")
+BESIDE_A_ROAD = (".drive.csv", ".route.json")  # endings of files that exporters write beside a road
+MOST_TOLD = 8  # names in a message
 NONE = {"failures": "no road failed in {}", "faults": "no road failed in {}", "worst": "nobody drove in {}"}
 
 
@@ -49,10 +52,7 @@ class NamedRoad:
 
 
 def roads_named(
-    files: Sequence[str],
-    choice: "Choice | None",
-    takes_all: bool = False,
-    seen: set[object] | None = None,
+    files: Sequence[str], choice: "Choice | None", takes_all: bool = False, seen: set[object] | None = None
 ) -> Iterator[NamedRoad]:
     """Yields the roads that the names refer to, each road once, and none whose key is in ``seen``.
 
@@ -72,10 +72,7 @@ def roads_named(
 
 
 def use_each(
-    files: Sequence[str],
-    choice: "Choice | None",
-    use: Callable[[NamedRoad], None],
-    takes_all: bool = False,
+    files: Sequence[str], choice: "Choice | None", use: Callable[[NamedRoad], None], takes_all: bool = False
 ) -> int:
     """Calls ``use`` for each road that the names refer to; a name or a road that cannot be used is reported
     and skipped. Returns the exit status: 0, 1 if a format cannot hold a road, or 2 if a name or a road cannot
@@ -169,28 +166,56 @@ def _single(file: str) -> NamedRoad:
     return NamedRoad(file, stem, Path(os.path.realpath(path)), None)
 
 
+def roads_in(files: Sequence[str]) -> list[str]:
+    """Returns names of roads, with those in a folder in place of the folder; says what else is there."""
+    from roadgpt.campaign.selection import chosen, selection_of
+    from roadgpt.campaign.status import status_of
+
+    roads = list[str]()
+    for file in files:
+        path, found, others = Path(file), list[str](), list[str]()
+        if (place := selection_of(file)) and place.number is None:
+            found = [each.said for each in chosen(place, None)]
+            done = sum(cell.done for cell in status_of(place.folder).cells if place.cell in ("", cell.name))
+            others = [plural(done - len(found), "test")] * (done > len(found))
+        elif path.is_dir() and not (path / "road.json").is_file():
+            for each in sorted(path.iterdir()):
+                if (each / "road.json").is_file() or each.suffix.lower() in ENDINGS:
+                    found += [str(each)] * (not each.name.endswith(BESIDE_A_ROAD))
+                else:
+                    others.append(each.name)
+        if found and others:
+            more = ", ..." * (len(others) > MOST_TOLD)
+            warn(f"{file}: left out, as without a road: {', '.join(others[:MOST_TOLD])}{more}")
+        roads += found or [file]
+    return roads
+
+
 def source_of(file: str, world: "World") -> tuple["Blueprint", "World", tuple[str, ...]]:
     """Returns the design or the road in a file, its World, and remarks on what is taken from where.
 
     ``world`` is the World that the options describe. What the file states goes before it, except for options
     that were typed. If the file defines lanes, lane options have no effect; a remark then names those that
-    were typed, or differ from their defaults. ``file`` may be the folder of a run.
+    were typed, or differ from their defaults. ``file`` may be the folder of a run, or a test such as
+    CAMPAIGN/c01/17.
 
     Raises:
-        UsageError: The file holds no road, or the folder is not that of a run.
+        UsageError: The file or the test holds no road, or the folder is not that of a run.
     """
-    from roadgpt.network import read_source
+    from roadgpt.campaign.selection import selection_of
+    from roadgpt.network.source import OF_FILE, RoadSource, read_source
     from roadgpt.road import Road, World
-    from roadgpt.run.card import CARD
 
-    if Path(file, CARD).is_file():
-        raise UsageError(f"{file} is a folder of runs; give the runs themselves: {Path(file, 'runs')}/*")
-    if Path(file).is_dir() and not Path(file, "road.json").is_file():
-        raise UsageError(
-            f"{file} is a folder without a road; give a road file, or the folder of a run such as "
-            "DIR/runs/0001, which roadgpt drive --again makes from a test of a campaign"
-        )
-    blueprint, remarks, stated, *_ = read_source(file)
+    if (place := selection_of(file)) and place.number is not None:
+        run = place.run()
+        if run.road is None:
+            raise UsageError(f"{file} has no road: {run.description}")
+        source = RoadSource(run.road, (), {name: run.world.values()[name] for name in OF_FILE}, file)
+    elif Path(file).is_dir() and not Path(file, "road.json").is_file():
+        raise UsageError(f"{file} is a folder without a road; give a road file, or the folder of a run")
+    else:
+        source = read_source(file)
+    blueprint, remarks, stated, *_ = source
     context = click.get_current_context(silent=True)
     told, values, usual = typed(context) if context else set(), world.values(), World().values()
     given = [each for each in WORLD if each.field in told or values.get(each.field) != usual.get(each.field)]
@@ -305,7 +330,7 @@ def named_in_errors(file: str) -> Iterator[None]:
         raise kind(f"{file}: {error}") from error
 
 
-def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) -> None:
+def each_road(files: Sequence[str], screen: Screen, look: "Callable[[str], tuple[Row, Run | None]]") -> None:
     """Calls ``look`` for every file, and prints the resulting rows and a table of their outcomes.
 
     A file that cannot be used gets a row with an error.
@@ -318,14 +343,14 @@ def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) 
         for file in files:
             try:
                 with named_in_errors(file):
-                    row = look(file)
+                    seen = look(file)
             except PartError:
                 raise
             except UsageError as error:
                 if len(files) == 1 and not screen.as_json:
                     raise
-                row = unreadable(file, error)
-            screen.row(row)
+                seen = unreadable(file, error), None
+            screen.row(*seen)
         screen.close()
 
 

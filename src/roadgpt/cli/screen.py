@@ -5,6 +5,7 @@ pipe, JSON, or nothing.
 import logging
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
@@ -19,6 +20,7 @@ from roadgpt.cli.streams import apart, is_coloured
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from roadgpt.campaign.gate import Gate
     from roadgpt.run import Request, Run
 
 
@@ -30,17 +32,12 @@ class Screen:
     of roads is unknown.
     """
 
-    def __init__(
-        self,
-        total: int,
-        as_json: bool = False,
-        quiet: bool = False,
-        verbose: bool = False,
-    ) -> None:
+    def __init__(self, total: int, as_json: bool = False, quiet: bool = False, verbose: bool = False) -> None:
         self.total, self.as_json, self.quiet, self.verbose = total, as_json, quiet, verbose
         self.request: Request | None = None
         """The request of the roads, if there is one; the table of outcomes names its driver and oracle."""
         self.junit: Path | None = None
+        self.gate: Gate | None = None
         self.rows: list[Row] = []
         if quiet:
             logging.getLogger("roadgpt").setLevel(logging.ERROR)
@@ -76,8 +73,10 @@ class Screen:
         if self.verbose:
             self.say(sentence)
 
-    def row(self, row: Row) -> None:
-        """Prints the result of a finished road."""
+    def row(self, row: Row, run: "Run | None" = None) -> None:
+        """Prints the result of a finished road; the gate receives its Run, if there is one."""
+        if self.gate:
+            row = replace(row, worse=self.gate.add(row.name or row.file, run))
         self.rows.append(row)
         if self.as_json:
             _show(row.to_json())
@@ -99,7 +98,7 @@ class Screen:
         with self:
             for run in apart(runs):
                 name = test_name(run.index)
-                self.row(row_of(run, str(folder / name), name))
+                self.row(row_of(run, str(folder / name), name), run)
                 self.detail(f"  {run.description}")
 
     def close(self) -> None:
@@ -108,6 +107,8 @@ class Screen:
             from roadgpt.cli.junit import write_rows
 
             write_rows(self.junit, self.request, self.rows)
+        if self.gate and self.gate.remark:
+            self.say(self.gate.remark)
         if self.quiet or self.as_json or not self.rows:
             return
         _show("")

@@ -10,6 +10,8 @@ from typing import TypeVar
 
 import click
 
+from roadgpt.errors import GivenUpError
+
 Step = TypeVar("Step")
 LETTERS = "backslashreplace"  # characters that the stream's encoding lacks are written as escapes
 
@@ -86,10 +88,10 @@ def warn(sentence: object) -> None:
 
 @contextmanager
 def resumable(advice: str) -> Iterator[None]:
-    """Context manager: after Ctrl-C, prints what is kept and how to continue (``advice``)."""
+    """Context manager: after Ctrl-C, or if a simulator is given up, prints ``advice`` on how to continue."""
     try:
         yield
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, GivenUpError):
         warn(f"stopped; {advice}")
         raise
 

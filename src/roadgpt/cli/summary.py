@@ -1,6 +1,5 @@
 """Summarises a Run, a folder of runs or a campaign, as lines of text or as JSON."""
 
-import shlex
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import islice
@@ -19,10 +18,10 @@ from roadgpt.cli.campaigns import as_line, cell_lines, faults_of, outcomes_line,
 from roadgpt.cli.repeat_commands import replay_lines
 from roadgpt.cli.result_row import WIDEST, Row, driver_and_oracle, metres, row_of, row_of_result, spending
 from roadgpt.cli.roads import NamedRoad, roads_named
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, command_line
 from roadgpt.road.oracles import oracle_in_words
 from roadgpt.run.folder import read_run, run_folder
-from roadgpt.run.model import Run
+from roadgpt.run.model import Run, permissions
 from roadgpt.verdict.severity import percent
 
 MOST_TESTS = 40  # of a cell, one by one
@@ -80,7 +79,10 @@ def _lines(path: Path | str, choice: Choice | None) -> Iterator[str]:
     elif is_store(place.folder):
         status = status_of(place.folder)
         yield from told(status, faults_of(status))
-        yield f"one test: roadgpt show {place.folder}/{status.cells[0].name}/1; all failures: --failures"
+        if "FAIL" in status.outcomes:
+            yield f"all failures: {command_line('show', place.folder, '--failures')}"
+        elif status.cells[0].done:
+            yield f"one test: {command_line('show', f'{place.folder}/{status.cells[0].name}/1')}"
     else:
         yield from _folder_lines(place.folder)
 
@@ -115,9 +117,8 @@ def _run_of(named: NamedRoad) -> Iterator[str]:
     run = named.run()
     if isinstance(named.key, Path):
         return _run_lines(run, replay_lines(run, named.key))
-    return _run_lines(
-        run, [shlex.join(["roadgpt", *verb, named.said]) for verb in (("drive", "--again"), ("view",))]
-    )
+    again = command_line("drive", "--again", named.said, *permissions([run.request.setup]))
+    return _run_lines(run, [again, command_line("view", named.said)])
 
 
 def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:

@@ -4,6 +4,8 @@ driver's file, the driver's code is not run until the user names the driver or a
 Plug-ins need no permission, because the user has installed them.
 """
 
+import shlex
+from collections.abc import Iterable
 from pathlib import Path
 
 from roadgpt.errors import UsageError
@@ -27,7 +29,7 @@ def permit(spec: str) -> None:
     """
     if split_spec(spec)[0]:
         CODE.add_from_user(_whole(spec))
-        CODE.add_from_user(_short(spec), spec)
+        CODE.add_from_user(without_folder(spec), spec)
 
 
 def driver_from_file(spec: str, file: object) -> str:
@@ -35,7 +37,7 @@ def driver_from_file(spec: str, file: object) -> str:
     same file name and class, the result is the user's driver; otherwise the result is ``spec``."""
     if not split_spec(spec)[0] or CODE.given_as(_whole(spec)):
         return spec
-    theirs = CODE.given_as(_short(spec))
+    theirs = CODE.given_as(without_folder(spec))
     if theirs is None:
         CODE.add_from_file(_whole(spec), file)
     return theirs or spec
@@ -54,22 +56,19 @@ def require_permission(spec: str) -> None:
     if file is not None and not USER.ask(f"{file} names the driver {spec}. Run the code in that file?"):
         raise UsageError(
             f"{file} names the driver {spec}, and code is not run because a file says so; if you trust it, "
-            f"name it yourself: --driver {spec}"
+            f"name it yourself: {shlex.join(['--driver', spec])}"
         )
     CODE.add_from_user(_whole(spec))  # files that are read from now on may name it as well
 
 
-def check_named_driver(spec: str | None, drivers: set[str], place: object) -> None:
-    """Checks that the driver given with ``--driver`` is one of the drivers used in the run or campaign.
-
-    Raises:
-        UsageError: the run or campaign does not use this driver.
-    """
-    if spec is not None and _whole(spec) not in {*map(_whole, drivers)}:
-        told = ", ".join(sorted(drivers)) or "nobody"
-        raise UsageError(
-            f"{place} is driven by {told}, not by {spec}; name that driver, or leave out --driver"
-        )
+def check_named_drivers(specs: Iterable[str], drivers: set[str], place: object) -> None:
+    """Raises UsageError if a driver given with ``--driver`` is not among those of the run or campaign."""
+    for spec in specs:
+        if _whole(spec) not in {*map(_whole, drivers)}:
+            told = ", ".join(sorted(drivers)) or "nobody"
+            raise UsageError(
+                f"{place} is driven by {told}, not by {spec}; name that driver, or leave out --driver"
+            )
 
 
 def _whole(spec: str) -> str:
@@ -78,6 +77,7 @@ def _whole(spec: str) -> str:
     return f"{Path(path).absolute()}:{wanted}" if path else spec
 
 
-def _short(spec: str) -> str:
+def without_folder(spec: str) -> str:
+    """Returns FILE.py:CLASS without the file's folder; the name of a plug-in is returned unchanged."""
     path, wanted = split_spec(spec)
-    return f"{path.replace(chr(92), '/').rpartition('/')[2]}:{wanted}"
+    return f"{path.replace(chr(92), '/').rpartition('/')[2]}:{wanted}" if path else spec

@@ -171,7 +171,7 @@ def _trained(checkpoint: Path, name: str) -> ReaderNetwork:
         what, todo = (
             ("routes", "give it with --routes, or with --only routes")
             if is_of_routes
-            else ("single roads", "one for routes is trained with: roadgpt learn train --routes")
+            else ("single roads", "'roadgpt learn train --routes' trains one for routes")
         )
         raise LearnError(f"the network in {checkpoint} reads {what}; {todo}")
     return network_of(weights, len(pieces), tokens)

@@ -1,6 +1,5 @@
 """Reads roads, routes and designs from files of RoadGPT, tests of other tools, tables and OpenDRIVE files."""
 
-import shlex
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -9,7 +8,7 @@ import numpy as np
 from pydantic import ValidationError
 from scipy.spatial import cKDTree
 
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, command_line
 from roadgpt.network.design import is_network_design, read_network_design
 from roadgpt.network.map_design import AnyDesign, Blueprint, has_nodes, read_map_design
 from roadgpt.network.road_or_route import made_from, road_from_json
@@ -56,7 +55,7 @@ def read_source(path: str | Path) -> RoadSource:
     """
     found = read_sources(path)
     if len(found) > 1:
-        advice = f"roadgpt import {shlex.quote(str(path))} writes each into a file of its own"
+        advice = f"to write each into a file of its own: {command_line('import', path)}"
         raise UsageError(f"{path}: it holds {len(found):,} roads; {advice}")
     if isinstance(found[0], UsageError):
         raise found[0]

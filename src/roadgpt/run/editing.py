@@ -54,7 +54,7 @@ def original_of(path: str, run: Run | None, world: World) -> tuple[Run, Design, 
 def reject_used(out: Path) -> None:
     """Raises UsageError if ``out`` is a folder that is not empty."""
     if out.is_dir() and any(out.iterdir()):
-        raise UsageError(f"{out} is not empty; a changed road goes into a new folder: name another one")
+        raise UsageError(f"{out} is not empty; name another folder")
 
 
 def folder_for(words: str, seed: int, out: Path | None) -> Path:

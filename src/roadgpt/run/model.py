@@ -2,7 +2,7 @@
 and versions.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Self
 
@@ -59,6 +59,14 @@ class Setup(Frozen):
         driver = permission.driver_from_file(self.driver, file)
         chat = self.chat and self.chat.came_with(file)
         return self.model_copy(update={"driver": driver, "chat": chat})
+
+
+def permissions(setups: Sequence[Setup], asks: bool = False) -> list[str]:
+    """Returns the options that permit drivers' files and, if a command ``asks`` language models, servers."""
+    pairs = [("--driver", setup.driver) for setup in setups if permission.split_spec(setup.driver)[0]]
+    chats = [setup.chat for setup in setups if setup.chat and asks]
+    pairs += [("--base-url", chat.base_url) for chat in chats if chat.base_url]
+    return [word for pair in dict.fromkeys(pairs) for word in pair]
 
 
 class Request(Frozen):

@@ -166,7 +166,7 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
     words, world = request.words or "roads that were given", request.world
     part = read_part(folder, StudyPart(setup.designer, 1, Prompt(id="1", prompt=words)))
     if not part.roads:
-        raise UsageError(f"{folder} holds no finished road yet; say first: roadgpt resume {folder}")
+        raise UsageError(f"{folder} holds no finished road yet; say first: {command}")
     parts, failed = [part], faults_in(folder)
     summaries = fault_summaries(folder, failed)
     opening = [overview(parts, world.site.map_size), faults(folder, failed, summaries)]

@@ -55,13 +55,6 @@ def failures_of(folder: Path, most: int | None = None, cell: str = "") -> tuple[
         return [*_located(record, some)], len(names)
 
 
-def drivers_of(folder: Path) -> set[str]:
-    """Returns the names of the drivers of a run, a folder of runs or a campaign; raises UsageError
-    as ``failures_of`` does."""
-    with open_record(folder) as record:
-        return {cell.request.setup.driver for cell in record.cells()}
-
-
 def _spread(count: int, most: int | None) -> Sequence[int]:
     if most is None or count <= most:
         return range(count)

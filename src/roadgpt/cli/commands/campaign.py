@@ -16,7 +16,7 @@ from roadgpt.cli.configuration import driver_guard
 from roadgpt.cli.junit import write_folder
 from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.option_types import driver_again, drivers, measure, whole
+from roadgpt.cli.option_types import drivers, measure, whole
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ TESTS = whole(1, MOST_TESTS, "the number of tests")
 SECONDS = measure(0, 1e8, "s", above=True)
 BESIDE_A_FILE = {
     "words", "out", "again", "workers", "executor", "address", "drivers", "faults", "minimise", "repeat",
-    "groups", "junit", "as_json", "quiet",
+    "groups", "junit", "as_json", "quiet", *(each.field for each in options.GATE),
 }  # fmt: skip
 
 
@@ -48,7 +48,7 @@ PARAMETERS = (
     options.out("Folder for the campaign. [default: a new one]"),
     options.AGAIN,
     *options.WORKERS,
-    *named(options.SETUP, "reader", "designer"),
+    *(options.PLAN, *named(options.SETUP, "reader", "designer")),
     Option("--driver --drivers drivers", "Name of a driver, or FILE.py:CLASS; for more drivers, repeat the "
            "option or separate them by commas. If FILE.toml lists a driver file, RoadGPT runs it only if you "
            "name it here, too.", drivers, ("lane_centring",), multiple=True, heading=Heading.DRIVE,
@@ -58,7 +58,7 @@ PARAMETERS = (
     *named(options.SETUP, "simulator", "keep_driving"),
     *options.WORLD,
     *named(options.SETUP, "geometry", "rules"),
-    *(options.NO_DRIVE, *options.CHAT, *options.BEAMNG, *FAULT_OPTIONS, options.JUNIT),
+    *(options.NO_DRIVE, *options.CHAT, *options.BEAMNG, *FAULT_OPTIONS, *options.GATE, options.JUNIT),
     *(options.json_option("Print one JSON object at the end.", heading=Heading.OUTPUT), options.QUIET),
 )
 # fmt: on
@@ -79,6 +79,7 @@ def command(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **g
     roadgpt show study --watch
     """
     from roadgpt import plugins
+    from roadgpt.campaign.gate import Gate
     from roadgpt.campaign.lifecycle import begin
     from roadgpt.run.atomic import to_bytes
     from roadgpt.run.folder_names import new_folder
@@ -89,6 +90,7 @@ def command(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **g
     plugins.find("executors", given["executor"])
     if out is None:
         out = new_folder(Path(text).stem if text.endswith(".toml") else text, plan.seeds[0])
+    given["gate"] = Gate(out, *(given.pop(each.field) for each in options.GATE))
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         was_there = begin(plan, out, given.pop("again"))
     if not given["quiet"] and not given["as_json"]:
@@ -101,9 +103,9 @@ def work_to_the_end(
 ) -> None:
     """Runs the remaining tests of a campaign or a folder of runs and prints the results.
 
-    ``given`` holds the values of the options, which can request a JUnit file and an analysis of the failures.
-    ``chat`` has the settings of the language model if the user changed a limit. ``draw`` adds pictures and
-    road files to a folder of runs.
+    ``given`` holds the gate, which decides last, and the values of the options, which can request a JUnit
+    file and an analysis of the failures. ``chat`` has the settings of the language model if the user changed
+    a limit. ``draw`` adds pictures and road files to a folder of runs.
     """
     from roadgpt.campaign.folder_record import is_store
     from roadgpt.campaign.lifecycle import work
@@ -111,9 +113,9 @@ def work_to_the_end(
 
     again = given.get("again", False)
     steps = work(folder, given["workers"], given["executor"], given["address"], chat, draw, again)
-    watch(folder, steps, given["as_json"], given["quiet"])
+    watch(folder, steps, given["as_json"], given["quiet"], given["gate"])
     if given["junit"] is not None:
-        write_folder(given["junit"], folder)
+        write_folder(given["junit"], folder, given["gate"].worse)
     if is_store(folder):
         with Record.opened(folder) as record:
             if record.plan().paired:
@@ -124,6 +126,7 @@ def work_to_the_end(
                     click.echo("\n".join([*compared(record), f"report: {page}"]), err=given["as_json"])
     if look := analysis_options(given):
         analyse_failures(folder, look)
+    given["gate"].close()
 
 
 def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
@@ -134,17 +137,15 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
     """
     from roadgpt.campaign.plan_file import read_plan
     from roadgpt.chat.config import Layer, configured
-    from roadgpt.drive.permission import check_named_driver
+    from roadgpt.drive.permission import check_named_drivers
 
     typed = options.typed(ctx)
     wrong = typed - BESIDE_A_FILE - {flag.field for flag in options.CHAT}
     for parameter in ctx.command.params:
         if parameter.name in wrong:
             raise UsageError(f"{parameter.opts[0]} cannot be given with {path}; write it into the file")
-    drivers = [driver_again(one) for one in rest["drivers"]] if "drivers" in typed else []
     written = read_plan(path)
-    for one in drivers:
-        check_named_driver(one, {*written.plan.drivers}, path)
+    check_named_drivers(rest["drivers"] if "drivers" in typed else (), {*written.plan.drivers}, path)
     if not written.plan.asks_a_model:
         return written.plan
     chat = configured(options.chat_values(rest), Layer(str(path), written.chat))
@@ -154,15 +155,15 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
 def _described(text: str, rest: dict[str, Any]) -> "Plan":
     from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL, CellBudget
     from roadgpt.campaign.plan import Plan
-    from roadgpt.drive.loading import absolute_spec
 
     goal, seconds, tests = rest["goal"], rest["seconds"], rest["tests"]
+    rest["reader"] = options.reader_of(rest)
     world = options.world_of(rest)
     chat = options.chat_of(rest, rest["reader"], rest["designer"])
     return Plan(
         prompts=(text,),
         designers=(rest["designer"],),
-        drivers=tuple(absolute_spec(driver, Path.cwd()) for driver in rest["drivers"]),
+        drivers=tuple(rest["drivers"]),
         simulators=(rest["simulator"],),
         generators=(rest["generator"] or (WITH_GOAL if goal else WITHOUT_GOAL),),
         seeds=(rest["seed"],),

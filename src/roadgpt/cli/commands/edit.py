@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 PARAMETERS = (
     Argument("run", "RUN", "Name the folder of a run, or the file of a design."),
-    Argument("words...", "CHANGE", 'Say what to change: roadgpt edit RUN "make the second turn sharper"'),
+    Argument("words...", "CHANGE", 'Say what to change, such as "make the second turn sharper".'),
     options.out("Folder for the changed road. [default: a new one]"),
     Option("--plan is_plan", "CHANGE is a plan, such as 'turn 2: radius x0.75'.", bool),
     Option(
@@ -71,7 +71,7 @@ def command(run: str, words: tuple[str, ...], as_json: bool, quiet: bool, **rest
 
 def edit_road(
     screen: Screen, road: str, words: str, world: "World", out: Path | None = None, reader: str = "model",
-    chat: "ChatSettings | None" = None, driver: str | None = None, drives: bool = True,
+    chat: "ChatSettings | None" = None, driver: tuple[str, ...] = (), drives: bool = True,
     pictures: "tuple[Format, ...]" = ("png",), is_plan: bool = False,
 ) -> Path:  # fmt: skip
     """Changes a road as requested, checks and drives it, writes and prints its run, and returns its folder.
@@ -86,7 +86,7 @@ def edit_road(
     from roadgpt.brief.change.plan import read_change_plan
     from roadgpt.chat import Meter, counting
     from roadgpt.design.edit import edit
-    from roadgpt.drive.permission import check_named_driver, require_permission
+    from roadgpt.drive.permission import check_named_drivers, require_permission
     from roadgpt.run import prove
     from roadgpt.run.editing import folder_for, original_of, reject_used, write_edit
     from roadgpt.run.sbft_json import test_name
@@ -98,7 +98,7 @@ def edit_road(
     for remark in remarks:
         screen.say(f"{road}: {remark}")
     setup = before.request.setup
-    check_named_driver(driver, {setup.driver}, road)
+    check_named_drivers(driver, {setup.driver}, road)
     drives = drives and setup.drives
     if drives:
         require_permission(setup.driver)

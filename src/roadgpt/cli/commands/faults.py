@@ -1,7 +1,6 @@
 """``roadgpt faults``: groups failures into distinct faults, and finds why each occurs."""
 
 import os
-import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -10,11 +9,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.option import Argument, Heading, Option, words_of
+from roadgpt.cli.option import Argument, Heading, Option
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import folder, whole
 from roadgpt.cli.progress import progress, watched
 from roadgpt.cli.streams import resumable
+from roadgpt.errors import command_line
 
 if TYPE_CHECKING:
     from roadgpt.campaign.faults.fault import Faults
@@ -55,12 +55,6 @@ class AnalysisOptions(NamedTuple):
     is_apart: bool = False
     """Whether text is printed on standard error, because standard output is reserved for JSON."""
 
-    @property
-    def words(self) -> list[str]:
-        """The command-line options with which ``roadgpt faults`` would repeat this analysis."""
-        drawn = {"picture_formats": self.formats or None, "no_plot": not self.formats}
-        return words_of(OPTIONS, {**self._asdict(), **drawn})
-
     def say(self, text: str, is_news: bool = False) -> None:
         """Prints a text unless ``is_quiet``; progress messages (``is_news``) go to standard error."""
         if not self.is_quiet:
@@ -96,7 +90,9 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     from roadgpt.campaign.faults.fault import faults_in
     from roadgpt.campaign.faults.fault_log import FAILURES, instructive, write_tables, write_top
     from roadgpt.campaign.faults.remedy import FOLDER
-    from roadgpt.campaign.folder_record import open_record
+    from roadgpt.campaign.folder_record import open_record, setups_of
+    from roadgpt.cli.repeat_commands import typed_words
+    from roadgpt.run.model import permissions
     from roadgpt.run.versions import versions_now
 
     found = faults_in(place)
@@ -106,7 +102,7 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     with open_record(place) as record:
         asked = ((cell.request, cell.generator) for cell in record.cells())
         record.refuse_changed(versions_now(asked))  # the user is asked for permission here, not in workers
-    go_on = shlex.join(["roadgpt", "faults", str(place), *look.words])
+    go_on = command_line("faults", place, *permissions(setups_of(place)), *typed_words(OPTIONS))
     with resumable(f"finished work is kept; continue with: {go_on}"):
         found = _tested(place, found, look)
         look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
@@ -192,7 +188,7 @@ def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis
     what = plural(len(found.them), "fault" if found.distinct else "group")
     yield f"{stable:,} of {what} fail again in at least half of the drives"
     if looked:
-        yield f"look at one: {shlex.join(['roadgpt', 'view', f'{place}/{looked[1].name}'])}"
+        yield f"look at one: {command_line('view', f'{place}/{looked[1].name}')}"
 
 
 # fmt: off
@@ -203,7 +199,7 @@ OPTIONS = (
     Option("--top", "Also write the N most instructive failures into a folder for a paper: different faults "
            "first, then different places.", whole(1, 100, "failures")),
     Option("-j workers", "Number of failures analysed in parallel.", whole(1, 256, "processes"), 1),
-    *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
+    *(options.DRIVER_AGAIN, *options.BEAMNG, options.FORMAT, options.NO_PLOT, options.QUIET),
 )
 # fmt: on
 
@@ -216,7 +212,7 @@ def command(
     groups: bool,
     top: int | None,
     workers: int,
-    driver: str | None,
+    driver: tuple[str, ...],
     quiet: bool,
     **rest: Any,
 ) -> None:
@@ -236,10 +232,9 @@ def command(
     roadgpt faults roadgpt-runs/hairpins-7
     roadgpt faults roadgpt-runs/hairpins-7 --repeat 30 --minimise -j 2
     """
-    from roadgpt.campaign.faults.failures import drivers_of
-    from roadgpt.drive.permission import check_named_driver
+    from roadgpt.campaign.folder_record import setups_of
+    from roadgpt.drive.permission import check_named_drivers
 
-    if driver is not None:
-        check_named_driver(driver, drivers_of(place), place)
+    check_named_drivers(driver, {setup.driver for setup in setups_of(place)}, place)
     formats = options.pictures_of(rest)
     analyse_failures(place, AnalysisOptions(repeat, minimise, workers, formats, quiet, groups, top))

@@ -1,7 +1,6 @@
 """``roadgpt import``: reads roads from files of other tools."""
 
 import json
-import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,7 @@ from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
 from roadgpt.cli.roads import UNREADABLE, numbered, on_a_map
 from roadgpt.cli.streams import warn
-from roadgpt.errors import RoadGPTError, UsageError, explained
+from roadgpt.errors import RoadGPTError, UsageError, command_line, explained
 
 if TYPE_CHECKING:
     from roadgpt.network.source import RoadSource
@@ -52,7 +51,9 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
             if isinstance(source, UsageError):
                 raise source
             if source.is_ours:
-                raise UsageError(f"{file} is a file of RoadGPT, which needs no import: {_drive(file)}")
+                raise UsageError(
+                    f"{file} is a file of RoadGPT, which needs no import: {command_line('drive', file)}"
+                )
             own = next(own for own in numbered(_plain(source.name), ".json") if own not in taken)
             stem = file.stem if source.name == file.stem else f"{file.stem}-{source.name}"
             place = folder / own if folder else out or _free(stem, ".json")
@@ -66,8 +67,8 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
         if not quiet:
             click.echo(f"road {source.name}{source.label and f' ({source.label})'}: {said}")
     if taken and not quiet:
-        what = ("them", folder, "/*.json") if folder else ("it", place, "")
-        click.echo(f"written to {what[1]}; drive {what[0]}: {_drive(what[1])}{what[2]}")
+        what = ("them", folder) if folder else ("it", place)
+        click.echo(f"written to {what[1]}; drive {what[0]}: {command_line('drive', what[1])}")
     return UNREADABLE if len(taken) < len(found) else 0
 
 
@@ -99,7 +100,3 @@ def _write(file: Path, source: "RoadSource", out: Path, keep_place: bool, quiet:
         out.write_text(json.dumps({"world": world, **origin, **road.to_json()}) + "\n", encoding="utf-8")
     heights = ups_and_downs(road.sample().z)
     return sentence(describe(road)) + (f" Up and down: {heights} m." if " " in heights else "")
-
-
-def _drive(file: Path) -> str:
-    return shlex.join(["roadgpt", "drive", str(file)])

@@ -1,6 +1,5 @@
 """``roadgpt report``: writes a report on a folder of runs, a campaign or a study."""
 
-import shlex
 from pathlib import Path
 
 import click
@@ -12,6 +11,7 @@ from roadgpt.cli.option import Argument
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
 from roadgpt.cli.roads import open_page
+from roadgpt.errors import command_line
 
 
 @click.command(cls=GroupedCommand, params=[Argument("folder", "DIR", kind=PATH), options.OPEN, options.JUNIT])
@@ -27,7 +27,7 @@ def command(folder: Path, opens: bool, junit: Path | None) -> None:
     """
     page = write_report(folder)
     if junit is not None:
-        write_folder(junit, folder)
+        write_folder(junit, folder, {})
     click.echo(str(page))
     if opens:
         open_page(page)
@@ -57,15 +57,15 @@ def command_of(folder: Path) -> str:
     from roadgpt.cli.repeat_commands import request_words
 
     with open_record(folder) as record:
-        cells = record.cells()
+        cells, resume = record.cells(), record.to_resume()
     only, n = cells[0], cells[0].budget.tests
     if only.in_sequence and not only.request.words:
         return ""
     if len(cells) > 1 or not only.request.words or n is None or only.settings:
-        return shlex.join(["roadgpt", "resume", str(folder)])
+        return resume
     words = request_words(only.request, n, only.brief)
     words += ["--goal", only.goal] if only.goal else []
     if only.generator != (WITH_GOAL if only.goal else WITHOUT_GOAL):
         words += ["--generator", only.generator]
     words += ["--seconds", f"{only.budget.seconds:g}"] if only.budget.seconds else []
-    return shlex.join(["roadgpt", "run" if only.in_sequence else "campaign", *words, "--out", str(folder)])
+    return command_line("run" if only.in_sequence else "campaign", *words, "--out", folder)

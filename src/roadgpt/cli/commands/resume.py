@@ -23,7 +23,7 @@ OPTIONS = (
     *(*options.WORKERS, *named(options.CHAT, "max_tokens", "max_cost"), options.DRIVER_AGAIN),
     Option("--base-url", "Address of the server. Repeat it here if the campaign used one: for safety, your "
            "API key is not sent to an address just because a folder refers to it.", heading=Heading.MODEL),
-    *FAULT_OPTIONS,
+    *(*options.BEAMNG, *FAULT_OPTIONS, *options.GATE),
     options.AGAIN,
     options.AXES,
     options.JUNIT,
@@ -33,7 +33,7 @@ OPTIONS = (
 
 
 @click.command(cls=GroupedCommand, params=[Argument("folder", "DIR", ADVICE, PATH), *OPTIONS])
-def command(folder: Path, driver: str | None, base_url: str | None, axes: "Scale", **rest: Any) -> None:
+def command(folder: Path, driver: tuple[str, ...], base_url: str | None, axes: "Scale", **rest: Any) -> None:
     """Continue a campaign or a run that was interrupted.
 
     DIR is a folder that 'roadgpt campaign' or 'roadgpt run' wrote. Tests that had not finished are repeated.
@@ -45,14 +45,15 @@ def command(folder: Path, driver: str | None, base_url: str | None, axes: "Scale
     roadgpt resume roadgpt-runs/an-uphill-road-with-3-turns-7 -j 2
     """
     from roadgpt.campaign.folder_record import open_record
+    from roadgpt.campaign.gate import Gate
     from roadgpt.chat.config import trust_server
-    from roadgpt.drive.permission import check_named_driver
+    from roadgpt.drive.permission import check_named_drivers
 
+    rest["gate"] = Gate(folder, *(rest.pop(each.field) for each in options.GATE))
     with open_record(folder) as record:
         cells = record.cells()
     chat = next((cell.request.setup.chat for cell in cells if cell.request.setup.chat), None)
-    drivers = {cell.request.setup.driver for cell in cells}
-    check_named_driver(driver, drivers, folder)
+    check_named_drivers(driver, {cell.request.setup.driver for cell in cells}, folder)
     if base_url is not None:
         trust_server(base_url, chat.base_url if chat else None, folder)
     limits = {name: rest[name] for name in ("max_tokens", "max_cost") if rest[name] is not None}

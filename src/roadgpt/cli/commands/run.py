@@ -1,7 +1,6 @@
 """``roadgpt run``: designs, checks, drives, judges and draws roads from a description."""
 
 import secrets
-import shlex
 import sys
 from contextlib import redirect_stdout
 from pathlib import Path
@@ -17,6 +16,7 @@ from roadgpt.cli.option_types import ROADS
 from roadgpt.cli.result_row import spending
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
+from roadgpt.errors import GivenUpError
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
@@ -43,7 +43,7 @@ OPTIONS = (
         is_rare=True,
     ),
     *options.MAKING,
-    *(*options.CHAT, *options.BEAMNG, options.JUNIT, *options.SCREEN),
+    *(*options.CHAT, *options.BEAMNG, *options.GATE, options.JUNIT, *options.SCREEN),
 )
 
 
@@ -57,12 +57,12 @@ def command(words: tuple[str, ...], as_json: bool, quiet: bool, verbose: bool, *
     roadgpt run "a winding road" --reader chat --max-cost 0.50
 
     \b
-    Exit status:
+    Exit status (roads finished before an error are saved in full):
       0  every road has an outcome, even if it is FAIL, INVALID or ERROR
       2  the description or an option cannot be used
       3  nothing could be designed
       4  a language model could not be used, or its token or cost limit was hit
-    Roads finished before an error are saved in full.
+      6  the results do not meet --fail-on or --baseline; see --help-all
     """
     carry_out(Screen(rest["roads"], as_json, quiet, verbose), " ".join(words), **rest)
 
@@ -106,9 +106,11 @@ def carry_out(
         KeyboardInterrupt: The user pressed Ctrl-C; finished roads are saved in full.
     """
     from roadgpt.campaign import campaign
+    from roadgpt.campaign.gate import Gate
     from roadgpt.chat import Meter
     from roadgpt.run import Setup, brief_of, seed_in
 
+    gate = screen.gate = Gate(out, *(given.pop(each.field) for each in options.GATE))
     world, pictures = options.world_of(given), options.pictures_of(given)
     given["reader"] = options.reader_of(given)
     chat = options.chat_of(given, given["reader"], given["designer"])
@@ -135,7 +137,8 @@ def carry_out(
         screen.say(f"all {work.roads} roads are there")
     elif work.kept:
         screen.say(f"{len(work.kept)} roads were finished before; continuing")
-    _watch(work, axes, pictures, screen)
+    _watch(work, pictures, screen)
+    gate.close()
 
 
 def understood(brief: "Brief", world: "World", given: "World") -> str:
@@ -181,13 +184,14 @@ def reading(brief: "Brief") -> str:
     return told
 
 
-def _watch(work: "Campaign", axes: "Scale", pictures: "tuple[Format, ...]", screen: Screen) -> None:
+def _watch(work: "Campaign", pictures: "tuple[Format, ...]", screen: Screen) -> None:
     """Shows the roads of a folder, starting with those that had been finished before, and then a table."""
     try:
         screen.runs(work.all_runs(), work.folder)
-    except KeyboardInterrupt:
-        drawn = [] if axes == "equal" else ["--axes", axes]
-        warn(f"continue with: {shlex.join(['roadgpt', 'resume', str(work.folder), *drawn])}")
+    except (KeyboardInterrupt, GivenUpError):
+        from roadgpt.cli.repeat_commands import to_resume
+
+        warn(f"continue with: {to_resume(work.folder)}")
         raise
     finally:
         screen.close()

@@ -1,6 +1,5 @@
 """``roadgpt study``: evaluates roads as RoadGPT's thesis did, by measurements and by asking people."""
 
-import shlex
 import time
 from collections.abc import Sequence
 from functools import partial
@@ -17,7 +16,7 @@ from roadgpt.cli.option_groups import CommandGroup, GroupedCommand
 from roadgpt.cli.option_types import PATH, ROADS, whole
 from roadgpt.cli.progress import progress
 from roadgpt.cli.streams import resumable, warn
-from roadgpt.errors import ChatError
+from roadgpt.errors import ChatError, command_line
 
 if TYPE_CHECKING:
     from roadgpt.study.execution import Problem
@@ -152,13 +151,13 @@ def _plan(
 def _command(plan: "StudyPlan", place: Path) -> str:
     from roadgpt.cli.repeat_commands import option_words
 
-    words = ["roadgpt", "study", plan.kind, *([plan.source] if plan.source else [])]
+    words = ["study", plan.kind, *([plan.source] if plan.source else [])]
     words += ["--roads", str(plan.roads), "--seed", str(plan.seed), *DESIGNERS.written(plan.designers)]
     told = {*THESIS} | ({"friction"} & plan.world.site.model_fields_set)
     words += option_words(plan.setup, plan.world, DRIVEN[: len(SHOWN)], also=told)
     if plan.setup.drives != (plan.kind == "thesis"):
         words.append("--drive" if plan.setup.drives else "--no-drive")
-    return shlex.join([*words, "--out", str(place)])
+    return command_line(*words, "--out", place)
 
 
 def _complain(problems: "Sequence[Problem]") -> None:

@@ -9,7 +9,7 @@ from roadgpt.cli.option import Argument, Option
 from roadgpt.cli.option_groups import CommandGroup
 from roadgpt.cli.option_types import PATH, folder, measure, whole
 from roadgpt.cli.streams import warn
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, command_line
 
 PORT = 8765
 FILE = "SURVEY.toml"
@@ -91,9 +91,8 @@ def new(
         click.echo(f"{out / FILE} lists the chosen roads; edit it and make the survey again from it")
     if survey.lacks:
         warn(survey.lacks)
-    click.echo(
-        f"{len(survey.items)} pages of roads in {out}; next: roadgpt study survey serve {out} --raters 10"
-    )
+    serve_it = command_line("study", "survey", "serve", out, "--raters", 10)
+    click.echo(f"{len(survey.items)} pages of roads in {out}; next: {serve_it}")
 
 
 @command.command(params=[*OF_SERVE])
@@ -123,5 +122,7 @@ def analyse(directory: Path, out: Path | None, synthetic: int | None, agreement:
 
     answers = load_answers(directory, synthetic, seed, agreement)
     target = out or directory / ("analysis-synthetic" if synthetic else "analysis")
-    made_up = f" --synthetic {synthetic} --agreement {agreement:g} --seed {seed}" if synthetic else ""
-    click.echo(str(analyse_into(answers, target, f"roadgpt study survey analyse {directory}{made_up}")))
+    made_up = ["--synthetic", synthetic, "--agreement", f"{agreement:g}", "--seed", seed] if synthetic else []
+    made_up += ["--out", out] if out else []
+    again = command_line("study", "survey", "analyse", directory, *made_up)
+    click.echo(str(analyse_into(answers, target, again)))

@@ -1,7 +1,6 @@
 """Makes the sections on the tests of a campaign: failures, margins and feature maps. SQL queries count the
 tests in the campaign's database."""
 
-import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -15,6 +14,7 @@ from roadgpt.campaign.model import Result
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus
 from roadgpt.design.elements import elements_of
+from roadgpt.errors import command_line
 from roadgpt.report.page.lines import bars, lines
 from roadgpt.report.page.model import Block, Figure, Table, TableCell, cell
 from roadgpt.study.chapters.roads import CELLS, MAPS, feature_map
@@ -67,8 +67,7 @@ def failures(
         for name, number, margin, outside, cause, side, at_s, says in some
     ]
     if rows:
-        words = ["roadgpt", "drive", "--again", str(folder), str(rows[0][0].value)]
-        note = f"To see one: {shlex.join(words)}"
+        note = f"To see one: {command_line('view', f'{folder}/{rows[0][0].value}')}"
         heads = ["test", *_far_heads(drives_on), "cause", "side", "at, m", "what happened"]
         ((every,),) = record.query("SELECT count(*) FROM tests WHERE outcome = 'FAIL'")
         blocks.append(Table("failures", _caption(len(rows), every, drives_on), heads, rows, note))
@@ -235,8 +234,8 @@ def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
     if not pairs:
         return []
     rows = [_row(folder, *side) for side in pairs]
-    names = [f"{pairs[0].cell}/{number}" for number in (pairs[0].pair.kept, pairs[0].pair.lost)]
-    note = f"{EXPLAINED} To see a pair: {shlex.join(['roadgpt', 'drive', '--again', str(folder), *names])}"
+    names = [f"{folder}/{pairs[0].cell}/{at}" for at in (pairs[0].pair.kept, pairs[0].pair.lost)]
+    note = f"{EXPLAINED} To see a pair: {command_line('view', *names)}"
     heads = ["kept", "margin, m", "lost", "at, m", "distance", "what differs most, kept then lost"]
     return [Table("pairs", "Nearest pairs of a road that was kept and one that was lost", heads, rows, note)]
 

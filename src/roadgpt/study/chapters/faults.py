@@ -1,7 +1,6 @@
 """Makes the section on distinct faults and, if no road failed, a section on what to try next. No simulations
 are run."""
 
-import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -12,7 +11,7 @@ from roadgpt.campaign.faults.reason import FailureReason, reason_of
 from roadgpt.campaign.faults.remedy import FOLDER
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.rerun import kept_run
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, command_line
 from roadgpt.plural import plural
 from roadgpt.report.canvas import FORMATS
 from roadgpt.report.page.failure_site import draw_site, site_of
@@ -30,6 +29,7 @@ from roadgpt.report.page.model import (
     linked,
 )
 from roadgpt.run import Run
+from roadgpt.run.model import permissions
 from roadgpt.study.chapters.wording import as_sentence, percent, row
 
 SHOWN = 24  # faults with a picture
@@ -99,13 +99,14 @@ def faults(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Se
     if not summaries:
         return None
     blocks: list[Block] = [f"{DEFINED if found.distinct else GROUPED} {DRAWN}"]
+    setups = [each.run.request.setup for each in summaries]
     missing = [each for each in summaries if each.looked is None]
     if missing:
         what = "was not measured" if len(missing) == len(summaries) else f"was not measured of {len(missing)}"
         blocks.append(
             [
                 f"How often they fail again {what}: ",
-                ShellCommand(shlex.join(["roadgpt", "faults", str(folder), "--minimise"])),
+                ShellCommand(command_line("faults", folder, "--minimise", *permissions(setups))),
                 " finds which groups are one fault, drives a typical failure of each fault again and again "
                 "with friction, start and sensors off a little, and looks for the simplest road that fails "
                 "in the same way.",
@@ -137,7 +138,7 @@ def _card(folder: Path, summary: FaultSummary, found: Faults) -> FigureCard:
         lines.append(f"Outside its lane at most: {percent(outside, 0)} of the car{beyond}.")
     if looked and looked.simplest:
         lines.append(f"Simplest road that fails in the same way: {looked.simplest}.")
-    lines.append([ShellCommand(shlex.join(["roadgpt", "view", f"{folder}/{summary.name}"]))])
+    lines.append([ShellCommand(command_line("view", f"{folder}/{summary.name}"))])
     assert summary.run.road is not None
     station = summary.why.station if summary.why else fault.typical[0].station
     picture = draw_site(site_of(summary.run.road, summary.run.world, summary.run.drive, station), reason)

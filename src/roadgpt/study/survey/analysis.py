@@ -7,7 +7,7 @@ from math import isfinite
 from pathlib import Path
 
 from roadgpt import __version__
-from roadgpt.errors import RoadGPTError, UsageError, explained
+from roadgpt.errors import RoadGPTError, UsageError, command_line, explained
 from roadgpt.report.page import write
 from roadgpt.report.page.model import Block, Details, Figure, Page, Section, Table, TableCell, cell
 from roadgpt.run.atomic import write_whole
@@ -54,7 +54,8 @@ def load_answers(
     if number is not None:
         return synthetic(survey, number, seed, agreement)
     if not (folder / ANSWERS).is_file():
-        raise UsageError(f"nobody has been invited yet; run: roadgpt study survey serve {folder} --raters 10")
+        invite = command_line("study", "survey", "serve", folder, "--raters", 10)
+        raise UsageError(f"nobody has been invited yet; invite some: {invite}")
     with closing(AnswerStore(folder / ANSWERS)) as store:
         raters = store.raters()
         given = {rater.digest: store.answers_of(rater) for rater in raters if rater.state == "agreed"}

@@ -133,7 +133,7 @@ def plan_text(plan: SurveyPlan) -> str:
     """Returns the text of a SURVEY.toml file for a plan, so that users can edit it."""
     own: dict[str, Any] = plan.model_dump(mode="json", exclude={"about", "alignment", "similarity"})
     own["purpose"] = plan.said_purpose
-    lines = ["# The survey. Change it and say: roadgpt study survey new SURVEY.toml --out DIR"]
+    lines = ["# The survey. After a change, make it anew with 'roadgpt study survey new'."]
     lines += [f"{name} = {_toml(value)}" for name, value in own.items()]
     for name in ("about", "alignment", "similarity"):
         for item in getattr(plan, name) or ():
@@ -204,9 +204,7 @@ def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pa
         if len(similarity) < pairs and len(two) == 2:
             similarity.append(PairPlan(runs=(two[0][0], two[1][0]), prompt=run.words))
     if not alignment:
-        raise UsageError(
-            f"{study} holds no runs with a valid road; make some: roadgpt run DESCRIPTION --out DIR"
-        )
+        raise UsageError(f"{study} holds no runs with a valid road; make some with 'roadgpt run'")
     return SurveyPlan(asks=asks, contact=contact, alignment=tuple(alignment), similarity=tuple(similarity))
 
 

@@ -262,7 +262,7 @@ def read_survey(folder: Path | str) -> Survey:
     Raises:
         UsageError: there is no survey, or it cannot be read.
     """
-    absent = f"{folder} holds no survey; make one: roadgpt study survey new SURVEY.toml --out {folder}"
+    absent = f"{folder} holds no survey; make one with 'roadgpt study survey new'"
     return read_model(Survey, Path(folder) / CARD, "a survey", absent, "make the survey again")
 
 

@@ -90,7 +90,7 @@ class ModelReader:
         """
         missing = next((name for name in FILES if not (Path(folder) / name).is_file()), None)
         if missing:
-            raise PartError(f"there is no {missing} in '{folder}'; make it with: roadgpt learn export")
+            raise PartError(f"there is no {missing} in '{folder}'; make it with 'roadgpt learn export'")
         return cls(Path(folder))
 
     def read(self, words: str) -> Brief:

@@ -252,7 +252,7 @@ def _session(path: Path) -> onnxruntime.InferenceSession:
     except Exception as error:  # onnxruntime has 15 kinds, with no other base in common
         raise PartError(
             f"'{path}' cannot be loaded: it is damaged, or a file beside it is missing; copy the "
-            "whole folder again, or make it with: roadgpt learn export"
+            "whole folder again, or make it with 'roadgpt learn export'"
         ) from error
 
 

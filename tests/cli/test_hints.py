@@ -1,0 +1,83 @@
+"""Commands that commands print are complete: they can be typed as they are."""
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from hints import HintCollector, hints_in, kind_of, shortened
+from roadgpt.campaign import single_test
+from roadgpt.cli import app
+
+STRAIGHT_ON = """
+from roadgpt.drive import Command
+class Mine:
+    def steer(self, view):
+        return Command(0.0, 0.5 if view.speed < 9 else 0.0, 0.0)
+"""
+WORDS = ("turn left 80 r=20", "--reader", "plan", "--seed", "3", "--driver", "mine.py:Mine")
+
+
+@pytest.mark.usefixtures("no_workers")
+def test_a_driver_of_ones_own_goes_through_every_command_that_is_printed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, hints: HintCollector
+) -> None:
+    here = tmp_path / "a b"
+    here.mkdir()
+    (here / "mine.py").write_text(STRAIGHT_ON)
+    monkeypatch.chdir(here)
+    honest, before = single_test.perform, len(hints.printed)
+
+    def stopped(words, seed, world, setup, index, *rest):  # type: ignore[no-untyped-def]
+        if index == 2:
+            raise KeyboardInterrupt
+        return honest(words, seed, world, setup, index, *rest)
+
+    def invoke(*words: str) -> int:
+        return CliRunner().invoke(app, words, prog_name="roadgpt").exit_code
+
+    with monkeypatch.context() as patch:
+        patch.setattr(single_test, "perform", stopped)
+        limits = ("--fail-on", "error,5%", "--junit", "tests of it.xml")
+        assert invoke("run", *WORDS, "-n", "2", "--no-plot", "--out", "r", *limits) == 130
+        assert invoke("campaign", *WORDS, "-n", "2", "--out", "c", *limits) == 130
+    for words in (("show", "r/1"), ("show", "c/c01/1"), ("show", "c"), ("report", "c"), ("resume", "c")):
+        assert invoke(*words, *WORDS[-2:] * (words[0] == "resume")) == 0
+    driver = f"{here}/mine.py:Mine"
+    printed = {kind_of(words): words for words in hints.printed[before:]}
+    typed = {words[1]: words for words in printed.values() if words[1] in ("drive", "faults", "resume")}
+    assert {"run", "campaign", "view", "show", *typed} == {words[1] for words in printed.values()}
+    assert len(typed) == 3
+    for words in (words for words in printed.values() if words[1] not in ("view", "show")):
+        assert words[words.index("--driver") + 1] == driver
+    resumed = [words for words in printed.values() if "tests of it.xml" in words]
+    assert [words[words.index("--fail-on") + 1 : -2] for words in resumed] == [["ERROR", "--fail-on", "5%"]]
+    assert hints.type(resumed[0][1:]).exit_code == 6
+    for words in typed.values():
+        done = hints.type(shortened(words[1:]))
+        assert done.exit_code in (0, 6), done.output
+    without = hints.type([word for word in typed["faults"][1:] if word not in ("--driver", driver)])
+    assert without.exit_code == 2
+    assert f"name it yourself: --driver '{driver}'" in without.stderr
+
+
+def test_a_command_that_cannot_be_used_is_noticed(hints: HintCollector, tmp_path: Path) -> None:
+    road = tmp_path / "road.json"
+    road.write_text("[]")
+    assert hints.parse(["check", str(road)]).exit_code == 0
+    for words in (["check", f"{road}l"], ["check", str(road), "--rule"], ["chek", str(road)], ["check"]):
+        assert hints.parse(words).exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("continue with: roadgpt resume 'a b' -j 2", ["resume", "a b", "-j", "2"]),
+        ("so `roadgpt view c/1` shows it", ["view", "c/1"]),
+        ("  again     roadgpt drive x.json\n", ["drive", "x.json"]),
+        ("make it with 'roadgpt learn export'", None),
+        ("Usage: roadgpt drive ROAD...", None),
+    ],
+)
+def test_a_command_that_is_printed_is_found(text: str, words: list[str] | None) -> None:
+    assert hints_in(text) == ([["roadgpt", *words]] if words else [])

@@ -1,0 +1,147 @@
+"""Commands that commands print: every kind of them is typed as it was printed, or parsed where that is dear.
+
+Every command line that ``roadgpt`` prints in a test is looked at (``conftest.py`` sees to it), right after
+the command that printed it. The first of each kind, in all processes, is typed: in a copy of the folders as
+they are then, and as a new process would, which knows of no driver and no server. A kind is the command and
+the names of its options; all of a command in ``DEAR``, which costs seconds, are one kind, or two, with and
+without a driver's file. The others are parsed by the command line, and their files must be there.
+"""
+
+import os
+import re
+import shlex
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+import pytest
+from click.testing import CliRunner, Result
+
+from roadgpt import provenance
+from roadgpt.campaign.selection import selection_of
+from roadgpt.campaign.workers.in_process import InProcess
+from roadgpt.cli import app
+from roadgpt.cli.command_table import COMMANDS
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.errors import UsageError
+
+LINE = re.compile(rf"(?:^|: |  |`)(roadgpt (?:{'|'.join(COMMANDS)})\b[^`\n]*)", re.MULTILINE)
+DEAR = ("campaign", "faults", "film", "run", "study")  # they cost seconds
+WRONG = {2, 70}  # what was typed cannot be used; an internal error
+
+
+def hints_in(text: str) -> list[list[str]]:
+    """The commands in what was printed, as the shell splits them: each ends its line, or is in backticks."""
+    told = "\n".join(line for line in text.splitlines() if not line.startswith("Usage: "))
+    return [shlex.split(line) for line in LINE.findall(told)]
+
+
+def kind_of(words: Sequence[str]) -> str:
+    """The command and the names of its options; of one that costs seconds, only those of permissions."""
+    verbs = [verb for verb in words[1 : 4 if words[1] == "study" else 2] if verb.isalpha()]
+    flags = {word for word in words if re.match("--?[a-z]", word)}
+    if verbs[0] in DEAR:
+        flags &= {"--driver", "--base-url"} if ".py:" in " ".join(words) else {"--base-url"}
+    return " ".join([*verbs, *sorted(flags)])
+
+
+class HintCollector:
+    """Looks at what commands print. ``seen`` is a folder with the kinds that any process has typed; folders
+    in ``base`` are copied."""
+
+    def __init__(self, seen: Path, base: Path) -> None:
+        self.seen, self.base = seen, base
+        self.printed: list[list[str]] = []
+        self._invoke = CliRunner.invoke
+        self._is_typing = False
+
+    def look(self, args: Sequence[str], printed: Result) -> None:
+        """Types or parses what a command printed. Raises AssertionError if that command cannot be used."""
+        if self._is_typing or {"--help", "--help-all", "-h"} & {*args}:
+            return
+        text = printed.output
+        if args[:1] == ["report"] and printed.exit_code == 0:
+            text += Path(printed.stdout.splitlines()[-1]).with_suffix(".md").read_text(encoding="utf-8")
+        for words in hints_in(text):
+            self.printed.append(words)
+            said = f"{shlex.join(['roadgpt', *args])}\nprints\n{shlex.join(words)}\n"
+            done, right = self.parse(words[1:], args), {0}
+            mistaken = {word for word in words if "/" in word and word in args and not Path(word).exists()}
+            if done.exit_code == 0 and not mistaken and self._is_new(kind_of(words)):
+                done, right = self.type(shortened(words[1:])), {0, 130, printed.exit_code} - WRONG
+            assert done.exit_code in right, f"{said}which ends with {done.exit_code}:\n{done.output}"
+
+    def _is_new(self, kind: str) -> bool:
+        try:
+            (self.seen / re.sub(r"[^\w-]", "_", kind)[:200]).touch(exist_ok=False)
+        except FileExistsError:
+            return False
+        return True
+
+    def type(self, words: Sequence[str]) -> Result:
+        """Runs a command in copies of the folders of tests, in which its paths lead."""
+        here, copies = Path.cwd(), dict[str, str]()
+        for folder in [str(here), *words]:
+            for place in self.base.iterdir():
+                if place.is_dir() and f"{place}/" in f"{folder}/" and str(place) not in copies:
+                    copies[str(place)] = str(self.seen.parent / f"typed-{len(copies)}-{os.getpid()}")
+                    shutil.copytree(place, copies[str(place)], symlinks=True)
+        try:
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
+                patch.setattr("roadgpt.study.survey.serving.serve", lambda *given: None)
+                patch.chdir(replaced(str(here), copies))
+                return self._typed([replaced(word, copies) for word in words])
+        finally:
+            for copy in copies.values():
+                shutil.rmtree(copy, ignore_errors=True)
+
+    def parse(self, words: Sequence[str], given: Sequence[str] = ()) -> Result:
+        """Lets the command line read a command, which only looks for what its arguments name, except for what
+        the user has ``given``."""
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(GroupedCommand, "invoke", lambda _, ctx: look_for_arguments(ctx, given))
+            return self._typed(words)
+
+    def _typed(self, words: Sequence[str]) -> Result:
+        self._is_typing = True
+        try:
+            with pytest.MonkeyPatch.context() as patch:
+                for each in (provenance.CODE, provenance.SERVERS):
+                    patch.setattr(each, "_named", {})
+                    patch.setattr(each, "_files", {})
+                patch.setattr(os, "environ", os.environ.copy())
+                return self._invoke(CliRunner(), app, [*words], "roadgpt")
+        finally:
+            self._is_typing = False
+
+
+def look_for_arguments(ctx: click.Context, given: Sequence[str]) -> None:
+    """Raises UsageError if a file, a folder or a test that a command names is not there."""
+    for parameter in ctx.command.params:
+        if isinstance(parameter, click.Argument) and parameter.name in ("files", "folder", "place", "run"):
+            value = ctx.params[parameter.name]
+            for name in value if isinstance(value, tuple) else (value,):
+                is_there = str(name) in given or Path(name).exists() or selection_of(str(name))
+                if not is_there:
+                    raise UsageError(f"there is no {name}")
+
+
+def replaced(word: str, copies: dict[str, str]) -> str:
+    """A word with the folder of a test replaced by its copy."""
+    for place, copy in copies.items():
+        if f"{place}/" in f"{word}/":
+            return word.replace(place, copy)
+    return word
+
+
+def shortened(words: Sequence[str]) -> list[str]:
+    """The same command for one new road or test, without pictures, which takes a second and not minutes."""
+    many = () if "--out" in words else ("-n", "--roads")
+    short = ["1" if before in many else word for before, word in zip(["", *words], words, strict=False)]
+    if words[0] == "faults":
+        short += ["--repeat", "2"]
+    if words[0] in ("run", "faults") or "--again" in words:
+        short.insert(1, "--no-plot")
+    return short
