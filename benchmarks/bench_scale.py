@@ -54,7 +54,7 @@ def instant(task: Task, cell: Cell) -> FinishedTest:
         task.batch,
         task.proposal,
         "PASS" if task.number % 3 else "FAIL",
-        "kept its lane to the goal after 226 m, never closer than 0.18 m to failing",
+        "kept its lane to the goal after 226 m, never less than 0.18 m sideways from failing",
         task.proposal.design,
         226.5,
         0.125 * (task.number % 17),

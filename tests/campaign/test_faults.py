@@ -100,7 +100,10 @@ def test_a_car_that_runs_wide_is_told_with_what_its_lane_asks_for() -> None:
     # the middle of the right lane lies 2 m inside of a right bend
     assert reason.needed == pytest.approx(SPEED**2 / 18 / 9.81, rel=0.01)
     assert reason.entered == SPEED
-    assert "R 20 m right at 61 km/h and ran wide after 72 m" in reason.sentence
+    assert reason.sentence == (
+        "entered a right bend of radius 20 m at 61 km/h and ran wide after 72 m; at that speed, the middle of "
+        f"the lane needs a friction coefficient of {reason.needed:.2f}, and the road has {reason.friction:.2f}"
+    )
 
 
 @pytest.mark.parametrize(
@@ -140,7 +143,10 @@ def test_a_car_that_cuts_says_so_and_names_the_bend_before() -> None:
     road = build(design(straight(50), bend(-60, 25), bend(70, 16), start=(30.0, 120.0, 0.0)))
     reason = reason_of(failed(road, 50 + math.radians(60) * 25 + 6, t=3.0, speed=8.0))
     assert (reason.way, reason.side) == ("inside", "left")
-    assert "R 16 m left at 29 km/h right after an R 25 m right and cut its inside" in reason.sentence
+    assert (
+        "a left bend of radius 16 m at 29 km/h just after a right bend of radius 25 m and cut its inside"
+        in reason.sentence
+    )
 
 
 def test_a_crest_takes_grip_and_is_named() -> None:
@@ -468,7 +474,7 @@ def test_the_command_looks_into_failures_once(
     words = ["faults", str(tmp_path), "--repeat", "2"]
     first = CliRunner().invoke(app, [*words, "--no-plot"], standalone_mode=False)
     assert first.exception is None
-    bend = f"a left bend of R {reason_of(slid).radius:.0f} m"
+    bend = f"a left bend of radius {reason_of(slid).radius:.0f} m"
     assert f"\n1 distinct fault in 1 failure: the car {WAYS[reason_of(slid).way]} {bend}\n" in first.output
     assert not (tmp_path / "faults" / "0001.png").exists()
     with monkeypatch.context() as patch:

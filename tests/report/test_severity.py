@@ -78,7 +78,7 @@ def test_the_place_where_most_was_outside_is_named(runs: dict[str, Run]) -> None
     assert verdict is not None
     assert verdict.beyond is not None
     assert 1.43 <= verdict.beyond < 1.6  # the drive weaves, so its corners reach farther than on paper
-    assert place.text == f"77 % outside,\n{verdict.beyond:.2f} m beyond the marking"
+    assert place.text == f"77 % of the car outside,\n{verdict.beyond:.2f} m beyond the marking"
     assert place.colour == SEVERE["mostly outside"]
     assert place.sign != "X"
     told = scene(runs["mostly outside"])

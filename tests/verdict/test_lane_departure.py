@@ -35,11 +35,11 @@ def test_a_pass_that_was_partly_outside_says_so() -> None:
     assert verdict.kept
     assert verdict.severity == "mostly outside"
     assert verdict.description == (
-        "kept its lane within the tolerance of 95 % to the goal after 12 m: at most 62 % outside, 1.15 m "
-        "beyond the marking, 0.62 m from failing"
+        "kept its lane within the tolerance of 95 % to the goal after 12 m: at most 62 % of the car was "
+        "outside, 1.15 m beyond the marking, 0.62 m sideways from failing"
     )
     on_the_line = judge(STRAIGHT, drive_at([-2.0, -0.9, -2.0]), WORLD)
-    assert "at most 2 % outside, on the marking" in on_the_line.description
+    assert "at most 2 % of the car was outside, on the marking" in on_the_line.description
     assert on_the_line.severity == "at most 10 % outside"
     inside = judge(STRAIGHT, drive_at([-2.0, -2.5, -2.0]), WORLD)
     assert inside.severity == "at most 10 % outside"
@@ -48,12 +48,12 @@ def test_a_pass_that_was_partly_outside_says_so() -> None:
 
 def test_no_share_is_rounded_away() -> None:
     grazed = judge(STRAIGHT, drive_at([-2.0, -3.0701, -2.0]), WORLD)
-    assert "at most 0.005 % outside" in grazed.description
+    assert "at most 0.005 % of the car was outside" in grazed.description
     nearly = judge(
         STRAIGHT, drive_at([-2.0] * 3, outside=[0, 0.9996, 0]), World(limits=Limits(oob_tolerance=1.0))
     )
     assert "within the tolerance of 100 %" in nearly.description
-    assert "at most 99.9 % outside" in nearly.description
+    assert "at most 99.9 % of the car was outside" in nearly.description
 
 
 def test_the_scale_has_three_steps() -> None:
@@ -90,8 +90,8 @@ def test_a_departure_is_told_with_its_place_side_and_reason() -> None:
     assert verdict.margin == pytest.approx(4 - 3.2 - 0.9025)
     kept = judge(STRAIGHT, drive_at([-2.0, -3.09, -2.0]), WATCHED)
     assert kept.description == (
-        "kept its front tyres within the markings to the goal after 12 m: at most 1 % outside, 0.02 m "
-        "beyond the marking, 0.01 m from failing"
+        "kept its front tyres within the markings to the goal after 12 m: at most 1 % of the car was "
+        "outside, 0.02 m beyond the marking, 0.01 m sideways from failing"
     )
     assert kept.margin == pytest.approx(4 - 3.09 - 0.9025)
 

@@ -51,7 +51,10 @@ def test_a_car_in_the_middle_of_its_lane_passes_with_2_837_m() -> None:
     assert verdict.max_oob == pytest.approx(0.0)
     assert verdict.oob_counter == 0
     assert verdict.sbft_description == "Successful test"
-    assert verdict.description == "kept its lane to the goal after 22 m, never closer than 2.84 m to failing"
+    assert (
+        verdict.description
+        == "kept its lane to the goal after 22 m, never less than 2.84 m sideways from failing"
+    )
 
 
 def test_a_car_that_goes_left_fails_where_it_first_did() -> None:
@@ -92,8 +95,8 @@ def test_by_default_a_car_fails_where_more_than_half_of_it_is_outside() -> None:
     assert judge(STRAIGHT, drive_at([-2.0] * 5), World()).margin == pytest.approx(2.0, abs=1e-6)
     kept = judge(STRAIGHT, drive_at([-2.0, -0.01, -2.0]), World())
     assert kept.description == (
-        "kept its lane within the tolerance of 50 % to the goal after 12 m: at most 49 % outside, 0.86 m "
-        "beyond the marking, 0.01 m from failing"
+        "kept its lane within the tolerance of 50 % to the goal after 12 m: at most 49 % of the car was "
+        "outside, 0.86 m beyond the marking, 0.01 m sideways from failing"
     )
     failed = judge(STRAIGHT, drive_at([-2.0, 0.01, -2.0]), World())
     assert (failed.outcome, failed.cause, failed.at_s) == ("FAIL", "out of lane", pytest.approx(7.5))

@@ -36,6 +36,8 @@ THESIS = Frame(0.0, 220.0, 0.0, 220.0)
 SIDE = 6.6  # inches, the longer side of what shows the road
 LEFT, BOTTOM, BAR, KEY = 0.75, 0.62, 1.15, 0.22  # inches
 MARGIN, LEAST = 16.0, 60.0  # m, around the road and across the picture
+MOST_PIECES = 600  # of the path, in the picture
+SHARE = 0.04  # of a long road's extent, around it
 SLOWEST = 10.0  # km/h; the scale of colours reaches at least this speed
 
 RIM = 8.0  # points, width of the rim around the path
@@ -119,12 +121,13 @@ def _frame(run: Run, centre: Array) -> Frame:
     shown = centre
     if run.drive is not None:
         shown = np.concatenate([centre, np.stack([run.drive["x"], run.drive["y"]], axis=-1)])
-    return Frame.around(shown, MARGIN, LEAST, run.world.site.map_size)
+    margin = max(MARGIN, SHARE * float(np.ptp(shown, axis=0).max()))
+    return Frame.around(shown, margin, LEAST, run.world.site.map_size)
 
 
 def _ground(axes: Axes, frame: Frame, size: float) -> None:
     """Draws ground, grid, the border of the map, and the area outside it."""
-    show_from_above(axes, frame, (10, 20, 25, 50, 100, 200, 500, 1000, 1e6), 8)
+    show_from_above(axes, frame, 8)
     axes.set_facecolor("#d5d8dc")
     axes.add_patch(Rectangle((0, 0), size, size, fc=GROUND, ec="none", zorder=0))
     border = Rectangle((0, 0), size, size, fc="none", ec=SOFT, lw=1.4, ls=(0, (6, 3)), zorder=0.6)
@@ -149,13 +152,15 @@ def driven_path(axes: Axes, drive: Drive) -> LineCollection:
     The path has a coloured outline where the car was outside its lane."""
     track = np.stack([drive["x"], drive["y"]], axis=-1)
     speed = drive["speed"] * 3.6
-    every = max(1, len(track) // 600)
+    (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+    x, y = track.T
+    every = max(1, int(((x > x0) & (x < x1) & (y > y0) & (y < y1)).sum()) // MOST_PIECES)
     track = np.concatenate([track[::every], track[-1:]])
     speed = np.r_[speed[::every], speed[-1]]
     norm = Normalize(0.0, max(SLOWEST, float(speed.max())))
     axes.plot(track[:, 0], track[:, 1], color="white", lw=4.2, zorder=6, solid_capstyle="round")
     pieces = np.stack([track[:-1], track[1:]], axis=1)
-    _draw_rim(axes, pieces, severities(drive)[::every])
+    _draw_rim(axes, pieces, severities(drive, every))
     line = LineCollection(list(pieces), cmap=SPEEDS, norm=norm, linewidths=2.6, zorder=7, capstyle="round")
     line.set_array((speed[:-1] + speed[1:]) / 2)
     axes.add_collection(line)
@@ -177,11 +182,14 @@ def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
     axes.plot(place.x, place.y, place.sign, ms=10, mfc=place.colour, mec="white", mew=1.4, zorder=10)
 
 
-def severities(drive: Drive | None) -> list[Severity]:
-    """Returns how far outside its lane the car was, for each step that the verdict checks; empty without a
-    drive.
+def severities(drive: Drive | None, every: int = 1) -> list[Severity]:
+    """Returns how far outside its lane the car was at most in each ``every`` steps that the verdict checks;
+    empty without a drive.
     """
-    return [] if drive is None else [severity(share) for share in drive["outside"][: drive.lane_steps]]
+    if drive is None or not drive.lane_steps:
+        return []
+    shares = drive["outside"][: drive.lane_steps]
+    return [severity(share) for share in np.maximum.reduceat(shares, np.arange(0, len(shares), every))]
 
 
 def _draw_rim(axes: Axes, pieces: Array, found: list[Severity]) -> None:

@@ -6,60 +6,65 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
+from numpy.typing import NDArray
 
+from roadgpt.drive.outlook import passages
 from roadgpt.geometry.curve import Array
 from roadgpt.report.birds_eye import Scale
 from roadgpt.report.canvas import FAINT, HALO, INK, Header, add_axes, inches_of, new_figure, note
-from roadgpt.report.junctions import shade_junctions
-from roadgpt.report.places import name_places, places_of
+from roadgpt.report.junctions import LINE, LINES, shade_junctions
+from roadgpt.report.places import STEP, name_places, places_of
 from roadgpt.report.plan_view import stations_of
+from roadgpt.report.text_width import inches
 from roadgpt.run import Run
 
 WIDTH = 9.6  # inches
-LEFT, BOTTOM, RIGHT = 0.78, 0.62, 0.3  # inches
-LOWEST = 1.45  # inches, least height of the axes
+LEFT, BOTTOM, RIGHT = 0.96, 0.62, 0.3  # inches
+EXAGGERATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
+TALLEST = 1.8  # inches, from the lowest point of an exaggerated road to its highest
+FLATTEST, FLATTEST_M = 0.005, 2.0  # of the length, and metres: a road with smaller heights is shown as flat
+LOWEST = 1.3  # inches, least height of the axes
+ABOVE, UNDER = 0.5, 0.4  # inches of the axes above the road and under it
 THESIS_HEIGHT = 3.6  # inches
 THESIS_X, THESIS_Z = 200.0, 20.0  # m
-SAME_GRADE = 0.004  # slopes within this are one stretch
+SAME_GRADE, LEVEL = 0.004, 0.0005  # grades within this are one stretch; a grade that is told as level
 SHORTEST = 0.55  # inches, of a stretch that is worth a label, and between labels
+SIZE = 9  # points
 LEAST = 0.005  # ratio: a grade below this counts as level
+CLEAR = 0.06  # inches between a label and the road
 OVER_THE_FRAME = 3  # pixels by which a line on the border of the axes may reach over it
 EARTH, SURFACE = "#dcd9c3", "#4b5563"
 
 
 def height_profile(run: Run, scale: Scale = "equal") -> Figure:
-    """Returns a picture of the height over the distance along the road, with the grades of long sections."""
+    """Returns a picture of the height over the distance along the road, with grades, crests and sags.
+
+    The height is exaggerated where it would be hard to see to scale; the axis says how many times.
+    """
     assert run.road is not None
     s = stations_of(run.road)
     z = run.road.at(s)[:, 2]
-    across = WIDTH - LEFT - RIGHT
     header = Header.of(run, WIDTH)
+    places, junctions = places_of(run), passages(run.road)
     if scale == "thesis":
         figure, axes, z, label = _thesis(run, z, header.height)
     else:
-        per_inch = run.length * 1.03 / across
-        tall = max(LOWEST, np.ptp(z) / per_inch + 0.9)
+        per_inch = run.length * 1.03 / (WIDTH - LEFT - RIGHT)
+        times = exaggeration(float(np.ptp(z)), run.length, per_inch)
+        foot, head = UNDER + STEP * len(places), ABOVE + (LINE * LINES if junctions else 0)
+        spare = max(0.0, LOWEST - float(np.ptp(z)) * times / per_inch - foot - head) / 2
+        foot, head = foot + spare, head + spare
+        tall = np.ptp(z) * times / per_inch + foot + head
         figure = new_figure(WIDTH, header.height + tall + BOTTOM)
         axes = add_axes(figure, LEFT, BOTTOM, RIGHT, header.height)
-        middle = (z.min() + z.max()) / 2 + 0.1 * per_inch
         axes.set(xlim=(-0.015 * run.length, 1.015 * run.length))
-        axes.set_ylim(middle - tall / 2 * per_inch, middle + tall / 2 * per_inch)
-        axes.set_aspect("equal")
+        axes.set_ylim(z.min() - foot * per_inch / times, z.max() + head * per_inch / times)
         axes.yaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
         label = "height, m"
     header.write(figure)
-    axes.set_xlabel("distance along the road, m")
-    axes.set_ylabel(label)
-    axes.grid(color=FAINT, lw=0.8)
-    axes.set_axisbelow(True)
     shade_junctions(axes, run.road)
+    draw_heights(axes, s, z, label)
     low, high = axes.get_ylim()
-    axes.fill_between(s, z, low, color=EARTH, lw=0)
-    # on the thesis' axes a level road lies on the frame; it is drawn over the frame to be visible
-    (surface,) = axes.plot(s, z, color=SURFACE, lw=2.4, solid_capstyle="round", zorder=4)
-    surface.set_clip_box(axes.bbox.padded(OVER_THE_FRAME))
-    _slopes(axes, run, s, z)
-    places = places_of(run)
     for place in places:
         at = float(np.interp(place.s, s, z))
         axes.plot([place.s, place.s], [low, high], color=place.colour, lw=1, ls=(0, (4, 3)), zorder=3)
@@ -67,7 +72,32 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
         cross.set_clip_box(axes.bbox.padded(2 * OVER_THE_FRAME))
     is_low = bool(places) and float(np.interp(places[0].s, s, z)) < (low + high) / 2
     name_places(axes, places, axes.get_xlim()[1], at_top=scale == "thesis" and is_low)
+    label_heights(axes, s, z, run.road.grade(s))
     return figure
+
+
+def exaggeration(span: float, length: float, per_inch: float, tallest: float = TALLEST) -> int:
+    """Returns how many times heights that span ``span`` metres are exaggerated in a picture with ``per_inch``
+    metres of road per inch, so that they are ``tallest`` inches high at most. Heights of less than 0.5 % of
+    the length, or of 2 m, are drawn as if they were as much.
+    """
+    shown = max(span, FLATTEST * length, FLATTEST_M)
+    return max(each for each in EXAGGERATIONS if each == 1 or each * shown / per_inch <= tallest)
+
+
+def draw_heights(axes: Axes, s: Array, z: Array, label: str = "height, m") -> None:
+    """Draws heights ``z`` over stations ``s``, each ``(n,)``, on axes whose limits are set. The axis says how
+    many times the height is exaggerated."""
+    wide, high = inches_of(axes)
+    times = float(np.ptp(axes.get_xlim()) / wide / (np.ptp(axes.get_ylim()) / high))
+    axes.set_ylabel(label if abs(times - 1) < 0.05 else f"{label}\n(exaggerated {times:.2g} x)")
+    axes.set_xlabel("distance along the road, m")
+    axes.grid(color=FAINT, lw=0.8)
+    axes.set_axisbelow(True)
+    axes.fill_between(s, z, axes.get_ylim()[0], color=EARTH, lw=0)
+    # a level road may lie on the frame; it is drawn over the frame to be visible
+    (surface,) = axes.plot(s, z, color=SURFACE, lw=2.4, solid_capstyle="round", zorder=4)
+    surface.set_clip_box(axes.bbox.padded(OVER_THE_FRAME))
 
 
 def _thesis(run: Run, z: Array, top: float) -> tuple[Figure, Axes, Array, str]:
@@ -88,38 +118,58 @@ def _thesis(run: Run, z: Array, top: float) -> tuple[Figure, Axes, Array, str]:
     return figure, axes, z, label
 
 
-def _slopes(axes: Axes, run: Run, s: Array, z: Array) -> None:
-    """Labels stretches of constant grade with their grade in percent, other stretches with the steepest."""
-    assert run.road is not None
-    grade = run.road.grade(s)
-    left, right = axes.get_xlim()
-    shortest = SHORTEST * (right - left) / (WIDTH - LEFT - RIGHT)
-    low, high = axes.get_ylim()
-    lift = 0.13 * (high - low) / inches_of(axes)[1]
-    for middle, slope in _labelled_slopes(s, grade, shortest):
-        if not left <= middle <= right - shortest / 2:
-            continue
-        text = "level" if abs(slope) < 5e-4 else f"{slope:+.1%}".replace("%", " %").replace("-", "−")
-        axes.text(
-            middle, np.interp(middle, s, z) + lift, text, ha="center", va="bottom", size=9, color=INK,
-            path_effects=HALO,
-        )  # fmt: skip
+def label_heights(axes: Axes, s: Array, z: Array, grade: Array) -> None:
+    """Labels stretches of constant grade with their grade in percent, each slope with its steepest grade,
+    and crests and sags with their heights. ``s``, ``z`` and ``grade``, each ``(n,)``, belong to the drawn
+    line.
+
+    A label that finds no place beside the texts and markers on the axes is left out: crests and sags come
+    first, then the longest stretches.
+    """
+    (left, right), (wide, high) = axes.get_xlim(), inches_of(axes)
+    per_inch, clear = (right - left) / wide, CLEAR * float(np.ptp(axes.get_ylim())) / high
+    marks = [line for line in axes.lines if np.size(line.get_xdata()) < len(s)]
+    s, z, grade = np.stack([s, z, grade])[:, s <= right]
+    taken = [each.get_window_extent().padded(2) for each in (*axes.texts, *marks)]
+    for text, start, end, is_under in _labels(s, z, grade, SHORTEST * per_inch):
+        half = (inches(text, SIZE) / 2 + CLEAR) * per_inch
+        for share in (0.5, 0.35, 0.65, 0.2, 0.8):
+            middle = float(np.clip(start + share * (end - start), left + half, right - half))
+            near = z[(s > middle - half) & (s < middle + half)]
+            label = axes.text(
+                middle, near.min() - clear if is_under else near.max() + clear, text, ha="center",
+                va="top" if is_under else "bottom", size=SIZE, color=INK, path_effects=HALO, zorder=7,
+            )  # fmt: skip
+            box = label.get_window_extent()
+            if axes.bbox.y0 < box.y0 and box.y1 < axes.bbox.y1 and not box.count_overlaps(taken):
+                taken.append(box.padded(2))
+                break
+            label.remove()
 
 
-def _labelled_slopes(s: Array, grade: Array, shortest: float) -> list[tuple[float, float]]:
-    """Returns station in metres and value of each slope that gets a label."""
-    breaks = np.flatnonzero(np.abs(np.diff(grade)) > SAME_GRADE * (s[1] - s[0]) / 2)
-    found = [
-        ((s[a] + s[b]) / 2, float(grade[(a + b) // 2]))
-        for a, b in pairwise(np.r_[0, breaks + 1, len(s) - 1])
-        if s[b] - s[a] >= shortest
-    ]
+def _labels(s: Array, z: Array, grade: Array, shortest: float) -> list[tuple[str, float, float, bool]]:
+    """Returns labels, the most important first: text, the stations between which it may stand, and whether it
+    stands under the road. Stretches shorter than ``shortest`` metres have none."""
     way = np.where(np.abs(grade) < LEAST, 0, np.sign(grade))
-    for a, b in pairwise(np.r_[0, np.flatnonzero(np.diff(way)) + 1, len(s) - 1]):
-        room = min(shortest, s[b] - s[a]) / 2
-        steepest = a + int(np.abs(grade[a : b + 1]).argmax())
-        place = float(np.clip(s[steepest], s[a] + room, s[b] - room))
-        is_alone = not any(s[a] <= middle <= s[b] or abs(place - middle) < shortest for middle, _ in found)
-        if way[a] and s[b] - s[a] >= shortest / 2 and is_alone:
-            found.append((place, float(grade[steepest])))
-    return found
+    slopes = [(a, b) for a, b in _parts(np.diff(way) != 0) if way[a] and s[b] - s[a] >= shortest / 2]
+    even = _parts(np.abs(np.diff(grade)) > SAME_GRADE / shortest * np.diff(s))
+    found = [(s[a], s[b], grade[(a + b) // 2]) for a, b in even if s[b] - s[a] >= shortest]
+    labels = []
+    for a, b in slopes:
+        at = a + int(np.abs(grade[a:b]).argmax())
+        if all(abs(slope - grade[at]) > SAME_GRADE or not s[a] <= start < s[b] for start, _, slope in found):
+            found.append((max(s[a], s[at] - shortest / 2), min(s[b], s[at] + shortest / 2), grade[at]))
+    for (a, b), (c, d) in pairwise(slopes):
+        if way[a] != way[c] and min(s[b] - s[a], s[d] - s[c]) >= shortest:
+            at = a + int((way[a] * z[a : d + 1]).argmax())
+            name = "crest" if way[a] > 0 else "sag"
+            labels.append((f"{name}, {z[at]:.0f} m", s[at], s[at], name == "sag"))
+    for start, end, slope in sorted(found, key=lambda each: each[0] - each[1]):
+        percents = f"{100 * slope:+.1f}".removesuffix(".0").replace("-", "−")
+        labels.append(("level" if abs(slope) < LEVEL else f"{percents} %", start, end, False))
+    return labels
+
+
+def _parts(breaks: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Returns first and last index of each part of a line; ``breaks`` says after which points it breaks."""
+    return list(pairwise([0, *(np.flatnonzero(breaks) + 1).tolist(), len(breaks)]))

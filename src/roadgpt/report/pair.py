@@ -6,9 +6,21 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from roadgpt.geometry.curve import Array
-from roadgpt.report.birds_eye import THESIS, Scale, driven_path, mark
-from roadgpt.report.canvas import FAINT, HALO, INK, SOFT, VERMILLION, dress, in_our_style, new_figure, note
-from roadgpt.report.height import EARTH, SURFACE, THESIS_X, THESIS_Z
+from roadgpt.report.birds_eye import SHARE, THESIS, Scale, driven_path, mark
+from roadgpt.report.canvas import (
+    FAINT,
+    HALO,
+    INK,
+    SOFT,
+    VERMILLION,
+    dress,
+    in_our_style,
+    inches_of,
+    new_figure,
+    note,
+)
+from roadgpt.report.height import THESIS_X, THESIS_Z, draw_heights, exaggeration, label_heights
+from roadgpt.report.labels import Labels
 from roadgpt.report.places import places_of
 from roadgpt.report.plan_view import (
     GROUND,
@@ -20,16 +32,16 @@ from roadgpt.report.plan_view import (
     stations_of,
 )
 from roadgpt.report.text_width import fitted, inches
+from roadgpt.road import Road, World
 from roadgpt.run import Run
 
-WIDTH, LEFT, RIGHT, BOTTOM, TOP, BETWEEN = 10.6, 0.7, 0.25, 0.62, 0.62, 0.95  # inches
+WIDTH, LEFT, RIGHT, BOTTOM, TOP, BETWEEN = 10.6, 0.7, 0.25, 0.62, 0.62, 1.1  # inches
 SIDE = 3.3  # inches, of the square that shows a road from above
 ROW = SIDE + BOTTOM + TOP
 SIZE = (WIDTH, 2 * ROW)  # inches
 MARGIN, LEAST = 14.0, 60.0  # m, around the roads and across the square
-STEP_BACK = 17.0  # points from the start to its name
 CORNER = (0.985, 0.97)  # of axes, where it is written that a road goes on
-LOWEST = 6.0  # m that the heights span at least
+ROOM = 1.0  # inches of the axes above and under the heights
 
 
 @in_our_style
@@ -40,23 +52,25 @@ def pair(one: Run, other: Run, scale: Scale = "equal", drivers: tuple[str, str] 
     """
     runs = (one, other)
     figure = new_figure(*SIZE)
-    side = max(LEAST, *(float(np.ptp(_plan(run), axis=0).max()) + 2 * MARGIN for run in runs))
-    long = max(run.length for run in runs)
-    span = max(LOWEST, *(float(np.ptp(_heights(run))) for run in runs)) * 1.25
+    side = max(LEAST, *((1 + 2 * SHARE) * float(np.ptp(_plan(run), axis=0).max()) for run in runs))
+    shown = max(run.length for run in runs), max(float(np.ptp(_heights(run))) for run in runs)
     for number, run in enumerate(runs):
         foot = (1 - number) * ROW + BOTTOM
-        frame = THESIS if scale == "thesis" else _square(run, side)
+        frame = THESIS if scale == "thesis" else _square(run, side + 2 * MARGIN)
+        assert run.road is not None
         above = _axes(figure, LEFT, foot, SIDE)
-        _above(above, run, frame)
+        draw_plan(above, run.road, run.world, frame, frame.width / SIDE)
+        if not all(frame.holds(x, y) for x, y in _plan(run)):
+            note(above, CORNER, "goes on beyond these axes", 9, zorder=13)
         wide = WIDTH - LEFT - SIDE - BETWEEN - RIGHT
         beside = _axes(figure, LEFT + SIDE + BETWEEN, foot, wide)
         seed = f"seed {run.request.seed}, road {run.index}, " if run.words else ""
         if drivers is None:
             name, said = f"Road {number + 1}", run.outcome.lower()
-            _beside(beside, run, (long, span), scale)
+            _beside(beside, run, shown, scale)
         else:
             name, said = f"{drivers[number]}: {run.outcome}", run.description
-            _outside(above, beside, run, long)
+            _outside(above, beside, run, shown[0])
         at = (foot + SIDE + 0.32) / SIZE[1]
         figure.text(LEFT / WIDTH, at, name, size=11, weight="bold", color=INK, parse_math=False)
         after = LEFT + 0.15 + inches(name, 11, bold=True)
@@ -109,20 +123,17 @@ def _square(run: Run, side: float) -> Frame:
     return Frame(x - side / 2, x + side / 2, y - side / 2, y + side / 2)
 
 
-def _above(axes: Axes, run: Run, frame: Frame) -> None:
-    assert run.road is not None
-    show_from_above(axes, frame, (10, 20, 50, 100, 200, 500, 1e6), 6)
+def draw_plan(axes: Axes, road: Road, world: World, frame: Frame, per_inch: float) -> None:
+    """Draws a road from above, with its start and its end named, on axes that show ``frame``, with
+    ``per_inch`` metres per inch."""
+    show_from_above(axes, frame, 7)
     axes.set_facecolor(GROUND)
-    draw_road(axes, run.road, run.world, frame.width / SIDE)
-    draw_ends(axes, run.road, run.world)
-    (x, y), ahead = run.road.at(0.0)[:2], float(run.road.heading(0.0))
-    away = -STEP_BACK * np.cos(ahead), -STEP_BACK * np.sin(ahead)
-    axes.annotate(
-        "start", (x, y), away, textcoords="offset points", size=9, color=INK, path_effects=HALO, zorder=12,
-        ha="center", va="center", annotation_clip=True,
-    )  # fmt: skip
-    if not all(frame.holds(x, y) for x, y in _plan(run)):
-        note(axes, CORNER, "goes on beyond these axes", 9, zorder=13)
+    draw_road(axes, road, world, per_inch)
+    draw_ends(axes, road, world)
+    labels = Labels(axes, frame, per_inch, plan_points(road), world.profile_of(road).paved_reach + 1.0)
+    for s, text, sign in ((0.0, "start", -1.0), (road.length, "end", 1.0)):
+        heading, (x, y, _) = float(road.heading(s)), road.at(s)
+        labels.put((x, y), text, INK, sign * np.array([np.cos(heading), np.sin(heading)]))
 
 
 def _beside(axes: Axes, run: Run, shown: tuple[float, float], scale: Scale) -> None:
@@ -134,15 +145,12 @@ def _beside(axes: Axes, run: Run, shown: tuple[float, float], scale: Scale) -> N
         z = z - min(float(z.min()), 0.0)
         axes.set(xlim=(0, THESIS_X), ylim=(0, THESIS_Z))
     else:
+        per_inch = long / inches_of(axes)[0]
+        high = SIDE * per_inch / exaggeration(span, long, per_inch, SIDE - ROOM)
         middle = (z.min() + z.max()) / 2
-        axes.set(xlim=(0, long), ylim=(middle - span / 2, middle + span / 2))
+        axes.set(xlim=(0, long), ylim=(middle - high / 2, middle + high / 2))
         axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
-    low, _ = axes.get_ylim()
-    axes.fill_between(s, z, low, color=EARTH, lw=0)
-    axes.plot(s, z, color=SURFACE, lw=2.2)
-    axes.grid(color=FAINT, lw=0.8)
-    axes.set_axisbelow(True)
-    axes.set_xlabel("distance along the road, m")
-    axes.set_ylabel("height, m")
+    draw_heights(axes, s, z)
+    label_heights(axes, s, z, run.road.grade(s))
     if scale == "thesis" and (run.length > THESIS_X or z.max() > THESIS_Z):
         note(axes, CORNER, f"goes on to {run.length:.0f} m, {z.max():.0f} m high", 9, zorder=13)

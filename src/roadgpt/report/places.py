@@ -136,7 +136,9 @@ def _farthest(drive: Drive, verdict: Verdict) -> MarkedPlace:
     step = int(drive["outside"][: drive.lane_steps].argmax())
     x, y, s = (float(drive[name][step]) for name in ("x", "y", "s"))
     beyond = "" if verdict.beyond is None else f",\n{far_beyond(verdict.beyond)}"
-    return MarkedPlace(x, y, s, f"{percent(verdict.max_oob)} outside{beyond}", step, SEVERE[verdict.severity])
+    return MarkedPlace(
+        x, y, s, f"{percent(verdict.max_oob)} of the car outside{beyond}", step, SEVERE[verdict.severity]
+    )
 
 
 def _said(finding: Finding) -> str:

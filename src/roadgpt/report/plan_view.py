@@ -1,6 +1,5 @@
 """Draws the road from above, to scale: shoulders, carriageway, edge lines and centre dashes."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,11 +15,11 @@ from roadgpt.report.text_width import POINTS
 from roadgpt.road import Edges, Road, World
 
 GROUND, VERGE, ASPHALT, PAINT = "#eef1ea", "#dcd9c3", "#b9bdc3", "#ffffff"
-BEYOND = 12.0  # m that are shown outside the map
 NARROWEST, WIDEST = 0.72, 2.0  # width over height of a frame
-MOST_STATIONS = 1500
+MOST_STATIONS, MOST_POINTS = 20_000, 1500  # of a road; of its centre line, beside which labels stand
 FINEST = 0.5  # m
 FAR_ASPHALT, THINNEST_LANE = "#8d939c", 2.5  # points: of a road that is seen from far away
+STEPS = [step * 10.0**power for power in range(1, 7) for step in (1, 2, 2.5, 5)]  # m, cells of the grid
 DASH, GAP = 3.0, 6.0  # m, of the centre line
 
 
@@ -36,14 +35,14 @@ class Frame:
     @classmethod
     def around(cls, points: Array, margin: float, least: float, size: float) -> "Frame":
         """Returns a frame that shows points ``(n, 2)`` with a margin, and is at least ``least`` wide and
-        high. If possible, the frame ends at most 12 m outside the map, a square with the side ``size``. All
-        is in metres.
+        high. If possible, the frame ends at most ``margin`` outside the map, a square with the side ``size``.
+        All is in metres.
         """
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
         width, height = np.maximum(high - low, least)
         shape = np.array([max(width, height * NARROWEST), max(height, width / WIDEST)])
         corner = (low + high - shape) / 2
-        corner = np.clip(corner, -BEYOND, np.maximum(size + BEYOND - shape, -BEYOND))
+        corner = np.clip(corner, -margin, np.maximum(size + margin - shape, -margin))
         corner = np.clip(corner, high - shape, low)
         return cls(corner[0], corner[0] + shape[0], corner[1], corner[1] + shape[1])
 
@@ -62,14 +61,14 @@ class Frame:
         return self.y1 - self.y0
 
 
-def show_from_above(axes: Axes, frame: Frame, steps: Sequence[float], most: int) -> None:
-    """Sets limits, labels and grid of axes that show a frame to scale. The cells of the grid have the first
-    size in ``steps``, in metres, for which at most ``most`` cells fit into the width of the frame.
+def show_from_above(axes: Axes, frame: Frame, most: int) -> None:
+    """Sets limits, labels and grid of axes that show a frame to scale; the grid has at most ``most`` cells
+    across.
     """
     axes.set(xlim=(frame.x0, frame.x1), ylim=(frame.y0, frame.y1), aspect="equal")
     axes.set_xlabel("x, metres east")
     axes.set_ylabel("y, metres north")
-    step = next(step for step in steps if frame.width / step <= most)
+    step = next(step for step in STEPS if frame.width / step <= most)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MultipleLocator(step))
     axes.grid(color="white", lw=0.8, zorder=0.5)
@@ -85,7 +84,8 @@ def stations_of(road: Road) -> Array:
 def plan_points(road: Road) -> Array:
     """Returns points, shape ``(n, 2)``, along the centre line of a road; for a route, also along the
     reference lines of all roads in its network."""
-    points: Array = road.at(stations_of(road))[:, :2]
+    s = stations_of(road)
+    points: Array = road.at(s[np.linspace(0, len(s) - 1, min(len(s), MOST_POINTS)).astype(int)])[:, :2]
     if is_route(road):
         lines = [each.road.centreline(2.0)[:, :2] for each in road.network.roads]
         return np.concatenate([points, *lines])
@@ -134,7 +134,7 @@ def is_far(road: Road, world: World, per_inch: float) -> bool:
 
 def _ribbon(axes: Axes, road: Road, s: Array, edges: Edges, colour: str, layer: float) -> None:
     outline = np.concatenate([road.at(s, edges.left), road.at(s, edges.right)[::-1]])[:, :2]
-    axes.add_patch(Polygon(outline, closed=True, fc=colour, ec="none", zorder=layer))
+    axes.add_artist(Polygon(outline, closed=True, fc=colour, ec="none", zorder=layer))
 
 
 def draw_ends(axes: Axes, road: Road, world: World) -> None:

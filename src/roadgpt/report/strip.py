@@ -17,6 +17,7 @@ from roadgpt.report.canvas import (
     Header,
     add_axes,
     new_figure,
+    note,
 )
 from roadgpt.report.junctions import shade_junctions
 from roadgpt.report.places import name_places, places_of
@@ -29,7 +30,8 @@ LEFT, RIGHT, BOTTOM = 1.1, 0.8, 0.62  # inches
 PANEL, GAP = 1.55, 0.16  # inches
 DARK_ORANGE = "#a06a00"  # for letters
 LEAST_APART = 0.12  # of half a panel, between two numbers
-RADII = (15, 20, 30, 60)  # m, named on the right
+RADII = (15, 20, 30, 60, 100, 200, 400, 1000, 2000, 5000)  # m, named on the right
+SEEN, SMALL = 0.005, 0.25  # of a limit: values between these are drawn larger, and the limit is not shown
 
 
 def strip(run: Run) -> Figure:
@@ -80,8 +82,12 @@ def _curvature(axes: Axes, run: Run, s: Array) -> None:
 
 
 def _fill(axes: Axes, s: Array, values: Array, limit: float) -> float:
-    """Draws signed values so that their limit is visible; returns the largest value on the axis."""
-    reach = max(1.35 * limit, 1.1 * float(np.abs(values).max()))
+    """Draws signed values so that their limit is visible, if they come near it; returns the largest value on
+    the axis.
+    """
+    largest = float(np.abs(values).max())
+    is_small = SEEN * limit < largest < SMALL * limit
+    reach = 1.6 * largest if is_small else max(1.35 * limit, 1.1 * largest)
     axes.set_ylim(-reach, reach)
     axes.fill_between(s, values, 0, where=values >= 0, color=BLUE, alpha=0.35, lw=0)
     axes.fill_between(s, values, 0, where=values <= 0, color=ORANGE, alpha=0.45, lw=0)
@@ -129,7 +135,12 @@ def _name_sides(axes: Axes, above: str, below: str) -> None:
 
 
 def _limits(axes: Axes, limit: float, text: str, ends: list[float]) -> None:
-    """Draws both signs of a limit, from each station with an even index in ``ends`` to the next one."""
+    """Draws both signs of a limit, from each station with an even index in ``ends`` to the next one. A limit
+    that lies outside the axes is only named.
+    """
+    if limit > axes.get_ylim()[1]:
+        note(axes, (0.995, 0.96), f"{text}, beyond this axis", 8.5)
+        return
     for side in (-limit, limit):
         axes.hlines([side] * (len(ends) // 2), ends[::2], ends[1::2], VERMILLION, (0, (1, 1.5)), lw=1.1)
     _name_limit(axes, limit, text)
@@ -138,6 +149,6 @@ def _limits(axes: Axes, limit: float, text: str, ends: list[float]) -> None:
 def _name_limit(axes: Axes, limit: float, text: str) -> None:
     """Writes the name of a limit above its line, at the right end."""
     axes.annotate(
-        text, (1, limit), (-5, 1.5), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
+        text, (1, limit), (-5, 3), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
         ha="right", va="bottom", size=8.5, color=VERMILLION, path_effects=HALO,
     )  # fmt: skip

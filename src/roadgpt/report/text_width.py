@@ -1,5 +1,6 @@
 """Measures the width of text, breaks lines, and shortens text."""
 
+import re
 from functools import cache
 
 from matplotlib.font_manager import FontProperties, findfont, get_font
@@ -7,6 +8,7 @@ from matplotlib.font_manager import FontProperties, findfont, get_font
 UNKNOWN = "□"  # in place of a letter that the font lacks
 POINTS = 72.0  # per inch
 ELLIPSIS = " …"
+BREAK = re.compile(r"(?<!\d) | (?!(?:%|g|s|m|km|km/h|m/s|degrees)(?:\W|$))")
 
 
 def plain(text: str) -> str:
@@ -21,9 +23,9 @@ def inches(text: str, size: float, bold: bool = False) -> float:
 
 def fitted(text: str, width: float, size: float, bold: bool = False, lines: int = 1) -> str:
     """Returns text wrapped to at most ``lines`` lines of ``width`` inches, with an ellipsis for what is cut
-    off.
+    off. A number and its unit stay on one line.
     """
-    words = plain(text).split(" ")
+    words = BREAK.split(plain(text))
     rows: list[str] = []
     while words and len(rows) < lines:
         count = 1

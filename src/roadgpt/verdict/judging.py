@@ -205,12 +205,12 @@ def _kept(drive: "Drive", world: "World", margin: float, beyond: float) -> str:
     """
     reached = f"to the goal after {drive['s'][-1]:.0f} m"
     if not drive.max_outside:
-        return f"kept its lane {reached}, never closer than {margin:.2f} m to failing"
+        return f"kept its lane {reached}, never less than {margin:.2f} m sideways from failing"
     kept = f"kept its lane within the tolerance of {percent(world.limits.oob_tolerance)}"
     if world.limits.lane_departure:
         kept = "kept its front tyres within the markings"
-    outside = f"at most {percent(drive.max_outside)} outside, {far_beyond(beyond)}"
-    return f"{kept} {reached}: {outside}, {margin:.2f} m from failing"
+    outside = f"at most {percent(drive.max_outside)} of the car was outside, {far_beyond(beyond)}"
+    return f"{kept} {reached}: {outside}, {margin:.2f} m sideways from failing"
 
 
 def _failed(road: "Road", drive: "Drive", world: "World", step: int, cause: Cause, side: Side | None) -> str:

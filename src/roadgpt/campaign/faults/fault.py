@@ -134,7 +134,7 @@ class Faults:
 
     @property
     def ways(self) -> list[str]:
-        """How the car failed, the most frequent way first: 'ran wide of right bends of R 15 m to 17 m'."""
+        """How the car failed, the most frequent way first: 'ran wide of right bends of radius 15 m'."""
         found: dict[tuple[Way, str | None], list[LocatedFailure]] = {}
         for fault in (*self.them, *self.alone):
             for each in fault.members:
@@ -148,9 +148,9 @@ def _way_text(way: Way, side: str | None, members: Sequence[LocatedFailure]) -> 
     if side is None or not radii:
         return WAYS[way]
     if len(radii) == 1:
-        return f"{WAYS[way]} a {side} bend of R {radii[0]:.0f} m"
+        return f"{WAYS[way]} a {side} bend of radius {radii[0]:.0f} m"
     low, high = f"{radii[0]:.0f}", f"{radii[-1]:.0f}"
-    return f"{WAYS[way]} {side} bends of R {low} m" + (f" to {high} m" if low != high else "")
+    return f"{WAYS[way]} {side} bends of radius {low} m" + (f" to {high} m" if low != high else "")
 
 
 def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:

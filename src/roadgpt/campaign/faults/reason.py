@@ -101,8 +101,9 @@ def reason_of(run: Run) -> FailureReason:
         before = _after(road, begin, bend)
         did = "and ran wide" if how.way == "wide" else "and cut its inside"
         sentence = (
-            f"entered an R {how.radius:.0f} m {how.side} at {entered * 3.6:.0f} km/h{before}{slope} {did} "
-            f"after {station:.0f} m; the lane's middle needs {needed:.2f} g of {friction:.2f}"
+            f"entered a {how.side} bend of radius {how.radius:.0f} m at {entered * 3.6:.0f} km/h{before}"
+            f"{slope} {did} after {station:.0f} m; at that speed, the middle of the lane needs a friction "
+            f"coefficient of {needed:.2f}, and the road has {friction:.2f}"
         )
     return FailureReason(
         how.way, sentence, station, how.radius, how.side, entered, needed, friction, grade, hill
@@ -175,7 +176,7 @@ def _after(road: Road, begin: float, bend: float) -> str:
     most = float(against.max())
     if most < max(STRAIGHT, abs(bend) / 4):
         return ""
-    return f" right after an R {1 / most:.0f} m {'right' if bend > 0 else 'left'}"
+    return f" just after a {'right' if bend > 0 else 'left'} bend of radius {1 / most:.0f} m"
 
 
 def _slope_text(grade: float, hill: float) -> str:

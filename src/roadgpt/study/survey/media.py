@@ -11,26 +11,25 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator, MultipleLocator
+from matplotlib.ticker import MaxNLocator
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.report.birds_eye import THESIS
-from roadgpt.report.canvas import FAINT, INK, SOFT, add_axes, in_our_style, new_figure, save
+from roadgpt.report.canvas import SOFT, add_axes, in_our_style, new_figure, save
 from roadgpt.report.film import Settings, film_of, split_film
 from roadgpt.report.film.encoding import encoder
-from roadgpt.report.height import EARTH, SURFACE, THESIS_X, THESIS_Z
-from roadgpt.report.labels import Labels
-from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, stations_of
+from roadgpt.report.height import THESIS_X, THESIS_Z, draw_heights
+from roadgpt.report.pair import draw_plan
+from roadgpt.report.plan_view import Frame, stations_of
 from roadgpt.report.view import page_of, scene
 from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
 
 SIDE = 4.2  # inches of both plots, so that they can be read on a phone
-LEFT, BOTTOM, RIGHT, TOP = 0.72, 0.58, 0.2, 0.16  # inches
+LEFT, BOTTOM, RIGHT, TOP = 0.86, 0.58, 0.2, 0.16  # inches
 MARGIN = 12.0  # m around the roads, where they do not fit on the thesis' axes
-STEPS = (10, 20, 25, 50, 100, 200, 500, 1000, 2000, 5000)  # m between lines of the grid
 BEFORE_THE_END = 0.1  # s; at the end of a drive, films show its outcome, which raters should not know
 WHY_NONE = (
     "there are no films, because the library for them is not installed; raters see plots and the 3-D view. "
@@ -75,23 +74,7 @@ def draw_plots(road: Road, world: World, axes: Axes, folder: Path, name: str) ->
 def _above(road: Road, world: World, frame: Frame) -> Figure:
     figure = new_figure(LEFT + SIDE + RIGHT, BOTTOM + SIDE + TOP)
     axes = add_axes(figure, LEFT, BOTTOM, RIGHT, TOP)
-    axes.set(xlim=(frame.x0, frame.x1), ylim=(frame.y0, frame.y1), aspect="equal")
-    axes.set_xlabel("x, metres east")
-    axes.set_ylabel("y, metres north")
-    axes.set_facecolor(GROUND)
-    step = next((step for step in STEPS if frame.width / step <= 8), STEPS[-1])
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MultipleLocator(step))
-    axes.grid(color="white", lw=0.8, zorder=0.5)
-    axes.set_axisbelow(True)
-    draw_road(axes, road, world, frame.width / SIDE)
-    draw_ends(axes, road, world)
-    centre = road.at(stations_of(road))[:, :2]
-    labels = Labels(axes, frame, frame.width / SIDE, centre, world.profile_of(road).paved_reach + 1.0)
-    for s, text, sign in ((0.0, "start", -1.0), (road.length, "end", 1.0)):
-        heading = float(road.heading(s))
-        x, y, _ = road.at(s)
-        labels.put((x, y), text, INK, sign * np.array([np.cos(heading), np.sin(heading)]))
+    draw_plan(axes, road, world, frame, frame.width / SIDE)
     return figure
 
 
@@ -105,13 +88,7 @@ def _heights(road: Road, shown: Axes) -> Figure:
     axes.set(xlim=(0, shown.along), ylim=(0, shown.height))
     axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
     axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-    axes.set_xlabel("distance along the road, m")
-    axes.set_ylabel("height above the lowest point, m")
-    axes.grid(color=FAINT, lw=0.8)
-    axes.set_axisbelow(True)
-    axes.fill_between(s, z, 0, color=EARTH, lw=0)
-    (surface,) = axes.plot(s, z, color=SURFACE, lw=2.6, solid_capstyle="round", zorder=4)
-    surface.set_clip_box(axes.bbox.padded(4))
+    draw_heights(axes, s, z, "height above the lowest point, m")
     axes.plot([road.length, road.length], [0, z[-1]], color=SOFT, lw=1, ls=(0, (3, 3)), zorder=3)
     return figure
 
