@@ -176,7 +176,7 @@ def test_a_page_a_film_pictures_and_a_summary_of_what_is_named() -> None:
     listed = lines("show", "two", "--failures")
     assert [line.split()[0] for line in listed] == [f"two/{name}" for name in names("two", "failures")]
     cell = lines("show", "two/c02")
-    assert [line.split()[0] for line in cell[2:]] == [f"two/c02/{number}" for number in (1, 2, 3, 4)]
+    assert [line.split()[0] for line in cell[3:]] == [f"two/c02/{number}" for number in (1, 2, 3, 4)]
 
 
 def test_films_of_several_go_into_a_folder(monkeypatch: pytest.MonkeyPatch) -> None:
