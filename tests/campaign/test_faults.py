@@ -101,8 +101,9 @@ def test_a_car_that_runs_wide_is_told_with_what_its_lane_asks_for() -> None:
     assert reason.needed == pytest.approx(SPEED**2 / 18 / 9.81, rel=0.01)
     assert reason.entered == SPEED
     assert reason.sentence == (
-        "entered a right bend of radius 20 m at 61 km/h and ran wide after 72 m; at that speed, the middle of "
-        f"the lane needs a friction coefficient of {reason.needed:.2f}, and the road has {reason.friction:.2f}"
+        "entered a right bend of radius 20 m at 61 km/h and ran wide after 72 m; at that speed, the middle "
+        f"of the lane needs a friction coefficient of {reason.needed:.2f}, and the road has "
+        f"{World().site.friction:.2f}"
     )
 
 

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
@@ -152,6 +153,45 @@ def test_every_climb_and_fall_has_its_slope() -> None:
     assert all(36 * i <= x <= 36 * (i + 1) for i, (x, _) in enumerate(slopes))
 
 
+def test_grades_crests_and_sags_are_those_of_the_road() -> None:
+    inclines = (6.5, 6.5, 6.5, -4.0, -4.0, -4.0, 5.0, 5.0, 5.0)
+    parts = [Segment(distance=80, direction="straight", incline=incline) for incline in inclines]
+    hill = Design(starting_point=(5, 60, 3), theta=0, segments=tuple(parts))
+    run = prove(hill, world=World().changed(map_size=1000.0), setup=Setup(drives=False))
+    (axes,) = height_profile(run).axes
+    assert run.road is not None
+    s = np.arange(0.0, run.length, 0.01)
+    z = run.road.at(s)[:, 2]
+    top, low = int(z[:40_000].argmax()), 20_000 + int(z[20_000:].argmin())
+    said = {text.get_text(): text for text in axes.texts}
+    labels = [f"crest, {z[top]:.0f} m", f"sag, {z[low]:.0f} m", "+6.5 %", "−4 %", "+5 %"]
+    assert set(labels) == set(said)
+    for label, at, align in zip(labels, (s[top], s[low]), ("bottom", "top"), strict=False):
+        assert said[label].get_position()[0] == pytest.approx(at, abs=1.0)
+        assert said[label].get_va() == align
+    for label in labels[2:]:
+        at = said[label].get_position()[0]
+        assert 100 * run.road.grade(np.array([at]))[0] == pytest.approx(
+            float(label[:-2].replace("−", "-")), abs=0.05
+        )
+    height_profile(run).canvas.draw()
+    boxes = [Text.get_window_extent(text) for text in axes.texts]
+    assert not any(box.overlaps(other) for i, box in enumerate(boxes) for other in boxes[:i])
+
+
+def test_the_steepest_grade_is_told_though_no_stretch_has_it_all_along() -> None:
+    run = prove(
+        Road.through([[5 + 20 * i, 60, 30 + 12 * np.sin(i / 4)] for i in range(11)]),
+        setup=Setup(drives=False),
+    )
+    (axes,) = height_profile(run).axes
+    assert run.road is not None
+    grades = run.road.grade(np.linspace(0, run.length, 5001))
+    said = [text.get_text() for text in axes.texts]
+    assert f"{100 * grades.max():+.1f} %" in said
+    assert f"{100 * grades.min():+.1f} %".replace("-", "−") in said
+
+
 def test_a_level_road_can_be_seen_on_the_thesis_axes_and_its_names_lie_apart() -> None:
     run = prove(Road.through([[60, 60], [75, 60], [85, 60], [95, 65], [100, 85], [100, 110]]))
     assert run.findings
@@ -208,12 +248,52 @@ def test_an_invalid_road_is_drawn_with_the_place_of_the_finding(invalid: Run) ->
     assert invalid.drive is None
 
 
-def test_equal_axes_show_a_metre_as_a_metre(passed: Run) -> None:
-    for figure in (birds_eye(passed), height_profile(passed)):
-        axes = figure.axes[0]
-        figure.canvas.draw()
-        across, along = axes.transData.transform([(0, 0), (1, 1)])[1] - axes.transData.transform((0, 0))
-        assert across == pytest.approx(along, rel=0.02)
+def per_metre(axes: Axes) -> tuple[float, float]:
+    """Pixels of a metre along the axes and up."""
+    across, up = axes.transData.transform((1, 1)) - axes.transData.transform((0, 0))
+    return float(across), float(up)
+
+
+def test_the_view_from_above_shows_a_metre_as_a_metre(passed: Run) -> None:
+    figure = birds_eye(passed)
+    figure.canvas.draw()
+    across, up = per_metre(figure.axes[0])
+    assert across == pytest.approx(up, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("length", "grade", "times"),
+    [
+        (60, 0.0, 5),
+        (60, 8.0, 2),
+        (200, 3.0, 5),
+        (200, 20.0, 1),
+        (900, 0.0, 20),
+        (900, 1.0, 20),
+        (2000, 9.0, 2),
+    ],
+)
+def test_the_axis_says_how_many_times_the_height_is_drawn_exaggerated(
+    length: float, grade: float, times: int
+) -> None:
+    pieces = max(1, length // 100)
+    part = Segment(distance=length / pieces, direction="straight", incline=grade)
+    road = Design(starting_point=(9, 60, 5), theta=0, segments=(part,) * int(pieces))
+    run = prove(road, world=World().changed(map_size=3000.0), setup=Setup(drives=False))
+    (axes,) = height_profile(run).axes
+    across, up = per_metre(axes)
+    assert up / across == pytest.approx(times, rel=1e-9)
+    said = "height, m" if times == 1 else f"height, m\n(exaggerated {times} x)"
+    assert axes.get_ylabel() == said
+    assert run.road is not None
+    drawn = max((line.get_xydata() for line in axes.lines), key=len)
+    assert drawn[:, 1] == pytest.approx(run.road.at(drawn[:, 0])[:, 2])
+
+
+def test_the_thesis_axes_say_their_exaggeration_too(passed: Run) -> None:
+    (axes,) = height_profile(passed, "thesis").axes
+    across, up = per_metre(axes)
+    assert axes.get_ylabel().endswith(f"\n(exaggerated {up / across:.2g} x)")
 
 
 def test_the_thesis_axes_are_roadgpt_s(passed: Run) -> None:
@@ -228,7 +308,7 @@ def test_thesis_heights_below_zero_count_from_the_lowest_point() -> None:
     axes = height_profile(run, "thesis").axes[0]
     heights = max((line.get_ydata() for line in axes.lines), key=len)
     assert min(heights) == pytest.approx(0)
-    assert axes.get_ylabel() == "height above the lowest point, m"
+    assert axes.get_ylabel().startswith("height above the lowest point, m\n")
 
 
 def test_the_road_is_drawn_to_scale(passed: Run) -> None:

@@ -158,7 +158,7 @@ def _labels(s: Array, z: Array, grade: Array, shortest: float) -> list[tuple[str
     for a, b in slopes:
         at = a + int(np.abs(grade[a:b]).argmax())
         if all(abs(slope - grade[at]) > SAME_GRADE or not s[a] <= start < s[b] for start, _, slope in found):
-            found.append((max(s[a], s[at] - shortest / 2), min(s[b], s[at] + shortest / 2), grade[at]))
+            found.append((max(s[a], s[at] - shortest), min(s[b], s[at] + shortest), grade[at]))
     for (a, b), (c, d) in pairwise(slopes):
         if way[a] != way[c] and min(s[b] - s[a], s[d] - s[c]) >= shortest:
             at = a + int((way[a] * z[a : d + 1]).argmax())
