@@ -12,7 +12,7 @@ from named_files import lacking
 @click.command()
 @click.argument("path")
 def tells(path: str) -> None:
-    click.echo(f"the report is {path}. continue with: roadgpt show {path}-later")
+    click.echo(f"the report is {path}.")
 
 
 def test_a_command_that_names_a_file_that_is_not_there_fails_its_test(tmp_path: Path) -> None:
@@ -33,3 +33,4 @@ def test_patterns_relative_names_and_names_with_spaces_are_looked_up(
     told = f"pictures: {tmp_path}/*.pdf, and '{tmp_path}/two words.md'; written to one.pdf: 3 roads"
     assert lacking(told) == []
     assert lacking("written to two.pdf; drive it") == ["two.pdf"]
+    assert lacking(f"continue with: roadgpt show {tmp_path}/later") == []
