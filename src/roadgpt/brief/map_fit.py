@@ -107,6 +107,13 @@ def least_length(brief: Brief, min_radius: float) -> float:
     return metres + max(extra, 0) * WAY_OF_A_TURN
 
 
+def metres_of(brief: Brief, min_radius: float) -> float:
+    """Returns the least length in metres that a road needs to meet a Brief, as ``least_length`` does, or the
+    length that the Brief asks for if that is more."""
+    said = (brief.length.lo or 0.0) if brief.length else 0.0
+    return max(least_length(brief, min_radius), said)
+
+
 def _way(clause: Clause, min_radius: float) -> float:
     """Returns the least length of a clause in metres."""
     if clause.kind in STRAIGHT:

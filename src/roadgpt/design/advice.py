@@ -10,7 +10,7 @@ from math import ceil, floor, inf, log10
 from typing import Any
 
 from roadgpt.brief import NoRoomError
-from roadgpt.brief.map_fit import ROUND_MAP, least_length
+from roadgpt.brief.map_fit import ROUND_MAP, metres_of
 from roadgpt.brief.model import Amount, Brief
 from roadgpt.brief.outline import Outline
 from roadgpt.brief.words import LARGEST_MAP, ROAD
@@ -130,18 +130,12 @@ def no_room(error: NoRoomError, world: World, trial: Trial) -> str:
     brief = error.brief
     if _asked(brief) is None or (brief.turns and brief.turns.hi == 0):
         return str(error)  # of a straight road, the longest is known
-    metres = metres_of(brief, world)
+    metres = metres_of(brief, world.limits.min_radius)
     found = _offer(brief, world, trial, LIKELY * metres)
     room = f"a map of {world.site.map_size:g} m has no room for"
     if brief.length is None:
         return f"{room} a straight of {_asked(brief):g} m and what else is asked for; {found}"
     return f"{room} {metres:.0f} m of such road; {found}"
-
-
-def metres_of(brief: Brief, world: World) -> float:
-    """Returns the least length in metres that a road needs to meet this Brief."""
-    said = (brief.length.lo or 0.0) if brief.length else 0.0
-    return max(least_length(brief, world.limits.min_radius), said)
 
 
 def _less(brief: Brief, world: World, trial: Trial) -> str | None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from roadgpt import check
 from roadgpt.brief.element import Element
-from roadgpt.brief.map_fit import check_room
+from roadgpt.brief.map_fit import check_room, metres_of
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Outline, outline
@@ -64,10 +64,8 @@ def failed_trial(brief: Brief, world: World) -> "DraftSearch | None":
     Raises:
         DesignError: the requirements contradict each other.
     """
-    from roadgpt.design.advice import metres_of
-
     others = Shapes().of(())
-    seeds = TRIALS if metres_of(brief, world) < MANY_METRES else TRIALS[:2]
+    seeds = TRIALS if metres_of(brief, world.limits.min_radius) < MANY_METRES else TRIALS[:2]
     searches = (DraftSearch(brief, world, others, np.random.default_rng(seed)) for seed in seeds)
     return next((search for search in searches if search.found(TRIED) is None), None)
 
@@ -78,7 +76,7 @@ def sufficient_map(brief: Brief, world: World) -> float | None:
 
     Returns None if the World's map is large enough, or if no larger map would help.
     """
-    from roadgpt.design.advice import FOR_ROOM, LIKELY, larger_map, main_reason, metres_of, roomier
+    from roadgpt.design.advice import FOR_ROOM, LIKELY, larger_map, main_reason, roomier
 
     try:
         check_room(normal(brief), world.site.map_size, world.limits.min_radius, world.section.road_width)
@@ -87,7 +85,7 @@ def sufficient_map(brief: Brief, world: World) -> float | None:
             return None
         return larger_map(brief, world, failed_trial, roomier(world, failed.boxes))
     except NoRoomError:  # no draft is needed to see that it is too small
-        return larger_map(brief, world, failed_trial, LIKELY * metres_of(brief, world))
+        return larger_map(brief, world, failed_trial, LIKELY * metres_of(brief, world.limits.min_radius))
     except RoadGPTError:
         return None
 
