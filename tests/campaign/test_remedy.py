@@ -1,6 +1,5 @@
 """Small changes that remove a failure, and the faults that follow from them."""
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import combinations, product
@@ -17,8 +16,7 @@ from roadgpt.campaign.faults import remedy
 from roadgpt.campaign.faults.alignment import Alignment
 from roadgpt.campaign.faults.remedy import REMEDIES, remedies_of
 from roadgpt.campaign.faults.told_apart import TriedGroup, faults_by_remedy
-from roadgpt.drive import View
-from roadgpt.errors import DriverError, GivenUpError, SimulatorError
+from roadgpt.errors import GivenUpError
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.run import Request, Run, Setup
 from roadgpt.verdict import Verdict
@@ -112,13 +110,13 @@ def failing(
 ) -> Mapping[str, bool | None]:
     """The changes that remove a failure of a car which fails where ``fails(road, world)`` gives a station."""
 
-    def simulated(tried: Road, world: World, driver: object, seed: int, simulator: str) -> float | None:
-        assert (seed, simulator) == (7, Setup().simulator)
-        return fails(tried, world)
+    def proved(tried: Road, seed: int, world: World, setup: Setup, index: int, **rest: object) -> object:
+        assert (seed, index) == (7, 3)
+        station = fails(tried, world)
+        verdict = SimpleNamespace(kept=station is None, at_s=station)
+        return SimpleNamespace(verdict=verdict, outcome="PASS", is_lost=False)
 
-    monkeypatch.setattr(remedy, "simulate", simulated)
-    monkeypatch.setattr(remedy, "judge", lambda road, at, world: SimpleNamespace(kept=at is None, at_s=at))
-    monkeypatch.setattr(remedy, "inspect", lambda *rest: ())
+    monkeypatch.setattr(remedy, "prove", proved)
     run = Run(Request(words="", world=WORLD), 3, 7, road=road, verdict=replace(VERDICT, at_s=at_s))
     return remedies_of(run)
 
@@ -184,43 +182,19 @@ def test_a_driver_that_breaks_down_does_not_pass_and_a_lost_drive_is_repeated(
 ) -> None:
     road = road_of(straight(120))
     run = Run(Request(words="", world=WORLD), 3, 7, road=road, verdict=VERDICT)
-    monkeypatch.setattr(remedy, "judge", lambda *rest: SimpleNamespace(kept=True))
-
-    def answering(*answers: Exception | None) -> None:
-        left = iter(answers)
-
-        def simulated(*rest: object) -> None:
-            if error := next(left):
-                raise error
-
-        monkeypatch.setattr(remedy, "simulate", simulated)
-
-    answering(*[DriverError("the driver broke down")] * 2)
+    broken = SimpleNamespace(
+        verdict=None, outcome="ERROR", is_lost=False, description="the driver broke down"
+    )
+    monkeypatch.setattr(remedy, "prove", lambda *rest, **more: broken)
     assert remedies_of(run)["slower 15"] is False
-    answering(*[SimulatorError("no answer")] * 2, None)
+    lost = SimpleNamespace(verdict=None, outcome="ERROR", is_lost=True, description="no answer")
+    passed = SimpleNamespace(verdict=SimpleNamespace(kept=True), outcome="PASS", is_lost=False)
+    answers = iter([lost, lost, passed])
+    monkeypatch.setattr(remedy, "prove", lambda *rest, **more: next(answers))
     assert remedies_of(run)["slower 15"] is True
-    answering(*[SimulatorError("no answer")] * 3)
+    monkeypatch.setattr(remedy, "prove", lambda *rest, **more: lost)
     with pytest.raises(GivenUpError, match="no answer"):
         remedies_of(run)
-
-
-def test_a_drive_ends_where_the_car_has_passed_the_place(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever happens to the driver farther on is not driven at all."""
-    road, reached = road_of(straight(300)), [0.0]
-    run = Run(Request(words="", world=WORLD), 3, 7, road=road, verdict=VERDICT)
-
-    def simulated(road: Road, world: World, driver: remedy.PassingDriver, *rest: object) -> object:
-        driver.start(road, world, 7)
-        for s in np.arange(0.0, road.length, 0.5):  # a numpy number, as from a simulator
-            driver.steer(View(s, s, 0, 0, 0, 20, 0, s, -2, road, world, 0, 0.02, 20, 0))
-            reached.append(float(s))
-        raise AssertionError("the drive went on to the end")
-
-    monkeypatch.setattr(remedy, "simulate", simulated)
-    found = remedies_of(run)
-    assert found["slower 15"] is found["slower 30"] is True
-    assert max(reached) == pytest.approx(VERDICT.at_s + 30, abs=1)
-    json.dumps(found)
 
 
 NAMES = [each.name for each in REMEDIES]

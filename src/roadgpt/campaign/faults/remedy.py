@@ -2,7 +2,7 @@
 
 Failures that disappear with the same small change have the same cause, whatever their roads look like
 elsewhere. A failure has disappeared if the car passes the test, or fails more than 30 m after the place of
-the departure: there the drive ends.
+the departure.
 
 DIR/faults/remedies/c01/0017.json    for each change, whether it removes the failure; null: the change does
                                      not apply to the road
@@ -21,18 +21,14 @@ from roadgpt.campaign.faults.alignment import Alignment, Bend
 from roadgpt.campaign.faults.distinct import AROUND
 from roadgpt.campaign.faults.failures import LocatedFailure
 from roadgpt.campaign.faults.reason import bend_at
-from roadgpt.campaign.faults.stability import LateDriver, until_driven
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.rerun import kept_run
-from roadgpt.check import inspect
-from roadgpt.drive import Command, View, simulate
-from roadgpt.drive.isolation import driver_of
-from roadgpt.errors import DriverError, RoadGPTError, SimulationError, SimulatorError, UsageError, explained
+from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.reading import read_json
 from roadgpt.road import Road, World
-from roadgpt.run import Run
+from roadgpt.run import Run, prove
 from roadgpt.run.atomic import json_text, refuse_links, write_whole
-from roadgpt.verdict import judge
+from roadgpt.run.lost_drives import LostDrives
 
 NEAR = 40.0  # m; a bend farther from the failing one, or from the departure, is not changed
 FOLDER, REMEDY_FOLDER = "faults", "remedies"
@@ -190,40 +186,23 @@ def _removes(run: Run, place: FailurePlace, remedy: Remedy) -> bool | None:
     passed = changed.stations[place.departure + longer * is_behind] + AROUND
     road = changed.road(run.road)
     world = run.world.changed(speed_limit=run.world.limits.speed_limit * remedy.limit)
-    if any(finding.stops for finding in inspect(road, None, world, run.request.setup.rules)):
+    tried = _driven(run, road, world)
+    if tried.outcome == "ERROR":  # the driver broke down, which is no way to pass a place
+        return False
+    if tried.verdict is None:
         return None
-    return until_driven(lambda: _passes(run, road, world, passed))
+    return bool(tried.verdict.kept or (tried.verdict.at_s or 0.0) > passed)
 
 
-def _passes(run: Run, road: Road, world: World, passed: float) -> bool:
-    """Drives a changed road until the car has come to the station ``passed``, and returns whether it has, or
-    has kept its lane until the drive ended. A driver that breaks down before does not pass the place.
-    """
-    setup = run.request.setup
-    driver = PassingDriver(driver_of(setup.driver), 0.0, world)
-    driver.passed = passed
-    try:
-        drive = simulate(road, world, driver, run.seed, setup.simulator)
-    except (DriverError, SimulationError) as error:
-        if isinstance(error, SimulatorError):
-            raise
-        return driver.has_passed
-    verdict = judge(road, drive, world)
-    return bool(verdict.kept or (verdict.at_s or 0.0) > passed)
-
-
-class PassingDriver(LateDriver):
-    """A driver, without delay, whose drive ends as soon as the car has come to a station."""
-
-    passed = float("inf")
-    has_passed = False
-
-    def steer(self, view: View) -> Command:
-        """Returns the driver's command; beyond the station, raises an error that ends the drive."""
-        self.has_passed = bool(view.s > self.passed)
-        if self.has_passed:
-            raise DriverError(f"the car has passed {self.passed:.0f} m")
-        return super().steer(view)
+def _driven(run: Run, road: Road, world: World) -> Run:
+    """Drives a changed road; drives again where the simulator itself failed."""
+    losses: LostDrives[int] = LostDrives()
+    while True:
+        tried = prove(road, run.seed, world, run.request.setup, run.index, despite_findings=True)
+        if losses.count(run.index, tried.is_lost):
+            raise losses.given_up(tried.description, "fix it and run the same command again, which continues")
+        if not tried.is_lost:
+            return tried
 
 
 def try_remedies(folder: Path, failure: LocatedFailure) -> None:

@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from inspect import signature
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from scipy.stats import beta
@@ -30,8 +30,6 @@ GRIP = 0.05  # standard deviation of friction, as a share: patches of one dry ro
 START = 0.10  # m, standard deviation of the lateral start position: a positioning system with corrections
 DELAY = 0.06  # s, longest delay of what the driver sees: a camera and its network take up to 100 ms
 MOST = 3.0  # standard deviations; a number beyond this is drawn again
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -167,28 +165,18 @@ def once(task: tuple[Run, int]) -> Repeated:
     """
     run, number = task
     disturbance = disturbance_of(run.seed, number)
-    try:
-        verdict = until_driven(lambda: drive_disturbed(run, disturbance))
-    except (DriverError, SimulationError):
-        return Repeated(number, disturbance, True, float("nan"), None)
-    return Repeated(number, disturbance, not verdict.kept, verdict.margin, verdict.at_s)
-
-
-def until_driven(drive: Callable[[], T]) -> T:
-    """Returns what ``drive`` returns, which is called again where it raises a SimulatorError.
-
-    Raises:
-        GivenUpError: the simulator failed three times in a row.
-    """
-    losses: LostDrives[None] = LostDrives()
+    losses: LostDrives[int] = LostDrives()
     while True:
         try:
-            return drive()
+            verdict = drive_disturbed(run, disturbance)
+            return Repeated(number, disturbance, not verdict.kept, verdict.margin, verdict.at_s)
         except SimulatorError as error:
-            if losses.count(None, is_lost=True):
+            if losses.count(number, is_lost=True):
                 raise losses.given_up(
                     str(error), "fix it and run the same command again, which continues"
                 ) from error
+        except (DriverError, SimulationError):
+            return Repeated(number, disturbance, True, float("nan"), None)
 
 
 def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
