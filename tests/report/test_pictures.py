@@ -188,8 +188,9 @@ def test_the_steepest_grade_is_told_though_no_stretch_has_it_all_along() -> None
     assert run.road is not None
     grades = run.road.grade(np.linspace(0, run.length, 5001))
     said = [text.get_text() for text in axes.texts]
-    assert f"{100 * grades.max():+.1f} %" in said
-    assert f"{100 * grades.min():+.1f} %".replace("-", "−") in said
+    assert grades.max() == pytest.approx(0.15, abs=5e-4)
+    assert grades.min() == pytest.approx(-0.12, abs=5e-4)
+    assert {"+15 %", "−12 %"} <= set(said)
 
 
 def test_a_level_road_can_be_seen_on_the_thesis_axes_and_its_names_lie_apart() -> None:
@@ -309,6 +310,16 @@ def test_thesis_heights_below_zero_count_from_the_lowest_point() -> None:
     heights = max((line.get_ydata() for line in axes.lines), key=len)
     assert min(heights) == pytest.approx(0)
     assert axes.get_ylabel().startswith("height above the lowest point, m\n")
+
+
+def test_a_wide_road_lies_wholly_in_the_picture() -> None:
+    run = prove(design(), world=World(section=CrossSection(lanes="6+6")), setup=Setup(drives=False))
+    axes = birds_eye(run).axes[0]
+    (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+    shapes = [patch.get_path().vertices for patch in axes.patches]
+    corners = np.concatenate([shape for shape in shapes if len(shape) > 100])
+    assert x0 <= corners[:, 0].min() < corners[:, 0].max() <= x1
+    assert y0 <= corners[:, 1].min() < corners[:, 1].max() <= y1
 
 
 def test_the_road_is_drawn_to_scale(passed: Run) -> None:
