@@ -42,7 +42,7 @@ def store_of(folder: Path, tests: int) -> None:
         )
         for number in range(1, SEED_TESTS + 1)
     ]
-    with Store.new(folder, plan.model_dump_json(), [cell], {"roadgpt": "bench"}) as store:
+    with Store.new(folder, plan.model_dump_json(), [cell], {"any": {"roadgpt": "bench"}}) as store:
         store.begin_session(1)
         store.add_batch("c01", 0, 1, [result.proposal for result in made])
         store.keep([("c01", FinishedTest(result)) for result in made], None, [], {"c01": 1.0})

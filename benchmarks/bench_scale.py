@@ -221,7 +221,7 @@ def million() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         plan = Plan(prompts=(ROAD,), reader="plan", budget=CellBudget(tests=tests // 4), seeds=(0, 1, 2, 3))
-        Store.new(folder, plan.model_dump_json(), plan.cells({}), {}).close()
+        Store.new(folder, plan.model_dump_json(), plan.cells({}), {"any": {}}).close()
         _fill(folder, tests)
         size = (folder / STORE).stat().st_size
         print(f"\n{tests:,} tests in {size / 1e6:,.0f} MB ({size / tests:,.0f} bytes each).\n")

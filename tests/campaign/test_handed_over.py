@@ -52,7 +52,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     budget = CellBudget(tests=len(RESULTS))
     cell = Cell("c01", Request(words=WORDS, setup=setup), None, "words", None, budget=budget)
     plan = Plan(prompts=(WORDS,), budget=budget)
-    with Store.new(folder, plan.model_dump_json(), [cell], {"roadgpt": "1"}) as store:
+    with Store.new(folder, plan.model_dump_json(), [cell], {"any": {"roadgpt": "1"}}) as store:
         store.begin_session(1)
         store.add_batch("c01", 0, 1, [each.proposal for each in RESULTS])
         store.keep([("c01", FinishedTest(each)) for each in RESULTS], None, [], {})

@@ -13,7 +13,7 @@ from roadgpt.run import read_run
 
 OF_A_CALL = {
     "roads", "seed", "out", "plan", "no_drive", "no_plot", "junit", "json", "quiet", "verbose", "help_all",
-    "route", "fail_on", "baseline", "margin_loss",
+    "route", "fail_on", "baseline", "margin_loss", "again",
 }  # fmt: skip
 """Options that are given with each call, and that no file sets."""
 OTHERWISE = {

@@ -271,7 +271,9 @@ def folders_made(pages: list[str]) -> list[tuple[str, dict[str, str]]]:
     made: dict[str, str] = {}
     lines = []
     for page in pages:
-        for line in re.findall(r"^roadgpt .*", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE):
+        for line in re.findall(
+            r"^(?:\$ )?(roadgpt .*)", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE
+        ):
             lines.append((line, dict(made)))
             maker = re.match("roadgpt (run|campaign) ", line)
             if maker and (out := re.search(r" --out (\S+)", line)):
@@ -285,7 +287,8 @@ def folders_made(pages: list[str]) -> list[tuple[str, dict[str, str]]]:
 def test_folders_that_a_page_opens_are_made_by_a_line_before(page: str) -> None:
     """So that the lines can be typed one after the other."""
     for line, made in folders_made([page]):
-        assert set(re.findall(r"roadgpt-runs/[\w-]+", line)) <= {*made}, line
+        opened = re.sub(r" --out \S+", "", line)
+        assert set(re.findall(r"roadgpt-runs/[\w-]+", opened)) <= {*made}, line
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/how-to/run-campaigns.md"])

@@ -21,6 +21,8 @@ FIELDS = [
     "beyond_m",
     "margin_m",
     "length_m",
+    "own_share",
+    "handed_to",
     "seconds",
 ]
 

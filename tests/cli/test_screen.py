@@ -23,7 +23,7 @@ WRONG = Row("c.json", "INVALID", "it is too sharp", is_valid=False, validation_m
 def test_json_has_the_fields_that_were_promised_in_their_order() -> None:
     names = (
         "file is_valid validation_message findings test_outcome description max_oob beyond_m margin_m "
-        "length_m seconds"
+        "length_m own_share handed_to seconds"
     )
     assert [*json.loads(KEPT.to_json())] == names.split()
     assert json.loads(KEPT.to_json())["seconds"] == 1.2346

@@ -54,7 +54,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     plan = Plan(prompts=("a road",), drivers=DRIVERS, budget=CellBudget(tests=ROADS), paired=True)
     for number, (request, generator) in enumerate(plan.requests(), 1):
         cells.append(Cell(f"c0{number}", request, None, generator, None))
-    with Store.new(folder, plan.model_dump_json(), cells, {"roadgpt": "1"}) as store:
+    versions = {driver: {"roadgpt": "1"} for driver in DRIVERS}
+    with Store.new(folder, plan.model_dump_json(), cells, versions) as store:
         for driver, cell in enumerate(cells):
             results = [result_of(driver, road) for road in range(1, ROADS + 1 - (driver == 2))]
             store.add_batch(cell.name, 0, 1, [result.proposal for result in results])

@@ -171,7 +171,7 @@ NO_PLOT = _files("--no-plot", "Draw no pictures.", bool)
 JUNIT = _files("--junit", "Also write the tests as JUnit XML.", file, metavar="FILE.xml")
 NO_DRIVE = Option("--no-drive", "Do not drive the roads.", bool, heading=Heading.DRIVE)
 AGAIN = _files("--again", "Make all tests of the folder anew, for example with a changed driver. The earlier "
-               "ones are moved into its subfolder before-1 (or 2, ...).", bool)
+               "ones are moved into its subfolder before-1 (or 2, ...).", bool, is_rare=True)
 DRIVER_AGAIN = Option(
     "--driver", "File of the driver. If the run used a driver's file, name it here again: for safety, "
     "RoadGPT does not run a file just because a run folder refers to it.", driver,
