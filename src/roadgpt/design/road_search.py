@@ -76,18 +76,22 @@ def sufficient_map(brief: Brief, world: World) -> float | None:
 
     Returns None if the World's map is large enough, or if no larger map would help.
     """
-    from roadgpt.design.advice import FOR_ROOM, LIKELY, larger_map, main_reason, roomier
-
+    failed, least = None, world.limits.min_radius
     try:
-        check_room(normal(brief), world.site.map_size, world.limits.min_radius, world.section.road_width)
+        check_room(normal(brief), world.site.map_size, least, world.section.road_width)
         failed = failed_trial(brief, world)
-        if failed is None or main_reason(failed.failed) not in FOR_ROOM:
+        if failed is None:
             return None
-        return larger_map(brief, world, failed_trial, roomier(world, failed.boxes))
     except NoRoomError:  # no draft is needed to see that it is too small
-        return larger_map(brief, world, failed_trial, LIKELY * metres_of(brief, world.limits.min_radius))
+        pass
     except RoadGPTError:
         return None
+    from roadgpt.design.advice import FOR_ROOM, LIKELY, larger_map, main_reason, roomier
+
+    if failed and main_reason(failed.failed) not in FOR_ROOM:
+        return None
+    likely = roomier(world, failed.boxes) if failed else LIKELY * metres_of(brief, least)
+    return larger_map(brief, world, failed_trial, likely)
 
 
 class DraftSearch:
