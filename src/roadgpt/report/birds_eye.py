@@ -118,6 +118,7 @@ def _mark_and_label(axes: Axes, run: Run, frame: Frame, centre: Array, per_inch:
 
 def _frame(run: Run, centre: Array) -> Frame:
     """Returns a frame around the road and the driven path."""
+    assert run.road is not None
     shown = centre
     if run.drive is not None:
         shown = np.concatenate([centre, np.stack([run.drive["x"], run.drive["y"]], axis=-1)])
