@@ -12,6 +12,7 @@ from click.testing import CliRunner, Result
 PATH = re.compile(re.escape(tempfile.gettempdir()) + r"/pytest-[^\s\"'`,;()<>|\\\x1b]+")
 WRITTEN = re.compile(r"\bwritten (?:to|into) ([^\s,;]+)")
 CLASS = re.compile(r"(?<=\.py):\w+$")  # of a driver, PATH.py:CLASS
+TEST = re.compile(r"/c\d+(/\d+)?$")  # a cell or a test of a campaign is no file
 HINT = re.compile(r"\broadgpt [a-z].*|--[a-z-]+ \S+")  # commands to come may name what they will make
 
 EXEMPT = ("test_top_fits_every_screen", "test_the_command_on_the_card")  # cut paths; a campaign in name only
@@ -23,6 +24,7 @@ def lacking(output: str) -> list[str]:
     told = HINT.sub("", output)
     found = [*PATH.findall(told), *WRITTEN.findall(told)]
     paths = (CLASS.sub("", each.rstrip(".:")) for each in found)
+    paths = (path for path in paths if not TEST.search(path))
     return [path for path in paths if not (glob(path) or glob(f"{path} *"))]  # noqa: PTH207 - of text
 
 
