@@ -70,7 +70,7 @@ def test_a_limit_is_never_passed_and_hardly_anything_is_left(
                 pass
         except BudgetError as error:
             said = str(error)
-        assert ("continue with: roadgpt resume" in said) == (status_of(folder).done < 30)
+        assert (": roadgpt resume" in said) == (status_of(folder).done < 30)
         with Record.opened(folder) as record:
             tokens, cost = record.spent()
             there = record.plan()

@@ -80,7 +80,7 @@ def test_another_road_is_offered(kind: type[AnotherRoadError], monkeypatch: pyte
 
 def test_the_map_grows_in_a_conversation_too() -> None:
     result = say("700 m straight", "1", "", "exit")
-    assert "the map is 550 m wide" in result.stdout
+    assert "the map is 500 m wide" in result.stdout
     assert "1 of 1 roads" in result.stdout
 
 

@@ -170,6 +170,7 @@ def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis
     the small change with which the failures disappear.
     """
     from roadgpt.plural import plural
+    from roadgpt.run.folder import is_run
 
     wide = max([len("test"), *(len(str(its.name)) for its in looked.values())])
     yield f"{'fault':>5} {'failures':>8} {'again':>7}  {'test':<{wide}}  why"
@@ -188,7 +189,8 @@ def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis
     what = plural(len(found.them), "fault" if found.distinct else "group")
     yield f"{stable:,} of {what} fail again in at least half of the drives"
     if looked:
-        yield f"look at one: {command_line('view', f'{place}/{looked[1].name}')}"
+        one = place if is_run(place) else f"{place}/{looked[1].name}"
+        yield f"look at one: {command_line('view', one)}"
 
 
 # fmt: off
