@@ -83,7 +83,7 @@ def no_watch_is_left() -> Iterator[None]:
 
 @pytest.fixture(scope="session", autouse=True)
 def hints(tmp_path_factory: pytest.TempPathFactory) -> Iterator[HintCollector]:
-    """Each command line that a command prints in any test is typed, one of each shape in all processes."""
+    """Each command line that a command prints in any test is looked at; see ``hints.py``."""
     base = tmp_path_factory.getbasetemp()
     seen = (base.parent if os.environ.get("PYTEST_XDIST_WORKER") else base) / "hints"
     seen.mkdir(exist_ok=True)
