@@ -127,7 +127,7 @@ def guards() -> int:
 
 @pytest.mark.parametrize("is_ended", [True, False])
 def test_no_thread_outlives_the_process_of_a_driver(is_ended: bool) -> None:
-    before, one = guards(), process.DriverProcess()
+    before, one = guards(), process.DriverProcess("reference")
     assert guards() == before + 1
     if is_ended:
         one.end()

@@ -213,7 +213,7 @@ def test_actions_beyond_the_ends_are_cut() -> None:
         ({"world": {"frction": 0.6}}, UsageError, "frction"),
         ({"world": {"friction": -1}}, UsageError, "friction = -1"),
         ({"prompt": []}, UsageError, "give one"),
-        ({"prompt": "a road with 400 hairpins"}, BriefError, "no map holds so many turns"),
+        ({"prompt": "a road with 500 hairpins"}, BriefError, "no map holds so many turns"),
         ({"reader": "crystal ball"}, UsageError, "crystal ball"),
     ],
 )
@@ -239,7 +239,7 @@ def test_a_description_for_one_road_that_cannot_be_is_refused_and_loses_nothing(
     env = made()
     env.reset(seed=1)
     with pytest.raises(BriefError):
-        env.reset(options={"prompt": "a road with 400 hairpins"})
+        env.reset(options={"prompt": "a road with 500 hairpins"})
     assert env.reset(seed=1)[1]["prompt"] == "a road with 2 turns"
 
 

@@ -99,7 +99,7 @@ def test_a_missing_field(name: str) -> None:
         ({"take": 4}, "take 4 is more than the number of exits; give 1 to 3"),
         ({"after": True}, "after: is not a number"),
         ({"after": 0}, "after: is out of range; give 1 or more"),
-        ({"after": 10**30}, "after: is out of range; give 500 or less"),
+        ({"after": 10**30}, "after: is out of range; give 2000 or less"),
         ({"after": 1.5}, "after: is not a whole number"),
         ({"after": 2}, "a junction stands after segment 2, and there are 2; add a segment behind it"),
         ({"kerb": 0.5}, "kerb: is out of range; give 1 or more"),
