@@ -227,10 +227,19 @@ def test_the_columns_of_results_in_the_docs_are_those_of_the_table() -> None:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_links_lead_to_pages_that_exist(page: Path) -> None:
-    for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
+def test_links_lead_to_pages_and_headings_that_exist(page: Path) -> None:
+    for target, _, heading in re.findall(r"\]\(([^)#]*)(#([^)]*))?\)", page.read_text(encoding="utf-8")):
+        there = page.parent / target if target else page
         if "://" not in target:
-            assert (page.parent / target).exists(), target
+            assert there.exists(), target
+            assert not heading or heading in anchors(there), f"{target}#{heading}"
+
+
+def anchors(page: Path) -> set[str]:
+    """The addresses of a page's headings, as GitHub and Python-Markdown make them."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    heads = (re.sub(r"\]\([^)]*\)", "", head) for head in re.findall(r"^#+ +(.*)$", text, re.MULTILINE))
+    return {re.sub(r"[-\s]+", "-", re.sub(r"[^\w\s-]", "", head.lower()).strip()) for head in heads}
 
 
 def test_the_navigation_leads_to_every_page() -> None:

@@ -5,7 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.collections import LineCollection
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, QuadMesh
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+from matplotlib.transforms import Bbox
 
 from roadgpt.errors import UsageError
 from roadgpt.report import overview
@@ -47,21 +51,66 @@ def test_a_page_holds_a_hundred_roads(tmp_path: Path, count: int, pages: int) ->
     assert drawn[0].read_bytes() == first
 
 
-def test_every_road_lies_on_its_own_map_to_scale() -> None:
-    square = np.array([[0.0, 0.0], [250.0, 0.0], [250.0, 250.0], [0.0, 250.0]])
-    entries = [Thumbnail(i, "FAIL", square, (125.0, 125.0)) for i in range(1, 8)]
-    figure = page_of(entries, ("squares", "seed 1"), "", 250.0)
-    axes = figure.axes[0]
-    lines = [segment for c in axes.findobj(LineCollection) for segment in c.get_segments()]
-    assert len(lines) == 7
-    sizes = np.array([np.ptp(line, axis=0) for line in lines])
-    assert sizes == pytest.approx(np.full((7, 2), sizes[0, 0]))
-    corners = {tuple(np.round(line.min(axis=0), 6)) for line in lines}
-    assert len(corners) == 7
-    crosses = np.array([line.get_xydata()[0] for line in axes.lines if line.get_marker() == "X"])
-    assert crosses == pytest.approx(np.array([line.mean(axis=0) for line in lines]))
-    # north is up: the page's y grows downwards, so the first point, south-west, has the largest y
-    assert lines[0][0, 1] == lines[0][:, 1].max()
+def tiles(axes: Axes) -> list[Bbox]:
+    """The maps of a page, in rows, in the units of the page."""
+    return [patch.get_bbox() for patch in axes.patches if isinstance(patch, Rectangle)]
+
+
+def inside(tile: Bbox, line: Line2D) -> bool:
+    return all(tile.contains(x, y) for x, y in line.get_xydata())
+
+
+def test_every_road_fills_its_own_map_which_says_its_scale() -> None:
+    rng = np.random.default_rng(4)
+    extents = [(240.0, 180.0), (60.0, 200.0), (9000.0, 4000.0), (35.0, 3.0), (900.0, 2000.0), (150.0, 150.0)]
+    entries = []
+    for number, extent in enumerate(extents, 1):
+        points = np.concatenate([[[0, 0], [1, 1]], rng.random((40, 2))]) * extent + rng.random(2) * 500
+        entries.append(Thumbnail(number, "FAIL", points, tuple(points[7])))
+    axes = page_of(entries, ("roads", "seed 1"), "").axes[0]
+    for entry, tile in zip(entries, tiles(axes), strict=True):
+        lines = [line for line in axes.lines if inside(tile, line)]
+        (road,) = [line.get_xydata() for line in lines if len(line.get_xydata()) == 42]
+        (cross,) = [line.get_xydata()[0] for line in lines if line.get_marker() == "X"]
+        (bar,) = [line.get_xydata() for line in lines if len(line.get_xydata()) == 2]
+        (said,) = [text for text in axes.texts if tile.contains(*text.get_position())]
+        amount, unit = said.get_text().split()
+        per_metre = np.ptp(bar[:, 0]) / (float(amount) * {"m": 1, "km": 1000}[unit])
+        # north is up, though y of the page grows downwards; and one scale holds both ways
+        shape = (entry.points - entry.points[0]) * [1, -1] * per_metre
+        assert road - road[0] == pytest.approx(shape)
+        assert cross == pytest.approx(road[7])
+        filled = np.ptp(road, axis=0) / [tile.width - 0.2, tile.height - 0.32]
+        assert filled.max() == pytest.approx(1)
+        assert road[:, 1].max() < bar[0, 1] - 0.1
+
+
+def test_the_colour_along_a_road_is_that_of_the_record_on_the_scale(tmp_path: Path) -> None:
+    """The competition's record has the distance from the edge of the lane in the 16th place, in metres."""
+    distances = [2.0, 1.0, 0.5, -0.5, -1.0, -3.0]
+    records = [[i / 10, [100.0 + 10 * i, 50.0, 1.0], *[0] * 13, each, 0] for i, each in enumerate(distances)]
+    test = test_file(1) | {"test_outcome": "PASS", "execution_data": records}
+    (tmp_path / "test.0001.json").write_text(json.dumps(test))
+    (figure,) = pages(tmp_path)
+    page, scale = figure.axes
+    figure.canvas.draw()
+    (path,) = [each for each in page.collections if isinstance(each, LineCollection)]
+    shown = np.array(distances)
+    assert np.asarray(path.get_array()) == pytest.approx((shown[1:] + shown[:-1]) / 2)
+    ends = np.array([(piece[0, 0], piece[1, 0]) for piece in path.get_segments()])
+    assert ends[1:, 0] == pytest.approx(ends[:-1, 1])
+    ticks = dict(zip((text.get_text() for text in scale.get_xticklabels()), scale.get_xticks(), strict=True))
+    assert ticks == {"1 m outside its lane": -1, "at the edge": 0, "1 m inside": 1}
+    (bar,) = [each for each in scale.collections if isinstance(each, QuadMesh)]
+    for value in (-0.9, 0.0, 0.75):
+        assert path.cmap(path.norm(value)) == bar.cmap(bar.norm(value))
+    assert len({path.cmap(path.norm(value)) for value in (-1, 0, 1)}) == 3
+    assert path.cmap(path.norm(2.0)) == path.cmap(path.norm(1.0))
+
+
+def test_a_page_without_drives_has_no_scale_of_colours() -> None:
+    line = np.array([[10.0, 20.0], [30.0, 40.0]])
+    assert len(page_of([Thumbnail(1, "VALID", line)], ("", ""), "").axes) == 1
 
 
 def test_the_page_counts_outcomes_in_words(tmp_path: Path) -> None:
@@ -74,7 +123,7 @@ def test_the_page_counts_outcomes_in_words(tmp_path: Path) -> None:
     about = {text.get_text() for text in drawn.axes[0].texts}
     assert any("seed 4, driver beamng_like, oracle sbft" in text for text in about), about
     entries = [Thumbnail(1, "PASS", np.empty((0, 2)), None)]
-    figure = page_of(entries, ("words", "seed 4"), "page 2 of 3", 200.0)
+    figure = page_of(entries, ("words", "seed 4"), "page 2 of 3")
     said = [text.get_text() for text in figure.axes[0].texts]
     assert {"1 PASS", "words", "PASS"} <= set(said)
     assert any("seed 4" in text and "page 2 of 3" in text for text in said)
@@ -84,7 +133,7 @@ def test_the_page_says_what_its_signs_mean() -> None:
     line = np.array([[10.0, 20.0], [30.0, 40.0]])
 
     def said(entries: list[Thumbnail]) -> set[str]:
-        return {text.get_text() for text in page_of(entries, ("", ""), "", 200.0).axes[0].texts}
+        return {text.get_text() for text in page_of(entries, ("", ""), "").axes[0].texts}
 
     kept, failed = Thumbnail(1, "PASS", line, None), Thumbnail(2, "FAIL", line, (20.0, 30.0))
     assert {"start", "where the car failed"} <= said([kept, failed])
@@ -105,7 +154,7 @@ def test_an_outcome_of_another_tool_is_shown_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "test.0001.json").write_text(json.dumps(test))
     assert overview(tmp_path)
     entries = [Thumbnail(1, "NOT_EXECUTED", np.array([[1.0, 2.0], [30.0, 40.0]]), None)] * 2
-    said = [text.get_text() for text in page_of(entries, ("", ""), "", 200.0).axes[0].texts]
+    said = [text.get_text() for text in page_of(entries, ("", ""), "").axes[0].texts]
     assert said.count("NOT_EXECUTED") == 2
     assert "2 NOT_EXECUTED" in said
 

@@ -313,7 +313,7 @@ def test_thesis_heights_below_zero_count_from_the_lowest_point() -> None:
 
 
 def test_a_wide_road_lies_wholly_in_the_picture() -> None:
-    run = prove(design(), world=World(section=CrossSection(lanes="6+6")), setup=Setup(drives=False))
+    run = prove(design(), world=World(section=CrossSection(lanes="4+4")), setup=Setup(drives=False))
     axes = birds_eye(run).axes[0]
     (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
     shapes = [patch.get_path().vertices for patch in axes.patches]

@@ -122,9 +122,8 @@ def _frame(run: Run, centre: Array) -> Frame:
     shown = centre
     if run.drive is not None:
         shown = np.concatenate([centre, np.stack([run.drive["x"], run.drive["y"]], axis=-1)])
-    margin = max(
-        MARGIN, run.world.profile_of(run.road).paved_reach, SHARE * float(np.ptp(shown, axis=0).max())
-    )
+    wide = run.world.profile_of(run.road).reach
+    margin = max(MARGIN, wide, SHARE * float(np.ptp(shown, axis=0).max()))
     return Frame.around(shown, margin, LEAST, run.world.site.map_size)
 
 
