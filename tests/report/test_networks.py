@@ -24,6 +24,7 @@ from roadgpt.report.plan_view import Frame
 from roadgpt.report.plotting import plot
 from roadgpt.road import CrossSection, Profile, Road, World
 from roadgpt.run import Run, Setup, prove, write_run
+from roadgpt.study.survey.media import Axes as SurveyAxes
 
 TWO = {
     "starting_point": [20, 90, 0],
@@ -60,6 +61,12 @@ def above(alone: Run) -> Figure:
 @pytest.fixture(scope="module")
 def driven(route: Route) -> Run:
     return prove(route, 7)
+
+
+def test_the_pictures_of_a_survey_show_the_whole_network(route: Route) -> None:
+    frame = SurveyAxes.of([route]).frame
+    for each in route.network.roads:
+        assert all(frame.holds(x, y) for x, y in each.road.centreline(1.0)[:, :2])
 
 
 def colour(text: str) -> np.ndarray:
@@ -251,7 +258,7 @@ def test_the_bars_at_both_ends_lie_over_the_lanes_of_the_drive(above: Figure, ro
     assert route.profile is not None
     for s, least, most in ((0.0, 0.99, 1.0), (route.length, 0.3, 0.7)):
         edges = route.profile.lane(s)
-        inside = np.linspace(float(edges.left) - 0.4, float(edges.right) + 0.4, 41)
+        inside = np.linspace(float(edges.left) - 0.6, float(edges.right) + 0.6, 41)
         oncoming = float(edges.left) + np.linspace(0.8, 3.2, 41)
         is_black = [
             near(seen(above, route.at(np.full(41, s), t)[:, :2]), "#1b1e23", 60) for t in (inside, oncoming)

@@ -91,7 +91,7 @@ def _of_bend(
 
 def _remedies(percent: int, metres: int, flatter: float, grades: str) -> Iterator[Remedy]:
     """Yields a change of each kind: radii and speed limits by some percent, metres of straight or of averaged
-    curvature, and grades times ``flatter``, which texts call ``grades``."""
+    curvature, and grades times ``flatter``, which the name of the remedy calls ``grades``."""
     more, less = 1 + percent / 100, 1 - percent / 100
     bigger = f"a {percent} % larger radius of the bend"
 
@@ -121,7 +121,7 @@ def _remedies(percent: int, metres: int, flatter: float, grades: str) -> Iterato
     yield Remedy(f"apart {metres}", f"{metres} m of straight between the bend and the one before", apart)
     yield Remedy(f"before {percent}", f"{bigger} before", before)
     yield Remedy(f"after {percent}", f"{bigger} after", after)
-    yield Remedy(f"flatter {grades}", f"{grades} grades", flat)
+    yield Remedy(f"flatter {grades}", f"a road {'half as steep' if flatter else 'without slopes'}", flat)
     yield Remedy(f"slower {percent}", f"a speed limit {percent} % lower", lambda its: its.alignment, less)
 
 

@@ -21,7 +21,7 @@ from roadgpt.report.film import Settings, film_of, split_film
 from roadgpt.report.film.encoding import encoder
 from roadgpt.report.height import THESIS_X, THESIS_Z, draw_heights
 from roadgpt.report.pair import draw_plan
-from roadgpt.report.plan_view import Frame, stations_of
+from roadgpt.report.plan_view import Frame, plan_points, stations_of
 from roadgpt.report.view import page_of, scene
 from roadgpt.road import Road, World
 from roadgpt.run import Run
@@ -51,7 +51,7 @@ class Axes:
     def of(cls, roads: Sequence[Road]) -> "Axes":
         """Returns the thesis' axes if all roads fit on them; otherwise, axes on which all roads fit."""
         lines = [road.at(stations_of(road)) for road in roads]
-        points = np.concatenate(lines)[:, :2]
+        points = np.concatenate([plan_points(road) for road in roads])
         frame = THESIS
         if not all(frame.holds(*point) for point in points[::5]):
             low, high = points.min(axis=0) - MARGIN, points.max(axis=0) + MARGIN
