@@ -132,7 +132,7 @@ def junctions_view(work: Path) -> Image.Image:
 
 def fault(work: Path) -> Image.Image:
     """Returns the picture of the most typical failure of a fault."""
-    return Image.open(min((made(work, "hard", "faults") / "hard" / "faults").glob("*.png")))
+    return Image.open(min((made(work, "hard", "faults") / "hard" / "faults" / "c01").glob("*.png")))
 
 
 def film(work: Path) -> Image.Image:
