@@ -117,7 +117,7 @@ def test_failures_stand_in_order_and_lead_to_their_runs(campaign: Path) -> None:
     )
     page = (campaign / "report.html").read_text()
     assert re.findall(r'href="(again[^"]+)"', page) == [f"again/{cell}/runs/{int(number):04d}/birds_eye.png"]
-    assert f"roadgpt drive --again {campaign} {every[0][1]}" in page
+    assert f"roadgpt view {campaign}/{every[0][1]}" in page
 
 
 def test_a_drive_that_ended_where_it_failed_has_no_margin_to_tell(campaign: Path) -> None:
@@ -216,7 +216,7 @@ def test_the_nearest_pairs_of_a_search_for_the_boundary_are_listed(tmp_path: Pat
     ]
     text = (tmp_path / "report.md").read_text(encoding="utf-8")
     assert "c01/1, where the car kept its lane, and c01/4, where it did not" in text
-    assert "c01/1 c01/4" in text.split("drive --again")[-1]
+    assert f"roadgpt view {tmp_path}/c01/1 {tmp_path}/c01/4" in text
 
 
 def test_without_such_a_search_there_are_no_pairs(campaign: Path) -> None:
