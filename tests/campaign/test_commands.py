@@ -201,7 +201,7 @@ def test_the_python_in_the_guide_runs(driven: Path, capsys: pytest.CaptureFixtur
     ("words", "sentence"),
     [
         (["redrive", "DIR", "99"], "holds no result of test 99 of c01"),
-        (["redrive", "DIR", "x"], "'x' is not a test; give its number"),
+        (["redrive", "DIR", "x"], "there is no cell 'x' in"),
         (["redrive", "DIR", "c7/1"], "there is no cell 'c7'"),
         (["status", "DIR/nowhere"], "there is no campaign in"),
         (["top", "DIR/nowhere"], "there is no campaign in"),

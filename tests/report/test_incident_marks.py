@@ -180,9 +180,7 @@ def test_the_page_names_every_incident_and_no_plate_covers_another(
     for one, other in combinations(plates, 2):
         is_beside = one["right"] <= other["left"] + 1e-9 or other["right"] <= one["left"] + 1e-9
         assert is_beside or one["bottom"] >= other["top"] - 1e-9 or other["bottom"] >= one["top"] - 1e-9
-    highs = sorted(plate["top"] - plate["bottom"] for plate in plates)  # of one to a few lines each
-    assert highs[0] > 8
-    assert all(high / highs[0] == pytest.approx(round(high / highs[0]), abs=0.35) for high in highs)
+    assert min(plate["bottom"] - plate["top"] for plate in plates) > 8  # pixels, of a line of text
 
 
 def test_a_place_without_a_label_is_drawn_on_the_page(
