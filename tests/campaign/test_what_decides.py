@@ -349,6 +349,18 @@ def test_again_makes_all_anew_and_keeps_what_was_there(here: Path, tmp_path: Pat
             assert contents(mine / "before-2")[same] == now[same]
 
 
+def test_drives_of_a_changed_road_file_are_not_mixed_with_those_of_before(tmp_path: Path) -> None:
+    road, out = tmp_path / "road.csv", tmp_path / "out"
+    words = ("drive", str(road), "--driver", "reference", "--out", str(out))
+    road.write_text("x,y\n20,100\n120,100\n200,105\n")
+    assert invoke(*words).exit_code == 0
+    before = contents(out)
+    road.write_text("x,y\n20,100\n120,100\n200,190\n")
+    done = invoke(*words)
+    assert (done.exit_code, done.stderr) == (2, f"roadgpt: {out} is not empty; name another folder\n")
+    assert contents(out) == before
+
+
 def test_again_moves_no_files_of_others(here: Path, tmp_path: Path) -> None:
     (tmp_path / "letter.txt").write_text("mine")
     done = invoke("run", "turn x2", "--reader", "plan", "--no-drive", "--out", str(tmp_path), "--again")
