@@ -1,5 +1,6 @@
 """Pictures of Runs: what they say, where they mark it, and that the same Run gives the same bytes."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from matplotlib.text import Annotation, Text
 from roadgpt.check import Finding
 from roadgpt.report import birds_eye, draw, drawing, height_profile, strip
 from roadgpt.report.canvas import Header
+from roadgpt.report.height import draw_heights
 from roadgpt.report.text_width import fitted, inches
 from roadgpt.road import CrossSection, Design, Road, Segment, World
 from roadgpt.run import Run, Setup, prove
@@ -289,6 +291,16 @@ def test_the_axis_says_how_many_times_the_height_is_drawn_exaggerated(
     assert run.road is not None
     drawn = max((line.get_xydata() for line in axes.lines), key=len)
     assert drawn[:, 1] == pytest.approx(run.road.at(drawn[:, 0])[:, 2])
+
+
+def test_a_large_exaggeration_is_written_out() -> None:
+    axes = Figure().add_subplot(xlim=(0, 40_000), ylim=(0, 20))
+    draw_heights(axes, np.array([0.0, 40_000.0]), np.array([3.0, 5.0]))
+    across, up = per_metre(axes)
+    said = re.search(r"exaggerated (\d+) x", axes.get_ylabel())
+    assert said is not None
+    assert int(said[1]) == pytest.approx(up / across, rel=0.05)
+    assert up / across > 1000
 
 
 def test_the_thesis_axes_say_their_exaggeration_too(passed: Run) -> None:

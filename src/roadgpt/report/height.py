@@ -20,7 +20,7 @@ from roadgpt.run import Run
 
 WIDTH = 9.6  # inches
 LEFT, BOTTOM, RIGHT = 0.96, 0.62, 0.3  # inches
-EXAGGERATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
+EXAGGERATIONS = (1, 2, 5, 10, 20, 50)
 TALLEST = 1.8  # inches, from the lowest point of an exaggerated road to its highest
 FLATTEST, FLATTEST_M = 0.005, 2.0  # of the length, and metres: a road with smaller heights is shown as flat
 LOWEST = 1.3  # inches, least height of the axes
@@ -90,7 +90,7 @@ def draw_heights(axes: Axes, s: Array, z: Array, label: str = "height, m") -> No
     many times the height is exaggerated."""
     wide, high = inches_of(axes)
     times = float(np.ptp(axes.get_xlim()) / wide / (np.ptp(axes.get_ylim()) / high))
-    axes.set_ylabel(label if abs(times - 1) < 0.05 else f"{label}\n(exaggerated {times:.2g} x)")
+    axes.set_ylabel(label if abs(times - 1) < 0.05 else f"{label}\n(exaggerated {float(f'{times:.2g}'):g} x)")
     axes.set_xlabel("distance along the road, m")
     axes.grid(color=FAINT, lw=0.8)
     axes.set_axisbelow(True)
@@ -101,10 +101,7 @@ def draw_heights(axes: Axes, s: Array, z: Array, label: str = "height, m") -> No
 
 
 def _thesis(run: Run, z: Array, top: float) -> tuple[Figure, Axes, Array, str]:
-    """Returns figure, axes, heights and label as in RoadGPT's thesis.
-
-    Heights of a road that does not lie between 0 and 20 m are measured from its lowest point.
-    """
+    """Heights of a road that does not lie between 0 and 20 m are measured from its lowest point."""
     figure = new_figure(WIDTH, top + THESIS_HEIGHT + BOTTOM)
     axes = add_axes(figure, LEFT, BOTTOM, RIGHT, top)
     label = "height, m"
@@ -119,12 +116,9 @@ def _thesis(run: Run, z: Array, top: float) -> tuple[Figure, Axes, Array, str]:
 
 
 def label_heights(axes: Axes, s: Array, z: Array, grade: Array) -> None:
-    """Labels stretches of constant grade with their grade in percent, each slope with its steepest grade,
-    and crests and sags with their heights. ``s``, ``z`` and ``grade``, each ``(n,)``, belong to the drawn
-    line.
-
-    A label that finds no place beside the texts and markers on the axes is left out: crests and sags come
-    first, then the longest stretches.
+    """Labels crests and sags with their heights, then stretches of constant grade and the steepest place of
+    each slope with the grade in percent. ``s``, ``z`` and ``grade``, each ``(n,)``, belong to the drawn line.
+    A label that finds no place beside the texts and markers on the axes is left out.
     """
     (left, right), (wide, high) = axes.get_xlim(), inches_of(axes)
     per_inch, clear = (right - left) / wide, CLEAR * float(np.ptp(axes.get_ylim())) / high

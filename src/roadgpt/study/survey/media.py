@@ -10,11 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from roadgpt.errors import UsageError
-from roadgpt.geometry.curve import Array
 from roadgpt.report.birds_eye import THESIS
 from roadgpt.report.canvas import SOFT, add_axes, in_our_style, new_figure, save
 from roadgpt.report.film import Settings, film_of, split_film
@@ -65,32 +63,20 @@ class Axes:
 @in_our_style
 def draw_plots(road: Road, world: World, axes: Axes, folder: Path, name: str) -> tuple[str, str]:
     """Writes ``NAME-above.png`` (bird's-eye view) and ``NAME-height.png``; returns the two file names."""
-    above, height = f"{name}-above.png", f"{name}-height.png"
-    save(_above(road, world, axes.frame), folder / above)
-    save(_heights(road, axes), folder / height)
-    return above, height
-
-
-def _above(road: Road, world: World, frame: Frame) -> Figure:
-    figure = new_figure(LEFT + SIDE + RIGHT, BOTTOM + SIDE + TOP)
-    axes = add_axes(figure, LEFT, BOTTOM, RIGHT, TOP)
-    draw_plan(axes, road, world, frame, frame.width / SIDE)
-    return figure
-
-
-def _heights(road: Road, shown: Axes) -> Figure:
-    """Draws the height above the lowest point over the distance along the road."""
+    names = f"{name}-above.png", f"{name}-height.png"
+    figures = [new_figure(LEFT + SIDE + RIGHT, BOTTOM + SIDE + TOP) for _ in names]
+    above, beside = (add_axes(figure, LEFT, BOTTOM, RIGHT, TOP) for figure in figures)
+    draw_plan(above, road, world, axes.frame, axes.frame.width / SIDE)
     s = stations_of(road)
-    z: Array = road.at(s)[:, 2]
-    z = z - z.min()
-    figure = new_figure(LEFT + SIDE + RIGHT, BOTTOM + SIDE + TOP)
-    axes = add_axes(figure, LEFT, BOTTOM, RIGHT, TOP)
-    axes.set(xlim=(0, shown.along), ylim=(0, shown.height))
-    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
-    axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-    draw_heights(axes, s, z, "height above the lowest point, m")
-    axes.plot([road.length, road.length], [0, z[-1]], color=SOFT, lw=1, ls=(0, (3, 3)), zorder=3)
-    return figure
+    z = road.at(s)[:, 2] - road.at(s)[:, 2].min()
+    beside.set(xlim=(0, axes.along), ylim=(0, axes.height))
+    beside.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
+    beside.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+    draw_heights(beside, s, z, "height above the lowest point, m")
+    beside.plot([road.length, road.length], [0, z[-1]], color=SOFT, lw=1, ls=(0, (3, 3)), zorder=3)
+    for figure, file in zip(figures, names, strict=True):
+        save(figure, folder / file)
+    return names
 
 
 def can_film() -> bool:
