@@ -64,9 +64,10 @@ bench: $(VENV)/.installed-test
 	@for file in benchmarks/bench_*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
 	@echo "make bench: $(SECONDS_SO_FAR) s"
 
+# Not --quiet, with which --strict overlooks links that lead nowhere.
 docs: $(VENV)/.installed-docs
 	$(BIN)/python docs/commands.py
-	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 	@echo "make docs: site/index.html, $(SECONDS_SO_FAR) s"
 
 figures: $(VENV)/.installed-test
