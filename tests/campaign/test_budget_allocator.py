@@ -70,7 +70,10 @@ def test_a_limit_is_never_passed_and_hardly_anything_is_left(
                 pass
         except BudgetError as error:
             said = str(error)
-        assert (": roadgpt resume" in said) == (status_of(folder).done < 30)
+        more = "--max-tokens" if by_tokens else "--max-cost"
+        more += f" {2 * TOKENS * questions}" if by_tokens else f" {2 * PRICE * questions:g}"
+        again = f"continue with a higher one, such as: roadgpt resume {folder} {more}"
+        assert said.endswith(again) == (status_of(folder).done < 30)
         with Record.opened(folder) as record:
             tokens, cost = record.spent()
             there = record.plan()

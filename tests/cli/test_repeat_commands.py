@@ -27,13 +27,13 @@ def a_run(request: Request, index: int = 4) -> Run:
     return Run(request, index, 11, road=Road.through([[40, 100], [90, 100], [140, 100]]))
 
 
-def parsed(line: str) -> dict[str, object]:
-    """What the command line makes of a line."""
+def parsed(line: str) -> click.Context:
+    """What the command line makes of a line, in ``params``."""
     roadgpt, name, *rest = shlex.split(line)
     assert roadgpt == "roadgpt"
     command = app.get_command(click.Context(app), name)
     assert command is not None
-    return command.make_context(name, rest, click.Context(app, **app.context_settings)).params
+    return command.make_context(name, rest, click.Context(app, **app.context_settings))
 
 
 def test_show_tells_what_happened_and_how_to_make_it_again(tmp_path: Path) -> None:
@@ -91,9 +91,11 @@ def test_the_command_line_reads_from_the_lines_what_the_run_was_made_with(
     setup: Setup, world: World, words: str
 ) -> None:
     lines = replay_lines(a_run(Request(words=words, seed=5, world=world, setup=setup)), PLACE)
-    params = parsed(lines[0])
+    ctx = parsed(lines[0])
+    params = ctx.params
     assert (params["words"], params["roads"], params["seed"]) == ((words,), 4, 5)
-    assert world_of(params) == world
+    with ctx:
+        assert world_of(params) == world
     assert params["no_drive"] is not setup.drives
     driver = absolute_spec(setup.driver, Path.cwd())
     assert {flag.field: params[flag.field] for flag in SETUP} == {
@@ -101,16 +103,19 @@ def test_the_command_line_reads_from_the_lines_what_the_run_was_made_with(
     }
     assert len(lines) == 1 + setup.drives
     for line in lines[1:]:
-        params = parsed(line)
+        ctx = parsed(line)
+        params = ctx.params
         assert (params["files"], params["seed"]) == ((str(PLACE / "road.json"),), 11)
-        assert world_of(params) == world
+        with ctx:
+            assert world_of(params) == world
         for field in ("simulator", "rules", "keep_driving"):
             assert params[field] == getattr(setup, field)
         assert params["driver"] == absolute_spec(setup.driver, Path.cwd())
 
 
 def test_the_defaults_of_the_options_are_those_of_world_and_setup() -> None:
-    assert world_of({flag.field: flag.default for flag in WORLD}) == World()
+    with click.Context(app):
+        assert world_of({flag.field: flag.default for flag in WORLD}) == World()
     assert Setup(**{flag.field: flag.default for flag in SETUP}) == Setup()
     assert {flag.field for flag in SETUP} | {"drives", "chat"} == set(Setup.model_fields)
     assert {flag.field for flag in CHAT} == set(ChatSettings.model_fields)
