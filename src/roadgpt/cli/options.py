@@ -287,12 +287,10 @@ def world_of(values: dict[str, Any]) -> "World":
     if "oracle" in given:  # what is typed precedes what files set, and this the default oracle
         from roadgpt.road.oracles import oracle_limits
 
-        limits, context = oracle_limits(), click.get_current_context(silent=True)
+        limits, source_of = oracle_limits(), click.get_current_context().get_parameter_source
         found = {name: given.pop(name) for name in ("oracle", *limits)}
         for source in (ParameterSource.DEFAULT, ParameterSource.DEFAULT_MAP, ParameterSource.COMMANDLINE):
-            typed = ParameterSource.COMMANDLINE  # also what a program gives
-            source_of = {name: context.get_parameter_source(name) if context else typed for name in found}
-            some = {name: found[name] for name in found if source_of[name] is source}
+            some = {name: found[name] for name in found if source_of(name) is source}
             some = {name: value for name, value in some.items() if value is not None}
             limits = oracle_limits(**some) if "oracle" in some else limits | some
         given |= limits
