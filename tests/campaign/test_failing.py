@@ -355,6 +355,8 @@ def test_the_most_instructive_failures_are_written_for_a_paper(looked: Path, tmp
         assert run.road is not None
         assert read_opendrive(of[".xodr"]).road.length == pytest.approx(run.road.length, abs=0.01)
         assert (row["driver"], row["oracle"]) == (run.request.setup.driver, run.world.limits.oracle)
+    roadgpt("faults", folder, "--repeat", 2, "--no-plot", "--top", 1)
+    assert {path.name.partition(".")[0] for path in place.iterdir()} == {"1", "top"}
 
 
 def failure(number: int, bend: float, station: float, kind: str = "right") -> LocatedFailure:

@@ -362,6 +362,20 @@ def test_files_that_know_no_map_get_one_that_holds_them(tmp_path: Path, name: st
     assert CliRunner().invoke(app, ["check", str(path), "--map-size", "250"]).exit_code == 1
 
 
+def test_the_test_of_a_road_on_a_larger_map_states_its_size(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for words, size in (("straight len=100", None), ("straight len=700", 1000)):
+        run = invoke(
+            "run", "--plan", words, "--no-drive", "--no-plot", "--map-size", str(size or 250), "--out", words
+        )
+        assert run.exit_code == 0, run.output
+        test = json.loads(Path(words, "test.0001.json").read_text())
+        assert test.get("world") == (size and {"map_size": size})
+        assert invoke("check", f"{words}/test.0001.json").exit_code == 0
+
+
 def test_python_knows_the_world_of_a_file(tmp_path: Path) -> None:
     source = read_source(long_road(tmp_path))
     world = World().changed(**source.world)

@@ -1,11 +1,16 @@
 """Drivers on the same roads: every figure of the table from statsmodels and scipy, and a real campaign."""
 
 import csv
+import shlex
+import shutil
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from click import Context
 from click.testing import CliRunner
 from scipy import stats
 
@@ -14,13 +19,16 @@ from roadgpt.campaign.model import Cell, CellBudget, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Record, Store
 from roadgpt.campaign.single_test import FinishedTest
+from roadgpt.campaign.status import status_of
 from roadgpt.campaign.workers.in_process import InProcess
 from roadgpt.cli import app
+from roadgpt.cli.next_steps import next_steps, of_status
 from roadgpt.errors import UsageError
 from roadgpt.report.page import write
 from roadgpt.report.page.model import Figure, Page
 from roadgpt.road import Design, Segment
 from roadgpt.run.model import Seconds
+from roadgpt.study import campaign_report
 from roadgpt.study.chapters import same_roads
 
 DRIVERS = ("reference", "/srv/me/one/driver.py:Mine", "/srv/me/two/driver.py:Mine")
@@ -47,10 +55,9 @@ def result_of(driver: int, road: int) -> Result:
     return Result(road, 0, proposal, outcome, "", design, margin=margin)
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def stored(folder: Path, result_of: Callable[[int, int], Result]) -> Path:
     """A campaign of such results; the last road is not there for the last driver."""
-    folder, cells = tmp_path_factory.mktemp("paired"), []
+    cells: list[Cell] = []
     plan = Plan(prompts=("a road",), drivers=DRIVERS, budget=CellBudget(tests=ROADS), paired=True)
     for number, (request, generator) in enumerate(plan.requests(), 1):
         cells.append(Cell(f"c0{number}", request, None, generator, None))
@@ -63,6 +70,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
             store.keep(ended, None, [], {})
         store.finish()
     return folder
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return stored(tmp_path_factory.mktemp("paired"), result_of)
 
 
 def test_every_figure_is_that_of_others(
@@ -123,6 +135,37 @@ def test_every_figure_is_that_of_others(
     latex = (tmp_path / "tables" / "pairs-of-drivers.tex").read_text(encoding="utf-8")
     assert "oracle half: FAIL when more than half of the car is outside its lane" in latex
     assert "/srv" not in latex + "".join(said) + str(rows)
+
+
+def test_no_table_names_a_folder_of_the_machine_and_no_picture_of_before_is_left(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(same_roads, "_figure", lambda *_: Figure("x", "", "<svg/>"))
+    monkeypatch.setattr(campaign_report, "failures", lambda *_: [])
+    again = shutil.copytree(folder, tmp_path / "again")
+    (again / "differ").mkdir()
+    for name in ("3.png", "3.pdf", "mine.png", "3 of mine.png"):
+        (again / "differ" / name).touch()
+    page = campaign_report.write_store_report(again)
+    tables = {path.name: path.read_text(encoding="utf-8") for path in (page.parent / "tables").iterdir()}
+    assert [row["driver"] for row in csv.DictReader(tables["outcomes.csv"].splitlines())] == SHORT
+    assert [name for name, text in tables.items() if "/srv" in text] == []
+    assert sorted(path.name for path in (again / "differ").iterdir()) == ["3 of mine.png", "mine.png"]
+
+
+def test_what_is_proposed_has_all_drivers(tmp_path: Path) -> None:
+    def passed(driver: int, road: int) -> Result:
+        return replace(result_of(driver, road), outcome="PASS", margin=1.0)
+
+    found = next_steps(of_status(status_of(stored(tmp_path, passed))))
+    assert [why.split(" ")[0] for why, _ in found] == ["fail", "a", "a"]  # no search, whose roads differ
+    for _, command in found:
+        _, verb, *words = shlex.split(command)
+        assert verb == "campaign"
+        campaign = app.get_command(Context(app), verb)
+        assert campaign is not None
+        with campaign.make_context(verb, [*words, "--out", str(tmp_path)]) as context:
+            assert (context.params["paired"], context.params["drivers"]) == (True, DRIVERS)
 
 
 def test_drivers_can_be_compared_only_on_the_same_roads() -> None:

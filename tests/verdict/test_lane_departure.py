@@ -49,6 +49,8 @@ def test_a_pass_that_was_partly_outside_says_so() -> None:
 def test_no_share_is_rounded_away() -> None:
     grazed = judge(STRAIGHT, drive_at([-2.0, -3.0701, -2.0]), WORLD)
     assert "at most 0.005 % of the car was outside" in grazed.description
+    less = judge(STRAIGHT, drive_at([-2.0] * 3, outside=[0, 3e-9, 0]), WORLD)
+    assert "at most 0.001 % of the car was outside" in less.description
     nearly = judge(
         STRAIGHT, drive_at([-2.0] * 3, outside=[0, 0.9996, 0]), World(limits=Limits(oob_tolerance=1.0))
     )

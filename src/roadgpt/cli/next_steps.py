@@ -36,6 +36,8 @@ class WithoutFailure:
     """Whether the tests are those of a campaign."""
     brief: "Brief | None" = None
     """What was read from the description."""
+    compares: tuple[str, ...] = ()
+    """The arguments that name several drivers; empty for one driver, which the request names."""
 
 
 def next_steps(quiet: WithoutFailure | None) -> list[tuple[str, str]]:
@@ -78,7 +80,7 @@ def _steps(quiet: WithoutFailure) -> Iterator[tuple[str, str]]:
             yield f"a speed limit of {speed:.0f} km/h", _command(quiet, speed_limit=speed / 3.6)
             break
     for goal in GOALS:
-        if goal != quiet.goal:
+        if goal != quiet.goal and not quiet.compares:
             why = f"search for {'failures' if goal == 'failures' else 'the hardest road'} among such roads"
             yield why, _command(replace(quiet, goal=goal, is_search=True, tests=max(quiet.tests, SEARCHED)))
             break
@@ -89,23 +91,37 @@ def _command(quiet: WithoutFailure, **world: Any) -> str:
 
     request = quiet.request.model_copy(update={"world": quiet.request.world.changed(**world)})
     verb = ["campaign", *(["--goal", quiet.goal] if quiet.goal else [])] if quiet.is_search else ["run"]
-    return command_line(*verb, *request_words(request, quiet.tests, quiet.brief))
+    return command_line(*verb, *quiet.compares, *request_words(request, quiet.tests, quiet.brief))
 
 
 def of_status(status: "Status") -> WithoutFailure | None:
     """Summarises a campaign or a folder of runs. Returns None if its tests are still running, if any test
-    failed, or if none passed.
+    failed, if none passed, or if more than the driver differs between cells.
     """
     if status.is_running or status.outcomes.get("FAIL") or not status.outcomes.get("PASS"):
         return None
     from roadgpt.campaign.folder_record import open_record
 
     with open_record(Path(status.folder)) as record:
-        first = record.cells()[0]
+        first, *others = record.cells()
+        compares: tuple[str, ...] = ()
+        if others:
+            asked = [_with_usual_driver(cell.request) for cell in (first, *others)]
+            if any(request != asked[0] for request in asked):
+                return None
+            named = ",".join(cell.request.setup.driver for cell in (first, *others))
+            compares = ("--drivers", named, *["--paired"] * record.plan().paired)
+            first = replace(first, request=asked[0])
     outside = sum(cell.partly_outside + cell.mostly_outside for cell in status.cells)
     tests, is_search = first.budget.tests or SEARCHED, not first.in_sequence
     passed = status.outcomes["PASS"]
-    return WithoutFailure(first.request, tests, passed, outside, first.goal, is_search, first.brief)
+    return WithoutFailure(first.request, tests, passed, outside, first.goal, is_search, first.brief, compares)
+
+
+def _with_usual_driver(request: "Request") -> "Request":
+    setup = request.setup
+    usual = setup.model_copy(update={"driver": type(setup)().driver})
+    return request.model_copy(update={"setup": usual})
 
 
 def of_rows(request: "Request", brief: "Brief | None", roads: int, rows: Any) -> WithoutFailure | None:

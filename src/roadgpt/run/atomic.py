@@ -12,7 +12,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from roadgpt.errors import UsageError, explained
+from roadgpt.errors import RoadGPTError, UsageError, explained
 
 try:
     import fcntl
@@ -66,6 +66,21 @@ def refuse_links(*paths: Path) -> None:
             raise UsageError(
                 f"{path} is {what}, and nothing is written there; remove it, or use another folder"
             )
+
+
+def remove_numbered(folder: Path) -> None:
+    """Removes the files of a folder that are named by a number, such as ``3.png``, which an earlier call may
+    have written; new ones are fewer.
+
+    Raises:
+        UsageError: the folder is a link.
+        RoadGPTError: a file cannot be removed.
+    """
+    refuse_links(folder)
+    with explained(RoadGPTError, f"cannot write into {folder}", "make room there"):
+        for path in folder.glob("[0-9]*.*"):
+            if path.name.partition(".")[0].isdigit() and not path.is_dir():
+                path.unlink()
 
 
 @contextmanager

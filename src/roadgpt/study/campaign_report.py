@@ -1,7 +1,7 @@
 """Writes the report of a campaign. SQL queries count the tests in the campaign's database, so that a
 report on a million tests needs little memory."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from roadgpt.campaign.faults.fault import faults_in
@@ -26,6 +26,7 @@ from roadgpt.study.chapters.same_roads import compared, same_roads
 from roadgpt.study.chapters.wording import (
     decimal,
     drawn_share,
+    driver_names,
     interval_cell,
     near_and_far,
     p_value,
@@ -130,11 +131,13 @@ def _failing(of: CellStatus) -> float:
 
 def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus], is_paired: bool) -> list[Block]:
     seconds = dict(record.query("SELECT name, seconds FROM cells"))
-    differing, note = _what_differs(status.cells)
+    names = driver_names(each.driver for each in status.cells)
+    differing, note = _what_differs(status.cells, names)
     rows: list[list[TableCell]] = []
     for each in status.cells:
         failed, driven = _driven(each)
-        about, (invalid, errors) = _about(each), (each.outcomes.get(name, 0) for name in ("INVALID", "ERROR"))
+        about = _about(each, names)
+        invalid, errors = (each.outcomes.get(name, 0) for name in ("INVALID", "ERROR"))
         rows.append(
             row(
                 each.name,
@@ -159,7 +162,7 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus], is_pa
             + ("" if found.is_sound or not found.freedom else " Expected counts are small.")
         )
     if len(cells) > 1:
-        blocks.append(_forest(cells[:MOST_CELLS]))
+        blocks.append(_forest(cells[:MOST_CELLS], names))
     beside = [linked(name, name) for name in TABLES if (record.folder / name).is_file()]
     if beside:
         between = " and " if len(beside) > 1 else ""
@@ -167,21 +170,22 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus], is_pa
     return blocks
 
 
-def _about(of: CellStatus) -> dict[str, str]:
-    """Returns the settings of a cell as texts; the keys are the headings of a table."""
+def _about(of: CellStatus, names: Mapping[str, str]) -> dict[str, str]:
+    """Returns the settings of a cell as texts; the keys are the headings of a table. ``names`` has a name for
+    each driver."""
     return {
         "description": of.words or "roads that were given",
         "generator": of.generator,
-        "driver": of.driver,
+        "driver": names[of.driver],
         "oracle": of.oracle,
         "seed": str(of.seed),
         "friction": f"{of.friction:g}",
     }
 
 
-def _what_differs(cells: Sequence[CellStatus]) -> tuple[list[str], str]:
+def _what_differs(cells: Sequence[CellStatus], names: Mapping[str, str]) -> tuple[list[str], str]:
     """Returns the headings of settings that differ between cells, and a sentence with all other settings."""
-    every = [_about(each) for each in cells]
+    every = [_about(each, names) for each in cells]
     differing = [head for head in every[0] if len({about[head] for about in every}) > 1]
     same = [
         f"{head} “{text}”" if head == "description" else f"{head} {text}"
@@ -192,13 +196,13 @@ def _what_differs(cells: Sequence[CellStatus]) -> tuple[list[str], str]:
     return differing, whose + ", ".join(same) + "." if same else ""
 
 
-def _forest(cells: Sequence[CellStatus]) -> Figure:
+def _forest(cells: Sequence[CellStatus], names: Mapping[str, str]) -> Figure:
     groups = []
     for each in cells:
         failed, driven = _driven(each)
         if driven:
             share = drawn_share(0, failed, driven, f"{failed:,} of {driven:,}")
-            groups.append((f"{each.name} · {each.generator} · {each.driver}", [share]))
+            groups.append((f"{each.name} · {each.generator} · {names[each.driver]}", [share]))
     caption = "Share of driven roads on which the car failed, with Wilson's 95 % intervals."
     return Figure("failed", caption, forest(groups, ["failed"], caption))
 

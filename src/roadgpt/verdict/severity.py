@@ -40,10 +40,11 @@ def graded(outcome: str, share: float | None) -> str:
 def percent(share: float) -> str:
     """Returns a share (0 to 1) as text in per cent.
 
-    Only exactly 0 becomes "0 %", and only exactly 1 becomes "100 %"."""
+    Only exactly 0 becomes "0 %", and only exactly 1 becomes "100 %"; less than
+    0.001 % is rounded up to it."""
     told = f"{100 * share:.0f}"
     if told == "0" and share > 0:
-        told = f"{100 * share:.1g}"
+        told = f"{max(100 * share, 0.001):.1g}"
     elif told == "100" and share < 1:
         told = f"{math.floor(1000 * share) / 10:.1f}"
     return f"{told} %"

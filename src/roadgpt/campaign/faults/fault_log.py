@@ -32,7 +32,7 @@ from roadgpt.campaign.rerun import kept_run
 from roadgpt.export import save
 from roadgpt.reading import strictly
 from roadgpt.run import Run, write_run
-from roadgpt.run.atomic import csv_text, json_text, write_whole
+from roadgpt.run.atomic import csv_text, json_text, remove_numbered, write_whole
 from roadgpt.run.folder import is_run, run_folder
 
 SIMPLEST, TOP = "simplest", "top"
@@ -165,6 +165,7 @@ def write_top(folder: Path, top: Sequence[tuple[Fault, FailureAnalysis]], draw: 
         RoadGPTError: a file cannot be written.
     """
     place, rows = made_folder(folder / FOLDER / TOP), []
+    remove_numbered(place)
     for number, (fault, looked) in enumerate(top, 1):
         run, path = kept_run(folder, *looked.name), place / f"{number}.txt"
         assert run.road is not None

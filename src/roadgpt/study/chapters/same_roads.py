@@ -3,9 +3,9 @@
 from base64 import b64encode
 from collections.abc import Sequence
 from hashlib import sha256
-from itertools import combinations, count
+from itertools import combinations
 from math import nan
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -19,8 +19,8 @@ from roadgpt.report.page.model import Block, Figure, Section, Table, TableCell
 from roadgpt.report.page.svg import chart, tag
 from roadgpt.report.pair import SIZE, pair
 from roadgpt.road.oracles import oracle_in_words
-from roadgpt.run.atomic import refuse_links
-from roadgpt.study.chapters.wording import decimal, p_value, row
+from roadgpt.run.atomic import refuse_links, remove_numbered
+from roadgpt.study.chapters.wording import decimal, driver_names, p_value, row
 from roadgpt.study.statistics import Array, friedman, holm, mcnemar, wilcoxon
 
 PICTURES = "differ"
@@ -73,6 +73,7 @@ def same_roads(folder: Path, record: Record) -> Section:
     note = NOTE + CLAMPED * (not first.setup.keep_driving)
     rows = _pairs(names, failed, margins)
     blocks: list[Block] = [Table("pairs-of-drivers", f"{how}; oracle {oracle}", HEADS, rows, note)]
+    remove_numbered(folder / PICTURES)
     spread = np.nan_to_num(np.ptp(failed, axis=1) * 1e6 + np.ptp(margins, axis=1))
     for rank, at in enumerate(np.argsort(-spread, kind="stable")[:SHOWN], 1):
         if spread[at]:
@@ -82,9 +83,8 @@ def same_roads(folder: Path, record: Record) -> Section:
 
 
 def _roads(record: Record) -> tuple[list[str], list[Road], Array, int]:
-    """Returns the drivers' names, with only as much of a file's path as tells them apart; the roads that are
-    the same for all; for each road and driver 1 if the car failed, 0 if it passed, NaN if it was not driven;
-    and the number of other roads."""
+    """Returns the drivers' names; the roads that are the same for all; for each road and driver 1 if the car
+    failed, 0 if it passed, NaN if it was not driven; and the number of other roads."""
     cells = {cell.name: cell for cell in record.cells()}
     drivers = [*dict.fromkeys(cell.request.setup.driver for cell in cells.values())]
     found: dict[object, dict[str, DrivenTest]] = {}
@@ -101,9 +101,7 @@ def _roads(record: Record) -> tuple[list[str], list[Road], Array, int]:
     ]
     same = [road for road in whole if len({(one.seed, one.design) for one in road}) == 1]
     failed = np.array([[FAILED.get(one.outcome, nan) for one in road] for road in same], float)
-    parts = [PurePath(driver).parts for driver in drivers]
-    tails = ([str(PurePath(*part[-n:])) for part in parts] for n in count(1))
-    names = next(tail for tail in tails if len({*tail}) == len(drivers))
+    names = [*driver_names(drivers).values()]
     return names, same, failed.reshape(-1, len(names)), len(found) - len(same)
 
 

@@ -1,7 +1,9 @@
 """Formats numbers, shares, intervals and lists for reports."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import count
+from pathlib import PurePath
 
 from roadgpt.plural import plural
 from roadgpt.report.page.forest import Share
@@ -28,6 +30,13 @@ def as_sentence(text: str) -> str:
 def percent(share: float, digits: int = 1) -> str:
     """Returns a share (0 to 1) as text, such as '60.7 %'; a dash for NaN."""
     return "–" if math.isnan(share) else f"{100 * share:.{digits}f} %"
+
+
+def driver_names(drivers: Iterable[str]) -> dict[str, str]:
+    """Returns a name for each driver, with only as much of a file's path as tells the drivers apart."""
+    parts = {driver: PurePath(driver).parts for driver in drivers}
+    tails = ({driver: str(PurePath(*its[-n:])) for driver, its in parts.items()} for n in count(1))
+    return next(tail for tail in tails if len({*tail.values()}) == len(parts))
 
 
 def share_of(k: int, n: int) -> str:
