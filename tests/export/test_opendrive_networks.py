@@ -44,7 +44,7 @@ class WrittenRoad:
         self.element = element
         self.id, self.junction = element.attrib["id"], element.attrib["junction"]
         self.length = float(element.attrib["length"])
-        self.links = {link.tag: link.attrib for link in element.find("link") or ()}
+        self.links = {link.tag: link.attrib for link in element.findall("./link/*")}
         self.lanes = {int(lane.attrib["id"]): lane for lane in element.iter("lane")}
         self.has_offset = self.element.find("lanes/laneOffset") is not None
         self.driven = {n for n, lane in self.lanes.items() if lane.attrib["type"] == "driving"}
