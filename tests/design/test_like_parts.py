@@ -147,6 +147,8 @@ def straight(metres: float) -> Segment:
         ((60, 30.0, 45, 30.0, 40), "turn x2 | alike", "they turn 45 to 60 degrees"),
         ((60, 30.0, 60, 50.0, 40), "turn x2 | alike", "their radii are 30 to 50 m"),
         ((60, 30.0, 45, 30.0, 40), "turn x2", ""),
+        ((60, 30.0, 45, 30.0, 40), "turn x1.. | alike", "they turn 45 to 60 degrees"),
+        ((60, 30.0, 60, 30.0, 40), "turn x1.. | alike", ""),
         ((60, 30.0, 60, 30.0, 90), "straight; turn; straight; turn | alike", "straights alike"),
         ((60, 30.0, 60, 30.0, 90), "turn x2 | alike", ""),
     ],

@@ -155,6 +155,10 @@ def test_lanes_their_marks_and_their_verges() -> None:
     speeds = {(each.attrib["max"], each.attrib["unit"]) for each in root.iter("speed")}
     assert speeds == {("50", "km/h")}
     assert {each.attrib["friction"] for each in root.iter("material")} == {"0.6"}
+    of_lanes = [each for lane in lanes.values() for kind in ("speed", "material") for each in lane.iter(kind)]
+    assert len(of_lanes) == 4
+    starts = {each.attrib["sOffset"] for each in of_lanes}
+    assert starts == {"0"}  # of the lane section: no metre is without a limit
 
 
 def test_a_road_that_floats_has_no_verge() -> None:

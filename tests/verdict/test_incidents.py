@@ -12,6 +12,7 @@ from roadgpt.drive.lane_polygon import LanePolygon
 from roadgpt.network import Route, build_route, read_network_design
 from roadgpt.road import CrossSection, Limits, Road, World
 from roadgpt.verdict import Verdict, judge
+from roadgpt.verdict.incidents import wheels
 
 WORLD = World(section=CrossSection(shoulder=2.0), limits=Limits(oob_tolerance=1.0))
 BOX = Box(4.7, 1.86, ahead=-0.1)  # its front is 2.25 m ahead
@@ -234,3 +235,13 @@ def test_a_driver_that_knows_no_signs_fails_for_that_alone() -> None:
     assert verdict.margin > 1.99  # in the middle of a lane that is 4 m wide
     free = crossroads("straight", "none")
     assert judge(free, simulate(free, world, RunsTheSign()), world).kept
+
+
+def test_wheels_are_at_the_axles() -> None:
+    """Both axles are 1.46 m from the middle of the box, which is 0.1 m behind the centre of gravity."""
+    drive = driven(crossroads("straight"), [10.0, 10.0], [20.0, 20.0], heading=math.pi / 2)
+    front_left, front_right, rear_right, rear_left = wheels(drive)[0]
+    assert front_left == pytest.approx([10 - 0.9025, 21.36])
+    assert front_right == pytest.approx([10 + 0.9025, 21.36])
+    assert rear_right == pytest.approx([10 + 0.9025, 20 - 1.56])
+    assert rear_left == pytest.approx([10 - 0.9025, 20 - 1.56])
