@@ -52,7 +52,8 @@ def _connected(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
 
 
 def _opened(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
-    db = sqlite3.connect(f"{path.resolve().as_uri()}?mode={mode}", PATIENCE, isolation_level=None, uri=True)
+    address = f"{path.resolve().as_uri()}?mode={mode}"
+    db = sqlite3.connect(address, timeout=PATIENCE, isolation_level=None, uri=True)
     try:
         version = db.execute("PRAGMA user_version").fetchone()[0]
         db.execute("SELECT count(*) FROM meta").fetchone()
