@@ -78,7 +78,7 @@ class RoadTestFactory:
             nodes = [node[:2] for node in self.interpolated_points]
             if interpolate_road_points:
                 nodes = nodes_of(nodes)
-            return sum(math.hypot(x1 - x0, y1 - y0) for (x0, y0), (x1, y1) in zip(nodes, nodes[1:]))
+            return math.fsum(math.hypot(x1 - x0, y1 - y0) for (x0, y0), (x1, y1) in zip(nodes, nodes[1:]))
 
         def set_validity(self, is_valid: bool, validation_message: str) -> None:
             """Stores the validator's result in the test."""

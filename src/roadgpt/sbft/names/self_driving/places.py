@@ -13,4 +13,4 @@ def get_node_coords(node: Sequence[float]) -> Tuple[float, float, float]:
 
 def points_distance(p1: Sequence[float], p2: Sequence[float]) -> float:
     """Returns the distance between two points in 3-D, in metres."""
-    return math.sqrt(sum((a - b) ** 2 for a, b in zip(get_node_coords(p1), get_node_coords(p2))))
+    return math.sqrt(math.fsum((a - b) ** 2 for a, b in zip(get_node_coords(p1), get_node_coords(p2))))
