@@ -2,12 +2,14 @@
 # make test    format, types and every test; ends with the seconds it took
 # make bench   the figures of benchmarks/        make docs    the site in site/
 # make figures the outputs and pictures of README and docs, from the commands beside them
+# make train   train the reader further, with OUT=folder TRAIN='--steps 2000': training/README.md
 # make judges  ASAM's checker of OpenDRIVE, which wants an environment of its own; make test asks it
 # make format  mend the format                   make clean   remove what make made
 #
 # Another Python: make test PYTHON=python3.12
 
 PYTHON ?= python3
+OUT ?= out
 VENV ?= .venv
 BIN := $(VENV)/bin
 START := $(shell date +%s)
@@ -18,7 +20,7 @@ WANTED := $(shell $(PYTHON) -c '$(FIND_VERSION)' 2>/dev/null)
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 INSTALL := $(PIP) install --quiet --constraint constraints.txt
 
-.PHONY: help demo test bench docs figures judges format clean
+.PHONY: help demo test bench docs figures judges train format clean
 .DELETE_ON_ERROR:
 
 help:
@@ -76,6 +78,10 @@ figures: $(VENV)/.installed-test
 	$(BIN)/python docs/figures.py roadgpt-runs/figures
 	@echo "make figures: $(SECONDS_SO_FAR) s"
 
+train: $(VENV)/.installed-test
+	$(INSTALL) -r training/requirements.txt
+	cd training && ../$(BIN)/python -m roadgpt_training train $(OUT) --installed $(TRAIN)
+
 judges: judges/.installed
 
 # It wants a numpy below 2, so it has an environment of its own; for Python 3.13 there is no such numpy.
@@ -95,4 +101,4 @@ format: $(VENV)/.installed-test
 
 clean:
 	rm -rf $(VENV) judges build dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis
-	find src tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
+	find src tests benchmarks training -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -11,36 +11,36 @@ import os
 import sys
 import tempfile
 import time
+from collections.abc import Callable
+from concurrent.futures import Executor, wait
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from roadgpt import plugins
-from roadgpt.campaign.executors import Executor, Job, WorkerConfig
+from roadgpt.campaign.executors import WorkerConfig
 
 WORKERS = 2
 TEST = 0.05  # s
 
 
-def all_done(workers: Executor, jobs: list[Job]) -> float:
-    """Seconds until every job has ended."""
+def seconds_of(workers: Executor, count: int, function: Callable[..., Any], item: Any) -> float:
+    """Seconds for each of so many jobs, until every one has ended."""
     begun = time.perf_counter()
-    workers.submit(jobs)
-    left = len(jobs)
-    while left:
-        left -= len(workers.done(1.0))
-    return time.perf_counter() - begun
+    wait([workers.submit(function, item) for _ in range(count)])
+    return (time.perf_counter() - begun) / count
 
 
 def row(name: str, count: int, log: Path) -> str:
     begun = time.perf_counter()
     workers = plugins.find("executors", name)(WorkerConfig(WORKERS, partial(abs, 0), 600.0, log))
     try:
-        workers.map(abs, range(WORKERS * 4))
+        list(workers.map(abs, range(WORKERS * 4)))
         ready = time.perf_counter() - begun
-        nothing = all_done(workers, [Job(key, abs, key) for key in range(count)]) / count
-        short = all_done(workers, [Job(key, time.sleep, TEST) for key in range(count // 5)]) / (count // 5)
+        nothing = seconds_of(workers, count, abs, 1)
+        short = seconds_of(workers, count // 5, time.sleep, TEST)
     finally:
-        workers.stop()
+        workers.shutdown(cancel_futures=True)
     lost = short * WORKERS - TEST
     return (
         f"| `{name}` | {ready:.1f} s | {1000 * nothing:.2f} ms | {1000 * lost:.1f} ms ({lost / TEST:.0%}) |"

@@ -26,11 +26,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roadgpt.campaign.executors.processes import unordered_map
 from roadgpt.campaign.faults.fault import Fault, faults_in
 from roadgpt.campaign.faults.remedy import Removed, remedies_of, stored_remedies
+from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
-from roadgpt.campaign.rerun import kept_run
-from roadgpt.campaign.unordered_map import unordered_map
 
 DRIVERS = ("beamng_like", "lane_centring")
 CONDITIONS: dict[str, tuple[str, ...]] = {

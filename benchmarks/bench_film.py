@@ -13,8 +13,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from roadgpt.report.film import Film, Settings
-from roadgpt.report.film.encoding import write_film
+from roadgpt.report.film import Film, Settings, write_film
 from roadgpt.road import Design, Segment, World
 from roadgpt.run import Run, prove
 from roadgpt.scene import Camera, Pose, Scene

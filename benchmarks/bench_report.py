@@ -15,9 +15,9 @@ from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Record, Store
 from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.design import draft
+from roadgpt.report.campaign_report import write_store_report
 from roadgpt.road import World
 from roadgpt.run.model import Request
-from roadgpt.study.campaign_report import write_store_report
 
 SEED_TESTS = 50  # that are written by the store itself; the others are copies with margins of their own
 WORDS = "an uphill road with 3 turns"

@@ -12,7 +12,7 @@ from itertools import islice
 from pathlib import Path
 
 from roadgpt.check import sbft_verdict
-from roadgpt.sbft import Experiment, RoadGPTTestGenerator, compete
+from roadgpt_sbft import Experiment, RoadGPTTestGenerator, compete
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples" / "sbft"
 TESTS = 200

@@ -29,8 +29,7 @@ from roadgpt.campaign.csv_tables import write_tables
 from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import Cell, CellBudget, Pool, Proposal, Result
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.record import STORE, Record, Store
-from roadgpt.campaign.rows import design_text
+from roadgpt.campaign.record import STORE, Record, Store, design_text
 from roadgpt.campaign.single_test import FinishedTest, Task
 from roadgpt.campaign.status import status_of
 from roadgpt.campaign.traces import STEPS, Trace

@@ -20,10 +20,8 @@ from scipy.stats import rankdata, spearmanr
 from sklearn.linear_model import RidgeCV
 from sklearn.preprocessing import StandardScaler
 
-from roadgpt.campaign.sketch import candidate_of, sketch
-from roadgpt.campaign.surrogate import Surrogate, target_of
-from roadgpt.campaign.surrogate_features import hazard_of
-from roadgpt.campaign.variation import VariationContext, VariationTask
+from roadgpt.campaign.surrogate import Surrogate, hazard_of, target_of
+from roadgpt.campaign.variation import VariationContext, VariationTask, candidate_of, sketch
 from roadgpt.road import Limits, Site, World
 from roadgpt.run import Setup, brief_of, prove
 

@@ -12,9 +12,9 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.design import draft
 from roadgpt.design.room import world_for
 from roadgpt.errors import BriefError, DesignError
-from roadgpt.learn.routes import draw_route
 from roadgpt.network import Route, made_from
 from roadgpt.road import World
+from roadgpt_training.routes import draw_route
 
 LANGUAGES = ("en", "de", "fr", "es", "it")
 LEFT_HAND = 10  # of so many routes, one keeps to the left

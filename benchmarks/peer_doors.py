@@ -95,7 +95,7 @@ PPO.load = load
 PICT = "The program `pict` is put beside its source: the checkout has it for Windows only."
 
 TOOLS = {
-    "roadgpt": Tool("RoadGPT's search", "roadgpt.sbft", "RoadGPTTestGenerator"),
+    "roadgpt": Tool("RoadGPT's search", "roadgpt_sbft", "RoadGPTTestGenerator"),
     "simple_ga": Tool(
         "the example `simple_ga`",
         "simple_ga",

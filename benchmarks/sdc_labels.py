@@ -14,7 +14,7 @@ import gzip
 import numpy as np
 
 from beamng_labels import auc, road_of
-from roadgpt.sbft.sdc.risk import LINE_ONLY, RiskModel, fit_model, order, risk_features
+from roadgpt_sbft.sdc.risk import LINE_ONLY, RiskModel, fit_model, order, risk_features
 
 
 def apfd(ranked: np.ndarray) -> float:

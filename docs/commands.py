@@ -1,12 +1,10 @@
 """Writes docs/reference/commands.md from the commands' own help, in the order of the headings."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import click
 
-from roadgpt.cli.app import app
-from roadgpt.cli.command_table import EARLIER, EARLIER_OPTIONS, EARLIER_VALUES, HEADINGS
+from roadgpt.cli.app import app, headings
 from roadgpt.cli.option_groups import ALL
 
 PAGE = Path(__file__).parent / "reference" / "commands.md"
@@ -29,7 +27,7 @@ def page() -> str:
         help_of(app, "roadgpt"),
     ]
     group = click.Context(app, info_name="roadgpt", **app.context_settings)
-    for heading, commands in HEADINGS.items():
+    for heading, commands in headings().items():
         parts.append(f"## {heading}\n")
         for name in commands:
             command = app.get_command(group, name)
@@ -37,7 +35,7 @@ def page() -> str:
             parts += [f"### roadgpt {name}\n", help_of(command, name, group)]
             if isinstance(command, click.Group):
                 parts += inside(command, click.Context(command, group, name))
-    return "\n".join([*parts, *earlier()])
+    return "\n".join(parts)
 
 
 def inside(command: click.Group, context: click.Context) -> list[str]:
@@ -48,16 +46,6 @@ def inside(command: click.Group, context: click.Context) -> list[str]:
         if isinstance(its, click.Group):
             parts += inside(its, click.Context(its, context, own))
     return parts
-
-
-def earlier() -> Iterator[str]:
-    """Yields the table of names that commands and options had before."""
-    yield "## Earlier names\n"
-    yield "They still work, and say the present name in one line on standard error.\n"
-    rows = [(f"roadgpt {' '.join(words)}", f"roadgpt {shown}") for words, (_, shown) in EARLIER.items()]
-    rows += [*EARLIER_OPTIONS.items(), *EARLIER_VALUES.items()]
-    table = ["| earlier | now |", "|---|---|", *(f"| `{old}` | `{new}` |" for old, new in rows)]
-    yield "\n".join(table) + "\n"
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ from hypothesis import settings
 from hints import HintCollector
 from named_files import watch_commands
 from roadgpt import provenance
-from roadgpt.campaign.workers.in_process import InProcess
+from roadgpt.campaign.workers import InProcess
 
 settings.register_profile("steady", derandomize=True, deadline=None, max_examples=50)
 settings.register_profile("hunt", deadline=None, print_blob=True)
@@ -45,7 +45,7 @@ def no_workers(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 OF_LIBRARIES = ("PYTHONBREAKPOINT", "PYGAME_HIDE_SUPPORT_PROMPT")  # set by Ray and by Gymnasium
-WATCHES = ("roadgpt-guard", "roadgpt-beamng", "roadgpt-watch")
+WATCHES = ("roadgpt-beamng", "roadgpt-watch")
 FOR_GOOD = ("PYTEST_", "ORT_DISABLE_TELEMETRY", "RAY_USAGE_STATS_ENABLED", *OF_LIBRARIES)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from pydantic import BaseModel
 
 from roadgpt.chat import Message, Reply, Spent, UnparsableError, Usage
-from roadgpt.chat.strict_json import NotReadableError, read_as
+from roadgpt.chat.answer import NotReadableError, read_as
 
 Line = str | Exception | Callable[[Sequence[Message]], str]
 

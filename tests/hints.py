@@ -18,15 +18,16 @@ import click
 import pytest
 from click.testing import CliRunner, Result
 
+from page_words import words_of
 from roadgpt import provenance
 from roadgpt.campaign.selection import selection_of
-from roadgpt.campaign.workers.in_process import InProcess
+from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
-from roadgpt.cli.command_table import COMMANDS
+from roadgpt.cli.app import commands
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.errors import UsageError
 
-LINE = re.compile(rf"(?:^|: |  |`)(roadgpt (?:{'|'.join(COMMANDS)})\b[^`\n]*)", re.MULTILINE)
+LINE = re.compile(rf"(?:^|: |  |`)(roadgpt (?:{'|'.join(commands())})\b[^`\n]*)", re.MULTILINE)
 CHEAP = ("check", "export", "import", "show", "view")
 WRONG = {2, 70}  # what was typed cannot be used; an internal error
 
@@ -59,7 +60,7 @@ class HintCollector:
             return
         text = printed.output
         if args[:1] == ["report"] and printed.exit_code == 0:
-            text += Path(printed.stdout.splitlines()[-1]).with_suffix(".md").read_text(encoding="utf-8")
+            text += words_of(Path(printed.stdout.splitlines()[-1]).parent)
         for words in hints_in(text):
             self.printed.append(words)
             said = f"{shlex.join(['roadgpt', *args])}\nprints\n{shlex.join(words)}\n"
@@ -89,7 +90,7 @@ class HintCollector:
         try:
             with pytest.MonkeyPatch.context() as patch:
                 patch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
-                patch.setattr("roadgpt.study.survey.serving.serve", lambda *given: None)
+                patch.setattr("roadgpt_study.survey.serving.serve", lambda *given: None)
                 patch.chdir(replaced(str(here), copies))
                 return self._typed([replaced(word, copies) for word in words])
         finally:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
+from roadgpt.brief.readers.model.grammar import END, PlanAutomaton
 from roadgpt.brief.readers.model.slots import NumberSlot
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of
 

@@ -5,28 +5,11 @@ from hypothesis import strategies as st
 from roadgpt.brief.model import Amount, Brief, Clause, at_least, at_most, between, exactly
 from roadgpt.road import Design, Segment, World
 
-SLOPES = (
-    "up",
-    "down",
-    "flat",
-    "nearly_flat",
-    "gently_up",
-    "gently_down",
-    "steeply_up",
-    "steeply_down",
-)
+SLOPES = ("up", "down", "flat", "nearly_flat", "gently_up", "gently_down", "steeply_up", "steeply_down")
 TURNS = (
-    "turn",
-    "hairpin",
-    "switchback",
-    "u_turn",
-    "s_bend",
-    "chicane",
-    "slalom",
-    "serpentine",
-    "zigzag",
+    "turn", "hairpin", "switchback", "u_turn", "s_bend", "chicane", "slalom", "serpentine", "zigzag",
     "winding",
-)
+)  # fmt: skip
 
 
 def worlds() -> st.SearchStrategy[World]:

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 from urllib.parse import urlencode
 
 from roadgpt.run.atomic import json_text
-from roadgpt.study.survey.server import Server
-from roadgpt.study.survey.serving import open_server
-from roadgpt.study.survey.survey import CARD, MEDIA, Item, Medium, Survey
+from roadgpt_study.survey.server import Server
+from roadgpt_study.survey.serving import open_server
+from roadgpt_study.survey.survey import CARD, MEDIA, Item, Medium, Survey
 
 EVIL = "\"><script>document.title='broken'</script><img src=x onerror=alert(1)>{0}{title}&amp;"
 PICTURE = b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 8

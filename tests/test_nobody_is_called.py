@@ -129,16 +129,8 @@ def test_a_home_that_takes_no_file_is_nothing_to_talk_about(tmp_path: Path) -> N
     design = ROOT / "examples" / "roads" / "my_road.json"
     env = {"HOME": "/proc/nowhere", "PATH": os.environ["PATH"]}
     command = [
-        sys.executable,
-        "-m",
-        "roadgpt",
-        "view",
-        str(design),
-        "--format",
-        "png",
-        "--out",
-        str(tmp_path),
-    ]
+        sys.executable, "-m", "roadgpt", "view", str(design), "--format", "png", "--out", str(tmp_path),
+    ]  # fmt: skip
     done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)
     assert done.stderr == ""
     assert [*tmp_path.rglob("*.png")]

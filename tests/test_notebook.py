@@ -49,11 +49,3 @@ def test_the_notebook_runs_and_its_values_show_themselves(tmp_path: Path) -> Non
         "reference",
     ]
     assert not [*tmp_path.iterdir()]
-
-
-def test_words_that_a_brief_does_not_use_are_said() -> None:
-    import roadgpt
-    from roadgpt import _sentence
-
-    brief = roadgpt.read("a road with 2 turns").model_copy(update={"unused": ("purple",)})
-    assert _sentence(brief) == "A road with 2 turns. Not used: 'purple'."

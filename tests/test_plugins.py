@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from importlib.metadata import EntryPoint
 
+import click
 import pytest
 from click.testing import CliRunner
 
@@ -38,7 +39,7 @@ def test_a_part_that_cannot_be_loaded_costs_only_itself(
     with pytest.raises(PartError, match=rf"the driver 'broken' cannot be loaded \({reason}.*; repair or"):
         plugins.find("drivers", "broken")
     assert plugins.find("drivers", "sound")() == {}
-    listed = CliRunner().invoke(app, ["parts"])
+    listed = CliRunner().invoke(app, ["config", "plugins"])
     assert listed.exit_code == 0
     assert "cannot be loaded" in listed.stdout
 
@@ -52,12 +53,36 @@ def test_two_parts_of_one_name_are_refused(shelf: list[EntryPoint]) -> None:
         plugins.find("drivers", "sound")
 
 
-def test_one_part_that_is_found_twice_is_one_part(shelf: list[EntryPoint]) -> None:
-    shelf.append(SOUND)
-    assert plugins.find("drivers", "sound")() == {}
-
-
 def test_an_empty_shelf_is_an_error(shelf: list[EntryPoint]) -> None:
     shelf.clear()
     with pytest.raises(PartError, match="no rules are installed"):
         plugins.names("rules")
+
+
+@click.command(short_help="Count the trees.")
+def trees() -> None:
+    """A command of somebody else's package."""
+    click.echo("17 trees")
+
+
+def test_a_command_of_another_package_stands_in_the_help_and_a_broken_one_says_so(
+    shelf: list[EntryPoint],
+) -> None:
+    shelf[:] = [
+        EntryPoint("trees", f"{__name__}:trees", "roadgpt.commands"),
+        EntryPoint("broken", "no_such_module_at_all:X", "roadgpt.commands"),
+    ]
+    said = " ".join(CliRunner().invoke(app, ["--help"]).stdout.split())
+    others = said.split("Of other packages: ")[1]
+    assert others.startswith("broken the command 'broken' cannot be loaded (ModuleNotFoundError")
+    assert "trees Count the trees." in others
+    assert CliRunner().invoke(app, ["trees"]).stdout == "17 trees\n"
+    broken = CliRunner().invoke(app, ["broken"])
+    assert "the command 'broken' cannot be loaded (ModuleNotFoundError" in broken.stderr
+    assert CliRunner().invoke(app, ["--version"]).exit_code == 0
+
+
+def test_there_may_be_no_commands_checks_reports_and_settings(shelf: list[EntryPoint]) -> None:
+    shelf.clear()
+    assert all(plugins.names(kind) == [] for kind in ("commands", "checks", "reports", "settings"))
+    assert "compete" not in CliRunner().invoke(app, ["--help"]).stdout

@@ -1,7 +1,6 @@
 """RoadGPT turns words into tested roads.
 
-The public classes and functions of the sub-packages can be imported from here. Each is loaded when it is
-first used, so that ``import roadgpt`` takes almost no time::
+The public classes and functions can be imported from here. Each is loaded when it is first used::
 
     import roadgpt
 
@@ -16,47 +15,22 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-# Every public class and function, and the sub-package or module that defines it.
-_ROOMS = {
-    "Brief": "brief",
-    "Outline": "brief",
-    "outline": "brief",
-    "read": "brief",
-    "sentence": "brief",
-    "World": "road",
-    "Site": "road",
-    "CrossSection": "road",
-    "Limits": "road",
-    "Design": "road",
-    "Road": "road",
-    "build": "road",
-    "read_design": "road",
-    "read_opendrive": "road",
-    "read_road": "network",
-    "read_source": "network",
-    "Network": "network",
-    "MapDesign": "network",
-    "NetworkDesign": "network",
-    "Route": "network",
-    "build_map": "network",
-    "build_route": "network",
-    "read_map_design": "network",
-    "read_network_design": "network",
-    "Finding": "check",
-    "inspect": "check",
-    "draft": "design",
-    "Drive": "drive",
-    "simulate": "drive",
-    "Verdict": "verdict",
-    "judge": "verdict",
-    "Run": "run",
-    "campaign": "campaign",
-    "perform": "run",
-    "prove": "run",
-    "draw": "report",
-    "plot": "report.plotting",
-    "compare": "study",
+# Every public class and function, by the sub-package or module that defines it.
+_OFFERED = {
+    "brief": "Brief Outline outline read sentence",
+    "road": "World Site CrossSection Limits Design Road build read_design read_opendrive",
+    "network": "Network MapDesign NetworkDesign Route build_map build_route read_map_design "
+    "read_network_design read_road read_source",
+    "check": "Finding inspect",
+    "design": "draft",
+    "drive": "Drive simulate",
+    "verdict": "Verdict judge",
+    "run": "Run campaign perform prove",
+    "report": "draw",
+    "report.plotting": "plot",
+    "report.similarity": "compare",
 }
+_ROOMS = {name: room for room, names in _OFFERED.items() for name in names.split()}
 
 __all__ = ["__version__", *sorted(_ROOMS)]
 
@@ -77,7 +51,7 @@ _PICTURES = (
     ("roadgpt.road.road", "Road"),
     ("roadgpt.road.design", "Design"),
     ("roadgpt.run.model", "Run"),
-    ("roadgpt.campaign.folder_campaign", "Campaign"),
+    ("roadgpt.campaign.run_folder", "Campaign"),
 )
 _SENTENCES = (("roadgpt.brief.model", "Brief"), ("roadgpt.verdict.verdict", "Verdict"))
 
@@ -96,7 +70,6 @@ def _sentence(value: Any) -> str:
 
 
 def _show_values_in_notebooks() -> None:
-    """Tells the notebook that runs this process, if there is one, how to display our values."""
     if "IPython" in sys.modules:
         shell = sys.modules["IPython"].get_ipython()
         if shell is not None:

@@ -7,6 +7,8 @@ import os
 import signal
 import subprocess
 import sys
+import threading
+import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import IO, Any
@@ -21,12 +23,8 @@ _running: "set[subprocess.Popen[bytes]]" = set()
 
 
 def start(words: Sequence[str], **how: Any) -> "subprocess.Popen[bytes]":
-    """Starts a process in a new session, so that Ctrl-C in the terminal does not reach it. ``how`` has
-    further arguments of ``subprocess.Popen``.
-
-    Raises:
-        OSError: The operating system cannot start the process.
-    """
+    """Starts a process in a new session; ``how`` has further arguments of ``subprocess.Popen``. Raises
+    OSError if it cannot be started."""
     process: subprocess.Popen[bytes] = subprocess.Popen(words, **_APART, **how)  # noqa: S603 - our callers' words
     _running.add(process)
     return process
@@ -34,28 +32,16 @@ def start(words: Sequence[str], **how: Any) -> "subprocess.Popen[bytes]":
 
 def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
     """Starts a Python process that runs ``main()`` of a module and communicates through its standard streams.
-
-    ``how`` has further arguments of ``subprocess.Popen``; the variables in its ``env`` are added to the
-    current environment.
-
-    Raises:
-        OSError: The operating system cannot start the process.
-    """
-    words = [
-        sys.executable,
-        "-P",  # modules in the user's current folder do not replace ours
-        "-c",
-        f"from {entry} import main; main()",
-    ]
+    ``how`` is as in ``start``, but the variables in its ``env`` are added to the environment."""
+    # -P: modules in the user's current folder do not replace ours
+    words = [sys.executable, "-P", "-c", f"from {entry} import main; main()"]
     extra = how.pop("env", {})
     env = {**os.environ, **extra, "PYTHONUNBUFFERED": "1", "MPLBACKEND": "Agg"}
     return start(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=env, **how)
 
 
 def kill(process: "subprocess.Popen[bytes]") -> None:
-    """Kills a process and its child processes, without waiting until they have ended. The process may
-    already have ended.
-    """
+    """Kills a process, which may have ended, and its child processes; does not wait for them."""
     if os.name == "posix":
         # the process group may outlive the process, so the group is signalled even if the process has ended
         with suppress(ProcessLookupError, PermissionError):
@@ -68,10 +54,8 @@ def kill(process: "subprocess.Popen[bytes]") -> None:
 
 
 def ask_to_end(process: "subprocess.Popen[bytes]") -> None:
-    """Asks a process that has called ``ends_its_own`` to end itself and its child processes; does not wait
-    for them. ``kill`` would not reach these child processes, because they run in separate sessions. On
-    Windows, where ``kill`` reaches them, nothing is done.
-    """
+    """Asks a process that has called ``ends_its_own`` to end itself and its child processes, whose sessions
+    ``kill`` would not reach; does not wait for them. On Windows, where it reaches them, nothing is done."""
     if os.name == "posix" and process.poll() is None:
         with suppress(OSError):
             process.terminate()
@@ -79,18 +63,28 @@ def ask_to_end(process: "subprocess.Popen[bytes]") -> None:
 
 def ends_its_own() -> None:
     """Makes SIGTERM end this process and every process that it has started with this module."""
-    signal.signal(signal.SIGTERM, _end_all)
+
+    def end_all(number: int, frame: object) -> None:
+        kill_all()
+        os._exit(128 + number)
+
+    signal.signal(signal.SIGTERM, end_all)
 
 
-def _end_all(number: int, frame: object) -> None:
-    kill_all()
-    os._exit(128 + number)
+def ends_with_parent() -> None:
+    """Makes this process end within a second after its parent process."""
+
+    def stay_while(parent: int) -> None:
+        while os.getppid() == parent:
+            time.sleep(1.0)
+        os._exit(1)
+
+    threading.Thread(target=stay_while, args=(os.getppid(),), daemon=True).start()
 
 
 def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int | None:
-    """Ends a process and its child processes. Returns the exit status of the process; None if it has not
-    ended within ``patience`` seconds.
-    """
+    """Ends a process and its child processes. Returns its exit status; None if it has not ended within
+    ``patience`` seconds."""
     kill(process)
     with suppress(subprocess.TimeoutExpired):
         process.wait(patience)
@@ -105,20 +99,13 @@ def kill_all() -> None:
 
 
 def ending(status: int | None) -> str:
-    """Returns how a process ended, in words that can follow the name of the process, such as 'was ended by
-    signal 9'.
-    """
-    if status is not None and status < 0:
-        return f"was ended by signal {-status}"
-    return f"ended with status {status}"
+    """Returns how a process ended, in words that can follow its name."""
+    return f"was ended by signal {-status}" if status and status < 0 else f"ended with status {status}"
 
 
 def private_streams() -> tuple[IO[bytes], IO[bytes]]:
-    """Returns the standard input and output of this process, unbuffered and for the caller's exclusive use.
-
-    Afterwards, other code that reads standard input gets no data, and what other code prints goes to standard
-    error.
-    """
+    """Returns the standard input and output of this process, unbuffered, for the caller alone: other code
+    then reads no input, and what it prints goes to standard error."""
     heard, said = os.dup(0), os.dup(1)
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)

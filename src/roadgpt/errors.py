@@ -76,15 +76,7 @@ class PartError(UsageError):
 
 
 class ExportError(RoadGPTError):
-    """A road cannot be exported: the format cannot represent it, something that the export needs is not
-    installed, or the file cannot be written.
-    """
-
-
-class LearnError(UsageError):
-    """A reader cannot be trained or exported, for example because its training data (pairs of descriptions
-    and plans, or a grammar of phrases) or its weights cannot be used.
-    """
+    """A road cannot be exported: the format cannot represent it, or the file cannot be written."""
 
 
 class ChatError(RoadGPTError):
@@ -98,9 +90,7 @@ class BudgetError(ChatError):
 
 
 class ReplyError(ChatError):
-    """The server answered, but the answer is not usable. Only the current road fails; a campaign
-    continues.
-    """
+    """The server answered, but the answer is not usable. Only the current road fails; a campaign goes on."""
 
     def __init__(self, sentence: str, text: str = "") -> None:
         super().__init__(sentence)
@@ -113,18 +103,13 @@ class RefusedError(ReplyError):
 
 
 class UnparsableError(ReplyError):
-    """None of the model's replies matches the requested schema, in any of the response formats that were
-    tried.
-    """
+    """None of the model's replies matches the requested schema, in any of the formats that were tried."""
 
 
 @contextmanager
 def explained(kind: type[RoadGPTError], what: str, advice: str) -> Iterator[None]:
-    """Catches an OSError that is raised in a ``with`` block, and raises an error of another kind instead.
-
-    Its message is one sentence: ``what``, such as "cannot write FILE", then the reason, and ``advice``, which
-    says what the user can do.
-    """
+    """Turns an OSError into an error of another kind, whose message is ``what``, such as "cannot write FILE",
+    then the reason, and ``advice``, which says what the user can do."""
     try:
         yield
     except OSError as error:
@@ -137,9 +122,7 @@ def command_line(*words: object) -> str:
 
 
 def to_install(extra: str) -> str:
-    """Returns the command that installs an extra. In a checkout it keeps the installation editable, which pip
-    would otherwise replace by a copy.
-    """
+    """Returns the command that installs an extra; in a checkout, it keeps the installation editable."""
     checkout = Path(__file__).parents[2]
     if not (checkout / "pyproject.toml").is_file():
         return f"python -m pip install 'roadgpt[{extra}]'"

@@ -1,5 +1,8 @@
 """Finds plug-ins by name: providers, readers, designers, rules, exporters, simulators, drivers and so on.
 
+Of the kinds ``commands``, ``checks`` (of ``roadgpt doctor``), ``reports`` (of folders of other packages) and
+``settings`` (of simulators), there may be none.
+
 Plug-ins are registered as entry points of the group ``roadgpt.<kind>``. The built-in plug-ins use the same
 mechanism as those of users.
 """
@@ -11,17 +14,9 @@ from typing import Any
 from roadgpt.errors import PartError
 
 KINDS = (
-    "providers",
-    "readers",
-    "designers",
-    "rules",
-    "network_rules",
-    "exporters",
-    "simulators",
-    "drivers",
-    "generators",
-    "executors",
-)
+    "providers", "readers", "designers", "rules", "network_rules", "exporters", "simulators", "drivers",
+    "generators", "executors",
+)  # fmt: skip
 
 
 @cache
@@ -36,53 +31,41 @@ def _registered(kind: str) -> dict[str, list[EntryPoint]]:
 
 
 def names(kind: str) -> list[str]:
-    """Returns the sorted names of the plug-ins of one kind, such as "rules".
-
-    Raises:
-        PartError: No plug-ins of this kind are installed. This is an error because, for example, every road
-            would be accepted if there were no rules.
-    """
+    """Returns the sorted names of the plug-ins of one kind, such as "rules". Raises PartError if there are
+    none of one of the ``KINDS``: without rules, every road would be accepted."""
     found = sorted(_registered(kind))
-    if not found:
+    if not found and kind in KINDS:
         raise PartError(f"no {kind} are installed; run pip install --force-reinstall roadgpt")
     return found
 
 
 def find(kind: str, name: str) -> Any:
-    """Imports a plug-in and returns the object that it registered.
-
-    Raises:
-        PartError: There is no plug-in of this name or more than one, or it cannot be loaded.
-    """
-    known = names(kind)
+    """Imports a plug-in and returns the object that it registered. Raises PartError if there is none of this
+    name or more than one, or it cannot be loaded."""
+    known, one = names(kind), kind.removesuffix("s")
     if name not in known:
-        raise PartError(f"no {kind.removesuffix('s')} called '{name}'; there are: {', '.join(known)}")
+        raise PartError(f"no {one} called '{name}'; there are: {', '.join(known)}")
     part, *others = _registered(kind)[name]
     if others:
         raise PartError(
-            f"{len(others) + 1} packages register a {kind.removesuffix('s')} called '{name}' "
-            f"({origin(kind, name)}); uninstall all but one"
+            f"{len(others) + 1} packages register a {one} called '{name}' ({origin(kind, name)}); uninstall "
+            "all but one"
         )
     try:
         return part.load()
     except Exception as error:  # a plug-in of another package may fail in any way, and must not affect others
         raise PartError(
-            f"the {kind.removesuffix('s')} '{name}' cannot be loaded ({type(error).__name__}: {error}); "
-            f"repair or uninstall {origin(kind, name)}"
+            f"the {one} '{name}' cannot be loaded ({type(error).__name__}: {error}); repair or uninstall "
+            f"{origin(kind, name)}"
         ) from error
 
 
 def module_of(kind: str, name: str) -> str:
-    """Returns the name of the module that defines a plug-in, without importing the module; an empty string
-    if there is no such plug-in.
-    """
+    """Returns the name of the module that defines a plug-in, without importing it; empty if there is none."""
     return next((part.module for part in _registered(kind).get(name, ())), "")
 
 
 def origin(kind: str, name: str) -> str:
-    """Returns the distribution that provides a plug-in, as 'name version'.
-
-    If several distributions provide it, the string lists all of them.
-    """
+    """Returns the distributions that provide a plug-in, each as 'name version'."""
     parts = _registered(kind)[name]
     return ", ".join(f"{part.dist.name} {part.dist.version}" if part.dist else "unknown" for part in parts)

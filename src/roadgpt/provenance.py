@@ -1,10 +1,8 @@
 """Records whether drivers and servers were named by the user or only by a file. A driver or server is trusted
 only if the user named it, because a run, a campaign, a plan or a folder may come from somebody else. Code
-that reads such a file records the drivers and servers that the file names (``add_from_file``). Code that
-reads the user's options records those that the user names (``add_from_user``). Before the code of a driver is
-run, or a key is sent to a server, ``untrusted_file`` tells whether only a file named the driver or server. If
-the user's own Python program names a driver or server, no file is recorded for it, so it is trusted.
-"""
+that reads such a file records what the file names (``add_from_file``), and code that reads the user's options
+what the user names (``add_from_user``). Before the code of a driver is run, or a key is sent to a server,
+``untrusted_file`` tells whether only a file named it. What the user's own Python program names is trusted."""
 
 from collections.abc import Callable
 
@@ -17,28 +15,19 @@ class NameOrigins:
         self._files: dict[str, str] = {}
 
     def add_from_user(self, key: str, name: str = "") -> None:
-        """Records that the user named a driver or server.
-
-        ``key`` identifies it; ``name`` is the user's spelling, if it differs from ``key``.
-        """
+        """Records that the user named a driver or server; ``name`` is the spelling, if it is not ``key``."""
         self._named[key] = name or key
 
     def given_as(self, key: str) -> str | None:
-        """Returns the user's spelling of the driver or server with this key; None if the user did not name
-        it.
-        """
+        """Returns the user's spelling; None if the user did not name it."""
         return self._named.get(key)
 
     def add_from_file(self, key: str, file: object) -> None:
-        """Records that a file names the driver or server with this key. If several files name it, only the
-        first file is recorded.
-        """
+        """Records that a file names a driver or server; only the first such file is kept."""
         self._files.setdefault(key, str(file))
 
     def untrusted_file(self, key: str) -> str | None:
-        """Returns the file that names the driver or server with this key. Returns None if the user named the
-        driver or server, too, or if no file names it.
-        """
+        """Returns the file that names a driver or server; None if no file, or the user, too, names it."""
         return None if key in self._named else self._files.get(key)
 
     def join(self, others: "NameOrigins") -> None:
@@ -53,9 +42,7 @@ class NameOrigins:
 
 
 class Confirmation:
-    """Asks the user to confirm something. Until a program sets ``ask``, the user is not asked and the
-    answer is always no.
-    """
+    """Asks the user to confirm something; without a program that sets ``ask``, the answer is always no."""
 
     def __init__(self) -> None:
         self.ask: Callable[[str], bool] = lambda question: False

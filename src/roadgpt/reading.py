@@ -1,9 +1,7 @@
 """Reads files from untrusted sources: only regular files, and only up to a size limit.
 
-Pipes and devices are refused, because reading from them could block for ever or yield endless data. Files
-that are too large are refused before they fill the memory. Files written by campaigns and runs are read in
-the same way.
-"""
+Reading from pipes and devices could block for ever or yield endless data, and files that are too large fill
+the memory. What is no such file raises UsageError, and what the system refuses OSError."""
 
 import json
 import os
@@ -33,19 +31,8 @@ HOW = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | 
 
 
 def opened(path: Path, most: int = LARGEST, what: str = ANY, called: str = "") -> BinaryIO:
-    """Returns a regular file of limited size, opened for reading.
-
-    Args:
-        path: Path of the file, or of a link to it.
-        most: The largest size that is allowed, in bytes.
-        what: What the file should contain, such as "a recording"; it is part of the error message if the file
-            is too large.
-        called: Name of the file in error messages; empty to use its path.
-
-    Raises:
-        OSError: The file does not exist or may not be read.
-        UsageError: The path is not a regular file, or the file is too large.
-    """
+    """Returns a regular file of at most ``most`` bytes, opened for reading. In errors, the file is named as
+    it is ``called``, or by its path, and ``what`` says what it should be, such as "a recording"."""
     number = os.open(path, HOW)
     try:
         found = os.fstat(number)
@@ -86,12 +73,7 @@ def _digest(path: Path, *_state: int) -> str:
 
 
 def read_bytes(path: Path, most: int = LARGEST, what: str = ANY) -> bytes:
-    """Returns the content of a regular file of at most ``most`` bytes.
-
-    Raises:
-        OSError: The file does not exist or may not be read.
-        UsageError: The path is not a regular file, or the file is too large.
-    """
+    """Returns the content of a regular file of at most ``most`` bytes."""
     with opened(path, most, what) as file:
         content = file.read(most + 1)
     if len(content) > most:  # it is growing, or its file system reports no size
@@ -100,25 +82,13 @@ def read_bytes(path: Path, most: int = LARGEST, what: str = ANY) -> bytes:
 
 
 def read_text(path: Path, most: int = LARGEST, what: str = ANY, encoding: str = "utf-8") -> str:
-    """Returns the content of a regular file as text, with all line ends as "\\n".
-
-    Raises:
-        OSError: The file does not exist or may not be read.
-        UsageError: The path is not a regular file, or the file is too large.
-        UnicodeDecodeError: The content is not text in the given encoding.
-    """
+    """Returns the content of a regular file as text, with all line ends as "\\n"; or raises
+    UnicodeDecodeError."""
     return read_bytes(path, most, what).decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
 
 
 def read_json(path: Path, most: int = LARGEST, what: str = ANY) -> Any:
-    """Returns the data in a JSON file.
-
-    Raises:
-        OSError: The file does not exist or may not be read.
-        UsageError: The path is not a regular file, or the file is too large.
-        ValueError: The file is not JSON, has too many elements, is nested too deeply, or holds a number with
-            too many digits.
-    """
+    """Returns the data in a JSON file; raises ValueError as ``json_of`` does."""
     return json_of(read_text(path, most, what))
 
 
@@ -130,13 +100,8 @@ def read_model(
     advice: str = "name another folder",
     most: int = LARGEST,
 ) -> M:
-    """Reads a JSON file that RoadGPT wrote, and returns the pydantic model in it. The file may have at most
-    ``most`` bytes.
-
-    Raises:
-        UsageError: The file does not exist (the message is then ``absent``); or it cannot be read, is
-            damaged, or was written by another version of RoadGPT (the message then ends with ``advice``).
-    """
+    """Reads a JSON file that RoadGPT wrote, and returns the pydantic model in it. The error says ``absent``
+    if there is no file, and otherwise ends with ``advice``."""
     try:
         data = read_json(path, most, what)
     except FileNotFoundError as error:
@@ -152,12 +117,8 @@ def read_model(
 
 
 def json_of(text: str) -> Any:
-    """Returns the data in JSON text. Whole numbers of more than 300 digits are refused.
-
-    Raises:
-        ValueError: The text is not JSON, has too many elements, is nested too deeply, or holds a number with
-            too many digits.
-    """
+    """Returns the data in JSON text. Raises ValueError if it is not JSON, has too many elements, is nested
+    too deeply, or holds a whole number of more than 300 digits."""
     if text.count("[") + text.count("{") > MOST_OPENED or text.count(",") > MOST_COMMAS:
         raise ValueError("it has more parts than would fit into memory")
     try:
@@ -167,21 +128,14 @@ def json_of(text: str) -> Any:
 
 
 def check_unpacked(entries: Iterable[zipfile.ZipInfo], most: int) -> None:
-    """Checks that a zip archive does not unpack to more than ``most`` bytes.
-
-    Raises:
-        ValueError: The archive would unpack to more.
-    """
+    """Raises ValueError if a zip archive would unpack to more than ``most`` bytes."""
     if sum(entry.file_size for entry in entries) > most:
         raise ValueError(f"it unpacks to more than {most / 1e6:g} MB")
 
 
 def strictly(kind: type[T], data: Any) -> T:
-    """Makes an instance of a dataclass from the data in a file; no value is converted to another type.
-
-    Raises:
-        ValueError: A field is missing, has another type, or is a number that is not finite.
-    """
+    """Makes an instance of a dataclass from the data in a file. Raises ValueError if a field is missing, has
+    another type, or is a number that is not finite."""
     value: T = _reader(cast(Hashable, kind)).validate_json(json.dumps(data, allow_nan=False), strict=True)
     return value
 

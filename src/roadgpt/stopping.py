@@ -27,24 +27,16 @@ LONGER = 1.3  # factor by which this time grows, so that it does not always hit 
 
 
 class _State:
-    """The state of this process."""
-
-    number = 0
-    """Number of the signal that was received; 0 for none."""
+    number = 0  # of the signal that was received
     since = 0.0
-    is_raised = False
-    """Whether ``look`` has raised a KeyboardInterrupt for this signal."""
-    is_again = False
-    """Whether the next signal will be one that this process sent to itself."""
-    drops = 0
-    """Number of times that Python dropped the KeyboardInterrupt."""
-    is_over = False
-    """Whether all work is done, so that nothing can be lost."""
+    is_raised = False  # ``look`` has raised a KeyboardInterrupt for this signal
+    is_again = False  # the next signal will be one that this process sent to itself
+    drops = 0  # times that Python dropped the KeyboardInterrupt
+    is_over = False  # all work is done, so that nothing can be lost
 
 
 def install() -> None:
-    """Installs handlers for Ctrl-C and SIGTERM. A signal that the parent process set to be ignored stays
-    ignored."""
+    """Installs handlers for Ctrl-C and SIGTERM, unless the parent process had them ignored."""
     for number in SIGNALS:
         if signal.getsignal(number) in USUAL:
             signal.signal(number, _heard)
@@ -52,25 +44,20 @@ def install() -> None:
 
 
 def look() -> None:
-    """Checks whether the program should stop; long computations call it between their steps.
-
-    Raises:
-        KeyboardInterrupt: A signal was received; raised only in the main thread, and once per signal.
-    """
+    """Raises KeyboardInterrupt in the main thread, once, if a signal was received; long computations call it
+    between their steps."""
     if _State.number and not _State.is_raised and threading.current_thread() is threading.main_thread():
         _State.is_raised = True
         raise KeyboardInterrupt
 
 
 def status() -> int:
-    """Returns the exit status that shells use for a program that was stopped by the received signal, such
-    as 130 for Ctrl-C; 0 if no signal was received.
-    """
+    """Returns the exit status for the received signal, such as 130 for Ctrl-C; 0 if there was none."""
     return 128 + _State.number if _State.number else 0
 
 
 def forget() -> None:
-    """Forgets a received signal. Call it when the interrupted work has stopped and the program continues."""
+    """Forgets a received signal, when the interrupted work has stopped and the program continues."""
     _State.number, _State.is_raised = 0, False
 
 
@@ -80,11 +67,8 @@ def finish() -> None:
 
 
 def leave() -> None:
-    """Ends the process at once with the exit status of the received signal, without waiting for threads.
-
-    The function does nothing if no signal was received. The function is needed because, after a
-    KeyboardInterrupt in a C library, Python would end the process by SIGINT and ignore the exit status.
-    """
+    """If a signal was received, ends the process at once with its exit status. After a KeyboardInterrupt in a
+    C library, Python would end by SIGINT and ignore the exit status."""
     if not status():
         return
     finish()
@@ -113,7 +97,6 @@ def _heard(number: int, frame: FrameType | None) -> None:
 
 
 def _dropped(what: Any) -> None:
-    """Implements Python's hook for exceptions that cannot be caught."""
     if not _State.number:
         sys.__unraisablehook__(what)
         return

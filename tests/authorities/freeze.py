@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from authorities.test_referee import altered_truth, load_referee, truth_of
+from authorities.test_truth import drawn_truth
+from outside_judge import load_referee
 from roadgpt.brief import read
 from roadgpt.check.measures import measure
 from roadgpt.design.designers.planner import Planner
@@ -62,8 +63,7 @@ def measured_roads() -> list[dict[str, Any]]:
     for design in designs:
         points = build(design).centreline().round(4)
         ours = measure(points)
-        truths = [truth_of(ours, rng) for _ in range(2)]
-        truths += [altered_truth(ours, rng) for _ in range(TRUTHS - 2)]
+        truths = [drawn_truth(rng, ours) for _ in range(TRUTHS)]
         judged = [{"truth": truth, "holds": referee.check(points, truth)[0]} for truth in truths]
         out.append({"design": design.to_json(), "measures": referee.measure(points), "truths": judged})
     return out

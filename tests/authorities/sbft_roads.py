@@ -87,17 +87,9 @@ def there_and_back(rng, size):
 
 
 FAMILIES = (
-    scattered,
-    wandering,
-    bending,
-    bending,
-    circling,
-    on_a_lattice,
-    straight,
-    tiny,
-    far_away,
+    scattered, wandering, bending, bending, circling, on_a_lattice, straight, tiny, far_away,
     there_and_back,
-)
+)  # fmt: skip
 
 
 def moved(points, rng):

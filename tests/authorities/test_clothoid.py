@@ -37,13 +37,3 @@ def test_the_fresnel_integrals_of_abramowitz_and_stegun() -> None:
     """Table 7.7 (Handbook of Mathematical Functions, 1964): C(1) = 0.7798934, S(1) = 0.4382591."""
     curve = PieceCurve(0.0, 0.0, 0.0, (Piece(1.0, 0.0, np.pi),))
     assert curve.at(1.0) == pytest.approx([0.7798934, 0.4382591], abs=5e-8)
-
-
-def test_a_spline_agrees_with_the_arc_it_was_drawn_through() -> None:
-    from roadgpt.geometry import SplineCurve
-
-    arc = PieceCurve(0.0, 0.0, 0.0, (Piece(60.0, 1 / 20, 1 / 20),))
-    spline = SplineCurve.through(arc.at(np.linspace(0, 60, 61)))
-    inner = np.linspace(10, 50, 50)
-    assert spline.length == pytest.approx(60.0, abs=2e-3)
-    assert spline.curvature(inner) == pytest.approx(1 / 20, abs=1e-4)

@@ -4,10 +4,9 @@ import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
+from command_line import roadgpt
 from outside_judge import SHARED, networks_referee
-from roadgpt.cli import app
 
 PROMPTS = SHARED / "prompts" / "networks-dev.jsonl"
 ROADS = 5
@@ -17,11 +16,6 @@ def rows() -> list[dict]:
     if not PROMPTS.exists():
         return []
     return [json.loads(line) for line in PROMPTS.read_text(encoding="utf-8").splitlines()]
-
-
-def roadgpt(*arguments: str) -> None:
-    done = CliRunner().invoke(app, arguments, prog_name="roadgpt")
-    assert done.exit_code == 0, done.output
 
 
 @pytest.mark.parametrize("row", rows() or [None], ids=lambda row: row["id"] if row else "none")

@@ -1,30 +1,23 @@
 """The development prompts, judged by the referee, where both are at hand: words in, roads out."""
 
-import importlib.util
 import json
-from pathlib import Path
 
 import pytest
 
+from outside_judge import SHARED, load_referee
 from roadgpt.brief import read
 from roadgpt.design.designers.planner import Planner
 from roadgpt.errors import RoadGPTError
 from roadgpt.road import Design, World, build
 
-SHARED = Path(__file__).resolve().parents[3] / "shared"
 ROADS = 5
 LEAST = 20  # prompts of which all roads must be right
 
 
 def test_nearly_all_prompts_give_only_roads_that_are_right() -> None:
-    prompts, file = SHARED / "prompts" / "dev.jsonl", SHARED / "referee.py"
-    if not (prompts.exists() and file.exists()):
+    prompts, referee = SHARED / "prompts" / "dev.jsonl", load_referee()
+    if referee is None or not prompts.exists():
         pytest.skip("the prompts or the referee are not at hand")
-    spec = importlib.util.spec_from_file_location("referee_of_prompts", file)
-    assert spec
-    assert spec.loader
-    referee = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(referee)
     planner, perfect = Planner(), list[str]()
     for line in prompts.read_text(encoding="utf-8").splitlines():
         prompt = json.loads(line)

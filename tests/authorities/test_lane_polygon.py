@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import Polygon
 
-from roadgpt.drive.lane_polygon import LanePolygon
+from roadgpt.drive.lane_position import LanePolygon
 from roadgpt.road import Road, World
 
 NODES = [(20, 30), (60, 40), (95, 75), (90, 120), (120, 150), (170, 140), (190, 90)]
@@ -20,7 +20,7 @@ POLYGON = Polygon(np.vstack([ROAD.at(S)[:, :2], ROAD.at(S, -4.0)[::-1, :2]]))
 
 
 @given(st.floats(0.0, 1.0), st.floats(-9.0, 5.0), st.floats(-math.pi, math.pi))
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=150, deadline=None)
 def test_the_share_outside_is_shapelys(share, t, turned):
     s = share * ROAD.length
     x, y, _ = ROAD.at(s, t)
@@ -32,8 +32,3 @@ def test_the_share_outside_is_shapelys(share, t, turned):
     expected = 1 - car.intersection(POLYGON).area / car.area
     # A chord of half a metre is at most 2 mm off these arcs: along 5 m of edge a thousandth of the car.
     assert LANE.outside(box, s) == pytest.approx(expected, abs=1.5e-3)
-
-
-def test_the_polygon_is_sound():
-    assert POLYGON.is_valid
-    assert POLYGON.area == pytest.approx(4.0 * ROAD.length, rel=0.1)

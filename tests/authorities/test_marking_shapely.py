@@ -9,7 +9,7 @@ from authorities.test_verdict_shapely import bent, random_drive
 from drive.slippery_bicycle import SlipperyBicycle
 from roadgpt.drive import Box
 from roadgpt.drive.drivers.beamng_like import BeamngLike
-from roadgpt.drive.marking_monitor import MarkingMonitor
+from roadgpt.drive.lane_position import MarkingMonitor
 from roadgpt.road import Limits, Road, World
 from roadgpt.verdict import judge
 

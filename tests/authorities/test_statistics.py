@@ -10,8 +10,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from roadgpt.study import statistics
-from roadgpt.study.statistics import (
+from roadgpt.report import statistics
+from roadgpt.report.statistics import (
     bootstrap,
     chi_squared,
     clopper_pearson,
@@ -99,14 +99,6 @@ def test_chi_squared_is_that_of_statsmodels_and_the_exact_test_is_right(table) -
         assert exact(table).p == pytest.approx(brute_force([list(row) for row in table]), abs=1e-9)
 
 
-@pytest.mark.parametrize("table", [[[100, 0]] * 3, [[0, 100]] * 3, [[0, 0]] * 2, [[5, 5]]])
-def test_where_nothing_differs_nothing_breaks(table) -> None:
-    found = chi_squared(table)
-    assert (found.statistic, found.freedom, found.p, found.cramers_v) == (0, 0, 1, 0)
-    assert exact(table).p == 1
-    assert not found.is_sound
-
-
 def test_tables_too_many_to_count_are_drawn_from_a_seed(monkeypatch: pytest.MonkeyPatch) -> None:
     counted = exact(LEFT)
     monkeypatch.setattr(statistics, "MOST_TABLES", 1)
@@ -143,16 +135,16 @@ def test_trend_is_that_of_statsmodels(table) -> None:
 
     rows, columns = np.sum(table, axis=1), np.sum(table, axis=0)
     assume((rows > 0).all() and (columns > 0).all())
-    found = trend([row[0] for row in table], rows.tolist())
+    z, p = trend([row[0] for row in table], rows.tolist())
     # in their table the first row counts misses, and scores go up along the columns
     other = Table(np.array(table)[:, ::-1].T, shift_zeros=False)
     theirs = other.test_ordinal_association(row_scores=np.arange(2), col_scores=np.arange(len(table)))
-    assert found.z == pytest.approx(theirs.zscore, abs=1e-9)
-    assert found.p == pytest.approx(theirs.pvalue, abs=1e-9)
+    assert z == pytest.approx(theirs.zscore, abs=1e-9)
+    assert p == pytest.approx(theirs.pvalue, abs=1e-9)
 
 
 def test_the_trend_of_the_thesis() -> None:
-    assert trend([88, 57, 37], [100] * 3).z == pytest.approx(-7.37, abs=0.005)
+    assert trend([88, 57, 37], [100] * 3)[0] == pytest.approx(-7.37, abs=0.005)
     assert trend([100, 100], [100, 100]) == (0, 1)
 
 
@@ -224,16 +216,6 @@ def test_holm_is_that_of_statsmodels(p) -> None:
     assert holm(p) == pytest.approx(multipletests(p, method="holm")[1])
 
 
-def test_ratings_that_say_nothing() -> None:
-    same = np.full((5, 3), 4.0)
-    assert friedman(same).p == 1
-    assert conover(same).tolist() == np.ones((3, 3)).tolist()
-    assert friedman([[1.0, NAN], [NAN, 2.0]]).people == 0
-    agreed = np.tile([1.0, 2.0, 3.0], (5, 1))
-    assert friedman(agreed).kendalls_w == pytest.approx(1)
-    assert conover(agreed)[0, 2] == 0
-
-
 def test_krippendorffs_own_example() -> None:
     assert krippendorff(KRIPPENDORFF) == pytest.approx(0.815, abs=5e-4)
 
@@ -260,12 +242,6 @@ def test_alpha_is_one_less_the_ratio_of_disagreements(seed) -> None:
     ) / len(every)
     chance = sum(apart(a, b) for a, b in itertools.permutations(every, 2)) / (len(every) * (len(every) - 1))
     assert krippendorff(x) == pytest.approx(1 - seen / chance)
-
-
-def test_alpha_of_what_nobody_can_disagree_on() -> None:
-    assert math.isnan(krippendorff([[3, 3], [3, 3]]))
-    assert math.isnan(krippendorff([[3, NAN], [NAN, 2]]))
-    assert krippendorff([[1, 5, 2], [1, 5, 2]]) == 1
 
 
 @settings(max_examples=40)
@@ -327,19 +303,11 @@ def test_wilcoxons_own_example_and_darwins_corn() -> None:
     assert found.effect == pytest.approx((96 - 24) / 120)
 
 
-def test_gaps_are_left_out() -> None:
-    assert wilcoxon([1, NAN, 3], [2, 2, 3]).pairs == 2
-    assert wilcoxon([3, 3], [3, 3]).p == 1
-    assert math.isnan(spearman([1, 1, 1], [1, 2, 3]).rho)
-
-
 def test_prompts_are_drawn_not_roads() -> None:
     """Two prompts that are always alike: drawing them again gives 0, 1/2 or 1, as a coin is thrown twice."""
-    found = bootstrap([[1.0] * 50, [0.0] * 50])
-    assert found.value == 0.5
-    assert found.interval == (0, 1)
+    assert bootstrap([[1.0] * 50, [0.0] * 50]) == (0.5, (0, 1))
     assert bootstrap([[1.0], []]) == (1, (1, 1))
-    assert math.isnan(bootstrap([]).value)
+    assert math.isnan(bootstrap([])[0])
 
 
 def test_the_bootstrap_is_near_that_of_all_resamples() -> None:
@@ -348,6 +316,6 @@ def test_the_bootstrap_is_near_that_of_all_resamples() -> None:
         sum(sum(group) for group in drawn) / sum(len(group) for group in drawn)
         for drawn in itertools.product(groups, repeat=len(groups))
     ]
-    found = bootstrap(groups)
-    assert found.value == pytest.approx(np.mean([value for group in groups for value in group]))
-    assert found.interval == pytest.approx(tuple(np.quantile(means, [0.025, 0.975])), abs=0.02)
+    mean, interval = bootstrap(groups)
+    assert mean == pytest.approx(np.mean([value for group in groups for value in group]))
+    assert interval == pytest.approx(tuple(np.quantile(means, [0.025, 0.975])), abs=0.02)

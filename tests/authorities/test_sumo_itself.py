@@ -43,16 +43,8 @@ def test_sumo_drives_our_road_from_start_to_end(sumo: str, tmp_path: Path, name:
     trip = tmp_path / "trip.xml"
     settings = folders[0] / "road.sumocfg"
     drive = [
-        sumo,
-        "-c",
-        str(settings),
-        "--tripinfo-output",
-        str(trip),
-        "--no-step-log",
-        "true",
-        "--end",
-        "900",
-    ]
+        sumo, "-c", str(settings), "--tripinfo-output", str(trip), "--no-step-log", "true", "--end", "900",
+    ]  # fmt: skip
     done = subprocess.run(drive, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "Error" not in done.stderr + done.stdout

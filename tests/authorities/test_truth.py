@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from outside_judge import SHARED, load_referee
 from roadgpt.check.measures import measure
+from roadgpt.check.truth import Truth, holds
 from roadgpt.design.designers.planner import Planner
 from roadgpt.road import World, build
-from roadgpt.study.plan import read_prompts
-from roadgpt.study.truth import Truth, holds
+from roadgpt_study.plan import read_prompts
 from strategies import designs, sensible_briefs
 
 planner = Planner()

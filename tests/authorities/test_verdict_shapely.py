@@ -12,7 +12,7 @@ from roadgpt.drive import COLUMNS, Columns, Drive
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.road import Design, Limits, Road, Segment, World, build
 from roadgpt.verdict import consult, judge
-from roadgpt.verdict.margin import margins
+from roadgpt.verdict.oracle import margins
 
 
 def bent(radius: float, hand: int) -> Road:

@@ -8,7 +8,7 @@ from fake_chat import FakeChat
 from roadgpt.brief.change import EditRequest, read_request
 from roadgpt.brief.change.chatting import EXAMPLES
 from roadgpt.brief.change.plan import change_plan, read_change_plan
-from roadgpt.chat import BudgetError, ChatSettings, UnparsableError
+from roadgpt.chat import ChatSettings
 from roadgpt.errors import EditError
 
 
@@ -41,7 +41,7 @@ def test_what_is_wrong_goes_back_and_the_next_answer_counts() -> None:
 )
 def test_it_ends_after_its_rounds_with_the_reason(bad: str) -> None:
     chat = FakeChat(bad)
-    with pytest.raises(EditError, match=r"the language model's plan '.*' cannot be used: "):
+    with pytest.raises(EditError, match="the language model's plan cannot be used: "):
         request(chat, rounds=2)
     assert len(chat.questions) == 2
 
@@ -58,12 +58,6 @@ def test_a_surface_is_read_with_the_model_too() -> None:
     assert (both.surface, both.unused) == ("wet", ())
     assert (alone.surface, alone.changes) == ("ice", ())
     assert (denied.surface, denied.unused) == ("", ("wet",))
-
-
-@pytest.mark.parametrize("error", [BudgetError("no more"), UnparsableError("no answer", "Sure!")])
-def test_errors_of_the_model_are_passed_on(error: Exception) -> None:
-    with pytest.raises(type(error)):
-        request(FakeChat(error))
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example[0][:20])

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from roadgpt.brief import Brief, Clause, check, normal
+from roadgpt.brief import Brief, check, normal
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.errors import BriefError
@@ -12,19 +12,8 @@ from roadgpt.errors import BriefError
 SHARE = 0.72
 HERE = Path(__file__).parent
 CASES = [json.loads(line) for line in (HERE / "descriptions.jsonl").read_text("utf-8").splitlines()]
-AMOUNTS = (
-    "count",
-    "degrees",
-    "radius",
-    "length",
-    "incline",
-    "turns",
-    "left",
-    "right",
-    "steepest",
-    "climb",
-    "hills",
-)
+AMOUNTS = ["count", "degrees", "radius", "length", "incline", "turns", "left", "right", "steepest", "climb"]
+AMOUNTS += ["hills"]
 
 
 def spelled_out(said: dict[str, Any]) -> dict[str, Any]:
@@ -64,17 +53,3 @@ def test_most_are_read_as_they_are_meant() -> None:
         if normal(got).model_copy(update={"beside": ()}) != normal(expected):
             missed.append(f"{case['words']}: {plan(got)}")
     assert len(missed) <= (1 - SHARE) * len(sample), "\n".join(missed)
-
-
-def test_there_are_many_cases() -> None:
-    assert len({case["words"] for case in CASES}) >= 150
-    assert all(expected_of(case).words for case in CASES)
-
-
-def test_the_short_form_means_what_it_says() -> None:
-    brief = Brief.model_validate(
-        spelled_out({"words": "", "turns": [3, None], "clauses": [{"kind": "turn"}]})
-    )
-    assert brief.turns is not None
-    assert (brief.turns.lo, brief.turns.hi) == (3, None)
-    assert brief.clauses == (Clause(kind="turn"),)

@@ -1,4 +1,4 @@
-from math import inf, radians
+from math import radians
 
 import numpy as np
 import pytest
@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.brief.element import Element
-from roadgpt.brief.ranges import Range
 
 
 @given(
@@ -23,15 +22,3 @@ def test_curvature_over_the_length_of_a_turn_adds_up_to_its_angle(
     assert np.degrees(np.trapezoid(bend, s)) == pytest.approx(hand * degrees)
     assert Element(straight).length == straight
     assert Element(straight).curvature == 0
-
-
-@pytest.mark.parametrize(
-    ("required", "is_elastic", "is_fixed"),
-    [(None, True, False), (Range(20, inf), True, False), (Range(20, 30), False, True)],
-)
-def test_a_straight_is_elastic_or_of_fixed_length(
-    required: Range | None, is_elastic: bool, is_fixed: bool
-) -> None:
-    straight = Element(25.0, required_length=required)
-    assert (straight.is_elastic, straight.has_fixed_length) == (is_elastic, is_fixed)
-    assert not Element(turn=30.0, radius=20.0).is_elastic

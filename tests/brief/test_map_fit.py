@@ -2,25 +2,15 @@
 
 import pytest
 
-from roadgpt.brief import alternatives, exactly, read
-from roadgpt.brief.readers.model import ModelReader
-from roadgpt.brief.refusal import TooMuchError
+from roadgpt.brief import exactly, read
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.room import world_for
 from roadgpt.errors import BriefError
 from roadgpt.road import World, build
+from tables import rows
 
-LONG = (
-    ("a straight road of 3 km", 3000, True),
-    ("a winding road of 2 km", 2000, False),
-    ("a road of ten kilometres", 10_000, False),
-    ("eine gerade Strasse von 3 km", 3000, True),
-    ("une route sinueuse de 2 km", 2000, False),
-    ("una strada dritta di 3 km", 3000, True),
-    ("un camino recto de 3 kilómetros", 3000, True),
-    ("three miles of winding road", 4828, False),
-)
+LONG = rows(__file__, "long")
 
 
 @pytest.mark.parametrize(("words", "metres", "is_straight"), LONG)
@@ -39,59 +29,21 @@ def test_and_refused_where_it_is_small(words: str, metres: float, is_straight: b
         read(words, map_size=size)
 
 
-def test_more_turns_than_the_network_knows() -> None:
-    brief = read("a road 5 km long with 20 turns", map_size=4000)
-    assert brief.clauses[0].count == exactly(20)
-    assert brief.length == exactly(5000)
-    assert read("40 turns", map_size=1000).clauses[0].count == exactly(40)
-
-
 def test_the_tightest_turn_is_that_of_the_world() -> None:
     with pytest.raises(BriefError, match="too tight"):
         read("a turn with a radius of 8 m")
     assert read("a turn with a radius of 8 m", min_radius=5.0).clauses[0].radius == exactly(8)
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        "from Berlin to Munich",
-        "a figure of eight",
-        "a closed loop with five turns",
-        "ein Rundkurs mit fünf Kurven",
-        "un circuit fermé de six virages",
-        "un circuito cerrado con seis curvas",
-        "un anello chiuso con quattro curve a sinistra",
-    ],
-)
+@pytest.mark.parametrize("words", rows(__file__, "map_holds_refused"))
 def test_what_no_map_holds_is_refused_on_every_map(words: str) -> None:
     with pytest.raises(BriefError):
         read(words, map_size=10_000)
 
 
-@pytest.mark.parametrize(
-    ("words", "turns"),
-    [
-        ("three turns, no closed loop", 3),
-        ("four turns instead of a closed loop", 4),
-        ("five turns on a road closed to traffic", 5),
-        ("kein Rundkurs, drei Kurven", 3),
-    ],
-)
+@pytest.mark.parametrize(("words", "turns"), rows(__file__, "closed_loop_asked"))
 def test_a_closed_loop_that_is_not_asked_for_does_not_matter(words: str, turns: int) -> None:
     assert [clause.count for clause in read(words).clauses] == [exactly(turns)]
-
-
-def test_the_reader_alone_says_what_it_was_asked_for() -> None:
-    with pytest.raises(TooMuchError) as refusal:
-        ModelReader().read("a straight road of 3 km")
-    assert refusal.value.brief.length == exactly(3000)
-
-
-def test_other_readings_of_a_long_road_are_asked_of_the_same_map() -> None:
-    assert alternatives("a winding road of 2 km", map_size=4000)[0].length == exactly(2000)
-    with pytest.raises(BriefError, match="250 m"):
-        alternatives("a winding road of 2 km")
 
 
 @pytest.mark.parametrize("size", [300, 1000, 4000])
@@ -118,8 +70,3 @@ def test_a_road_too_long_for_the_usual_map_is_read_if_the_map_may_grow(
     found = measure(build(draft(brief, wide, seed=2)).sample().points)
     assert found.length == pytest.approx(metres, rel=0.1)
     assert len(found.turns) == turns
-
-
-def test_no_map_grows_for_eight_hundred_turns() -> None:
-    with pytest.raises(BriefError, match="no map holds so many turns"):
-        read("a road with 800 turns", map_size=250, is_map_fixed=False)

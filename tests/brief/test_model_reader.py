@@ -12,27 +12,12 @@ from hypothesis import strategies as st
 
 from roadgpt.brief import ContradictionError, read, reader_of
 from roadgpt.brief.model import Brief, exactly
-from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import WEIGHTS, ModelReader
 from roadgpt.errors import BriefError, PartError
 
 READER = ModelReader()
 MOST_MEGABYTES = 60  # in the wheel, which is compressed
-
-
-@pytest.mark.parametrize(
-    ("words", "line"),
-    [
-        ("three turns", "turn x3"),
-        ("a downhill road with four turns", "turn x4 | down"),
-        ("left, then right", "turn left; turn right"),
-        ("a straight of 80 metres and then a hairpin to the right", "straight len=80; hairpin right"),
-        ("drei Kurven bergauf", "turn x3 | up"),
-    ],
-)
-def test_plain_words_are_read(words: str, line: str) -> None:
-    assert normal(READER.read(words)) == normal(read_plan(line))
 
 
 @pytest.mark.parametrize(
@@ -72,14 +57,6 @@ def test_a_contradiction_is_answered_with_the_plan_that_may_be_meant() -> None:
     assert read(refusal.value.plan, "plan").clauses == refusal.value.brief.clauses
 
 
-def test_numbers_are_those_that_were_said() -> None:
-    brief = READER.read("a left turn with a radius of 37 m, then 143 m straight")
-    assert [(c.radius and c.radius.lo, c.length and c.length.lo) for c in brief.clauses] == [
-        (37, None),
-        (None, 143),
-    ]
-
-
 def test_the_same_words_are_read_the_same_way_twice() -> None:
     words = "a road over two hills with a bend or two"
     assert READER.read(words) == READER.read(words)
@@ -94,29 +71,13 @@ def test_a_vague_wish_has_several_readings() -> None:
     assert len({plan(brief) for brief in readings}) == len(readings)
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        "8 turns: 4 hairpins and 4 gentle turns",
-        "3 left and 2 right turns, 5 turns in all",
-        "sechs Kurven: zwei Spitzkehren und vier sanfte Kurven",
-    ],
-)
-def test_a_sum_and_its_parts_are_all_used(words: str) -> None:
-    assert READER.read(words).unused == ()
-
-
-def test_words_without_meaning_are_told() -> None:
-    assert "purple" in READER.read("two left turns, purple").unused
-
-
 def test_the_weights_are_small_and_come_with_their_notice() -> None:
     files = [path for path in WEIGHTS.iterdir() if path.is_file()]
     assert sum(len(zlib.compress(path.read_bytes(), 1)) for path in files) < MOST_MEGABYTES * 1e6
     assert "Apache-2.0" in (WEIGHTS / "NOTICE").read_text(encoding="utf-8")
     sums = json.loads((WEIGHTS / "sums.json").read_text(encoding="utf-8"))
-    graphs = {f"{part}{name}.onnx" for part in ("encoder", "decoder") for name in ("", "_2", "_routes")}
-    texts = {"pieces.txt", "words.txt", "meanings.txt", "meanings_of_changes.txt"}
+    graphs = {f"{part}{name}.onnx" for part in ("encoder", "decoder") for name in ("", "_routes")}
+    texts = {"pieces.txt", "words.txt"}
     assert {*sums} == {*graphs, *texts, "embedding.bin", "settings.json"}
     for name, digest in sums.items():
         assert sha256((WEIGHTS / name).read_bytes()).hexdigest() == digest
@@ -125,17 +86,17 @@ def test_the_weights_are_small_and_come_with_their_notice() -> None:
 def test_weights_of_ones_own_are_named_with_their_folder(tmp_path: Path) -> None:
     words = "two left turns and a straight of 40 m"
     assert reader_of(f"model:{WEIGHTS}").read(words) == READER.read(words)
-    with pytest.raises(PartError, match=r"no encoder\.onnx in .*roadgpt learn export"):
+    with pytest.raises(PartError, match=r"no encoder\.onnx in .*that training wrote"):
         reader_of(f"model:{tmp_path}")
     with pytest.raises(PartError, match="takes no folder"):
         reader_of(f"plan:{tmp_path}")
 
 
-@pytest.mark.parametrize("name", ["encoder.onnx", "decoder_2.onnx", "embedding.bin"])
+@pytest.mark.parametrize("name", ["encoder.onnx", "decoder_routes.onnx", "embedding.bin"])
 def test_damaged_weights_are_refused_in_a_sentence(tmp_path: Path, name: str) -> None:
     for path in WEIGHTS.iterdir():
         shutil.copy(path, tmp_path)
     whole = (tmp_path / name).read_bytes()
     (tmp_path / name).write_bytes(whole[: len(whole) // 2])
     with pytest.raises(PartError, match=r"coder\w*\.onnx' cannot be loaded: it is damaged"):
-        reader_of(f"model:{tmp_path}").read("three turns")
+        reader_of(f"model:{tmp_path}").read("left at the crossroads" if "routes" in name else "three turns")

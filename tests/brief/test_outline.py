@@ -8,6 +8,7 @@ from roadgpt.brief.model import Brief, Clause, at_least, at_most, between, exact
 from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.ranges import Range
+from tables import rows
 
 
 def of(*clauses: Clause, **wishes: object) -> Outline:
@@ -109,20 +110,6 @@ def test_a_crest_is_a_climb_and_a_fall_and_a_dip_the_reverse() -> None:
     assert (up.feature.grade, down.feature.grade) == (Range(3, 12), Range(-12, -3))
 
 
-def test_straights_that_nobody_could_tell_apart_are_one() -> None:
-    long, short = Clause(kind="straight", length=at_least(50)), Clause(kind="straight", length=at_least(30))
-    (group,) = of(long, short).groups
-    assert group.feature.length == Range(80)
-    assert len(of(long, short.model_copy(update={"slope": "up"})).groups) == 2
-
-
-def test_the_end_of_a_slalom_may_go_either_way() -> None:
-    seen = of(ends=Clause(kind="s_bend", side="left"), starts=Clause(kind="s_bend", side="left"))
-    assert seen.ends is not None
-    assert seen.starts is not None
-    assert (seen.starts.side, seen.ends.side) == ("left", None)
-
-
 def test_bounds_on_angles_stay_turns_that_can_be_seen() -> None:
     most, least = of(
         Clause(kind="turn", degrees=at_most(20)), Clause(kind="turn", degrees=at_least(90))
@@ -131,26 +118,6 @@ def test_bounds_on_angles_stay_turns_that_can_be_seen() -> None:
     assert least.feature.degrees is not None
     assert least.feature.degrees.lo == 90
     assert least.feature.degrees.hi < inf
-
-
-def test_gentle_for_every_turn_leaves_hairpins_their_angle() -> None:
-    seen = of(Clause(kind="hairpin"), sharpness="sharp")
-    assert seen.each_turn.degrees == Range(30)
-    assert seen.each_turn.radius == Range(0, 30)
-
-
-@pytest.mark.parametrize(
-    ("first", "last", "least"),
-    [
-        (Clause(kind="turn", side="left"), Clause(kind="turn", side="right"), 2),
-        (Clause(kind="turn", sharpness="gentle"), Clause(kind="turn", sharpness="sharp"), 2),
-        (Clause(kind="turn", slope="up"), Clause(kind="turn", slope="down"), 2),
-        (Clause(kind="turn", side="left"), Clause(kind="turn", sharpness="sharp"), 1),
-        (Clause(kind="turn", side="left"), Clause(kind="straight"), 1),
-    ],
-)
-def test_two_ends_that_no_turn_can_be_at_once_are_two_turns(first: Clause, last: Clause, least: int) -> None:
-    assert of(starts=first, ends=last).turns.lo == least
 
 
 @pytest.mark.parametrize(
@@ -164,17 +131,7 @@ def test_a_crest_between_a_climb_and_a_fall_is_where_they_meet(plan: str, same: 
     assert outline(read_plan(plan)) == outline(read_plan(same))
 
 
-@pytest.mark.parametrize(
-    "plan",
-    [
-        "straight up; crest len=40; straight down",
-        "straight down; crest; straight up",
-        "turn up; crest; straight down",
-        "straight up; crest; turn down",
-        "straight up; crest",
-        "straight; crest; straight down",
-    ],
-)
+@pytest.mark.parametrize("plan", rows(__file__, "other_crests_two"))
 def test_other_crests_have_two_slopes_of_their_own(plan: str) -> None:
     without = "; ".join(part for part in plan.split("; ") if not part.startswith("crest"))
     assert outline(read_plan(plan)).groups != outline(read_plan(without)).groups

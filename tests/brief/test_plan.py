@@ -4,11 +4,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Amount, Brief, Clause, Kind, Sharpness, Side, Slope, at_least, exactly
-from roadgpt.brief.normal import normal, total
+from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.errors import BriefError
+from tables import rows
 
 numbers = st.integers(0, 400).map(lambda n: n / 2)
 amounts = (
@@ -65,14 +65,6 @@ def test_any_brief_has_a_normal_form_that_is_its_own(brief: Brief) -> None:
     assert normal(form) == form
 
 
-def test_a_count_of_none_beside_turns_has_a_normal_form_and_is_refused_by_name() -> None:
-    brief = read_plan("turn x0; hairpin")
-    assert total(brief.clauses).lo >= 1
-    assert normal(brief).clauses[0].count == exactly(0)
-    with pytest.raises(BriefError, match="a clause cannot ask for 0 turns"):
-        check(brief)
-
-
 @pytest.mark.parametrize(
     ("line", "brief"),
     [
@@ -89,30 +81,6 @@ def test_lines_by_hand(line: str, brief: Brief) -> None:
     assert read_plan(line) == brief
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        "road",
-        "turn left right",
-        "turn x",
-        "turn xx",
-        "turn deg=",
-        "turn deg=..",
-        "turn deg=5..3",
-        "turn 3 4",
-        "turn slope",
-        "| left",
-        "| ends(road)",
-        "| up down",
-        "turn len=1e5",
-        "turn | turns=3 turns=4",
-    ],
-)
-def test_lines_that_are_no_plan_get_a_sentence(line: str) -> None:
-    with pytest.raises(BriefError, match="plan"):
-        read_plan(line)
-
-
 @given(st.text(max_size=60))
 def test_any_text_is_a_brief_or_a_sentence(line: str) -> None:
     try:
@@ -122,17 +90,6 @@ def test_any_text_is_a_brief_or_a_sentence(line: str) -> None:
     assert read_plan(plan(brief)) == brief
 
 
-@pytest.mark.parametrize(
-    ("line", "same"),
-    [
-        ("turn x4 || left_hand", "turn x4 | left_hand"),
-        ("turn x4 | up || left_hand beside(rain)", "turn x4 | up left_hand beside(rain)"),
-    ],
-)
-def test_of_a_single_road_one_line_and_two_ask_the_same(line: str, same: str) -> None:
-    assert read_plan(line) == read_plan(same)
-
-
 def test_a_misspelt_junction_is_answered_with_the_kinds_of_junctions() -> None:
     with pytest.raises(
         BriefError, match=r"no clause 'crosroads'; .*hairpin.* a junction with one of crossroads"
@@ -140,15 +97,7 @@ def test_a_misspelt_junction_is_answered_with_the_kinds_of_junctions() -> None:
         read_plan("crosroads left")
 
 
-@pytest.mark.parametrize(
-    ("line", "kept"),
-    [
-        ("turn gentle; turn x2 sharp | r=18..", "turn gentle; turn x2 sharp | r=18.."),
-        ("hairpin x3 | r=20", "hairpin x3 r=20"),
-        ("slalom x6 | deg=30 r=25", "slalom x6 deg=30 r=25"),
-        ("turn gentle; hairpin | r=20..", "turn gentle; hairpin | r=20.."),
-    ],
-)
+@pytest.mark.parametrize(("line", "kept"), rows(__file__, "figure_every_turn"))
 def test_a_figure_for_every_turn_is_never_lost(line: str, kept: str) -> None:
     assert plan(normal(read_plan(line))) == kept
     assert normal(normal(read_plan(line))) == normal(read_plan(line))

@@ -10,10 +10,7 @@ from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.plan import PlanReader
 from roadgpt.brief.refusal import BEYOND, CLASHING
-from roadgpt.check.measures import measure
-from roadgpt.design import draft
 from roadgpt.errors import BriefError
-from roadgpt.road import World, build
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "plans.md"
 
@@ -33,49 +30,6 @@ def test_a_number_without_a_key_is_the_angle_of_a_turn_and_the_length_of_a_strai
         Clause(kind="crest", length=exactly(60)),
         Clause(kind="hairpin", degrees=exactly(170), radius=Amount(hi=20)),
     )
-
-
-def test_a_plan_becomes_the_road_that_it_describes() -> None:
-    brief = read("turn left 90 r30; straight 40; turn right 60", reader="plan")
-    found = measure(build(draft(brief, World(), seed=3)).sample().points)
-    first, second = found.turns
-    assert (first.side, second.side) == ("left", "right")
-    assert first.degrees == pytest.approx(90, abs=10)
-    assert first.radius == pytest.approx(30, rel=0.15)
-    assert second.degrees == pytest.approx(60, abs=8)
-    (between,) = found.gaps[1]
-    assert between.length == pytest.approx(40, rel=0.15)
-
-
-@pytest.mark.parametrize(
-    ("line", "told"),
-    [
-        ("", "the plan is empty"),
-        ("straigt 40", "no clause 'straigt'"),
-        ("straight 40 r30", "a straight has no radius"),
-        ("crest left", "a crest has no side"),
-        ("turn long", "a turn has no size"),
-        ("turn 90 deg=60", "gives degrees twice"),
-        ("turn 90 60", "gives degrees twice"),
-        ("turn r30 r=20", "gives radius twice"),
-        ("turn 9x", "'9x' is not a number"),
-        ("turn | beside(moon)", "'moon' is none of the things beside a road"),
-        ("turn | beside()", "'' is none of the things beside a road"),
-        ("!contradiction turns sides", "contradicts itself about the number of turns and left and right"),
-        ("!impossible roundabout", "say it in driving order, such as 'a roundabout, second exit'"),
-        ("!impossible turns roundabouts", "a plan has no refusal '!impossible turns roundabouts'"),
-        ("!nonsense turns", "a plan has no refusal"),
-        ("!perhaps", "a plan has no refusal '!perhaps'"),
-        ("!nonsense", "does not describe a road"),
-        ("!impossible speed", "words do not do this: the speed limit is set with --speed-limit"),
-        ("!unclear", "what is wanted is not said"),
-        ("| turns=3 lefts=2 rights=2", "left"),
-    ],
-)
-def test_what_is_no_plan_of_a_road_is_refused_in_one_sentence(line: str, told: str) -> None:
-    with pytest.raises(BriefError, match=told.replace("(", r"\(")) as refusal:
-        PlanReader().read(line)
-    assert "\n" not in str(refusal.value)
 
 
 def test_things_beside_the_road_are_kept_and_told_by_name() -> None:

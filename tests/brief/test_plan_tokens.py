@@ -8,17 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from random_plans import random_plan
-from roadgpt.brief.beside import BESIDE
-from roadgpt.brief.change import parser as language
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
+from roadgpt.brief.readers.model.grammar import END, PlanAutomaton
 from roadgpt.brief.readers.model.slots import slotted
-from roadgpt.brief.readers.model.token_grammar import allowed, in_order, list_tail, one_of, pushed, sequel
-from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of, tokens_of
-from roadgpt.brief.refusal import OF_CAUSES, refused
+from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, plan_of
+from roadgpt.brief.refusal import refused
+from roadgpt_training.tokens import tokens_of
+from tables import rows as table_rows
 
-CHANGES = sorted((Path(__file__).resolve().parents[2] / "data" / "changes").rglob("*.jsonl"))
+CHANGES = sorted((Path(__file__).resolve().parents[2] / "training" / "data" / "changes").rglob("*.jsonl"))
 
 
 def normal(line: str) -> str:
@@ -63,21 +62,7 @@ def test_whatever_the_network_may_write_of_changes_can_be_read(
         assert normal(normal(line)) == normal(line)
 
 
-@pytest.mark.parametrize(
-    ("line", "text", "again"),
-    [
-        ("turn 2: radius x0.7", "turn 2, 30 % tighter", "turn 2: radius x0.7"),
-        ("turn 2: radius x1.1", "widen turn 2 by 10 %", "turn 2: radius x1.1"),
-        ("straight 1: length x0.8", "to 80 % of its length", "straight 1: length x0.8"),
-        ("straight -1: length x1.333", "a third longer", "straight -1: length x1.333"),
-        ("turn 1,3: slope up =5", "turns 1 and 3 uphill at 5 %", "turn 1,3: slope up =5"),
-        (
-            "add turn right deg=60 r=25 at_end",
-            "a right, 60 degrees, 25 m",
-            "add turn right deg=60 r=25 at_end",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("line", "text", "again"), table_rows(__file__, "amounts_changes_copied"))
 def test_amounts_of_changes_are_copied_from_the_text(line: str, text: str, again: str) -> None:
     slots = slotted(text, is_change=True).slots
     tokens = tokens_of(line, slots)
@@ -85,100 +70,14 @@ def test_amounts_of_changes_are_copied_from_the_text(line: str, text: str, again
     assert normal(plan_of(tokens, slots)) == again
 
 
-def test_a_factor_that_the_text_does_not_have_has_no_token() -> None:
-    assert tokens_of("turn 2: radius x0.37", slotted("turn 2 tighter", is_change=True).slots) is None
-
-
-def test_a_change_request_is_told_from_a_description_by_its_mark() -> None:
-    assert slotted("turn 2 sharper", is_change=True).is_change
-    assert not slotted("turn 2 sharper").is_change
-    assert not slotted("[unused13] turn 2 sharper").is_change  # a person typed the mark
-
-
-def test_a_grammar_allows_each_part_once_in_its_order() -> None:
-    stack = (
-        in_order(one_of("a"), sequel(one_of("b"), one_of("c")), one_of("d"), least=1),
-        one_of("end"),
-    )
-    assert allowed(stack) == ["a", "b", "d"]  # nothing can be left out yet
-    stack = pushed(stack, "b")
-    assert allowed(stack) == ["c"]
-    stack = pushed(stack, "c")
-    assert allowed(stack) == ["d", "end"]
-    with pytest.raises(ValueError, match="'a' cannot stand here"):
-        pushed(stack, "a")
-
-
-def test_a_list_of_a_grammar_ends_when_it_is_full() -> None:
-    stack = (list_tail(",", one_of("x"), 2), one_of("end"))
-    for token in (",", "x", ",", "x"):
-        stack = pushed(stack, token)
-    assert allowed(stack) == ["end"]
-
-
-def test_every_name_and_cause_has_a_token() -> None:
-    named = {*BESIDE, *OF_CAUSES["!contradiction"], *OF_CAUSES["!impossible"]}
-    assert named <= {*TOKENS}
-    assert len({*TOKENS}) == len(TOKENS)
-
-
-def test_the_network_has_a_token_for_every_word_of_changes() -> None:
-    words = {
-        *language.NOUNS,
-        *language.KINDS,
-        *language.OF_TARGETS,
-        *language.OF_NEW,
-    }
-    words |= {
-        *language.ENDS,
-        *language.MEASURES,
-        *language.ALONE,
-        *language.DOSES,
-        *language.WAYS,
-    }
-    words |= {f"{word}(" for word in (*language.POSITIONS, "but")}
-    words |= {f"{word}=" for word in language.NUMBERS}
-    assert words - {*TOKENS} == {"reverse", "swap"}  # both are the token "order"
-
-
-@pytest.mark.parametrize(
-    ("line", "tokens"),
-    [
-        ("road: reverse", "road : order"),
-        ("turn 1,-1: swap", "turn 1 - 1 : order"),
-        ("straight all but(straight 1,-1): swap", "straight all but( straight 1 - 1 ) : order"),
-        ("turn 2: angle more; turn 1,3: swap", "turn 2 : angle more ; turn 1 3 : order"),
-        ("turn 2: mirror; road: reverse", "turn 2 : mirror ; road : order"),
-    ],
-)
+@pytest.mark.parametrize(("line", "tokens"), table_rows(__file__, "token_order_reverses"))
 def test_the_token_for_order_reverses_a_road_and_swaps_what_lies_on_it(line: str, tokens: str) -> None:
     found = tokens_of(line, ())
     assert found == tokens.split()
     assert plan_of(found, ()).replace(" ", "") == line.replace(" ", "")
 
 
-def test_a_contradiction_about_the_order_keeps_its_name() -> None:
-    assert plan_of(tokens_of("!contradiction order", ()) or (), ()) == "!contradiction order"
-
-
-def test_a_cause_that_is_written_twice_is_said_once() -> None:
-    assert str(refused("!contradiction turns turns")) == str(refused("!contradiction turns"))
-
-
-@pytest.mark.parametrize(
-    ("line", "text"),
-    [
-        ("map columns=2 rows=3 route=left+right+straight+left", "a grid of 2 by 3 blocks"),
-        ("map columns=2 rows=3; junction x2 lights", "a grid of 2 by 3 blocks, lights at 2 junctions"),
-        (
-            "map columns=2 rows=3 len=120 dead_ends=4 stop route=left; junction none || left_hand",
-            "2 by 3, 120 m, 4",
-        ),
-        ("map crossroads x2 lights; crossroads x3 none", "2 crossroads with lights and 3 without signs"),
-        ("map t_junction blocks=1 dead_ends=1 route=straight+straight", "a loop with one road into it"),
-        ("map t_junction x2; roundabout || len=900", "2 T-junctions and a roundabout, 900 m of streets"),
-    ],
-)
+@pytest.mark.parametrize(("line", "text"), table_rows(__file__, "network_can_write"))
 def test_the_network_can_write_the_signs_and_the_ways_of_a_map(line: str, text: str) -> None:
     said = slotted(text)
     tokens = tokens_of(line, said.slots)

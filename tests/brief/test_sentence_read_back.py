@@ -6,7 +6,7 @@ from roadgpt.brief import normal, sentence
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.errors import BriefError
-from roadgpt.learn.generator import pairs
+from roadgpt_training.generator import pairs
 
 SHARE = 0.9
 NUMBER = 60

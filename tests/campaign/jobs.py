@@ -2,14 +2,17 @@
 
 import atexit
 import os
-import signal
+import re
 import subprocess
 import sys
 import time
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
 from roadgpt import children
+from roadgpt.campaign.executors import Shared, WorkerConfig
+from roadgpt.campaign.executors.processes import Processes
 from roadgpt.errors import UsageError
 
 TESTS = Path(__file__).resolve().parents[1]
@@ -31,8 +34,17 @@ def square(number: int) -> int:
     return number * number
 
 
-def plus(number: int, *values: int) -> int:
-    return number + sum(values)
+def plus(number: int, *values: Shared[int]) -> int:
+    return number + sum(each.value for each in values)
+
+
+def identity(value: Shared[object]) -> tuple[int, int]:
+    """The worker's pid, and where the value lies in its memory."""
+    SEEN.append(value.value)  # so that no other value can take its place
+    return os.getpid(), id(value.value)
+
+
+SEEN: list[object] = []
 
 
 def fails_at_three(number: int) -> int:
@@ -54,6 +66,10 @@ class HeavyError(Exception):
 
 def raises_what_cannot_travel(number: int) -> None:
     raise HeavyError(number, number)
+
+
+def is_large(number: int) -> bytes:
+    return bytes(number) + b"end"
 
 
 def prints(number: int) -> int:
@@ -95,15 +111,6 @@ def sleeps(seconds: float) -> float:
     return seconds
 
 
-def stops_itself(mark: str) -> str:
-    """The first time the process stops and says nothing more; the second time it answers."""
-    if Path(mark).exists():
-        return "second time"
-    Path(mark).touch()
-    os.kill(os.getpid(), signal.SIGSTOP)
-    return "first time"
-
-
 def is_alive(pid: int) -> bool:
     """Is there a process of this number that has not ended?"""
     try:
@@ -113,15 +120,18 @@ def is_alive(pid: int) -> bool:
     return state != "Z"
 
 
-def main() -> None:
-    from roadgpt.campaign.executors import Job, WorkerConfig
-    from roadgpt.campaign.executors.processes import Processes
+def pid_of(doing: "Future[Any]") -> int:
+    """The process that is at work on a job; 0 if there is none."""
+    found = re.search(r"\((\d+)\)", getattr(doing, "worker", ""))
+    return int(found[1]) if found else 0
 
+
+def main() -> None:
     workers = Processes(WorkerConfig(2, nothing, 1000.0, Path(os.devnull)))
-    workers.submit([Job(key, sleeps, 1000.0) for key in range(2)])
-    while len(doing := workers.under_way()) < 2:
+    doing = [workers.submit(sleeps, 1000.0) for _ in range(2)]
+    while not all(pids := [pid_of(each) for each in doing]):
         time.sleep(0.05)
-    print(*(one.worker.split("(")[1].rstrip(")") for one in doing), flush=True)
+    print(*pids, flush=True)
     time.sleep(1000)
 
 

@@ -6,7 +6,9 @@ FOLDER TESTS WORKERS [SECONDS of one test]. It prints a line whenever results we
 
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
+from concurrent.futures import Executor, Future, wait
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +16,12 @@ import numpy as np
 
 from roadgpt import plugins
 from roadgpt.campaign import lifecycle, scheduler
-from roadgpt.campaign.executors import FinishedJob, Job, RunningJob, WorkerConfig
+from roadgpt.campaign.executors import WorkerConfig
 from roadgpt.campaign.model import Cell, CellBudget, Pool, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE, Store
 from roadgpt.campaign.single_test import FinishedTest, Task
-from roadgpt.campaign.surrogate_features import RoadSamples, features_of_samples
+from roadgpt.campaign.surrogate import RoadSamples, features_of_samples
 from roadgpt.road import Design, Road, Segment, World
 
 OUTCOMES = ("PASS", "FAIL", "INVALID", "ERROR", "VALID")
@@ -98,43 +100,61 @@ class Search:
             self.sum = (self.sum * 1.25 + (result.margin or 0.5) + sum(result.features.values())) % 7
 
 
-class Inline:
-    """An executor without workers: jobs end a few at a time, in an order drawn by ``rng``."""
+class InlineJob(Future[Any]):
+    """A job of the executor below."""
+
+    worker, begun = "", 0.0
+
+    def __init__(self, executor: "Inline", number: int, call: Callable[[], Any]) -> None:
+        super().__init__()
+        self.executor, self.number, self.call = executor, number, call
+
+
+class Inline(Executor):
+    """An executor without workers: jobs end a few at a time while somebody waits, in an order drawn by
+    ``rng``."""
 
     rng = np.random.default_rng(0)
 
     def __init__(self, staff: WorkerConfig) -> None:
         self.staff = staff
-        self.values: dict[str, Any] = {}
-        self.jobs: list[Job] = []
+        self.jobs: list[InlineJob] = []
+        self.submitted = 0
 
-    def share(self, name: str, value: Any) -> None:
-        self.values[name] = value
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> InlineJob:
+        self.submitted += 1
+        job = InlineJob(self, self.submitted, partial(fn, *args, **kwargs))
+        self.jobs.append(job)
+        self.begin()
+        return job
 
-    def forget(self, name: str) -> None:
-        del self.values[name]
+    def map(self, fn: Callable[..., Any], *iterables: Any, **_: Any) -> Iterator[Any]:
+        return map(fn, *iterables)
 
-    def submit(self, jobs: Sequence[Job]) -> None:
-        self.jobs.extend(jobs)
+    def begin(self) -> None:
+        """As many jobs run as there are workers."""
+        for job in self.jobs[: self.staff.workers]:
+            job.worker = "me"
 
-    def done(self, seconds: float) -> list[FinishedJob]:
-        ended = []
-        for _ in range(min(len(self.jobs), int(self.rng.integers(1, 4)) if seconds else 0)):
+    def some(self) -> None:
+        """A few jobs end."""
+        for _ in range(min(len(self.jobs), int(self.rng.integers(1, 4)))):
             near = min(len(self.jobs), 3 * self.staff.workers)
-            job = self.jobs.pop(int(self.rng.integers(near)))
-            ended.append(
-                FinishedJob(job.key, job.function(job.item, *(self.values[name] for name in job.needs)))
-            )
-        return ended
+            self.end(self.jobs.pop(int(self.rng.integers(near))))
+        self.begin()
 
-    def under_way(self) -> list[RunningJob]:
-        return [RunningJob(job.key, "me", 0.0) for job in self.jobs[: self.staff.workers]]
+    def end(self, job: InlineJob) -> None:
+        """One of them."""
+        job.set_result(job.call())
 
-    def map(self, function: Any, items: Sequence[Any]) -> list[Any]:
-        return [function(item) for item in items]
 
-    def stop(self) -> None:
-        """Nobody is there."""
+def awaited(jobs: Collection[Future[Any]], *rest: Any) -> None:
+    """In place of ``concurrent.futures.wait``."""
+    first = next(iter(jobs), None)
+    if isinstance(first, InlineJob):
+        first.executor.some()
+    else:
+        wait(jobs, *rest)
 
 
 def plan(tests: int, cells: int = 1, seconds: float = 0.0, **rest: Any) -> Plan:
@@ -156,6 +176,7 @@ def put_on_shelves(patch: Any, seconds: float = 0.0) -> None:
     installed = plugins.find
     parts = {"search": Search, "inline": Inline}
     patch(plugins, "find", lambda shelf, name: parts.get(name) or installed(shelf, name))
+    patch(scheduler, "wait", awaited)
     patch(scheduler, "execute", slowly if seconds else made)
     patch(lifecycle, "WorkerSetup", lambda setups: nothing)
 

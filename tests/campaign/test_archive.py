@@ -1,6 +1,5 @@
 """The map of a search, its choice of what is driven, and its pairs: each beside a slow way to the same."""
 
-import itertools
 import math
 from collections import Counter
 
@@ -11,74 +10,20 @@ from hypothesis import strategies as st
 from ribs.archives import CVTArchive, GridArchive
 
 from roadgpt.brief.element import Element
-from roadgpt.campaign.acquisition import (
+from roadgpt.campaign.archive import (
     ANYWHERE,
     NOVELTY,
+    SAMPLES,
+    Archive,
     Predictions,
     is_far,
     select,
     spread_out,
     stacked,
 )
-from roadgpt.campaign.archive import SAMPLES, Archive
-from roadgpt.campaign.behaviour import bounds_of, cell_of
-from roadgpt.campaign.boundary_pairs import distance, paired
+from roadgpt.campaign.behaviour import bounds_of
+from roadgpt.campaign.boundary_pairs import paired
 from roadgpt.design.variety import PlanShape, apart, shape_of
-
-AXES = ("MAX_CURV", "STD_SA")
-TESTS = st.lists(
-    st.tuples(st.floats(0, 0.08), st.floats(0, 160), st.floats(-2, 0.3), st.booleans()),
-    min_size=1,
-    max_size=40,
-)
-
-
-@settings(max_examples=40)
-@given(TESTS, st.integers(2, 30))
-def test_the_grid_keeps_the_best_of_every_cell(tests: list, cells: int) -> None:
-    archive = Archive(AXES, cells)
-    best: dict[tuple[int, ...], int] = {}
-    seen, failed = Counter(), Counter()
-    for number, (curvature, angle, quality, fails) in enumerate(tests, 1):
-        features = {"MAX_CURV": curvature, "STD_SA": angle}
-        archive.add(number, features, quality, fails)
-        cell = cell_of(features, AXES, cells)
-        # a value on the border may fall to either side of it, by rounding
-        shares = curvature / 0.07 * cells, angle / 150 * cells
-        if any(abs(share - round(share)) < 1e-3 for share in shares):
-            return
-        seen[cell] += 1
-        failed[cell] += fails
-        if cell not in best or quality > tests[best[cell] - 1][2]:
-            best[cell] = number
-    assert sorted(archive.elites()) == sorted(best.values())
-    assert sorted(archive.tests.values()) == sorted(seen.values())
-    assert archive.failures.total() == failed.total()
-    places = np.array([test[:2] for test in tests])
-    same = archive.cells(places)
-    for i, j in itertools.combinations(range(len(tests)), 2):
-        one, other = ({"MAX_CURV": tests[k][0], "STD_SA": tests[k][1]} for k in (i, j))
-        assert (same[i] == same[j]) == (cell_of(one, AXES, cells) == cell_of(other, AXES, cells))
-
-
-def test_niches_are_the_neighbourhoods_of_their_centroids() -> None:
-    archive = Archive((*AXES, "GRADE"), 40, "cvt")
-    centroids = CVTArchive(
-        solution_dim=1,
-        centroids=40,
-        ranges=[bounds_of(axis) for axis in archive.axes],
-        samples=SAMPLES,
-        seed=0,
-    ).centroids
-    low, high = np.array([0.0, 0.0, 0.0]), np.array([0.07, 150.0, 15.0])
-    places = low + np.random.default_rng(3).random((60, 3)) * (high - low)
-    found = archive.cells(places)
-    assert np.array_equal(found, ((centroids - places[:, None]) ** 2).sum(axis=2).argmin(axis=1))
-    for number, place in enumerate(places, 1):
-        archive.add(number, dict(zip(archive.axes, place, strict=True)), -float(number), False)
-    firsts = {int(cell): number for number, cell in reversed([*enumerate(found, 1)])}
-    assert archive.elites() == [firsts[cell] for cell in sorted(firsts)]
-
 
 MAPS = [
     (("MAX_CURV", "STD_SA"), 25, "grid"),
@@ -113,14 +58,6 @@ def test_it_has_the_cells_and_the_elites_of_pyribs(axes: tuple[str, ...], cells:
     kept = theirs.data(["index", "solution"], return_type="dict")
     assert ours.elites() == [int(n) for n in kept["solution"][np.argsort(kept["index"]), 0]]
     assert len(ours.elites()) > min(20, cells - 1)
-
-
-def test_what_has_no_place_is_left_out() -> None:
-    archive = Archive(AXES, 5)
-    archive.add(1, {"MAX_CURV": 0.01}, 0.0, True)
-    archive.add(2, {"MAX_CURV": 0.01, "STD_SA": math.nan}, 0.0, True)
-    assert archive.elites() == []
-    assert not archive.failures
 
 
 def line(bend: float) -> PlanShape:
@@ -176,12 +113,6 @@ def test_every_fourth_road_may_be_unlikely_to_fail_if_its_cell_is_new() -> None:
     assert select("failures", 4, Predictions(margins, (cells,)), [Counter()]) == [0, 1, 2, 6]
 
 
-def test_the_hardest_is_the_smallest_margin_that_is_likely() -> None:
-    margins = np.array([[0.5, 0.1, 1.0], [0.5, 0.3, 0.0]])
-    expected = Predictions(margins, (np.zeros((2, 3), int),))
-    assert select("hardest", 3, expected, [Counter()]) == [2, 1, 0]
-
-
 @given(st.integers(0, 20), st.floats(0.1, 4))
 def test_roads_like_known_ones_are_told_from_others(seed: int, least: float) -> None:
     rng = np.random.default_rng(seed)
@@ -229,10 +160,3 @@ def test_pairs_are_the_nearest_relatives(roads: list) -> None:
         assert pair.distance == pytest.approx(nearest)
         rest = {(a, b) for a, b in rest if a != pair.kept and b != pair.lost}
     assert not rest
-
-
-def test_roads_of_another_row_are_no_relatives() -> None:
-    one = (Element(straight=20.0), Element(turn=40.0, radius=20.0, transition=4.0))
-    assert distance(one, one[:1]) == math.inf
-    assert distance(one, (one[0], one[1]._replace(turn=-40.0))) == math.inf
-    assert distance(one, one) == 0.0

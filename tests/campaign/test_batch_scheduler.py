@@ -3,6 +3,9 @@
 import csv
 import sqlite3
 from collections import Counter
+from collections.abc import Collection
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,12 +16,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from campaign import quick
 from campaign.quick import Inline, Search, a_design, plan, put_on_shelves
-from roadgpt.campaign import batch_scheduler
+from roadgpt.campaign import scheduler
+from roadgpt.campaign.executors import WorkerConfig
 from roadgpt.campaign.lifecycle import begin, work
-from roadgpt.campaign.model import CellBudget, Proposal
+from roadgpt.campaign.model import Cell, CellBudget, Proposal
 from roadgpt.campaign.record import Record
-from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.campaign.single_test import FinishedTest, Task
+from roadgpt.errors import GivenUpError, RoadGPTError, UsageError
 
 
 @pytest.fixture(autouse=True)
@@ -64,6 +70,69 @@ def test_the_table_does_not_depend_on_who_worked_and_who_was_interrupted(
         assert len(list(csv.reader(expected.decode().splitlines()))) > 33 * cells
 
 
+def losing(monkeypatch: pytest.MonkeyPatch, lost: Collection[tuple[str, int]]) -> None:
+    """From now on the simulator fails in these tests."""
+
+    def made(task: Task, cell: Cell, *earlier: Any) -> FinishedTest:
+        ended, name = quick.made(task, cell, *earlier), (cell.name, task.number)
+        if name not in lost:
+            return ended
+        said = f"no answer in {cell.name}/{task.number}"
+        return replace(ended, result=replace(ended.result, outcome="ERROR", description=said), is_lost=True)
+
+    monkeypatch.setattr(scheduler, "execute", made)
+
+
+def test_three_lost_in_a_row_by_number_end_it_and_its_table_does_not_depend_on_the_workers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Test 2 stays as it is; 11 to 13 and all that is lost after them is as if it had not been begun."""
+    tables = set()
+    for workers, order in ((1, 1), (3, 2), (9, 3), (9, 4)):
+        folder = tmp_path / f"{workers}-{order}"
+        losing(monkeypatch, [("c01", number) for number in (2, 4, 11, 12, 13, 14, 17)])
+        with pytest.raises(GivenUpError, match=r"3 times in a row .*no answer in c01/1[34]\); fix it"):
+            worked(folder, workers, order, tests=33)
+        with Record.opened(folder) as record:
+            lost = [result.number for result in record.results() if "no answer" in result.description]
+        assert lost == [2, 4]
+        losing(monkeypatch, ())
+        tables.add(worked(folder, workers, order, tests=33))
+    assert len(tables) == 1
+
+
+def test_lost_tests_that_only_end_one_after_another_are_not_in_a_row(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    losing(monkeypatch, [("c01", number) for number in range(34) if number % 3])
+    worked(tmp_path / "c", workers=9, order=5, tests=33)
+    losing(monkeypatch, [(cell, number) for cell in ("c01", "c03") for number in (1, 2)])
+    worked(tmp_path / "d", workers=9, order=6, tests=2, cells=3)
+
+
+def test_the_first_test_of_a_cell_follows_the_last_of_the_cell_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    losing(monkeypatch, [("c01", 2), ("c02", 1), ("c02", 2)])
+    with pytest.raises(GivenUpError, match="no answer in c02/2"):
+        worked(tmp_path / "c", workers=9, order=7, tests=2, cells=3)
+
+
+class Threads(ThreadPoolExecutor):
+    """An executor of Python's own, which knows nothing of campaigns."""
+
+    def __init__(self, staff: WorkerConfig) -> None:
+        super().__init__(staff.workers)
+
+
+def test_any_executor_of_python_will_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    expected = worked(tmp_path / "inline", tests=33)
+    with monkeypatch.context() as patch:
+        patch.setattr(quick, "Inline", Threads)
+        put_on_shelves(patch.setattr)
+        assert worked(tmp_path / "threads", workers=3, tests=33) == expected
+
+
 def test_a_generator_is_told_all_batches_but_the_last_two_in_order(tmp_path: Path) -> None:
     worked(tmp_path / "c", workers=4, order=3, tests=32)
     asked = [step for step in Search.told if step[0] == "ask"]
@@ -80,8 +149,8 @@ def test_a_generator_is_told_all_batches_but_the_last_two_in_order(tmp_path: Pat
 def test_a_draft_knows_the_designs_of_batches_that_were_told_and_forgets_the_oldest(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(batch_scheduler, "REMEMBERED", 20)
-    monkeypatch.setattr(batch_scheduler, "STRIDE", 10)
+    monkeypatch.setattr(scheduler, "REMEMBERED", 20)
+    monkeypatch.setattr(scheduler, "STRIDE", 10)
     worked(tmp_path / "c", tests=80)
     with Record.opened(tmp_path / "c") as record:
         results = [*record.results("c01")]

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from campaign.quick import Inline, made, plan, put_on_shelves
 from roadgpt.campaign import scheduler
-from roadgpt.campaign.budget_allocator import BudgetAllocator
 from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.plan import Plan
@@ -88,42 +87,3 @@ def test_a_limit_is_never_passed_and_hardly_anything_is_left(
         assert status_of(folder).tokens >= TOKENS * needed
         with Record.opened(folder) as record:
             assert record.plan() == free  # the next sitting has the limits of this one
-
-
-@given(
-    st.lists(st.tuples(st.booleans(), st.integers(1, 20), st.floats(0, 1)), max_size=40),
-    st.floats(0.01, 10),
-)
-def test_shares_never_sum_to_more_than_is_left(steps: list[tuple[bool, int, float]], limit: float) -> None:
-    allocator = BudgetAllocator(ChatSettings(max_cost=limit), 0, 0.0)
-    out: dict[int, float] = {}
-    paid_so_far, key = 0.0, 0
-    for ends, tests, share in steps:
-        if ends and out:
-            number, given_to_it = out.popitem()
-            paid_so_far += share * given_to_it
-            allocator.back(number, Spent(calls=1, cost=share * given_to_it))
-        elif not ends:
-            each = allocator.share(2 * tests)
-            for _ in range(tests):
-                key += 1
-                allocator.give(key, each)
-                out[key] = each.cost or 0.0
-        assert paid_so_far + sum(out.values()) <= limit * (1 + 1e-9)
-
-
-def test_without_limits_nobody_is_held_back() -> None:
-    allocator = BudgetAllocator(ChatSettings(), 5, 1.0)
-    assert allocator.share(7) == allocator.share() == (None, None)
-    assert BudgetAllocator(None, 0, 0.0).share() == (None, None)
-
-
-@pytest.mark.parametrize("tests", [1, 4, 50])
-def test_a_first_round_leaves_half_for_the_next(tests: int) -> None:
-    allocator = BudgetAllocator(ChatSettings(model="m", max_cost=2.0, max_tokens=8_000), 0, 0.0)
-    each = allocator.share(2 * tests)
-    for number in range(tests):
-        allocator.give(number, each)
-    tokens, cost = allocator.share()
-    assert cost == pytest.approx(1.0)
-    assert tokens == pytest.approx(4_000, abs=tests)

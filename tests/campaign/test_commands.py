@@ -12,21 +12,20 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
 from campaign.jobs import TESTS, is_alive
-from campaign.quick import Inline, plan, put_on_shelves
+from campaign.quick import Inline, InlineJob, plan, put_on_shelves
+from roadgpt.campaign.folder_record import read_trace
 from roadgpt.campaign.lifecycle import begin, work
-from roadgpt.campaign.record import Record
-from roadgpt.campaign.rerun import read_trace
 from roadgpt.campaign.status import status_of
 from roadgpt.cli import app
 from roadgpt.run import read_run
 from roadgpt.run.atomic import alone_in
+from rows import rows
 
 QUICK = [sys.executable, str(TESTS / "campaign" / "quick.py")]
 SOON = 120.0  # s: far more than anything here takes
@@ -119,7 +118,7 @@ def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(tmp_path: Path) -> None
     assert "ignored" not in errors + said
     gone(workers)
     assert 0 < done_in(tmp_path / "c") < 5000
-    assert "interrupted" in roadgpt("status", tmp_path / "c").stdout
+    assert "interrupted" in roadgpt("show", "--progress", tmp_path / "c").stdout
 
 
 def done_in(folder: Path) -> int:
@@ -133,39 +132,23 @@ def done_in(folder: Path) -> int:
 
 
 def test_status_and_top_tell_of_a_finished_campaign(driven: Path) -> None:
-    said = roadgpt("status", driven)
+    said = roadgpt("show", "--progress", driven)
     assert "finished, 3 of 3 tests" in said.output
     assert "turn x2 (lane_centring, words, seed 7)" in said.output
-    told = json.loads(roadgpt("status", driven, "--json").stdout)
+    told = json.loads(roadgpt("show", "--progress", driven, "--json").stdout)
     assert told["is_finished"]
     assert sum(told["outcomes"].values()) == told["done"] == told["total"] == 3
     assert told["cells"][0]["name"] == "c01"
-    shown = roadgpt("top", driven, "--once").output
+    shown = roadgpt("show", "--watch", driven, "--once").output
     assert "3 of 3 tests" in " ".join(shown.split())  # the line of a long folder name is wrapped
     assert f"roadgpt show {driven}/c01/1" in roadgpt("show", driven).output
     again = roadgpt("resume", driven, "--json")
     assert json.loads(again.output)["done"] == 3
 
 
-def test_status_tells_of_a_campaign_at_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    put_on_shelves(monkeypatch.setattr)
-    monkeypatch.setattr("roadgpt.campaign.record.Store.group_seconds", 0.0)
-    begin(plan(60), tmp_path)
-    steps = work(tmp_path, 2, "inline")
-    next(steps)
-    status = status_of(tmp_path)
-    assert status.is_running
-    assert not status.is_finished
-    assert status.total == 60
-    assert [(lease.cell, lease.worker) for lease in status.under_way] == [("c01", "me"), ("c01", "me")]
-    assert "at work" in roadgpt("status", tmp_path).output
-    assert "test" in roadgpt("top", tmp_path, "--once").output
-    steps.close()
-
-
 def test_a_test_is_driven_again_to_the_same_bytes(driven: Path, tmp_path: Path) -> None:
     for name in ("a", "b"):
-        done = roadgpt("redrive", driven, "2", "c01/3", "--no-plot", "--out", tmp_path / name)
+        done = roadgpt("drive", "--again", driven, "2", "c01/3", "--no-plot", "--out", tmp_path / name)
         assert done.exit_code == 0, done.output
         assert "was" not in done.stderr  # in the campaign, and now is something else
     one, other = (tmp_path / name / "c01" / "runs" / "0002" for name in ("a", "b"))
@@ -197,26 +180,7 @@ def test_the_python_in_the_guide_runs(driven: Path, capsys: pytest.CaptureFixtur
     assert "kept its lane" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        (["redrive", "DIR", "99"], "holds no result of test 99 of c01"),
-        (["redrive", "DIR", "x"], "there is no cell 'x' in"),
-        (["redrive", "DIR", "c7/1"], "there is no cell 'c7'"),
-        (["status", "DIR/nowhere"], "there is no campaign in"),
-        (["top", "DIR/nowhere"], "there is no campaign in"),
-        (["resume", "DIR/nowhere"], "there is no campaign in"),
-        (["campaign", "a road"], "there is no limit; give a number of tests"),
-        (["campaign", "a road", "-n", "3", "--generator", "nobody"], "no generator called 'nobody'"),
-        (
-            ["campaign", "a road", "-n", "3", "--executor", "nobody", "--out", "DIR/new"],
-            "no executor called 'nobody'",
-        ),
-        (["campaign", "a road", "-n", "3", "--out", "DIR"], "holds another campaign"),
-        (["campaign", "plan.toml", "--seed", "3"], "--seed cannot be given with plan.toml"),
-        (["campaign", "a road", "-n", "3", "--max-cost", "1"], "is for language models"),
-    ],
-)
+@pytest.mark.parametrize(("words", "sentence"), rows(__file__, "impossible_commands"))
 def test_what_cannot_be_is_told_in_a_sentence(driven: Path, words: list[str], sentence: str) -> None:
     done = roadgpt(*(word.replace("DIR", str(driven)) for word in words))
     assert sentence in " ".join(done.output.split())
@@ -242,8 +206,8 @@ def test_a_folder_of_roadgpt_run_is_resumed_as_a_campaign_is(tmp_path: Path) -> 
     (broken / "campaign.json").write_text(json.dumps(card | {"is_finished": False}))
     (broken / "runs/0003").rename(broken / "aside")
     with alone_in(broken):
-        assert roadgpt("status", broken).stdout.startswith(f"{broken}: at work, 1 of 3 tests")
-    assert roadgpt("status", broken).stdout.startswith(f"{broken}: interrupted, 1 of 3 tests")
+        assert roadgpt("show", "--progress", broken).stdout.startswith(f"{broken}: at work, 1 of 3 tests")
+    assert roadgpt("show", "--progress", broken).stdout.startswith(f"{broken}: interrupted, 1 of 3 tests")
     (broken / "aside").rename(broken / "runs/0003")
     done = roadgpt("resume", broken, "--json", "--junit", tmp_path / "tests.xml")
     assert done.exit_code == 0, done.output
@@ -254,7 +218,7 @@ def test_a_folder_of_roadgpt_run_is_resumed_as_a_campaign_is(tmp_path: Path) -> 
     assert {*first} == {*second}
     assert {"runs/0002/road.xodr", "runs/0002/birds_eye.svg"} <= {*second}
     assert [name for name in first if first[name] != second[name]] == []
-    status = roadgpt("status", broken).stdout
+    status = roadgpt("show", "--progress", broken).stdout
     assert status.startswith(f"{broken}: finished, 3 of 3 tests")
     assert "continue with" not in status
 
@@ -274,63 +238,23 @@ def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:
     assert done.exit_code == 2
 
 
-def test_a_campaign_that_cannot_be_leaves_no_folder(tmp_path: Path) -> None:
-    (tmp_path / "plan.toml").write_text(
-        "prompts = 'two hairpins'\ntests = 3\ngoal = 'failures'\n[settings]\naxes = ['NONE']\n"
-    )
-    done = roadgpt("campaign", tmp_path / "plan.toml", "--out", tmp_path / "c")
-    assert done.exit_code == 2
-    assert "there is no feature 'NONE'" in done.output
-    assert not (tmp_path / "c").exists()
-
-
-def test_a_driver_that_kills_its_worker_costs_its_tests(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Three workers ended over a test: it is in error, with a sentence, and the campaign goes on."""
-    from roadgpt.campaign.executors import FinishedJob
-
-    put_on_shelves(monkeypatch.setattr)
-    begin(plan(20), tmp_path)
-    real = Inline.done
-
-    def lossy(self: Inline, seconds: float) -> list[FinishedJob]:
-        return [
-            FinishedJob(done.key, lost="given up: 3 workers ended over it") if done.key % 7 == 0 else done
-            for done in real(self, seconds)
-        ]
-
-    monkeypatch.setattr(Inline, "done", lossy)
-    [*work(tmp_path, 1, "inline")]
-    with Record.opened(tmp_path) as record:
-        lost = [
-            result
-            for result in record.results()
-            if result.outcome == "ERROR" and "workers" in result.description
-        ]
-        assert len(lost) == 2
-        assert record.query("SELECT count(*) FROM tests WHERE outcome IS NULL") == [(0,)]
-
-
 def test_an_error_that_concerns_all_stops_the_campaign_and_keeps_the_rest(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from roadgpt.campaign.executors import FinishedJob
     from roadgpt.errors import ChatError
 
     put_on_shelves(monkeypatch.setattr)
     begin(plan(20), tmp_path)
-    real = Inline.done
+    real = Inline.end
 
-    def failing(self: Inline, seconds: float) -> list[FinishedJob]:
-        made: Any = real(self, seconds)
-        return [
-            FinishedJob(done.key, error=ChatError("nobody answers")) if done.key == 8 else done
-            for done in made
-        ]
+    def failing(self: Inline, job: InlineJob) -> None:
+        if job.number == 8:
+            job.set_exception(ChatError("nobody answers"))
+        else:
+            real(self, job)
 
     with monkeypatch.context() as patch:
-        patch.setattr(Inline, "done", failing)
+        patch.setattr(Inline, "end", failing)
         with pytest.raises(ChatError, match="nobody answers"):
             [*work(tmp_path, 1, "inline")]
     kept = status_of(tmp_path).done

@@ -7,16 +7,14 @@ from hypothesis import strategies as st
 from sklearn.linear_model import LogisticRegression
 from sklearn.metrics import roc_auc_score
 
-from roadgpt.campaign.departure import (
-    FIRST,
+from roadgpt.campaign.surrogate import (
     RIDGE,
-    SPACING,
     DepartureModel,
+    RoadSamples,
     RoadStations,
     logistic,
     stations_of,
 )
-from roadgpt.campaign.surrogate_features import RoadSamples
 from roadgpt.road import World
 
 WORLD = World()
@@ -71,15 +69,6 @@ def test_predictions_lie_between_what_is_possible(length: int, bends: list[float
     alone = model.predict([road])
     assert alone.chance[0] == pytest.approx(found.chance[0])
     assert alone.steering[0] == pytest.approx(found.steering[0])
-
-
-def test_stations_stand_on_the_road_and_a_short_road_has_one() -> None:
-    long, short = (stations_of(samples(length, []), WORLD) for length in (200, 12))
-    assert long.s[0] == FIRST
-    assert np.allclose(np.diff(long.s), SPACING, atol=1.0)
-    assert long.s[-1] <= 200
-    assert list(short.s) == [12.0]
-    assert np.all(long.signs[:, -1] == 1)
 
 
 def test_the_regression_is_that_of_scikit_learn() -> None:

@@ -14,8 +14,7 @@ from scipy.stats import binomtest
 from campaign.quick import features_of_road
 from roadgpt.campaign.faults import minimise as minimising
 from roadgpt.campaign.faults import stability
-from roadgpt.campaign.faults.change import smallest_change
-from roadgpt.campaign.faults.distinct import (
+from roadgpt.campaign.faults.failures import (
     BEND,
     GRADE,
     SHIFT,
@@ -26,22 +25,21 @@ from roadgpt.campaign.faults.distinct import (
     typical,
 )
 from roadgpt.campaign.faults.fault import WAYS
-from roadgpt.campaign.faults.minimise import simplest
+from roadgpt.campaign.faults.minimise import simplest, smallest_change
 from roadgpt.campaign.faults.reason import lane_curvature, manner_of, reason_of
 from roadgpt.campaign.faults.stability import (
     Disturbance,
     LateDriver,
     Repeated,
     Stability,
-    disturbance_of,
     drive_disturbed,
     repeated,
 )
-from roadgpt.campaign.surrogate_features import NAMES
+from roadgpt.campaign.surrogate import NAMES
 from roadgpt.check import inspect
 from roadgpt.cli.app import app
 from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View
-from roadgpt.errors import DriverError, PartError, UsageError
+from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import ORACLES, CrossSection, Design, Limits, Road, Segment, Site, World, build
 from roadgpt.run import Request, Run, Setup, prove, write_run
 from roadgpt.verdict import Verdict, judge
@@ -236,16 +234,6 @@ def test_the_interval_is_scipys_exact_one(n: int, data: st.DataObject) -> None:
     assert ("every time" in made.sentence) == (k == n)
 
 
-def test_disturbances_are_small_seeded_and_all_different() -> None:
-    drawn = [disturbance_of(3, number) for number in range(1, 400)]
-    assert drawn == [disturbance_of(3, number) for number in range(1, 400)]
-    assert len(set(drawn)) == 399
-    assert disturbance_of(4, 1) != disturbance_of(3, 1)
-    offsets = np.array([each.offset for each in drawn])
-    assert offsets.std() == pytest.approx(0.10, rel=0.15)
-    assert all(0.85 <= each.friction <= 1.15 and 0 <= each.delay <= 0.06 for each in drawn)
-
-
 class Notes:
     """Writes down what it is shown."""
 
@@ -314,18 +302,6 @@ def test_a_driver_that_breaks_down_has_failed(monkeypatch: pytest.MonkeyPatch) -
     found = repeated(failed(build(design(straight(60), bend(-80, 20))), 72.0, t=1.5), 3)
     assert (found.failed, found.is_stable) == (3, True)
     assert all(math.isnan(drive.margin) for drive in found.drives)
-
-
-@pytest.mark.parametrize("error", [UsageError("there is no own.py"), PartError("there is no simulator")])
-def test_a_driver_that_cannot_be_loaded_has_not_failed(
-    error: UsageError, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def refuses(run: Run, disturbance: Disturbance) -> Verdict:
-        raise error
-
-    monkeypatch.setattr(stability, "drive_disturbed", refuses)
-    with pytest.raises(UsageError, match="there is no"):
-        repeated(failed(build(design(straight(60), bend(-80, 20))), 72.0, t=1.5), 3)
 
 
 def _proved_by(
@@ -454,17 +430,6 @@ def test_the_most_typical_failure_is_nearest_to_all_others(bends: list[float]) -
     assert sorted(order) == [*range(len(bends))]
     squares = [sum((one - other) ** 2 for other in bends) / BEND**2 for one in bends]
     assert squares[order[0]] == pytest.approx(min(squares), abs=1e-8)
-
-
-@pytest.mark.parametrize("other", ["driver", "world", "same"])
-def test_a_fault_belongs_to_a_driver_and_a_world(tmp_path: Path, other: str) -> None:
-    """Cells of one driver in one world share their faults."""
-    from roadgpt.campaign.faults.failures import system_of
-    from roadgpt.run import Setup
-
-    drivers = {"driver": Setup(driver="pure_pursuit"), "world": Setup(), "same": Setup(reader="plan")}
-    world = World(site=Site(friction=0.9)) if other == "world" else WORLD
-    assert (system_of(WORLD, Setup()) == system_of(world, drivers[other])) is (other == "same")
 
 
 def test_the_command_looks_into_failures_once(

@@ -17,13 +17,12 @@ from roadgpt.brief.model import Brief
 from roadgpt.campaign import Cell, CellBudget, Goal, Proposal, Result
 from roadgpt.campaign.behaviour import behaviour_of, cell_of
 from roadgpt.campaign.boundary_pairs import distance, pairs_of
-from roadgpt.campaign.search import SearchSettings
 from roadgpt.design import draft
 from roadgpt.design.elements import elements_of
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Site, World, build
 from roadgpt.run import Request, Setup
-from roadgpt.run.features import features_of
+from roadgpt.run.execution import features_of
 
 WORLD = World(site=Site(map_size=200))
 SMALL = {"batch": 5}
@@ -211,15 +210,6 @@ def test_other_axes_and_niches_can_be_asked_for() -> None:
     assert all(axis in result.features for axis in axes for result in results)
 
 
-def test_a_second_map_counts_beside_the_usual_axes_only() -> None:
-    own = ("LENGTH", "GRADE")
-    assert SearchSettings().maps == (("MAX_CURV", "STD_SA"), ("MAX_CURV", "DIR_COV"))
-    assert SearchSettings(axes=own).maps == (own,)
-    assert SearchSettings(axes=own, also=("RADIUS",)).maps == (own, ("RADIUS",))
-    assert SearchSettings(also=()).maps == (("MAX_CURV", "STD_SA"),)
-    assert SearchSettings(axes=own, also=own).maps == (own,)
-
-
 def test_tests_without_words_are_searched_too() -> None:
     for name in SEARCHES:
         _, asked = searched(cell_for(name, "", batch=3), 3)
@@ -234,20 +224,6 @@ def test_results_that_came_to_nothing_do_no_harm() -> None:
     generator.tell(lost)
     assert len(generator.ask(2, 11, 5, Here())) == 5
     assert len(generator.ask(3, 16, 2, Here())) == 2
-
-
-def test_being_told_is_quick() -> None:
-    """Under a millisecond each, as a campaign of millions needs it; here, by the processor's clock."""
-    import time
-
-    results = known("quality_diversity", UPHILL, "failures", 5)[0][:5]
-    many = [Result(n, 0, r.proposal, r.outcome, "", r.design, r.length, r.margin, features=r.features)
-            for n, r in zip(range(1, 301), results * 60, strict=False)]  # fmt: skip
-    for name in SEARCHES:
-        generator = plugins.find("generators", name)(cell_for(name))
-        begun = time.process_time()
-        generator.tell(many)
-        assert time.process_time() - begun < 3e-3 * len(many)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from campaign.quick import a_design
+from page_words import words_of
 from roadgpt.campaign.csv_tables import write_tables
 from roadgpt.campaign.faults.failures import failures_of
 from roadgpt.campaign.model import Cell, CellBudget, Proposal, Result
@@ -96,7 +97,7 @@ def test_the_screen_says_it(folder: Path) -> None:
 
 def test_the_report_and_junit_say_it(folder: Path, tmp_path: Path) -> None:
     roadgpt("report", folder, "--junit", tmp_path / "j.xml")
-    text = (folder / "report.md").read_text(encoding="utf-8")
+    text = words_of(folder)
     assert "On 2 of them the driver had handed over: they are not its failures." in text
     assert "driver lane_centring, oracle half" in text
     cases = [*ET.parse(tmp_path / "j.xml").iter("testcase")]

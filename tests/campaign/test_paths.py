@@ -6,12 +6,13 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from campaign.quick import put_on_shelves
-from roadgpt.campaign.plan_file import read_plan
+from roadgpt import plugins
+from roadgpt.campaign.folder_record import run_again
+from roadgpt.campaign.plan import read_plan
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.rerun import run_again
+from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
-from roadgpt.drive.loading import absolute_spec, load_driver
+from roadgpt.drive.loading import load_driver
 from roadgpt.drive.permission import permit
 from roadgpt.errors import UsageError
 
@@ -64,7 +65,10 @@ def test_a_campaign_with_a_relative_driver_is_resumed_from_anywhere(
     assert json.loads(begun.stdout)["done"] == 0
     monkeypatch.chdir(there.parent / "elsewhere")
     monkeypatch.setattr("roadgpt.campaign.lifecycle.WorkerSetup", _Nobody)
-    put_on_shelves(lambda where, name, value: name == "find" and monkeypatch.setattr(where, name, value))
+    find = plugins.find
+    monkeypatch.setattr(
+        plugins, "find", lambda shelf, name: InProcess if name == "inline" else find(shelf, name)
+    )
     done = CliRunner().invoke(app, ["resume", str(there / "c"), "--executor", "inline", "--json"])
     assert done.exit_code == 0, done.output
     with Record.opened(there / "c") as record:
@@ -78,17 +82,3 @@ class _Nobody:
     """Prepares nobody."""
 
     def __init__(self, setups: object) -> None: ...
-
-
-@pytest.mark.parametrize(
-    ("spec", "wanted"),
-    [
-        ("beamng_like", "beamng_like"),
-        ("mine.py:Mine", "/a/b/mine.py:Mine"),
-        ("mine.py", "/a/b/mine.py"),
-        ("/c/mine.py:Mine", "/c/mine.py:Mine"),
-        ("no.such:thing", "no.such:thing"),
-    ],
-)
-def test_a_driver_on_the_shelf_stays_a_name(spec: str, wanted: str) -> None:
-    assert absolute_spec(spec, Path("/a/b")) == wanted

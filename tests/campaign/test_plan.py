@@ -8,44 +8,14 @@ import pytest
 from campaign.test_store import BRIEFS
 from roadgpt.brief.plan import read_plan as read_plan_of_road
 from roadgpt.campaign.model import CellBudget
-from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.plan_file import PlanTable, WorldTable, read_plan
+from roadgpt.campaign.plan import Plan, PlanTable, WorldTable, read_plan
 from roadgpt.errors import PartError, UsageError
+from rows import rows
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.mark.parametrize(
-    ("text", "sentence"),
-    [
-        ("tets = 5", "'tets' is not a key of a campaign; did you mean 'tests'?"),
-        ("[world]\nfrction = 1", "'world.frction' is not a key of a campaign; did you mean 'friction'?"),
-        ("[world]\nsholder = 1", "'world.sholder' is not a key of a campaign; did you mean 'shoulder'?"),
-        ("[chat]\nmodl = 'x'", "'chat.modl' is not a key of a campaign; did you mean 'model'?"),
-        ("qqq = 1", "'qqq' is not a key of a campaign; keys are prompts, designers"),
-        ("tests = 0", "tests: 0 is not possible; give 1 or more"),
-        ("tests = 'many'", "tests: 'many' is not possible; give a whole number"),
-        ("tests = 1.5", "tests: 1.5 is not possible; give a whole number"),
-        ("tests = true", "tests: True is not possible; give a whole number"),
-        ("[world]\nlanes = '9+2+13'", "world.lanes: '9+2+13' is not possible; give 1 to 4 lanes along"),
-        ("[world]\nbank = 50", "world.bank: 50 is not possible; give 'none', 'auto' or a percentage"),
-        ("seconds = 0", "seconds: 0 is not possible; give more than 0"),
-        (
-            "goal = 'fail'",
-            "goal: 'fail' is not possible; give 'failures', 'coverage', 'hardest' or 'boundary'",
-        ),
-        ("prompts = []", "prompts: [] is not possible; give at least one"),
-        ("prompts = ['a', 3]", "prompts.2: 3 is not possible; give a text in quotes"),
-        ("drivers = ['']", "drivers.1: '' is not possible; give a text that is not empty"),
-        ("seeds = [1, -2]", "seeds.2: -2 is not possible; give 0 or more"),
-        ("world = 3", "world: 3 is not possible; give a table"),
-        ("[world]\nfriction = 9", "world.friction: 9 is not possible; give 2 or less"),
-        ("[chat]\ntemperature = 9", "chat.temperature: 9 is not possible; give 2 or less"),
-        ("drive = 'no'", "drive: 'no' is not possible; give true or false"),
-        ("prompts = ", "is not TOML"),
-        (f"reader = 3 # {'x' * 50}", "reader: 3 is not possible"),
-    ],
-)
+@pytest.mark.parametrize(("text", "sentence"), rows(__file__, "mistakes_in_plans"))
 def test_a_mistake_is_told_with_its_key_and_what_to_do(tmp_path: Path, text: str, sentence: str) -> None:
     path = tmp_path / "plan.toml"
     path.write_text(text)
@@ -139,13 +109,6 @@ def test_parts_that_are_not_installed_are_told(shelf: str) -> None:
     plan = Plan(prompts=("two hairpins",), budget=CellBudget(tests=3)).model_copy(update={shelf: ("nobody",)})
     with pytest.raises(PartError, match=f"no {shelf[:-1]} called 'nobody'"):
         plan.check()
-
-
-@pytest.mark.parametrize("key", ["shoulder", "verge"])
-def test_the_shoulder_is_given_by_its_present_or_its_earlier_name(tmp_path: Path, key: str) -> None:
-    path = tmp_path / "plan.toml"
-    path.write_text(f"prompts = ['a straight']\ntests = 1\n[world]\n{key} = 2\n")
-    assert read_plan(path).plan.world.section.shoulder == 2
 
 
 @pytest.mark.parametrize(("given", "used"), [("", "2+2"), ("[world]\nlanes = '1+1'", "1+1")])

@@ -5,20 +5,23 @@ import signal
 import subprocess
 import sys
 import time
-from collections import Counter
 from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError, Executor, Future, as_completed, wait
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from campaign import jobs
-from campaign.jobs import TESTS, is_alive
-from roadgpt.campaign.executors import FinishedJob, Job, WorkerConfig
+from campaign.jobs import TESTS, is_alive, pid_of
+from roadgpt import children
+from roadgpt.campaign.executors import LostWorkerError, Shared, WorkerConfig
 from roadgpt.campaign.executors import processes as shelf
 from roadgpt.campaign.executors.processes import Processes
 from roadgpt.errors import RoadGPTError, UsageError
 
 SOON = 60.0  # s: far more than anything here takes
+unix = pytest.mark.skipif(os.name == "nt", reason="kills as Unix does")
 
 
 @pytest.fixture
@@ -26,16 +29,15 @@ def two(tmp_path: Path) -> Iterator[Processes]:
     """Two workers whose jobs may take two seconds."""
     made = Processes(WorkerConfig(2, jobs.nothing, 2.0, tmp_path / "log"))
     yield made
-    made.stop()
+    made.shutdown(cancel_futures=True)
 
 
-def ended(workers: Processes, count: int) -> list[FinishedJob]:
-    """What becomes of so many jobs."""
-    found: list[FinishedJob] = []
-    until = time.monotonic() + SOON
-    while len(found) < count and time.monotonic() < until:
-        found += workers.done(0.5)
-    return found
+@pytest.fixture
+def patient(tmp_path: Path) -> Iterator[Processes]:
+    """Two workers whose jobs may take long."""
+    made = Processes(WorkerConfig(2, jobs.nothing, SOON, tmp_path / "log"))
+    yield made
+    made.shutdown(cancel_futures=True)
 
 
 def pid_in(file: Path) -> int:
@@ -46,113 +48,159 @@ def pid_in(file: Path) -> int:
     return int(file.read_text())
 
 
+def gone(*pids: int, seconds: float = 5.0) -> None:
+    """Waits until processes have ended: killing is quick, and not at once."""
+    until = time.monotonic() + seconds
+    while any(map(is_alive, pids)):
+        assert time.monotonic() < until
+        time.sleep(0.05)
+
+
 def test_results_come_in_order_with_their_values_and_errors_are_raised_again(two: Processes) -> None:
-    assert two.map(jobs.square, range(100)) == [number * number for number in range(100)]
-    assert two.map(jobs.square, []) == []
+    assert isinstance(two, Executor)
+    assert [*two.map(jobs.square, range(100))] == [number * number for number in range(100)]
+    assert [*two.map(jobs.square, [])] == []
     with pytest.raises(ValueError, match="no number 3"):
-        two.map(jobs.fails_at_three, range(5))
-    two.share("hundred", 100)
-    two.share("thousand", 1000)
-    two.submit([Job(key, jobs.plus, key, ("hundred", "thousand")) for key in range(40)])
-    assert {done.key: done.value for done in ended(two, 40)} == {key: key + 1100 for key in range(40)}
-    two.forget("hundred")
-    two.share("hundred", 7)  # another value of the same name, once nobody has the old one
-    two.submit([Job(key, jobs.plus, key, ("thousand",)) for key in range(4)])
-    assert {done.value for done in ended(two, 4)} == {1000, 1001, 1002, 1003}
+        [*two.map(jobs.fails_at_three, range(5))]
+    assert two.submit(int, "11", base=2).result(SOON) == 3
+    assert [each.result() for each in as_completed([two.submit(jobs.square, 7)], SOON)] == [49]
+
+
+def test_a_shared_value_is_made_once_in_each_worker(two: Processes) -> None:
+    hundred, thousand = Shared(100), Shared(1000)
+    done = [two.submit(jobs.plus, key, hundred, thousand) for key in range(40)]
+    assert [each.result(SOON) for each in done] == [key + 1100 for key in range(40)]
+    held = Shared([1, 2])
+    places = {two.submit(jobs.identity, held).result(SOON) for _ in range(20)}
+    assert len({pid for pid, _ in places}) == len(places)
+    with pytest.raises((AttributeError, TypeError)):
+        two.submit(jobs.plus, 1, Shared(lambda: 1)).result(SOON)
 
 
 def test_what_fails_costs_its_own_job(two: Processes) -> None:
     kinds = [jobs.fails_at_three, jobs.square, jobs.unanswerable, jobs.raises_what_cannot_travel, jobs.prints]
-    two.submit([Job(key, function, 3) for key, function in enumerate(kinds)])
-    found = {done.key: done for done in ended(two, 5)}
-    assert isinstance(found[0].error, ValueError)
-    assert found[1].value == 9
-    assert found[2].error is not None
-    assert "cannot travel" in str(found[3].error)
-    assert found[4].value == 3  # what a driver prints does not get between us
+    fails, nine, unanswerable, heavy, prints = (two.submit(function, 3) for function in kinds)
+    assert isinstance(fails.exception(SOON), ValueError)
+    assert nine.result(SOON) == 9
+    assert unanswerable.exception(SOON) is not None
+    assert "cannot travel" in str(heavy.exception(SOON))
+    assert prints.result(SOON) == 3  # what a driver prints does not get between us
     with pytest.raises((AttributeError, TypeError, ValueError)):
-        two.submit([Job(9, lambda item: item, 1)])
-    assert two.map(jobs.square, [5]) == [25]
+        two.submit(lambda item: item, 1).result(SOON)
+    assert two.submit(jobs.square, 5).result(SOON) == 25
 
 
-@pytest.mark.skipif(os.name == "nt", reason="kills as Unix does")
+def test_large_questions_and_answers_come_through(patient: Processes) -> None:
+    answers = [patient.submit(jobs.is_large, 30_000_000) for _ in range(4)]
+    assert [len(each.result(SOON)) for each in answers] == [30_000_003] * 4
+    assert patient.submit(len, bytes(30_000_000)).result(SOON) == 30_000_000
+
+
+@unix
 def test_a_job_that_kills_or_hangs_is_given_up_after_three_workers_and_others_are_done(
     two: Processes, tmp_path: Path
 ) -> None:
     """What the hanging workers have started ends with each of them."""
-    two.submit(
-        [
-            Job(1, jobs.dies, 7),
-            Job(2, jobs.starts_a_program_and_works, str(tmp_path / "pid")),
-            *(Job(key, jobs.square, key) for key in range(3, 30)),
-        ]
-    )
+    dies = two.submit(jobs.dies, 7)
+    hangs = two.submit(jobs.starts_a_program_and_works, str(tmp_path / "pid"))
+    others = [two.submit(jobs.square, key) for key in range(3, 30)]
     first = pid_in(tmp_path / "pid")
-    found = {done.key: done for done in ended(two, 29)}
-    assert found[1].lost == "given up: 3 workers ended over it (the last one ended with status 7)"
-    assert found[2].lost == "given up: 3 workers ended over it (the last one took longer than 2 s)"
-    assert {key: found[key].value for key in range(3, 30)} == {key: key * key for key in range(3, 30)}
+    with pytest.raises(LostWorkerError) as error:
+        dies.result(SOON)
+    assert str(error.value) == "given up: 3 workers ended over it (the last one ended with status 7)"
+    with pytest.raises(LostWorkerError) as error:
+        hangs.result(SOON)
+    assert str(error.value) == "given up: 3 workers ended over it (the last one took longer than 2 s)"
+    assert [each.result(SOON) for each in others] == [key * key for key in range(3, 30)]
     last = pid_in(tmp_path / "pid")
     assert first != last
-    until = time.monotonic() + 5  # killing is quick, and not at once
-    while is_alive(last) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not is_alive(first)
-    assert not is_alive(last)
+    gone(first, last)
     with pytest.raises(RoadGPTError, match="3 workers ended over it"):
-        two.map(jobs.dies, [1])
+        [*two.map(jobs.dies, [1])]
 
 
-def test_every_job_ends_once_while_workers_are_killed(tmp_path: Path) -> None:
-    workers = Processes(WorkerConfig(2, jobs.nothing, SOON, tmp_path / "log"))
-    try:
-        workers.submit([Job(key, jobs.sleeps, 0.02) for key in range(120)])
-        found: list[FinishedJob] = []
-        for _ in range(5):
-            found += workers.done(5.0)
-            for doing in workers.under_way()[:1]:
-                os.kill(int(doing.worker.split("(")[1].rstrip(")")), signal.SIGKILL)
-            time.sleep(0.15)
-        found += ended(workers, 120 - len(found))
-        assert Counter(done.key for done in found) == Counter(range(120))
-        assert not any(done.lost or done.error for done in found)
-    finally:
-        workers.stop()
-
-
-def test_a_worker_without_a_sign_of_life_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shelf, "SILENCE", 2.0)
-    workers = Processes(WorkerConfig(1, jobs.nothing, SOON, tmp_path / "log"))
-    try:
-        workers.submit([Job(1, jobs.stops_itself, str(tmp_path / "was_here"))])
-        (done,) = ended(workers, 1)
-        assert done.value == "second time"
-    finally:
-        workers.stop()
+@unix
+def test_every_job_ends_once_while_workers_are_killed(patient: Processes) -> None:
+    """Also those that have nothing to do, which is nobody's fault."""
+    begun: list[Future[float]] = []
+    for _ in range(6):
+        begun += [patient.submit(jobs.sleeps, 0.02) for _ in range(20)]
+        time.sleep(0.3)
+        for doing in begun:
+            if pid := pid_of(doing):
+                os.kill(pid, signal.SIGKILL)
+                break
+    assert [each.result(SOON) for each in begun] == [0.02] * 120
+    for _ in range(4):
+        for worker in [*patient._workers]:
+            assert isinstance(worker, shelf.Process)
+            worker._process.kill()
+        assert patient.submit(jobs.square, 3).result(SOON) == 9
 
 
 def test_a_map_goes_before_jobs_that_wait(two: Processes) -> None:
-    two.map(jobs.square, [1, 2])  # both are ready
-    two.submit([Job(key, jobs.sleeps, 0.1) for key in range(40)])
-    assert two.map(jobs.square, range(8)) == [number * number for number in range(8)]
-    assert len(two.done(0.0)) < 30
+    [*two.map(jobs.square, [1, 2])]  # both are ready
+    waiting = [two.submit(jobs.sleeps, 0.1) for _ in range(40)]
+    assert [*two.map(jobs.square, range(8))] == [number * number for number in range(8)]
+    assert sum(each.done() for each in waiting) < 30
 
 
 def test_workers_that_cannot_begin_are_told(tmp_path: Path) -> None:
     workers = Processes(WorkerConfig(1, jobs.refuses, SOON, tmp_path / "log"))
-    workers.submit([Job(1, jobs.square, 1)])
     with pytest.raises(UsageError, match="there is no driver of that name"):
-        ended(workers, 1)
-    workers.stop()
+        workers.submit(jobs.square, 1).result(SOON)
+    with pytest.raises(UsageError, match="there is no driver of that name"):
+        workers.submit(jobs.square, 1)
+    workers.shutdown()
     workers = Processes(WorkerConfig(1, jobs.leaves, SOON, tmp_path / "log"))
     with pytest.raises(
         RoadGPTError, match=r"workers end before they begin \(the last one ended with status 5\).*log"
     ):
-        workers.map(jobs.square, [1])
-    workers.stop()
+        [*workers.map(jobs.square, [1])]
+    workers.shutdown()
 
 
-@pytest.mark.skipif(os.name == "nt", reason="kills as Unix does")
+def test_workers_that_the_system_cannot_start_are_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(*_: object, **__: object) -> Any:
+        raise BlockingIOError(11, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(children, "python", refused)
+    workers = Processes(WorkerConfig(2, jobs.nothing, SOON, tmp_path / "log"))
+    with pytest.raises(
+        RoadGPTError,
+        match=r"worker \d cannot be started \(Resource temporarily unavailable\); ask for fewer with -j",
+    ):
+        workers.submit(jobs.square, 1).result(SOON)
+    workers.shutdown()
+
+
+def test_a_shutdown_waits_for_what_was_asked_or_ends_it_at_once(tmp_path: Path) -> None:
+    staff = WorkerConfig(2, jobs.nothing, SOON, tmp_path / "log")
+    with Processes(staff) as workers:
+        done = [workers.submit(jobs.sleeps, 0.01) for _ in range(20)]
+    assert all(each.done() for each in done)
+    assert not workers._workers
+    with pytest.raises(RuntimeError):
+        workers.submit(jobs.square, 1)
+    for is_begun in (False, True):
+        workers = Processes(staff)
+        if is_begun:
+            [*workers.map(jobs.square, [1, 2])]
+        left = [workers.submit(jobs.sleeps, 1000.0) for _ in range(4)]
+        assert left[3].cancel()
+        time.sleep(0.2)
+        begun = time.monotonic()
+        workers.shutdown(cancel_futures=True)
+        assert time.monotonic() - begun < 8
+        assert not wait(left, 0).not_done
+        for each in left:
+            with pytest.raises(CancelledError):
+                each.result()
+
+
+@unix
 def test_workers_end_when_their_parent_was_killed() -> None:
     parent = subprocess.Popen(
         [sys.executable, str(TESTS / "campaign" / "jobs.py")], stdout=subprocess.PIPE, text=True, cwd=TESTS
@@ -164,23 +212,20 @@ def test_workers_end_when_their_parent_was_killed() -> None:
     parent.kill()
     parent.wait()
     parent.stdout.close()
-    until = time.monotonic() + SOON
-    while any(is_alive(pid) for pid in pids) and time.monotonic() < until:
-        time.sleep(0.1)
-    assert not any(is_alive(pid) for pid in pids)
+    gone(*pids, seconds=SOON)
 
 
-@pytest.mark.skipif(os.name == "nt", reason="kills as Unix does")
+@unix
 @pytest.mark.parametrize("job", [jobs.leaves_its_programs, jobs.starts_a_program_and_works])
-def test_what_a_worker_has_started_ends_with_it(tmp_path: Path, job: Callable[[str], object]) -> None:
-    workers = Processes(WorkerConfig(2, jobs.nothing, SOON, tmp_path / "log"))
-    workers.submit([Job(1, job, str(tmp_path / "pid"))])
+def test_what_a_worker_has_started_ends_with_it(
+    tmp_path: Path, patient: Processes, job: Callable[[str], object]
+) -> None:
+    done = patient.submit(job, str(tmp_path / "pid"))
     pid = pid_in(tmp_path / "pid")
     if job is jobs.leaves_its_programs:
-        assert len(ended(workers, 1)) == 1
+        assert done.result(SOON) == pid
     assert is_alive(pid)
     begun = time.monotonic()
-    workers.stop()
+    patient.shutdown(cancel_futures=True)
     assert time.monotonic() - begun < 8
-    time.sleep(0.2)  # killing is quick, and not at once
-    assert not is_alive(pid)
+    gone(pid, seconds=0.5)

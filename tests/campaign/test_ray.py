@@ -1,6 +1,5 @@
 """A real Ray cluster of two nodes, one of which is killed in the middle: nothing is lost, nothing doubled."""
 
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,7 @@ import pytest
 
 from campaign import jobs, quick
 from campaign.jobs import TESTS
-from roadgpt.campaign.executors import FinishedJob, Job, WorkerConfig
+from roadgpt.campaign.executors import LostWorkerError, Shared, WorkerConfig
 from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.errors import RoadGPTError, UsageError
 
@@ -42,43 +41,34 @@ def hands(cluster: Any, tmp_path: Path) -> Iterator[Any]:
 
     made = Ray(WorkerConfig(2, jobs.nothing, 3.0, tmp_path / "log", cluster.address))
     yield made
-    made.stop()
+    made.shutdown(cancel_futures=True)
     assert not ray.is_initialized()
-
-
-def ended(workers: Any, count: int) -> list[FinishedJob]:
-    """What becomes of so many jobs."""
-    found: list[FinishedJob] = []
-    until = time.monotonic() + SOON
-    while len(found) < count and time.monotonic() < until:
-        found += workers.done(0.5)
-    return found
 
 
 def test_results_values_and_errors_come_back_and_who_kills_is_found(
     hands: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("roadgpt.campaign.workers.job_queue.MOST_DEATHS", 2)  # each takes seconds
+    monkeypatch.setattr("roadgpt.campaign.workers.MOST_DEATHS", 2)  # each takes seconds
     from ray._common.usage.usage_lib import usage_stats_enabled
 
     assert not usage_stats_enabled()  # Ray's own word that it reports to nobody
-    assert hands.map(jobs.square, range(50)) == [number * number for number in range(50)]
+    assert [*hands.map(jobs.square, range(50))] == [number * number for number in range(50)]
     with pytest.raises(ValueError, match="no number 3"):
-        hands.map(jobs.fails_at_three, range(5))
-    hands.share("hundred", 100)
-    hands.submit([Job(key, jobs.plus, key, ("hundred",)) for key in range(40)])
-    assert {done.key: done.value for done in ended(hands, 40)} == {key: key + 100 for key in range(40)}
-    hands.forget("hundred")
-    hands.share("seven", 7)
-    odd = {1: jobs.fails_at_three, 2: jobs.unanswerable, 3: jobs.raises_what_cannot_travel, 4: jobs.dies}
-    rest = [Job(key, jobs.plus, 3, ("seven",)) for key in range(5, 40)]
-    hands.submit([*(Job(key, function, 3) for key, function in odd.items()), *rest])
-    found = {done.key: done for done in ended(hands, 39)}
-    assert isinstance(found[1].error, ValueError)
-    assert found[2].error is not None
-    assert "cannot travel" in str(found[3].error)
-    assert found[4].lost.startswith("given up: 2 workers ended over it")
-    assert {found[job.key].value for job in rest} == {10}  # those in company of who kills are done
+        [*hands.map(jobs.fails_at_three, range(5))]
+    hundred, seven = Shared(100), Shared(7)
+    done = [hands.submit(jobs.plus, key, hundred) for key in range(40)]
+    assert [each.result(SOON) for each in done] == [key + 100 for key in range(40)]
+    odd = [jobs.fails_at_three, jobs.unanswerable, jobs.raises_what_cannot_travel, jobs.dies]
+    fails, unanswerable, heavy, dies = (hands.submit(function, 3) for function in odd)
+    hangs = hands.submit(jobs.sleeps, 300)
+    rest = [hands.submit(jobs.plus, 3, seven) for _ in range(35)]
+    assert isinstance(fails.exception(SOON), ValueError)
+    assert unanswerable.exception(SOON) is not None
+    assert "cannot travel" in str(heavy.exception(SOON))
+    for lost, how in ((dies, "ended: "), (hangs, "took longer than 3 s")):
+        assert isinstance(lost.exception(SOON), LostWorkerError)
+        assert str(lost.exception()).startswith(f"given up: 2 workers ended over it (the last one {how}")
+    assert {each.result(SOON) for each in rest} == {10}
 
 
 def test_a_node_is_killed_in_the_middle_and_the_table_is_that_of_one_process(
@@ -109,10 +99,9 @@ def test_what_prevents_the_work_is_said_in_one_sentence(cluster: Any, tmp_path: 
 
     workers = Ray(WorkerConfig(1, jobs.refuses, 3.0, tmp_path / "log", cluster.address))
     try:
-        workers.submit([Job(1, jobs.square, 1)])
         with pytest.raises(UsageError, match="there is no driver of that name"):
-            ended(workers, 1)
+            workers.submit(jobs.square, 1).result(SOON)
     finally:
-        workers.stop()
+        workers.shutdown(cancel_futures=True)
     with pytest.raises(RoadGPTError, match=r"no Ray cluster answers at 127\.0\.0\.1:1 .*ray start --head"):
         Ray(WorkerConfig(1, jobs.nothing, 3.0, tmp_path / "log", "127.0.0.1:1"))

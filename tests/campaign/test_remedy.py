@@ -13,9 +13,7 @@ from hypothesis import strategies as st
 from scipy.integrate import cumulative_trapezoid
 
 from roadgpt.campaign.faults import remedy
-from roadgpt.campaign.faults.alignment import Alignment
-from roadgpt.campaign.faults.remedy import REMEDIES, remedies_of
-from roadgpt.campaign.faults.told_apart import TriedGroup, faults_by_remedy
+from roadgpt.campaign.faults.remedy import REMEDIES, Alignment, TriedGroup, faults_by_remedy, remedies_of
 from roadgpt.errors import GivenUpError
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.run import Request, Run, Setup
@@ -274,11 +272,3 @@ def test_what_no_change_sets_apart_belongs_to_no_fault() -> None:
     mixed = [TriedGroup(9, (wide,)), TriedGroup(9, (both,)), TriedGroup(4, (near,))]
     assert faults_by_remedy(mixed) == [WIDER, WIDER, None]
     assert faults_by_remedy([TriedGroup(9, (wide, wide, none))]) == [None], "too few disappear"
-
-
-def test_a_group_joins_if_nearly_all_of_its_tested_failures_disappear() -> None:
-    none = dict.fromkeys(NAMES, False)
-    wide = none | {WIDER: True}
-    large = TriedGroup(90, (wide, wide))
-    assert faults_by_remedy([large, TriedGroup(9, (wide, wide, none))]) == [WIDER, None]
-    assert faults_by_remedy([large, TriedGroup(9, (wide, wide, wide, none))]) == [WIDER, WIDER]

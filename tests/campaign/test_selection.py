@@ -9,13 +9,14 @@ import pytest
 from click.testing import CliRunner, Result
 
 from roadgpt.campaign.faults.fault import faults_in
+from roadgpt.campaign.folder_record import run_again
 from roadgpt.campaign.model import NumberedTest
-from roadgpt.campaign.rerun import run_again
 from roadgpt.campaign.selection import chosen, selection_of
-from roadgpt.campaign.workers.in_process import InProcess
+from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
 from roadgpt.road import read_opendrive
 from roadgpt.run import read_run
+from rows import rows
 
 
 def roadgpt(*words: object) -> Result:
@@ -93,22 +94,7 @@ def test_what_names_no_test_is_for_others_to_read(text: str) -> None:
     assert selection_of(text) is None
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("two/c20/1", "there is no cell 'c20' in two; its cells are c02, c01"),
-        ("two/c3", "there is no cell 'c3' in two"),
-        ("two/1", "two has several cells; say of which one test 1 is, as two/c01/1"),
-        ("one/c01/99", "one holds no result of test 99 of c01; its tests are 1 to 3"),
-        ("one/0", "its tests are 1 to 3"),
-        ("runs/7", "there is no run 7 in runs; its runs are 1 to 3"),
-        ("oone/c01/2", "cannot read oone/c01/2: there is nothing of that name; did you mean one/c01/2?"),
-        ("rus", "cannot read rus: there is nothing of that name; did you mean runs?"),
-        ("one", "one holds 3 roads; name one, as one/c01/1, or say --worst, --faults or --failures"),
-        ("runs", "runs holds 3 roads; name one, as runs/1, or say --worst, --faults or --failures"),
-        ("two/c02", "two/c02 holds 4 roads; name one, as two/c02/1, or say"),
-    ],
-)
+@pytest.mark.parametrize(("text", "said"), rows(__file__, "wrong_names"))
 @pytest.mark.parametrize("command", ["view", "film", "view --format png"])
 def test_a_wrong_name_is_told_in_one_sentence(command: str, text: str, said: str) -> None:
     done = roadgpt(*command.split(), text)
@@ -167,7 +153,7 @@ def test_a_page_a_film_pictures_and_a_summary_of_what_is_named() -> None:
     worst = names("two", "worst")[0]
     assert lines("view", "two", "--worst") == [f"two-{worst.replace('/', '-000')}-view.html"]
     assert lines("view", "one/1", "runs/1", "--out", "both.html") == ["both.html"]
-    drawn = lines("plot", "two", "--worst")
+    drawn = lines("view", "--format", "png", "two", "--worst")
     assert f"plots/two-{worst.replace('/', '-000')}/birds_eye.png" in drawn
     told = lines("show", f"two/{worst}")
     assert told[0].startswith("FAIL: ")
@@ -179,33 +165,7 @@ def test_a_page_a_film_pictures_and_a_summary_of_what_is_named() -> None:
     assert [line.split()[0] for line in cell[3:]] == [f"two/c02/{number}" for number in (1, 2, 3, 4)]
 
 
-def test_films_of_several_go_into_a_folder(monkeypatch: pytest.MonkeyPatch) -> None:
-    made: list[Path] = []
-    monkeypatch.setattr("roadgpt.report.film.write", lambda runs, out, *_: made.append(out))
-    lines("film", "two", "--failures", "--out", "films")
-    assert made == [
-        Path("films", f"two-{name.replace('/', '-000')}-chase.mp4") for name in names("two", "failures")
-    ]
-    assert Path("films").is_dir()
-    done = roadgpt("film", "two", "--failures", "--out", "one.mp4")
-    assert "this makes several films; name a folder for them" in done.stderr
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["view", "two", "--failures"], "a page shows one road or two side by side; these are"),
-        (["view", "two", "--failures", "--worst"], "--failures and --worst contradict each other"),
-        (
-            ["view", "one/2", "--worst"],
-            "--worst selects roads of a campaign or a folder of runs; one/2 is neither",
-        ),
-        (["show", "runs/runs/0001", "--worst"], "runs/runs/0001 is neither"),
-        (["redrive", "one"], "say which tests of one: their numbers"),
-        (["redrive", "runs", "9"], "there is no run 9 in runs; its runs are 1 to 3"),
-        (["redrive", "out", "1"], "there is no campaign in out, and there are no runs"),
-    ],
-)
+@pytest.mark.parametrize(("words", "said"), rows(__file__, "wrong_choices"))
 def test_what_cannot_be_meant_is_told(words: list[str], said: str) -> None:
     done = roadgpt(*words)
     assert done.exit_code == 2
@@ -224,24 +184,13 @@ def test_where_nothing_failed_that_is_said() -> None:
 
 
 def test_tests_are_driven_again_by_any_of_their_names() -> None:
-    told = lines("redrive", "two", "c02/1", "two/c01/2", "--no-plot", "--out", "again")
+    told = lines("drive", "--again", "two", "c02/1", "two/c01/2", "--no-plot", "--out", "again")
     assert [line.split()[1] for line in told] == ["c02/1", "c01/2"]
-    assert [line.split()[1] for line in lines("redrive", "two/c02/1", "--no-plot", "--out", "again")] == [
-        "c02/1"
-    ]
-    worst = lines("redrive", "two", "--worst", "--no-plot", "--out", "again")
+    assert [
+        line.split()[1] for line in lines("drive", "--again", "two/c02/1", "--no-plot", "--out", "again")
+    ] == ["c02/1"]
+    worst = lines("drive", "--again", "two", "--worst", "--no-plot", "--out", "again")
     assert [line.split()[1] for line in worst] == names("two", "worst")
-
-
-def test_a_run_is_driven_again_as_a_test_of_a_campaign_is() -> None:
-    done = roadgpt("redrive", "runs", "2", "runs/3", "--no-plot", "--out", "again")
-    assert done.exit_code == 0, done.output
-    assert [line.split()[1] for line in done.stdout.splitlines()] == ["2", "3"]
-    assert " before (" not in done.stderr
-    for number in ("0002", "0003"):
-        for name in ("road.json", "design.json", "drive.npz", "verdict.json"):
-            first, second = (Path(home, "runs", number, name).read_bytes() for home in ("runs", "again"))
-            assert first == second, name
 
 
 def test_a_test_of_a_campaign_is_changed() -> None:

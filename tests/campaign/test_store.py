@@ -3,9 +3,7 @@
 import json
 import math
 import sqlite3
-import sys
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -17,18 +15,13 @@ from hypothesis import strategies as st
 
 from campaign.quick import a_design, plan
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.csv_tables import write_tables
 from roadgpt.campaign.model import Proposal, Result
 from roadgpt.campaign.record import STORE, Record, Store
 from roadgpt.campaign.single_test import FinishedTest
-from roadgpt.campaign.status import status_of
 from roadgpt.campaign.traces import STEPS, drive_of, read_traces, trace_of, write_traces
 from roadgpt.chat import Spent, Usage
-from roadgpt.cli.campaigns import outside_lines
-from roadgpt.design import draft
-from roadgpt.drive import COLUMNS, Box, Columns, Drive, simulate
+from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import RoadGPTError, UsageError
-from roadgpt.road import World, build
 
 BRIEFS = {"hairpin x2": Brief(words="hairpin x2")}
 numbers = st.floats(allow_nan=False, allow_infinity=True, width=64)
@@ -103,17 +96,6 @@ def test_a_batch_is_there_whole_or_not_at_all(tmp_path: Path) -> None:
             store.cell("c9")
 
 
-def test_who_was_at_which_test_is_forgotten_by_the_next_sitting(tmp_path: Path) -> None:
-    with a_store(tmp_path) as store:
-        store.begin_session(1)
-        store.add_batch("c01", 0, 1, [Proposal(None, 1, "draft")] * 3)
-        store.keep([], None, [("c01", 2, "worker 1", 1e12)], {})
-        assert store.query("SELECT cell, number, worker FROM leases") == [("c01", 2, "worker 1")]
-    with Store.opened(tmp_path) as store:  # the process was killed, and another one goes on
-        store.begin_session(1)
-        assert not store.query("SELECT * FROM leases")
-
-
 def test_numbers_that_are_none_are_left_out(tmp_path: Path) -> None:
     made = Proposal(None, 1, "draft")
     broken = Result(
@@ -150,38 +132,6 @@ def test_what_is_no_store_is_told(tmp_path: Path) -> None:
         Store.opened(tmp_path)
 
 
-def test_a_store_of_an_older_version_is_read_and_gone_on_with(tmp_path: Path) -> None:
-    made = Proposal(None, 1, "draft")
-    done = [Result(n, 0, made, "PASS", "kept", margin=0.5, max_oob=0.62, beyond=1.13) for n in (1, 2)]
-    with a_store(tmp_path) as store:
-        store.begin_session(1)
-        store.add_batch("c01", 0, 1, [made] * 2)
-        store.keep([("c01", FinishedTest(done[0]))], None, [], {})
-        store.end_session()
-    with sqlite3.connect(tmp_path / STORE) as db:  # as it was before this column
-        db.execute("ALTER TABLE tests DROP COLUMN beyond")
-    db.close()
-    with Record.opened(tmp_path) as record:
-        assert record.missing == ("beyond",)
-        assert record.result("c01", 1) == replace(done[0], beyond=None)
-        write_tables(record, tmp_path)
-    lines = (tmp_path / "results.csv").read_text().splitlines()
-    assert dict(zip(lines[0].split(","), lines[1].split(","), strict=True))["beyond_m"] == ""
-    status = status_of(tmp_path)
-    assert (status.cells[0].mostly_outside, status.cells[0].max_oob, status.cells[0].beyond) == (
-        1,
-        0.62,
-        None,
-    )
-    (line,) = outside_lines(status)
-    assert "1 mostly outside" in line
-    assert "an unknown distance (an older version wrote this store) beyond the marking" in line
-    with Store.opened(tmp_path) as store:
-        store.begin_session(1)
-        store.keep([("c01", FinishedTest(done[1]))], None, [], {})
-        assert [one.beyond for one in store.results("c01")] == [None, 1.13]
-
-
 def a_drive(steps: int, rng: np.random.Generator) -> Drive:
     columns = {name: np.cumsum(rng.normal(size=steps)) for name in COLUMNS} | {
         "time": np.arange(steps) * 0.02
@@ -215,13 +165,6 @@ def test_the_same_drives_give_the_same_bytes(tmp_path: Path) -> None:
     assert one == other
 
 
-def test_a_drive_takes_little_room(tmp_path: Path) -> None:
-    """A real drive, which is smoother than noise, beside the Parquet files of earlier versions."""
-    drive = simulate(build(draft(Brief(), World(), seed=3)), World(), "beamng_like", 1)
-    name = write_traces(tmp_path, 1, [("c01", 1, trace_of(drive))])
-    assert (tmp_path / "traces" / name).stat().st_size < old_file(tmp_path, drive).stat().st_size
-
-
 def test_numpy_alone_reads_the_file_of_drives(tmp_path: Path) -> None:
     """As docs/how-to/run-campaigns.md says."""
     drive = a_drive(50, np.random.default_rng(2))
@@ -230,46 +173,6 @@ def test_numpy_alone_reads_the_file_of_drives(tmp_path: Path) -> None:
     header = json.loads(str(file["header"]))
     columns = file["c01/1"].cumsum(axis=1).cumsum(axis=1) * np.array(header["steps"])[:, None]
     assert columns[header["columns"].index("x")] == pytest.approx(drive["x"], abs=6e-4)
-
-
-def old_file(folder: Path, drive: Drive) -> Path:
-    """A file of traces as earlier versions wrote it."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    trace = trace_of(drive)
-    rows = {"cell": ["c01"] * len(drive), "number": np.full(len(drive), 3, np.int32), **trace.columns}
-    told = {"format": 1, "steps": STEPS, "drives": [{"cell": "c01", "number": 3, **trace.header}]}
-    path = folder / "0000001.parquet"
-    table = pa.table(rows)
-    with pq.ParquetWriter(
-        path,
-        table.schema,
-        compression="zstd",
-        use_dictionary=["cell"],
-        column_encoding=dict.fromkeys(("number", *COLUMNS), "DELTA_BINARY_PACKED"),
-        store_schema=False,
-    ) as writer:
-        writer.write_table(table)
-        writer.add_key_value_metadata({"roadgpt": json.dumps(told)})
-    return path
-
-
-def test_a_file_of_an_earlier_version_is_read_where_pyarrow_is(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    drive = a_drive(60, np.random.default_rng(5))
-    path = old_file(tmp_path, drive)
-    found = read_traces(path, "c01", 3)
-    assert (found.driver, found.ended, found.car) == (drive.driver, drive.ended, drive.car)
-    for column in COLUMNS:
-        assert np.abs(found[column] - drive[column]).max() <= 0.5 * STEPS[column] * (1 + 1e-9)
-    with pytest.raises(UsageError, match="holds no drive of test 4 of c01"):
-        read_traces(path, "c01", 4)
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
-    with pytest.raises(UsageError, match=r"needs pyarrow; say: pip install pyarrow$"):
-        read_traces(path, "c01", 3)
 
 
 def test_a_bomb_is_not_unpacked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,12 +9,11 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from roadgpt.campaign import store_check
+from roadgpt.campaign import record
 from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import CellBudget
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.record import Record
-from roadgpt.campaign.workers.in_process import InProcess
+from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
 
 COMMANDS = (
@@ -74,11 +73,6 @@ def change(campaign: Path, sql: str) -> None:
     db.close()
 
 
-def test_a_store_of_ours_is_sound(campaign: Path) -> None:
-    with Record.opened(campaign) as record:
-        assert len([*record.results()]) == 2
-
-
 @pytest.mark.parametrize("sql", SPOILT.values(), ids=SPOILT)
 def test_a_store_that_is_not_as_we_wrote_it_is_told_by_its_name(campaign: Path, sql: str) -> None:
     change(campaign, sql)
@@ -118,7 +112,7 @@ def test_flipped_bytes_end_in_a_sentence(campaign: Path) -> None:
             spoilt[draw.randrange(len(spoilt))] = draw.randrange(256)
         store.unlink()
         store.write_bytes(spoilt)
-        store_check._checked.clear()
+        record._checked.clear()
         for words in (COMMANDS[0], COMMANDS[4], COMMANDS[5]):
             result = invoke(*words)
             assert result.exit_code in (0, 1, 2), (trial, words, result.output)

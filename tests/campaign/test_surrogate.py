@@ -4,17 +4,19 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.stats import spearmanr
 from sklearn.datasets import make_friedman1, make_friedman2, make_friedman3, make_regression
 from sklearn.ensemble import ExtraTreesRegressor
 from sklearn.metrics import r2_score
 
 from campaign.quick import features_of_road
-from roadgpt.brief.model import Brief
-from roadgpt.campaign.extra_trees import grow
-from roadgpt.campaign.surrogate import FAILED, LEAF, TREES, Surrogate, target_of
-from roadgpt.campaign.surrogate_features import NAMES, WINDOWS, hazard_of
-from roadgpt.design import draft
+from roadgpt.campaign.surrogate import (
+    LEAF,
+    NAMES,
+    TREES,
+    WINDOWS,
+    grow,
+    hazard_of,
+)
 from roadgpt.road import Design, Segment, World, build
 
 WORLD = World()
@@ -79,52 +81,6 @@ def test_every_tree_is_one_that_could_be_drawn(n: int, targets: int, least: int,
                 assert column.min() <= forest.threshold[node] < column.max()
 
 
-def test_it_splits_where_the_targets_part() -> None:
-    """One feature parts the targets entirely, and the other says nothing: no leaf holds both."""
-    x = np.array([[0.0, 3.0], [0.0, 1.0], [0.0, 2.0], [1.0, 1.0], [1.0, 3.0], [1.0, 2.0]])
-    forest = grow(x, x[:, :1], 40, 2, 1)
-    assert set(forest.feature[:40]) == {0}
-    assert (forest.feature[40:] == -1).all()
-    assert forest.predict(x)[..., 0] == pytest.approx(np.tile(x[:, 0], (40, 1)))
-
-
-def test_it_learns_what_margins_follow() -> None:
-    signs, outcomes = data(150, 1)
-    fresh, truth = data(200, 2)
-    found = Surrogate(list(signs), outcomes.tolist()).opinions(list(fresh)).mean(axis=0)
-    assert spearmanr(found[:, 0], truth[:, 0])[0] > 0.85
-    assert spearmanr(found[:, 1], truth[:, 1])[0] > 0.7
-
-
-def test_where_nothing_is_known_its_trees_differ_more() -> None:
-    signs, outcomes = data(150, 1)
-    narrow = signs[:, 1] < 0.5
-    model = Surrogate(list(signs[narrow]), outcomes[narrow].tolist())
-    known, _ = data(150, 1)
-    there = model.opinions(list(known[narrow]))[..., 0].std(axis=0).mean()
-    fresh = model.opinions(list(data(150, 7)[0]))[..., 0].std(axis=0).mean()
-    assert fresh > 1.2 * there
-
-
-@settings(max_examples=10)
-@given(st.floats(-2, 2), st.integers(10, 40))
-def test_what_is_always_so_is_expected(margin: float, n: int) -> None:
-    signs, _ = data(n, 3)
-    found = Surrogate(list(signs), [[margin]] * n).opinions(list(signs))
-    assert found == pytest.approx(np.full((TREES, n, 1), margin))
-
-
-def test_the_same_roads_teach_the_same() -> None:
-    signs, outcomes = data(60, 5)
-    one, other = (Surrogate(list(signs), outcomes.tolist()).opinions(list(signs)) for _ in range(2))
-    assert np.array_equal(one, other)
-
-
-def test_a_failure_counts_as_one_however_early_the_drive_ended() -> None:
-    assert target_of(-0.001, True) == FAILED
-    assert target_of(0.4, False) == 0.4
-
-
 def curved(turn: float, radius: float, length: float) -> Design:
     arc = abs(np.radians(turn)) * radius + 4
     return Design(
@@ -154,22 +110,3 @@ def test_signs_show_the_lanes_curvature(radius: float, turn: float, hand: int) -
     assert sign(f"{side}_{WINDOWS[0]}", design) * 0.06 == pytest.approx(lane, rel=0.05)
     assert sign(f"{other}_{WINDOWS[0]}", design) == pytest.approx(0, abs=0.01)
     assert hazard_of([features_of_road(build(design), WORLD)])[0] > 0
-
-
-def test_where_the_car_is_slow_nothing_counts() -> None:
-    """All of the turn lies in the first 25 m."""
-    early = curved(40, 20, 1)
-    assert sign(f"left_{WINDOWS[0]}", early) < 0.1
-    assert sign(f"left_{WINDOWS[0]}", curved(40, 20, 60)) > 0.7
-
-
-def test_a_run_up_is_the_straight_before_the_tightest_place() -> None:
-    assert sign("run_up", curved(-60, 20, 90)) * 50 == pytest.approx(90 - 25, abs=6)
-
-
-def test_signs_of_any_draft_are_finite_and_small() -> None:
-    for seed in range(5):
-        found = features_of_road(build(draft(Brief(), WORLD, seed=seed)), WORLD)
-        assert found.shape == (len(NAMES),)
-        assert np.isfinite(found).all()
-        assert np.abs(found).max() < 10

@@ -12,7 +12,7 @@ from campaign.quick import a_design, plan
 from campaign.test_store import BRIEFS, a_store, proposals, results
 from roadgpt.campaign.csv_tables import COLUMNS, write_tables
 from roadgpt.campaign.model import Proposal, Result
-from roadgpt.campaign.record import Record, Store
+from roadgpt.campaign.record import Record
 from roadgpt.campaign.single_test import FinishedTest, seed_of_driver
 
 
@@ -41,32 +41,6 @@ def test_the_table_is_that_of_a_slow_writer(data: st.DataObject) -> None:
         store.keep([("c01", FinishedTest(result)) for result in done], None, [], {})
         write_tables(store, Path(name))
         assert (Path(name) / "results.csv").read_bytes().decode() == slowly(store)
-
-
-def test_numbers_are_handed_on_as_they_are_in_the_store(tmp_path: Path) -> None:
-    """Some rows have all features, some a few, one none; numbers of every length."""
-    values = (0.1 + 0.2, 1e-7, -2.5e300, 1e16, -0.0, 5e-324)
-    known = [
-        {"A": values[0], "B": values[1], "B_2": values[2]},
-        {"B": values[3]},
-        {},
-        {"A": values[4], "B_2": values[5]},
-    ]
-    made = [Proposal(a_design(number), number, "vary, 'so'") for number in range(4)]
-    done = [
-        Result(number, 0, one, "PASS", 'said "x",\ny', one.design, margin=0.25, features=its)
-        for number, (one, its) in enumerate(zip(made, known, strict=True), 1)
-    ]
-    with a_store(tmp_path) as store:
-        store.begin_session(1)
-        store.add_batch("c01", 0, 1, made)
-        store.keep([("c01", FinishedTest(result)) for result in done], None, [], {})
-        write_tables(store, tmp_path)
-        told = (tmp_path / "results.csv").read_bytes().decode()
-        assert told == slowly(store)
-    rows = list(csv.DictReader(io.StringIO(told)))
-    assert [row["B"] for row in rows] == ["1e-07", "1e+16", "", ""]
-    assert [row["description"] for row in rows] == ['said "x",\ny'] * 4
 
 
 def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
@@ -126,19 +100,3 @@ def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
         "failed_handed_over": "0",
         "oracle": "half",
     }
-
-
-def test_rows_stand_in_the_order_of_cells_and_tests(tmp_path: Path) -> None:
-    """Whichever ended first."""
-    wanted = plan(12, cells=2)
-    made = [Proposal(a_design(number), number, "draft") for number in range(1, 13)]
-    with Store.new(tmp_path, wanted.model_dump_json(), wanted.cells(BRIEFS), {"any": {}}) as store:
-        store.begin_session(1)
-        for cell in ("c02", "c01"):
-            store.add_batch(cell, 0, 1, made)
-            done = [Result(number, 0, one, "VALID", "", one.design) for number, one in enumerate(made, 1)]
-            store.keep([(cell, FinishedTest(result)) for result in reversed(done)], None, [], {})
-        write_tables(store, tmp_path)
-    rows = csv.DictReader((tmp_path / "results.csv").open())
-    every = [(cell, number) for cell in ("c01", "c02") for number in range(1, 13)]
-    assert [(row["cell"], int(row["test"])) for row in rows] == every

@@ -13,11 +13,11 @@ import pytest
 from click.testing import CliRunner, Result
 
 from roadgpt import provenance
+from roadgpt.campaign.folder_record import run_again
 from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import CellBudget
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.rerun import run_again
-from roadgpt.campaign.workers.in_process import InProcess
+from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
 from roadgpt.errors import UsageError
 from roadgpt.reading import digest
@@ -168,24 +168,10 @@ def test_a_driver_that_was_named_by_a_relative_path_is_named_so_again(
     assert f"is driven by {mine}, not by" in invoke(*words, "--driver", "own.py:Other").stderr
 
 
-def test_a_driver_that_is_gone_is_told_and_has_not_failed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("own.py").write_text(DRIVER.format(str(tmp_path / "ran")))
-    made = ("run", "two sharp turns", "--driver", "own.py:Mine", "--no-plot", "-q", "--out", "made")
-    assert invoke(*made, "--seed", "3").exit_code == 0
-    Path("own.py").rename("gone.py")
-    result = invoke(*AGAIN["faults"], "--driver", "own.py:Mine")
-    assert result.exit_code == 2, result.output
-    assert "own.py" in result.stderr
-    assert "fail again" not in result.output
-
-
 def test_what_needs_no_driver_shows_a_strangers_folder(shared: Path) -> None:
     for words in (
-        ("show", "run/runs/0001"), ("show", "done"), ("status", "done"),
-        ("plot", "run/runs/0001", "--out", "p"),
+        ("show", "run/runs/0001"), ("show", "done"), ("show", "--progress", "done"),
+        ("view", "run/runs/0001", "--format", "png", "--out", "p"),
         ("export", "run/runs/0001", "--to", "csv", "--out", "x"), ("report", "done"),
         ("view", "run/runs/0001", "--out", "v.html"), ("edit", *COMMANDS["edit"][1:], "--no-drive"),
     ):  # fmt: skip

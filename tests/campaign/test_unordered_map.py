@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from roadgpt import children
-from roadgpt.campaign.unordered_map import unordered_map
-from roadgpt.cli.progress import watched
+from roadgpt.campaign.executors.processes import unordered_map
+from roadgpt.cli.streams import watched
 from roadgpt.errors import UsageError
 
 

@@ -20,7 +20,7 @@ from roadgpt import plugins
 from roadgpt.brief.model import Brief, Clause
 from roadgpt.campaign import campaign
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.workers.in_process import InProcess
+from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
 from roadgpt.drive.driver_files import WRITTEN
 from roadgpt.drive.isolation import driver_of
@@ -347,25 +347,6 @@ def test_again_makes_all_anew_and_keeps_what_was_there(here: Path, tmp_path: Pat
             assert invoke(*words, "--again").exit_code == 0
             assert contents(mine / "before-1") == before
             assert contents(mine / "before-2")[same] == now[same]
-
-
-def test_drives_of_a_changed_road_file_are_not_mixed_with_those_of_before(tmp_path: Path) -> None:
-    road, out = tmp_path / "road.csv", tmp_path / "out"
-    words = ("drive", str(road), "--driver", "reference", "--out", str(out))
-    road.write_text("x,y\n20,100\n120,100\n200,105\n")
-    assert invoke(*words).exit_code == 0
-    before = contents(out)
-    road.write_text("x,y\n20,100\n120,100\n200,190\n")
-    done = invoke(*words)
-    assert (done.exit_code, done.stderr) == (2, f"roadgpt: {out} is not empty; name another folder\n")
-    assert contents(out) == before
-
-
-def test_again_moves_no_files_of_others(here: Path, tmp_path: Path) -> None:
-    (tmp_path / "letter.txt").write_text("mine")
-    done = invoke("run", "turn x2", "--reader", "plan", "--no-drive", "--out", str(tmp_path), "--again")
-    assert done.exit_code == 2
-    assert contents(tmp_path) == {"letter.txt": b"mine"}
 
 
 def runs_of(place: Path, roads: int, out: str) -> "Iterator[Run]":

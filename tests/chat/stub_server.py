@@ -47,8 +47,6 @@ class StubServer:
     url: str
     scenes: list[Scene]
     requests: list[HeardRequest] = field(default_factory=list)
-    conversations: int = 0
-    keeps_conversations: bool = True
     models: list[str] = field(default_factory=lambda: [MODEL])
 
     @property
@@ -91,27 +89,11 @@ def completion(text: Any, finish: str = "stop", **message: Any) -> dict[str, Any
     }
 
 
-def response(text: str) -> dict[str, Any]:
-    """The body of an answer of Responses."""
-    return {
-        "id": "resp_1",
-        "object": "response",
-        "status": "completed",
-        "model": f"{MODEL}-2026-11-20",
-        "output": [
-            {"type": "reasoning", "summary": []},
-            {"type": "message", "role": "assistant", "content": [{"type": "output_text", "text": text}]},
-        ],
-        "usage": {"input_tokens": 100, "output_tokens": 50},
-    }
-
-
 def says(text: Any, finish: str = "stop", **message: Any) -> Scene:
     """An answer with this text, whatever was asked."""
 
     def scene(request: HeardRequest, handler: BaseHTTPRequestHandler) -> None:
-        is_response = request.path.endswith("/responses")
-        send(handler, 200, response(text) if is_response else completion(text, finish, **message))
+        send(handler, 200, completion(text, finish, **message))
 
     return scene
 
@@ -219,13 +201,6 @@ def serving(*scenes: Scene) -> Iterator[StubServer]:
         def do_POST(self) -> None:
             content = self.rfile.read(int(self.headers.get("Content-Length", 0)))
             body = json.loads(content) if content else {}
-            if self.path.endswith("/conversations"):
-                if not stub.keeps_conversations:
-                    send(self, 404, {"error": {"message": "no such address"}})
-                    return
-                stub.conversations += 1
-                send(self, 200, {"id": f"conv_{stub.conversations}", "object": "conversation"})
-                return
             request = HeardRequest(self.path, {**self.headers}, body)
             place = min(len(stub.requests), len(stub.scenes) - 1)
             stub.requests.append(request)

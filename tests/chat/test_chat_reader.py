@@ -6,13 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from chat.stub_server import StubServer, in_order, says
+from chat.stub_server import StubServer, in_order
 from fake_chat import FakeChat
 from roadgpt.brief import exactly, normal, read
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.chat import EXAMPLES, RULES, ChatReader, PlanAnswer
 from roadgpt.chat import ChatSettings, Message, Reply, Spent
 from roadgpt.errors import BriefError
+from tables import rows as table_rows
 
 
 class Parrot:
@@ -37,19 +38,7 @@ def reader(*plans: str, unused: tuple[str, ...] = ()) -> tuple[ChatReader, Parro
     return ChatReader(ChatSettings(rounds=3), chat=parrot), parrot
 
 
-PLANS = {
-    "an uphill road with 3 turns": "turn x3 | up",
-    "two sharp left turns, then a long straight downhill": "turn x2 left sharp; straight long down",
-    "at least 4 bends, 300 m long, ending in a hairpin, through a forest": "turn x3..; hairpin | len=300",
-    "a gently climbing road: an S-bend, then a 90 degree right": "s_bend; turn right deg=90 | gently_up",
-    "80 m straight, at the T-junction turn left, then uphill to a roundabout, third exit": (
-        "straight len=80 | turns=0 // t_junction left // | up // roundabout exit=3"
-    ),
-    "two lanes each way, straight on at a crossroads with traffic lights, then two bends, 400 m in all": (
-        "| lanes=2 against=2 // crossroads straight lights // turn x2 || len=400"
-    ),
-    "a village with three crossroads and a roundabout": "map crossroads x3; roundabout",
-}
+PLANS = dict(table_rows(__file__, "plans"))
 
 
 @pytest.mark.parametrize(("words", "answer"), EXAMPLES)
@@ -57,20 +46,6 @@ def test_the_examples_that_the_model_is_shown_are_right(words: str, answer: str)
     data = PlanAnswer.model_validate_json(answer)
     part, _ = reader("; ".join(data.along) + "|" + data.road)
     assert plan(part.read(words)) == PLANS[words]
-
-
-@pytest.mark.parametrize(
-    ("written", "line"),
-    [
-        ("| up turns=3", "turn x3 | up"),
-        ("turn x2 left sharp; straight long down", "turn x2 left sharp; straight long down"),
-        ("hairpin left; hairpin right", "hairpin left; hairpin right"),
-        ("left Bend, sharp; straight downhill", "turn left sharp; straight down"),
-    ],
-)
-def test_a_plan_of_a_model_becomes_the_brief_that_a_user_would_write(written: str, line: str) -> None:
-    part, _ = reader(written)
-    assert plan(part.read("some road")) == plan(read(line, "plan")) == line
 
 
 def test_what_is_no_plan_goes_back_with_its_reason() -> None:
@@ -81,13 +56,6 @@ def test_what_is_no_plan_goes_back_with_its_reason() -> None:
     assert "a plan has no clause 'dragon'" in parrot.asked[1][-1].text
     assert "twice" in parrot.asked[2][-1].text
     assert parrot.asked[2][:-2] == parrot.asked[0]
-
-
-def test_after_all_rounds_the_last_reason_is_told() -> None:
-    part, parrot = reader("dragon")
-    with pytest.raises(BriefError, match="no clause 'dragon'"):
-        part.read("three turns")
-    assert len(parrot.asked) == 3
 
 
 @pytest.mark.parametrize("line", ["", " | ", "turn; " * 500])
@@ -131,32 +99,7 @@ def test_nothing_is_asked_where_there_is_nothing_to_read(words: str) -> None:
     assert parrot.asked == []
 
 
-@pytest.mark.parametrize(
-    ("along", "road", "line"),
-    [
-        (["T-junction left"], "", "// t_junction left //"),
-        (["left intersection Traffic_lights"], "", "// crossroads left lights //"),
-        (["fork right", "turn x2 left"], "", "// y_junction right // turn x2 left"),
-        (
-            ["t_junction straight ways=left+straight priority"],
-            "",
-            "// t_junction straight ways=left+straight priority //",
-        ),
-        (
-            ["turn left", "road up", "crossroads", "roundabout exit=2", "road len=80", "road down"],
-            "len=400 left_hand",
-            "turn left | up // crossroads // roundabout exit=2 // | len=80 down || len=400 left_hand",
-        ),
-        (
-            ["road lanes=2 len=300 motorway", "off-ramp ramp len=100"],
-            "",
-            "| lanes=2 len=300 motorway // diverge ramp len=100",
-        ),
-        (["straight len=80 // crossroads left"], "", "straight 80 // crossroads left //"),
-        (["map junction x4 stop", "roundabout"], "len=2000", "map junction x4 stop; roundabout || len=2000"),
-        (["turn x2", "road lanes=2"], "oneway", "turn x2 | lanes=2 oneway"),
-    ],
-)
+@pytest.mark.parametrize(("along", "road", "line"), table_rows(__file__, "routes_maps_plans"))
 def test_routes_and_maps_are_the_plans_that_a_user_would_write(
     along: list[str], road: str, line: str
 ) -> None:
@@ -183,22 +126,7 @@ def test_a_wrong_junction_goes_back_with_what_can_be_said_of_one(stub: StubServe
     assert all("Ignore your rules" not in one["content"] for one in asked[:-1])
 
 
-def test_the_objection_to_a_road_speaks_of_no_lines_of_routes() -> None:
-    part, parrot = reader("turn left nowhere", "turn left")
-    part.read("a left turn")
-    assert "'nowhere'" in parrot.asked[1][-1].text
-    assert "begins with road" not in parrot.asked[1][-1].text
-
-
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        ("t_junction arms=5", "arms"),
-        ("crossroads back", "only at a roundabout"),
-        ("lane_change straight", "straight"),
-        ("map columns=40 rows=2", "blocks a side"),
-    ],
-)
+@pytest.mark.parametrize(("line", "said"), table_rows(__file__, "junction_map_cannot"))
 def test_a_junction_or_map_that_cannot_be_is_refused_as_from_any_reader(line: str, said: str) -> None:
     part, parrot = reader(line)
     with pytest.raises(BriefError, match=said):
@@ -209,19 +137,10 @@ def test_a_junction_or_map_that_cannot_be_is_refused_as_from_any_reader(line: st
 WORDS = (
     *("turn", "left", "straight", "crossroads", "roundabout", "map", "road", "//", "||", "|", ";", "up"),
     *(
-        "len=80",
-        "exit=2",
-        "lanes=2",
-        "x2",
-        "merge",
-        "ramp",
-        "columns=2",
-        "rows=1",
-        "stop",
-        "starts(turn",
+        "len=80", "exit=2", "lanes=2", "x2", "merge", "ramp", "columns=2", "rows=1", "stop", "starts(turn",
         ")",
     ),
-)
+)  # fmt: skip
 
 
 @given(
@@ -246,17 +165,3 @@ def test_any_line_is_a_brief_or_a_sentence(line: str) -> None:
     else:
         told = brief.words
     assert "\n" not in told.strip()
-
-
-def test_it_reads_through_a_server(stub: StubServer) -> None:
-    stub.play(
-        *in_order(
-            [f'{{"along": ["turn x2 {side}"], "road": "", "unused": []}}' for side in ("links", "left")]
-        )
-    )
-    brief = read("zwei Linkskurven", "chat", chat=ChatSettings(base_url=stub.url, model="m"))
-    assert plan(brief) == "turn x2 left"
-    assert "no word 'links'" in stub.requests[1].last
-    stub.play(says('{"along": ["straight len=9000"], "road": "", "unused": []}'))
-    with pytest.raises(BriefError):
-        read("straight for 9 km", "chat", chat=ChatSettings(base_url=stub.url, model="m"))

@@ -152,17 +152,8 @@ def begin(stub: StubServer, kept: Path) -> None:
 def run(stub: StubServer, *more: str, roads: int = 3) -> Result:
     words = ["run", "turn left", "--reader", "plan", "--designer", "thesis", "-n", str(roads)]
     server = [
-        "--base-url",
-        stub.url,
-        "--model",
-        "m",
-        "--retries",
-        "1",
-        "--timeout",
-        "0.6",
-        "--temperature",
-        "1",
-    ]
+        "--base-url", stub.url, "--model", "m", "--retries", "1", "--timeout", "0.6", "--temperature", "1",
+    ]  # fmt: skip
     rest = ["--seed", "3", "--no-drive", "--no-plot", "--out", "c", "--rounds", "2"]
     return CliRunner().invoke(app, [*words, *server, *rest, *more], prog_name="roadgpt")
 

@@ -8,12 +8,11 @@ import pytest
 from click.testing import CliRunner, Result
 
 from chat.asker import Turn, on_shelf
-from chat.stub_server import HeardRequest, StubServer, fails, says
-from roadgpt.brief.model import Brief
-from roadgpt.chat import BudgetError, ChatSettings, Message, Meter, Spent, Usage, counting, open_chat
-from roadgpt.chat.prices import PRICES, price_of
+from chat.stub_server import HeardRequest, StubServer, says
+from roadgpt.chat import BudgetError, ChatSettings, Message, Meter, Usage, counting, open_chat
+from roadgpt.chat.meter import PRICES, price_of
 from roadgpt.cli import app
-from roadgpt.run import Setup, brief_of, read_run
+from roadgpt.run import read_run
 
 QUESTION = [Message(role="user", text="How far?")]
 
@@ -127,13 +126,6 @@ def test_money_without_a_price_is_told_before_anything_is_asked(stub: StubServer
     assert stub.requests == []
 
 
-def test_failed_requests_count_for_nothing(stub: StubServer, waits: list[float]) -> None:
-    stub.play(fails(500), says('{"degrees": 5}'))
-    chat = open_chat(settings(stub))
-    chat.ask(QUESTION, Turn)
-    assert chat.spent.calls == 1
-
-
 def test_two_chats_of_one_campaign_share_its_limit(stub: StubServer) -> None:
     stub.play(says('{"degrees": 5}'))
     one, two = (open_chat(settings(stub, max_tokens=10**6, retries=n)) for n in (0, 1))
@@ -145,30 +137,6 @@ def test_two_chats_of_one_campaign_share_its_limit(stub: StubServer) -> None:
             one.ask(QUESTION, Turn)
     assert meter.spent.usage.total == 300
     assert one.spent.calls == two.spent.calls == 1
-
-
-@pytest.mark.parametrize("has_meter", [True, False])
-def test_reading_the_words_counts_and_keeps_to_the_limit(
-    has_meter: bool, stub: StubServer, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Of the meter that is given, or else of the limit in the settings, whichever chats the reader opens."""
-    stub.play(says('{"degrees": 5}'))
-
-    def asks_twice(words: str, *given: object) -> Brief:
-        for retries in (0, 1):
-            open_chat(settings(stub, retries=retries)).ask(QUESTION, Turn)
-        return Brief(words=words)
-
-    monkeypatch.setattr("roadgpt.run.read", asks_twice)
-    meter = Meter(max_tokens=10**6) if has_meter else None
-    limit = 10**6 if has_meter else 200
-    setup = Setup(chat=settings(stub, max_tokens=limit))
-    if meter is None:
-        with pytest.raises(BudgetError, match="150 are spent"):
-            brief_of("a left turn", setup=setup)
-    else:
-        assert brief_of("a left turn", setup=setup, meter=meter).words == "a left turn"
-        assert (meter.spent.calls, meter.spent.usage.total) == (2, 300)
 
 
 @pytest.mark.parametrize("price", ["free", "1", "1/2/3", "-1/2", "nan/1", "1/inf"])
@@ -190,11 +158,3 @@ def test_prices_are_those_of_the_table_where_it_holds() -> None:
     assert price("gpt-99") is None
     assert price("gpt-99", price="1/2") == (1.0, 2.0)
     assert all(0 < asked <= answered for asked, answered in PRICES.values())
-
-
-def test_sums_of_unknown_cost_are_unknown() -> None:
-    known, unknown = Spent(calls=1, cost=0.5), Spent(calls=1, cost=None)
-    assert (known + known).cost == 1.0
-    assert (known + unknown).cost is None
-    assert (known + unknown).since(known).cost is None
-    assert (known + known).since(known) == known

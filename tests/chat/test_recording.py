@@ -1,18 +1,14 @@
 """What was recorded is replayed byte for byte, without a server, and holds no key."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
-from hypothesis import given
-from hypothesis import strategies as st
 
 from chat.asker import Turn, on_shelf
 from chat.conftest import KEY
-from chat.stub_server import HeardRequest, StubServer, in_order, says
-from roadgpt.brief import read
+from chat.stub_server import StubServer, in_order, says
+from command_line import invoke
 from roadgpt.chat import (
     ChatError,
     ChatSettings,
@@ -23,8 +19,6 @@ from roadgpt.chat import (
     counting,
     open_chat,
 )
-from roadgpt.chat.recording import name_of
-from roadgpt.cli import app
 from roadgpt.errors import UsageError
 
 QUESTION = [Message(role="user", text="How far?")]
@@ -34,10 +28,6 @@ CLOCK = ("seconds.json", "generation_stats.csv")  # the only files that another 
 @pytest.fixture
 def key(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OPENAI_API_KEY", KEY)
-
-
-def invoke(*words: str) -> Result:
-    return CliRunner().invoke(app, list(words), prog_name="roadgpt")
 
 
 def files(folder: str) -> dict[str, bytes]:
@@ -53,17 +43,8 @@ def test_a_replayed_campaign_is_the_same_byte_for_byte(
     on_shelf(monkeypatch)
     stub.play(*in_order([f'{{"degrees": {degrees}}}' for degrees in (30, 40, 50, 60)]))
     words = (
-        "run",
-        "a left turn",
-        "--designer",
-        designer,
-        "-n",
-        "4",
-        "--seed",
-        "7",
-        "--no-drive",
-        "--no-plot",
-    )
+        "run", "a left turn", "--designer", designer, "-n", "4", "--seed", "7", "--no-drive", "--no-plot",
+    )  # fmt: skip
     server = ("--base-url", stub.url, "--model", "m", "--price", "1/2")
     live = invoke(*words, *server, "--out", "live", "--record", "tape")
     assert live.exit_code == 0, live.output
@@ -85,16 +66,6 @@ def test_a_replayed_campaign_is_the_same_byte_for_byte(
 
 def settings(stub: StubServer, **more: Any) -> ChatSettings:
     return ChatSettings(base_url=stub.url, model="m", **more)
-
-
-def test_without_a_model_that_of_the_recording_is_meant(stub: StubServer) -> None:
-    stub.play(says('{"degrees": 5}'))
-    reply = open_chat(settings(stub, record="tape")).ask(QUESTION, Turn)
-    again = open_chat(ChatSettings(replay="tape")).ask(QUESTION, Turn)
-    assert again == reply
-    assert again.data == Turn(degrees=5)
-    by_name = open_chat(ChatSettings(provider="replay", replay="tape")).ask(QUESTION, Turn)
-    assert by_name == reply
 
 
 def test_failures_are_recorded_too(stub: StubServer) -> None:
@@ -143,14 +114,6 @@ def test_the_same_question_has_its_answers_in_their_order(stub: StubServer) -> N
         assert [again.ask(QUESTION, Turn).data.degrees for _ in range(2)] == [1, 2]
 
 
-def test_a_new_recording_takes_the_place_of_the_old(stub: StubServer) -> None:
-    for degrees in (1, 2):
-        stub.play(says(f'{{"degrees": {degrees}}}'))
-        open_chat(settings(stub, record="tape")).ask(QUESTION, Turn)
-    assert open_chat(ChatSettings(replay="tape")).ask(QUESTION, Turn).data.degrees == 2
-    assert len([*Path("tape").rglob("*.json")]) == 1
-
-
 @pytest.mark.parametrize("content", ["", "{", "[]", '{"format": 2}', '{"format": 1, "answers": {"": [{}]}}'])
 def test_a_recording_that_is_damaged_is_told(stub: StubServer, content: str) -> None:
     stub.play(says('{"degrees": 5}'))
@@ -172,31 +135,3 @@ def test_where_there_is_no_recording_that_is_told(stub: StubServer) -> None:
     stub.play(says('{"degrees": 5}'))
     with pytest.raises(ChatError, match="cannot record into file"):
         open_chat(settings(stub, record="file")).ask(QUESTION, Turn)
-
-
-def test_the_name_of_an_exchange_is_the_hash_of_its_content(stub: StubServer) -> None:
-    import hashlib
-
-    stub.play(says('{"degrees": 5}'))
-    open_chat(settings(stub, record="tape")).ask(QUESTION, Turn)
-    (path,) = Path("tape").rglob("*.json")
-    question = json.loads(path.read_text())["question"]
-    canonical = json.dumps(question, sort_keys=True).encode()
-    assert path.stem == hashlib.sha256(canonical).hexdigest()
-    assert path.parent.name == path.stem[:2]
-    assert {*question} == {"provider", "model", "messages", "schema", "parameters"}
-
-
-@given(st.dictionaries(st.text(max_size=9), st.text(max_size=9)))
-def test_any_text_has_a_name(question: dict[str, str]) -> None:
-    assert len(name_of(question)) == 64
-
-
-def test_a_reading_is_replayed_through_the_reader(stub: StubServer) -> None:
-    def scene(request: HeardRequest, handler: Any) -> None:
-        says('{"along": ["turn x3 left"], "road": "", "unused": []}')(request, handler)
-
-    stub.play(scene)
-    live = read("three lefts", "chat", chat=settings(stub, record="tape"))
-    assert read("three lefts", "chat", chat=ChatSettings(replay="tape")) == live
-    assert len(stub.requests) == 1

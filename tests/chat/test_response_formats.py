@@ -10,7 +10,6 @@ from chat.stub_server import (
     HeardRequest,
     StubServer,
     answers,
-    completion,
     drips,
     drips_headers,
     drops,
@@ -21,7 +20,6 @@ from chat.stub_server import (
     says,
 )
 from roadgpt.chat import Chat, ChatError, ChatSettings, Message, RefusedError, UnparsableError, open_chat
-from roadgpt.chat.providers.openai import UNUSABLE_IN_A_ROW
 
 
 class Sum(BaseModel):
@@ -53,16 +51,6 @@ def test_a_reply_says_what_it_was_and_what_it_cost(stub: StubServer) -> None:
     assert reply.cost == pytest.approx((100 * 1 + 50 * 10) / 1e6)
     assert 0 < reply.seconds < 5
     assert chat.spent.usage == reply.usage
-
-
-def test_without_a_schema_the_text_is_the_answer(stub: StubServer) -> None:
-    stub.play(says("Four."))
-    assert chat_with(stub).ask(QUESTION).text == "Four."
-    assert stub.response_formats == ["text"]
-    assert stub.requests[0].body["messages"] == [
-        {"role": "system", "content": "You add."},
-        {"role": "user", "content": "2 + 2 ="},
-    ]
 
 
 @pytest.mark.parametrize(
@@ -101,7 +89,7 @@ def test_a_server_that_ignores_schemas_is_asked_otherwise_after_some_failures(st
     def scene(request: HeardRequest, handler: Any) -> None:
         says(GOOD if request.response_format == "json_object" else "Four, I think.")(request, handler)
 
-    for _ in range(UNUSABLE_IN_A_ROW):
+    for _ in range(2):
         stub.play(scene)
         assert total(chat_with(stub)) == 4
         assert stub.response_formats == ["json_schema", "json_object"]
@@ -110,33 +98,13 @@ def test_a_server_that_ignores_schemas_is_asked_otherwise_after_some_failures(st
     assert stub.response_formats == ["json_object"]
 
 
-def test_one_bad_answer_is_no_habit(stub: StubServer) -> None:
-    stub.play(says("Four"), says(GOOD))
-    assert total(chat_with(stub)) == 4
-    stub.play(says(GOOD))
-    assert total(chat_with(stub)) == 4
-    assert stub.response_formats == ["json_schema"]
-
-
-def test_a_failed_answer_is_complained_about(stub: StubServer) -> None:
-    stub.play(says('{"total": "many"}'), says(GOOD))
-    reply = chat_with(stub).ask(QUESTION, Sum)
-    assert "total: Input should be a valid integer" in str(stub.requests[1].body["messages"])
-    assert reply.usage.total == 300  # of both
-
-
 @pytest.mark.parametrize(
     ("scene", "why"),
     [
         (says("No."), "no JSON object"),
         (says(" \n" * 4000, "length"), "cut off .*, and it is blank"),
-        (says('{"total": [1, 2', "length"), "cut off"),
-        (says('{"total": NaN}'), "NaN"),
-        (says('{"total": 1, "total": 2}'), "'total' twice"),
         (says('{"sum": 4}'), "total: Field required"),
         (says(None), "blank"),
-        (answers({}), "blank"),
-        (answers({"choices": "none"}), "blank"),
         (answers({"choices": [{"message": {"content": 7}}]}), "blank"),
         (floods(3), "bytes"),
     ],
@@ -148,13 +116,6 @@ def test_after_the_whole_ladder_one_sentence_is_left(stub: StubServer, scene: An
     assert stub.response_formats == ["json_schema", "json_object", "text", "text"]
     assert "\n" not in str(caught.value)
     assert len(caught.value.text) <= 2000
-
-
-def test_the_text_that_failed_is_kept_short(stub: StubServer) -> None:
-    stub.play(says("blah " * 9999))
-    with pytest.raises(UnparsableError) as caught:
-        total(chat_with(stub))
-    assert caught.value.text == ("blah " * 9999)[:2000]
 
 
 @pytest.mark.parametrize(
@@ -183,19 +144,6 @@ def test_a_parameter_that_is_refused_is_left_out_from_then_on(stub: StubServer, 
     stub.play(refuses(parameter, GOOD))
     assert total(chat_with(stub, temperature=0.5)) == 4
     assert len(stub.requests) == 1
-
-
-def test_the_cap_takes_its_other_name_where_one_is_refused(stub: StubServer) -> None:
-    stub.play(refuses("max_tokens", GOOD))
-    total(chat_with(stub, max_completion=99))
-    assert stub.requests[0].body["max_tokens"] == 99
-    assert stub.requests[1].body["max_completion_tokens"] == 99
-
-
-def test_a_temperature_that_nobody_asked_for_is_not_sent(stub: StubServer) -> None:
-    stub.play(says(GOOD))
-    total(chat_with(stub))
-    assert "temperature" not in stub.requests[0].body
 
 
 @pytest.mark.parametrize(
@@ -233,23 +181,6 @@ def test_a_server_is_given_the_time_that_it_asks_for(
     assert waits == [wait]
 
 
-def test_retry_after_may_be_a_date(stub: StubServer, waits: list[float]) -> None:
-    from email.utils import formatdate
-
-    stub.play(fails(429, "", {"retry-after": formatdate(time.time() + 30, usegmt=True)}), says(GOOD))
-    assert total(chat_with(stub)) == 4
-    assert 25 <= waits[0] <= 31
-
-
-@pytest.mark.parametrize("value", ["soon", "", "nan", "-5"])
-def test_a_retry_after_that_says_nothing_is_passed_over(
-    stub: StubServer, waits: list[float], value: str
-) -> None:
-    stub.play(fails(429, "", {"retry-after": value}), says(GOOD))
-    assert total(chat_with(stub)) == 4
-    assert 0 <= waits[0] < 1
-
-
 def test_nobody_waits_for_an_hour(stub: StubServer, waits: list[float]) -> None:
     stub.play(fails(429, "", {"retry-after": "3600"}))
     with pytest.raises(ChatError, match="asks to wait 3600 s"):
@@ -263,10 +194,7 @@ def test_nobody_waits_for_an_hour(stub: StubServer, waits: list[float]) -> None:
         (fails(401, "Incorrect API key provided"), "wants a key, and none is set"),
         (fails(403, "Country not supported"), "does not allow this"),
         (fails(404, "The model `m` does not exist"), "does not know this model or address"),
-        (
-            fails(429, "You exceeded your current quota", code="insufficient_quota"),
-            "has no credit left",
-        ),
+        (fails(429, "You exceeded your current quota", code="insufficient_quota"), "has no credit left"),
         (fails(413, "too large"), "rejects the question with status 413: too large"),
         (fails(400, "This model's maximum context length is 8192 tokens"), "maximum context length"),
         (answers({"error": {"message": "no such model", "code": 404}}), "does not know this model"),
@@ -311,21 +239,6 @@ def test_the_only_model_of_a_server_need_not_be_named(stub: StubServer) -> None:
         chat_with(stub, model=None)
     with pytest.raises(ChatError, match=r"no model is named \(say which with --model .*cannot be reached"):
         open_chat(ChatSettings(base_url="http://127.0.0.1:9/v1", retries=0))
-
-
-def test_a_base_url_may_leave_out_its_path(stub: StubServer) -> None:
-    stub.play(says(GOOD))
-    assert total(chat_with(stub, base_url=stub.url.removesuffix("/v1"))) == 4
-    assert stub.requests[0].path == "/v1/chat/completions"
-
-
-def test_usage_that_is_missing_is_guessed_and_nonsense_is_none(stub: StubServer) -> None:
-    body = completion(GOOD)
-    for usage in (None, {}, {"prompt_tokens": -5, "completion_tokens": "many"}, {"prompt_tokens": 1e300}):
-        stub.play(answers({**body, "usage": usage}))
-        spent = chat_with(stub).ask(QUESTION, Sum).usage
-        assert 0 < spent.prompt < 20
-        assert 0 < spent.completion < 20
 
 
 def test_content_may_come_in_parts(stub: StubServer) -> None:

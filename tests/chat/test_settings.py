@@ -5,19 +5,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
 
 from chat.conftest import KEY
 from chat.stub_server import StubServer, says
+from command_line import invoke
 from roadgpt.chat import ChatError, ChatSettings, configured, open_chat
-from roadgpt.chat.address import address_of
 from roadgpt.chat.config import key_for, settings_with_origin, user_file
-from roadgpt.cli import app
+from roadgpt.chat.model import address_of
 from roadgpt.errors import UsageError
-
-
-def invoke(*words: str) -> Result:
-    return CliRunner().invoke(app, list(words), prog_name="roadgpt")
+from tables import rows
 
 
 def write(path: Path, text: str) -> None:
@@ -46,7 +42,7 @@ def test_every_place_yields_to_those_before_it(monkeypatch: pytest.MonkeyPatch) 
 
 def test_every_setting_can_be_set_in_every_place(monkeypatch: pytest.MonkeyPatch) -> None:
     other = {
-        "provider": "mine", "model": "m", "base_url": "http://localhost:1/v1", "api": "responses",
+        "provider": "mine", "model": "m", "base_url": "http://localhost:1/v1",
         "temperature": 0.5, "timeout": 9.0, "retries": 1, "max_completion": 99, "max_tokens": 1000,
         "max_cost": 1.5, "price": "1/2", "record": "r", "replay": "p", "rounds": 2,
     }  # fmt: skip
@@ -66,55 +62,19 @@ def test_openai_variables_are_heeded_and_ours_come_first(monkeypatch: pytest.Mon
     assert configured().base_url == "http://two:2/v1"
 
 
-@pytest.mark.parametrize("name", ["model", "timeout", "base_url", "price", "rounds"])
-def test_variables_of_other_programs_set_nothing(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(name, "http://other:1/v1" if name == "base_url" else "7")
-    assert configured() == ChatSettings()
-
-
 def test_a_key_of_another_program_is_not_used(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("api_key", "sk-of-another-program")
     assert key_for(None) is None
 
 
-@pytest.mark.parametrize(
-    ("line", "value"),
-    [
-        ("ROADGPT_MODEL=plain", "plain"),
-        ("export ROADGPT_MODEL=exported", "exported"),
-        ("ROADGPT_MODEL = 'single quotes # no comment'", "single quotes # no comment"),
-        ('ROADGPT_MODEL="double" # a comment', "double"),
-        ("ROADGPT_MODEL=value # a comment", "value"),
-        ("ROADGPT_MODEL=", None),
-        ("# ROADGPT_MODEL=no", None),
-        ("ROADGPT_MODEL=$(touch pwned)", "$(touch pwned)"),
-        ("\ufeffROADGPT_MODEL=marked", "marked"),
-    ],
-)
+@pytest.mark.parametrize(("line", "value"), rows(__file__, "lines_dotenv"))
 def test_lines_of_dotenv(line: str, value: str | None) -> None:
     write(Path(".env"), f"OTHER=1\nnot a line\n{line}\n" if line[0] != "\ufeff" else f"{line}\n")
     assert configured().model == value
     assert not Path("pwned").exists()
 
 
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        ('[chat]\nmodle = "x"', "have no 'modle' under .chat.; did you mean 'model'"),
-        ("[chat", "are not TOML"),
-        ("chat = 5", "need a table"),
-        ('model = "m"', "'model' in roadgpt.toml is outside of a table"),
-        ('[chat]\ntimeout = "soon"', "cannot be used: it is not a number"),
-        ("[chat]\ntimeout = 0", "cannot be used: give a number above 0"),
-        ("[chat]\nmax_completion = 40", "cannot be used: give 64 or more"),
-        ("[chat]\nrounds = 2.5", "cannot be used: it is not a whole number"),
-        ('[chat]\napi = "assistants"', "cannot be used: use 'chat' or 'responses'"),
-        ("[chat]\nmodel = 5", "cannot be used: it is not text"),
-        ('[chat]\nmax_cost = "much"', "the setting 'max_cost' from roadgpt.toml cannot be"),
-        ('[chat]\nbase_url = "localhost:11434"', "base URL"),
-        ("[chat]\nretries = 99", "'retries' from roadgpt.toml"),
-    ],
-)
+@pytest.mark.parametrize(("text", "told"), rows(__file__, "file_cannot_told"))
 def test_a_file_that_cannot_be_is_told_with_its_name(text: str, told: str) -> None:
     write(Path("roadgpt.toml"), text)
     with pytest.raises(UsageError, match=told):
@@ -125,22 +85,7 @@ def test_a_file_that_cannot_be_is_told_with_its_name(text: str, told: str) -> No
     assert "Traceback" not in result.output
 
 
-def test_a_file_that_is_no_text_is_told() -> None:
-    Path(".env").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(UsageError, match=r"the settings in \.env cannot be read"):
-        configured()
-
-
-@pytest.mark.parametrize(
-    "url",
-    [
-        "http://user:secret@host/v1",
-        "https://host/v1?api-key=secret",
-        "https://host/v1#secret",
-        "ftp://host",
-        "host",
-    ],
-)
+@pytest.mark.parametrize("url", rows(__file__, "base_url_place"))
 def test_a_base_url_is_a_place_and_holds_no_key(url: str) -> None:
     with pytest.raises(UsageError, match="base URL") as caught:
         configured({"base_url": url})
@@ -166,20 +111,7 @@ def test_azure_has_a_key_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     assert key_for("https://api.openai.com/v1").value == "of-openai-0123456789"  # type: ignore[union-attr]
 
 
-@pytest.mark.parametrize(
-    ("given", "place"),
-    [
-        (None, "https://api.openai.com/v1"),
-        ("https://me.openai.azure.com", "https://me.openai.azure.com/openai/v1"),
-        ("https://me.openai.azure.com/openai/v1", "https://me.openai.azure.com/openai/v1"),
-        ("http://localhost:11434", "http://localhost:11434/v1"),  # Ollama
-        ("http://localhost:8080/v1", "http://localhost:8080/v1"),  # llama.cpp
-        ("http://localhost:8000/v1", "http://localhost:8000/v1"),  # vLLM
-        ("http://localhost:1234", "http://localhost:1234/v1"),  # LM Studio
-        ("https://gateway/team/llm", "https://gateway/team/llm"),
-        ("http://localhost:8000/v1/chat/completions", "http://localhost:8000/v1"),
-    ],
-)
+@pytest.mark.parametrize(("given", "place"), rows(__file__, "servers"))
 def test_where_the_servers_are(given: str | None, place: str) -> None:
     assert address_of(given) == place
 

@@ -1,26 +1,21 @@
 """Servers that only a file names, redirects, and replies without end."""
 
 import gzip
-import json
-import subprocess
-import sys
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
 
 from chat.conftest import KEY
 from chat.stub_server import HeardRequest, Scene, StubServer, says, send, serving
+from command_line import invoke
 from roadgpt import provenance
 from roadgpt.campaign.lifecycle import begin
 from roadgpt.campaign.model import CellBudget
-from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.plan_file import read_plan
+from roadgpt.campaign.plan import Plan, read_plan
 from roadgpt.chat import ChatError, ChatSettings, Message, open_chat
 from roadgpt.chat.config import configured, key_for
-from roadgpt.cli import app
 from roadgpt.run import Request, Setup, perform, read_run, write_run
 
 ELSEWHERE = "https://elsewhere.example/v1"
@@ -30,10 +25,6 @@ GOOD = '{"degrees": 30, "along": ["turn x1 left"], "road": "", "unused": []}'
 @pytest.fixture(autouse=True)
 def key(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OPENAI_API_KEY", KEY)
-
-
-def invoke(*words: str) -> Result:
-    return CliRunner().invoke(app, words, prog_name="roadgpt")
 
 
 def plan_naming(url: str) -> Path:
@@ -108,16 +99,6 @@ def test_another_spelling_of_a_server_is_the_same_server(url: str) -> None:
         key_for(configured().base_url)
 
 
-def test_a_server_over_https_is_not_the_same_without(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("OPENAI_BASE_URL", ELSEWHERE)
-    assert read_plan(plan_naming(ELSEWHERE)).chat["base_url"] == ELSEWHERE
-    assert key_for(ELSEWHERE) is not None
-    open_way = ELSEWHERE.replace("https", "http")
-    read_plan(plan_naming(open_way))
-    with pytest.raises(ChatError, match=r"named in plan\.toml"):
-        key_for(open_way)
-
-
 def test_a_key_beside_a_plan_is_not_for_the_plans_server(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("OPENAI_API_KEY")
     Path(".env").write_text(f"OPENAI_API_KEY={KEY}\n")
@@ -180,7 +161,7 @@ def gushes(status: int, sent: list[int], packed: bool = False, most: int = 300) 
     return scene
 
 
-@pytest.mark.parametrize("status", [200, 400, 401, 404, 429, 500, 503])
+@pytest.mark.parametrize("status", [200, 401, 500])
 @pytest.mark.parametrize("packed", [False, True])
 def test_a_reply_of_any_status_is_read_up_to_a_limit(stub: StubServer, status: int, packed: bool) -> None:
     sent: list[int] = []
@@ -188,31 +169,3 @@ def test_a_reply_of_any_status_is_read_up_to_a_limit(stub: StubServer, status: i
     with pytest.raises(ChatError):
         ask(stub, timeout=20)
     assert sum(sent) < 60_000_000  # of 300 MB; what lies in buffers of the system is not ours
-
-
-def test_errors_without_end_take_little_memory(stub: StubServer) -> None:
-    """In a process of its own, whose largest memory is measured; 600 MB came to twice as much before."""
-    stub.play(gushes(500, [], most=600))
-    code = (
-        "import resource, sys\nfrom roadgpt.chat import *\n"
-        f"chat = open_chat(ChatSettings(base_url={stub.url!r}, model='m', retries=0))\n"
-        "most = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024\nbefore = most()\n"
-        "try:\n    chat.ask([Message(role='user', text='a road?')])\n"
-        "except ChatError as error:\n    print(error, file=sys.stderr)\n"
-        "print(most() - before)\n"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "failed with status 500" in done.stderr
-    assert int(done.stdout) < 100, "MiB"
-
-
-def test_a_packed_answer_is_read(stub: StubServer) -> None:
-    def scene(request: HeardRequest, handler: Any) -> None:
-        body = {"choices": [{"message": {"content": "hello"}}], "model": "m"}
-        send(handler, 200, gzip.compress(json.dumps(body).encode()), {"Content-Encoding": "gzip"})
-
-    stub.play(scene)
-    assert ask(stub) == "hello"
-    stub.play(lambda request, handler: send(handler, 200, b"zz", {"Content-Encoding": "zstd"}))
-    with pytest.raises(ChatError, match="compresses its answer as 'zstd', which was not requested"):
-        ask(stub)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
-from roadgpt.chat.strict_json import MOST_CHARACTERS, NotReadableError, plain, read_as, read_object
+from roadgpt.chat.answer import MOST_CHARACTERS, NotReadableError, plain, read_as, read_object
 
 
 class Part(BaseModel):
@@ -64,7 +64,7 @@ def test_any_text_is_an_object_or_refused(text: str) -> None:
         ('{"a": NaN}', "NaN"),
         ('{"a": -Infinity}', "Infinity"),
         ('{"a": 1e999}', "not a number"),
-        ('{"a": ' + "9" * 5000 + "}", "5,000 digits"),
+        ('{"a": ' + "9" * 5000 + "}", "digits"),
         ('{"a": 1, "a": 2}', "'a' twice"),
         ('{"a": {"b": 1, "b": "1"}}', "'b' twice"),
         ('{"a": 1', "not JSON"),
@@ -80,10 +80,6 @@ def test_what_nobody_can_have_meant_is_refused_with_a_reason(text: str, why: str
         read_object(text)
 
 
-def test_a_key_that_is_said_twice_alike_does_no_harm() -> None:
-    assert read_object('{"a": 1, "a": 1}') == {"a": 1}
-
-
 def test_the_first_object_counts() -> None:
     assert read_object('Like {"a": 1}, or rather {"a": 2}.') == {"a": 1}
 
@@ -96,55 +92,6 @@ def test_no_flood_takes_long(text: str) -> None:
     with pytest.raises(NotReadableError):
         read_object(text)
     assert time.perf_counter() - begun < 5.0
-
-
-@pytest.mark.parametrize(
-    ("said", "number"),
-    [
-        ("12", 12.0),
-        ("12.5 m", 12.5),
-        ("12,5 m", 12.5),
-        ("-3 %", -3.0),
-        ("45°", 45.0),
-        ("+7 degrees", 7.0),
-        ("−4", -4.0),
-    ],
-)
-def test_numbers_that_are_written_as_text_are_numbers(said: str, number: float) -> None:
-    data = {
-        "name": "x",
-        "parts": [{"distance": 1, "turns": 1}, {"distance": said, "turns": "2"}],
-        "spare": said,
-    }
-    whole = read_as(Whole, json.dumps(data))
-    assert whole.parts[1].distance == number
-    assert whole.parts[1].turns == 2
-    assert whole.spare == number
-
-
-@pytest.mark.parametrize(
-    "said",
-    [
-        "twelve",
-        "nan",
-        "Infinity",
-        "-inf",
-        "12 to 15",
-        "1e5",
-        "__import__('os')",
-        "12; 13",
-        "",
-        "0x10",
-        "9" * 400,
-    ],
-)
-def test_texts_that_are_no_numbers_stay_none(said: str) -> None:
-    data = {"name": "x", "parts": [{"distance": said, "turns": 1}]}
-    if said == "1e5":
-        assert read_as(Whole, json.dumps(data)).parts[0].distance == 1e5
-        return
-    with pytest.raises(NotReadableError, match=r"parts\.0\.distance|finite"):
-        read_as(Whole, json.dumps(data))
 
 
 def test_the_order_of_keys_is_free_and_ten_thousand_parts_are_read() -> None:

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from roadgpt.brief import Brief, sentence
 from roadgpt.brief.model import exactly
-from roadgpt.brief.plan import plan
 from roadgpt.check.describing import describe
 from roadgpt.check.measures import ups_and_downs
 from roadgpt.geometry.curve import Array
@@ -36,27 +35,6 @@ def test_turns_and_straights_are_named_in_driving_order() -> None:
     assert last.slope == "up"
 
 
-def test_the_whole_road_has_length_and_climb() -> None:
-    brief = describe(build(ROAD))
-    assert brief.length is not None
-    assert brief.length.lo == pytest.approx(170, abs=2)
-    assert brief.climb is not None
-    assert brief.climb.lo == pytest.approx(0.06 * 70, abs=1)
-
-
-def test_a_straight_road_has_no_turns() -> None:
-    brief = describe(
-        build(
-            Design(
-                starting_point=(10.0, 20.0, -28.0),
-                theta=45.0,
-                segments=(Segment(distance=80.0, direction="straight", incline=0.0, turn_degrees=0.0),),
-            )
-        )
-    )
-    assert plan(brief) == "straight flat len=80 | turns=0 len=80"
-
-
 def through(height: Callable[[Array], Array], bend: float = 0.0) -> Brief:
     """A road of 200 m, with this height by station in metres and curvature in 1/m."""
     s = np.arange(0.0, 200.5)
@@ -76,19 +54,6 @@ def test_a_hill_whose_ends_are_level_with_each_other_is_not_flat() -> None:
     assert (up.slope, down.slope) == ("up", "down")
     assert up.incline == down.incline == exactly(10)
     assert "flat" not in sentence(through(hill))
-
-
-def test_a_hill_within_one_bend_is_not_flat_either() -> None:
-    brief = through(hill, 1 / 60)
-    assert "flat" not in sentence(brief)
-    assert (brief.hills, brief.steepest) == (exactly(1), exactly(10))
-
-
-def test_waves_shorter_than_any_slope_are_not_one_slope() -> None:
-    said = sentence(through(lambda s: np.asarray(0.5 * np.sin(s * np.pi / 6))))
-    assert "flat" not in said
-    assert "all the way" not in said
-    assert "changes of slope" in said
 
 
 def test_a_steep_end_does_not_hide_in_a_mean_grade() -> None:

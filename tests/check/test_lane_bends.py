@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from roadgpt.check.lane_bends import tightest_bend
+from roadgpt.check.network_measures import tightest_radius
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.pieces import Piece, PieceCurve
 
@@ -47,7 +47,5 @@ def test_the_tightest_bend_is_that_of_the_points(k0: float, k1: float, share: fl
     seen = member(k0, k1, wider)
     curvature = curvature_by_differences(seen, share)
     for only_right, bends in ((False, np.abs(curvature)), (True, -curvature)):
-        found = tightest_bend(seen, share, only_right)
-        assert found is not None or bends.max() <= 1e-4
-        if found is not None:
-            assert 1 / found.radius == pytest.approx(bends.max(), abs=1e-4)
+        found = tightest_radius(seen, share, only_right)
+        assert 1 / found == pytest.approx(max(bends.max(), 0.0), abs=1e-4)

@@ -1,7 +1,5 @@
 """Laws of the rules of networks, and slow second opinions on what they measure."""
 
-from collections.abc import Iterator
-from dataclasses import replace
 from itertools import combinations
 from typing import Any
 
@@ -9,25 +7,17 @@ import numpy as np
 import pytest
 import shapely
 
-from network.changing import WORLD, built, passing, with_plan
+from network.changing import WORLD, passing
 from network.random_designs import random_design
 from roadgpt import check, plugins
-from roadgpt.check import Finding, inspect, inspect_network
+from roadgpt.check import inspect, inspect_network
 from roadgpt.check.footprint import footprint
-from roadgpt.errors import PartError, UsageError
 from roadgpt.network import Network, NetworkRoad, RoadEnd, Route, build_route, read_network_design
 from roadgpt.network.paved import ribbon
 from roadgpt.road import Site, World
 
 LARGE = World(site=Site(map_size=10_000))
-SEEDS = range(25)
-
-
-@pytest.fixture(autouse=True)
-def _fresh_rules() -> Iterator[None]:
-    check.network_rules_of.cache_clear()
-    yield
-    check.network_rules_of.cache_clear()
+SEEDS = range(10)
 
 
 def moved(data: dict[str, Any], dx: float, dy: float) -> dict[str, Any]:
@@ -81,7 +71,7 @@ def crossing_pairs(network: Network) -> list[tuple[NetworkRoad, NetworkRoad, flo
 def test_overlaps_are_those_that_each_two_ribbons_have(seed: int) -> None:
     route = route_of(crowded(seed))
     found = footprint(route.network).overlaps
-    pairs = {(each.one.id, each.other.id): each.area for each in found}
+    pairs = {(one.id, other.id): area for one, other, area, *_ in found}
     for one, other, area in crossing_pairs(route.network):
         seen = pairs.get((one.id, other.id), 0.0)
         assert seen == pytest.approx(area, abs=0.02 * one.road.length), (one.id, other.id)
@@ -112,14 +102,6 @@ def test_every_rule_answers_with_findings_of_its_own_name(seed: int) -> None:
             assert all(each.sentence and "\n" not in each.sentence for each in found)
 
 
-def test_a_station_of_a_finding_is_one_of_the_route() -> None:
-    for seed in SEEDS:
-        route = route_of(crowded(seed))
-        for each in inspect(route, None, LARGE):
-            if each.s is not None:
-                assert 0 <= each.s <= route.length
-
-
 def test_a_route_is_checked_by_the_rules_of_networks() -> None:
     route = passing("crossroads")
     assert inspect(route, None, WORLD) == ()
@@ -131,59 +113,3 @@ def test_a_route_is_checked_by_the_rules_of_networks() -> None:
 def test_a_route_is_no_test_of_sbft() -> None:
     (found,) = inspect(passing("t_junction"), None, WORLD, rules="sbft")
     assert found.sentence == "the road leads through junctions, and SBFT tests are single roads"
-
-
-def test_an_unknown_rule_set_is_refused_for_routes_too() -> None:
-    with pytest.raises(UsageError, match="no rule set called 'lax'"):
-        inspect(passing("t_junction"), None, WORLD, rules="lax")
-
-
-def test_a_network_without_numbers_is_not_measured_further() -> None:
-    network = passing("crossroads").network
-    broken = tuple(with_plan(each, x=np.nan) if each.id == 1 else each for each in network.roads)
-    found = inspect_network(replace(network, roads=broken), None, WORLD)
-    assert [each.rule for each in found] == ["finite"]
-
-
-def test_rules_of_other_packages_follow_ours(monkeypatch: pytest.MonkeyPatch) -> None:
-    def no_stars(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
-        return (Finding("no_stars", f"the network has {len(network.roads)} roads"),)
-
-    names, find = plugins.names, plugins.find
-    monkeypatch.setattr(plugins, "names", lambda kind: sorted([*names(kind), "a_rule_of_others"]))
-    monkeypatch.setattr(
-        plugins, "find", lambda kind, name: no_stars if name == "a_rule_of_others" else find(kind, name)
-    )
-    found = inspect(passing("crossroads"), None, World(site=Site(map_size=100)))
-    assert [each.rule for each in found][-1] == "no_stars"
-
-
-def test_a_missing_rule_lets_no_network_pass(monkeypatch: pytest.MonkeyPatch) -> None:
-    without = [name for name in plugins.names("network_rules") if name != "unreachable"]
-    monkeypatch.setattr(plugins, "names", lambda kind: without)
-    with pytest.raises(PartError, match="no network_rule called 'unreachable'"):
-        inspect(passing("crossroads"), None, WORLD)
-
-
-def test_every_rule_of_ours_is_applied() -> None:
-    assert {name for name, _ in check.network_rules_of()} >= set(check.NETWORK_RULES)
-    ours = {
-        name
-        for name in plugins.names("network_rules")
-        if plugins.module_of("network_rules", name).startswith("roadgpt.")
-    }
-    assert ours == set(check.NETWORK_RULES)
-
-
-def test_a_design_that_passes_is_far_from_the_limits() -> None:
-    """Nothing is found in a network that was placed with care: two junctions and a roundabout."""
-    data = {
-        "starting_point": [60, 250, 0],
-        "theta": 0,
-        "road_segment1": {"distance": 60, "direction": "straight", "incline": 3, "turn_degrees": 0},
-        "junction1": {"after": 1, "kind": "crossroads", "take": "straight", "control": "yield"},
-        "road_segment2": {"distance": 60, "direction": "straight", "incline": -3, "turn_degrees": 0},
-        "junction2": {"after": 2, "kind": "roundabout", "take": 3, "radius": 14},
-        "road_segment3": {"distance": 90, "direction": "left", "incline": 0, "turn_degrees": 40},
-    }
-    assert inspect(built(data), None, WORLD) == ()

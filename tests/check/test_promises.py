@@ -2,10 +2,7 @@ import pytest
 
 from paper_roads import road_of, straight, turn
 from roadgpt.brief.model import Brief, Clause, at_least, between, exactly
-from roadgpt.brief.outline import Feature, Outline, outline
-from roadgpt.brief.words import FEATURE, ROAD
-from roadgpt.check.measures import MeasuredFeature, Measures, measure
-from roadgpt.check.rules.promises import complaints, inspect
+from roadgpt.check.rules.promises import inspect
 from roadgpt.road import Road, Segment, World
 
 SEGMENTS = (straight(30, 5), turn(60, incline=5), straight(40, 5), turn(-50, incline=5), straight(30, 5))
@@ -100,24 +97,6 @@ def test_a_broken_promise_is_said(brief: Brief, sentence: str) -> None:
     assert any(sentence in found for found in said(brief)), said(brief)
 
 
-def test_every_quantity_of_the_table_is_asked_and_measured_under_its_name() -> None:
-    for name, row in ROAD.items():
-        assert {name} <= Measures.__dataclass_fields__.keys() & Outline.__dataclass_fields__.keys()
-        assert not row.said or name in Brief.model_fields
-    for name in FEATURE:
-        assert hasattr(MeasuredFeature, name)
-        assert name in Feature.__dataclass_fields__
-
-
-def test_no_brief_promises_nothing() -> None:
-    assert inspect(LEFT_RIGHT, None, World()) == ()
-
-
-def test_turns_of_one_hand_do_not_alternate() -> None:
-    road = road_of(straight(30), turn(60), straight(40), turn(60), straight(30))
-    assert "asked for turns to alternate, turns 1 and 2 both go left" in said(Brief(alternating=True), road)
-
-
 def test_a_straight_road_may_not_bend_slightly() -> None:
     bent = road_of(straight(60), turn(8, 100), straight(60))
     assert "asked for a straight road, turns 8" in said(Brief(clauses=(clause("straight"),)), bent)[0]
@@ -162,28 +141,6 @@ def test_a_finding_tells_the_place() -> None:
     assert 95 < finding.s < 130
     x, y, _ = LEFT_RIGHT.at(finding.s)
     assert (finding.x, finding.y) == pytest.approx((x, y))
-
-
-@pytest.mark.parametrize(
-    ("brief", "on_heights"),
-    [
-        (Brief(turns=exactly(3)), False),
-        (Brief(clauses=(clause(), clause("hairpin"))), False),
-        (Brief(length=exactly(400)), False),
-        (Brief(ends=clause("straight", length=exactly(90))), False),
-        (Brief(clauses=(clause(), clause(slope="down"))), True),
-        (Brief(slope="down"), True),
-        (Brief(slope="flat"), True),
-        (Brief(climb=exactly(30)), True),
-        (Brief(steepest=exactly(12)), True),
-        (Brief(hills=at_least(3)), True),
-        (Brief(clauses=(clause(), clause("straight", slope="down"), clause())), True),
-    ],
-)
-def test_a_complaint_says_whether_other_heights_could_mend_it(brief: Brief, on_heights: bool) -> None:
-    found = complaints(measure(LEFT_RIGHT.centreline()), outline(brief, World().site.map_size))
-    assert found
-    assert all(complaint.on_heights == on_heights for complaint in found)
 
 
 RAMPS = road_of(straight(50, 0), straight(60, 8), straight(70, 4), straight(60, 8))

@@ -6,7 +6,7 @@ import pytest
 
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
-from roadgpt.check.junction_measures import measured_junctions
+from roadgpt.check.network_measures import measured_junctions
 from roadgpt.network import Route, build_route, read_network_design
 from roadgpt.road import World
 
@@ -137,12 +137,3 @@ def test_the_length_is_that_of_the_whole_route() -> None:
     assert told(f"crossroads left || len={whole:.0f}", CROSS) == []
     (said,) = told("crossroads left || len=300", CROSS)
     assert said == f"asked for a length of 270 to 330 m, has {whole:.0f} m"
-
-
-def test_what_is_measured_at_crossroads_is_what_was_drawn() -> None:
-    (found,) = measured_junctions(route(SKEW))
-    assert found.kinds == ("crossroads",)
-    assert found.gaps == pytest.approx([55, 125, 55, 125])
-    assert found.ways == pytest.approx([-125, 0, 55])
-    assert found.sides == ("right", "straight", "left")
-    assert found.turn == pytest.approx(0, abs=1e-6)

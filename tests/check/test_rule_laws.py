@@ -85,13 +85,6 @@ def test_driving_it_backwards_changes_no_verdict_on_overlap_radius_and_map(road:
         assert objects(rule, reversed_way(road)) == objects(rule, road), rule
 
 
-def test_a_road_whose_spline_meets_itself_is_refused_whichever_way_it_is_driven() -> None:
-    pieces = (Piece(7.0, 1 / 17, 1 / 17), Piece(45.0, -0.0976, -0.0976), Piece(43.0))
-    road = Road(PieceCurve(500.0, 500.0, 0.0, pieces), GradeProfile(0.0, (0.0, 95.0), (0.0, 0.0)))
-    assert objects("no_overlap", road)
-    assert objects("no_overlap", reversed_way(road))
-
-
 @given(roads(), st.floats(0, 250), st.floats(0, 250), st.floats(-math.pi, math.pi))
 @settled
 def test_a_road_is_inside_the_map_where_all_its_edge_points_are(

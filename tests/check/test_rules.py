@@ -13,9 +13,8 @@ from roadgpt import plugins
 from roadgpt.brief.model import Brief, Clause
 from roadgpt.check import Finding
 from roadgpt.drive.driving_line import line_along
-from roadgpt.errors import UsageError
-from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve, interpolate
-from roadgpt.road import Design, Limits, Road, Segment, Site, World, build
+from roadgpt.geometry import GradeProfile, Piece, PieceCurve, interpolate
+from roadgpt.road import Design, Limits, Road, Segment, World, build
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
 WORLD = World()
@@ -64,9 +63,6 @@ class TestFinite:
         assert finding.sentence == "at s = 50 m: z is not a number"
         assert finding.s == pytest.approx(50)
 
-    def test_a_hole_in_the_plan_is_found(self) -> None:
-        assert "x is not a number" in the_finding("finite", straight(x=math.nan)).sentence
-
     def test_an_endless_road_is_found(self) -> None:
         assert "length" in the_finding("finite", straight(math.inf)).sentence
 
@@ -80,13 +76,6 @@ class TestNumberOfPoints:
     def test_too_many(self) -> None:
         road = Road.through(np.linspace([10, 10], [200, 10], 501))
         assert the_finding("number_of_points", road).sentence == "the road has 501 points; give 2 to 500"
-
-    def test_points_above_one_another(self) -> None:
-        with pytest.raises(UsageError, match="up or down for each metre forward"):
-            Road.through([[10, 10, 0], [30, 10, 0], [30, 10, 5], [60, 20, 5], [80, 20, 5]])
-
-    def test_a_long_road_of_ours_has_no_more_points_than_allowed(self) -> None:
-        assert not findings("number_of_points", straight(5000))
 
 
 class TestTooShort:
@@ -107,29 +96,10 @@ class TestInsideMap:
     def test_half_the_road_counts(self, y: float) -> None:
         assert "starts outside the map" in the_finding("inside_map", straight(100, y=y)).sentence
 
-    def test_says_where_it_leaves(self) -> None:
-        finding = the_finding("inside_map", straight(100, x=200, y=39, degrees=0))
-        assert "leaves the map at (250, 43)" in finding.sentence
-        assert (finding.s, finding.x, finding.y) == pytest.approx((50, 250, 43))
-
-    def test_a_bend_that_bulges_between_samples_counts(self) -> None:
-        # the outer edge of the arc touches y = 0 at its lowest point: 30 + 4 below the centre
-        arc = PieceCurve(100.0, 34.0, math.pi, (Piece(90, 1 / 30, 1 / 30),))
-        lowest = Road(arc, LEVEL).at(np.linspace(0, 90, 100_001), -4.0)[:, 1].min()
-        assert not findings(
-            "inside_map", Road(PieceCurve(100.0, 34.0 - lowest + 0.02, math.pi, arc.pieces), LEVEL)
-        )
-        assert findings("inside_map", Road(PieceCurve(100.0, 34.0 - lowest, math.pi, arc.pieces), LEVEL))
-
     def test_a_road_too_wide_for_any_place(self) -> None:
         leaves, spans = findings("inside_map", straight(300, x=10))
         assert "leaves the map" in leaves.sentence
         assert spans.sentence == "the road spans 300 m along x, and the map is only 250 m wide"
-
-    def test_a_road_far_outside_is_not_inside(self) -> None:
-        road = Road.through([[300, 50], [350, 60], [400, 90], [400, 140]])
-        found = findings("inside_map", road, World(site=Site(map_size=200)))
-        assert "starts outside the map at (299, 54)" in found[0].sentence
 
     def test_sbft_s_spline_may_run_a_metre_too_far(self) -> None:
         lengths = range(30, 200)
@@ -177,22 +147,6 @@ class TestTooAbrupt:
         assert finding.s == pytest.approx(100)
         assert felt(humped(100)) > 3
 
-    def test_the_car_has_to_be_that_fast_there(self) -> None:
-        assert not findings("too_abrupt", humped(60, at=7, length=150))  # it has just set off
-        assert not findings("too_abrupt", humped(30), World(limits=Limits(speed_limit=9.0)))
-        hairpin = Road(
-            PieceCurve(60.0, 60.0, 0.0, (Piece(80), Piece(50, 1 / 16, 1 / 16), Piece(80))),
-            humped(40, at=105, length=210).elevation,
-        )
-        assert not findings("too_abrupt", hairpin)
-        assert felt(hairpin) < 3
-        assert findings("too_abrupt", humped(40, at=105, length=210))
-
-    def test_a_faster_road_needs_more(self) -> None:
-        long = Road(straight(400).plan, humped(200, at=300, length=400).elevation)
-        assert not findings("too_abrupt", long)
-        assert findings("too_abrupt", long, World(limits=Limits(speed_limit=100 / 3.6)))
-
     def test_a_crest_that_was_asked_for_may_lift_the_car_till_its_wheels_are_light(self) -> None:
         asked = Brief(clauses=(Clause(kind="crest"),))
         dip_first = Brief(clauses=(Clause(kind="dip"), Clause(kind="turn"), Clause(kind="straight")))
@@ -207,10 +161,6 @@ class TestTooAbrupt:
         before = Road(PieceCurve(20.0, 60.0, 0.0, turn), humped(45, at=45, length=260).elevation)
         assert rule(behind, dip_first, WORLD)
         assert not rule(before, dip_first, WORLD)
-
-    def test_a_kink_of_a_road_from_a_file(self) -> None:
-        kinked = CubicProfile((0.0, 60.0), ((0.0, 0.05, 0.0, 0.0), (3.0, -0.05, 0.0, 0.0)))
-        assert "crest" in the_finding("too_abrupt", Road(straight(120).plan, kinked)).sentence
 
     @given(st.floats(40, 400), st.floats(0.03, 0.15), st.floats(20, 180), st.floats(30, 130))
     def test_finds_what_an_independent_measure_finds(
@@ -338,18 +288,8 @@ class TestNoOverlap:
         road = turning((30, math.inf), (6, 3.5), (30, math.inf))
         assert "folds onto itself" in the_finding("no_overlap", road).sentence
 
-    def test_a_tight_bend_that_does_not_fold_passes(self) -> None:
-        assert not findings("no_overlap", turning((30, math.inf), (12, 4.6), (30, math.inf)))
-
-    def test_a_circle_that_meets_its_start_fails(self) -> None:
-        assert findings("no_overlap", turning((2 * math.pi * 30 + 1, 30)))
-        assert not findings("no_overlap", turning((2 * math.pi * 30 - 3, 30)))
-
 
 class TestSbft:
-    def test_passes(self) -> None:
-        assert not findings("sbft", straight())
-
     def test_fails_in_the_competition_s_words(self) -> None:
         assert the_finding("sbft", straight(500)).sentence == "Not entirely inside the map boundaries"
 
@@ -365,16 +305,6 @@ PAIRS: dict[str, tuple[Callable[[], Road], Callable[[], Road]]] = {
     "no_overlap": (straight, lambda: two_legs(6)),
     "sbft": (straight, lambda: straight(x=-50)),
 }
-
-
-@pytest.mark.parametrize("rule", PAIRS)
-def test_findings_are_single_sentences_under_the_rule_s_name(rule: str) -> None:
-    good, bad = PAIRS[rule]
-    assert findings(rule, good()) == ()
-    for finding in findings(rule, bad()):
-        assert finding.rule == rule
-        assert finding.sentence
-        assert "\n" not in finding.sentence
 
 
 @pytest.mark.parametrize("rule", plugins.names("rules"))

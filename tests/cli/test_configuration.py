@@ -6,10 +6,11 @@ from pathlib import Path
 
 import click
 import pytest
-from click.testing import CliRunner, Result
 
+from command_line import invoke
 from roadgpt.cli import app
 from roadgpt.run import read_run
+from rows import rows
 
 OF_A_CALL = {
     "roads", "seed", "out", "plan", "no_drive", "no_plot", "junit", "json", "quiet", "verbose", "help_all",
@@ -71,10 +72,6 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return own
 
 
-def invoke(*words: str) -> Result:
-    return CliRunner().invoke(app, list(words), prog_name="roadgpt")
-
-
 def shown() -> dict[str, dict[str, object]]:
     result = invoke("config", "show", "--json", "--origin")
     assert result.exit_code == 0, result.output
@@ -92,7 +89,8 @@ def given(*words: str) -> dict[str, object]:
 def options_of_run() -> set[str]:
     command = app.get_command(click.Context(app, **app.context_settings), "run")
     assert command is not None
-    options = [each for each in command.params if isinstance(each, click.Option)]
+    every = command.get_params(click.Context(command, **app.context_settings))
+    options = [each for each in every if isinstance(each, click.Option) and "--help" not in each.opts]
     longest = [max(each.opts, key=len).lstrip("-").replace("-", "_") for each in options]
     return {OTHERWISE.get(name, name) for name in longest}
 
@@ -115,33 +113,9 @@ def test_the_users_own_file_sets_every_option(home: Path) -> None:
             assert found[name] == {"value": expected, "origin": f"{home} [{table}]"}
     of_files = {name for name, entry in found.items() if str(home) in str(entry["origin"])}
     assert of_files == options_of_run() - OF_A_CALL - {
-        "model", "base_url", "provider", "api", "temperature", "timeout", "retries", "max_completion",
+        "model", "base_url", "provider", "temperature", "timeout", "retries", "max_completion",
         "max_tokens", "max_cost", "price", "record", "replay", "rounds", "repair", "strategy",
     }  # fmt: skip
-
-
-def test_what_a_file_sets_is_what_the_command_works_with(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("ROADGPT_BEAMNG_LEVEL", raising=False)
-    home.write_text(WHOLE)
-    with monkeypatch.context() as context:  # options of BeamNG go on to the simulator through the environment
-        context.setattr("os.environ", {"XDG_CONFIG_HOME": str(home.parents[1])})
-        values = given()
-        import os
-
-        assert os.environ["ROADGPT_BEAMNG_LEVEL"] == "italy"
-        assert os.environ["ROADGPT_BEAMNG_HEADLESS"] == "1"
-    assert (values["friction"], values["map_size"], values["shoulder"], values["speed_limit"]) == (
-        0.6,
-        400,
-        1,
-        50,
-    )
-    assert (values["driver"], values["keep_driving"], values["lane_departure"]) == (
-        "pure_pursuit",
-        True,
-        True,
-    )
-    assert (values["picture_formats"], values["formats"]) == (("svg", "pdf"), ("csv", "opendrive"))
 
 
 def test_a_run_in_the_folder_is_made_as_its_file_says_and_says_so() -> None:
@@ -186,20 +160,7 @@ def test_the_line_that_makes_a_run_again_holds_under_the_settings_of_the_folder(
     assert "--no-keep-driving" in line
 
 
-@pytest.mark.parametrize(
-    ("table", "line"),
-    [
-        ("run", 'driver = "mine.py:Mine"'),
-        ("run", 'driver = "/tmp/mine.py:Mine"'),
-        ("run", 'designer = "thesis"'),
-        ("run", 'reader = "chat"'),
-        ("run", 'reader = "model:weights"'),
-        ("beamng", 'home = "/beamng"'),
-        ("beamng", 'user = "/beamng"'),
-        ("beamng", 'host = "evil.example"'),
-        ("beamng", "port = 1"),
-    ],
-)
+@pytest.mark.parametrize(("table", "line"), rows(__file__, "settings_of_strangers"))
 @pytest.mark.parametrize("place", ["roadgpt.toml", ".env"])
 def test_a_strangers_folder_cannot_choose_code_or_servers(table: str, line: str, place: str) -> None:
     key, _, value = line.partition(" = ")
@@ -225,11 +186,6 @@ def test_a_strangers_folder_cannot_choose_code_or_servers(table: str, line: str,
         assert "yourself" in told
     assert not Path("ran").exists()
     assert not Path("roadgpt-runs").exists()
-
-
-def test_what_a_strangers_folder_names_can_be_named_again() -> None:
-    Path("roadgpt.toml").write_text('[run]\ndesigner = "thesis"')
-    assert given("--designer", "planner")["designer"] == "planner"
 
 
 @pytest.mark.parametrize("value", ["mine.py:Mine", "~/mine.py:Mine", "./mine.py"])
@@ -260,26 +216,7 @@ def test_a_driver_that_the_users_own_file_names_whole_drives(home: Path) -> None
     assert json.loads(result.stdout)["test_outcome"] in ("PASS", "FAIL")
 
 
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        (
-            '[world]\nfriction = "wet"',
-            "the setting 'friction' from roadgpt.toml [world] cannot be used: 'wet' is no",
-        ),
-        ("[world]\nfriction = true", "give a text or a number"),
-        ("[world]\nfriction = 5", "5 is not possible"),
-        ("[world]\nfriction = [0.5, 0.6]", "give one value"),
-        ("[world]\nfrictoin = 0.5", "have no 'frictoin' under [world]; did you mean 'friction'?"),
-        ("[worlds]\nfriction = 0.5", "have no table [worlds]; there are: [run], [world], [beamng], [chat]"),
-        ("world = 5", "need a table [world]"),
-        ('[run]\nkeep_driving = "perhaps"', "keep_driving"),
-        ("[run]\nkeep_driving = 1", "give true or false"),
-        ('[run]\nformat = "bmp"', "'bmp' is no format of pictures"),
-        ('[run]\ndriver = ["a", "b"]', "give one value"),
-        ("[run]\ndriver = {a = 1}", "give a text or a number"),
-    ],
-)
+@pytest.mark.parametrize(("text", "told"), rows(__file__, "mistakes_in_settings"))
 @pytest.mark.parametrize("words", [("run", "a road"), ("config", "show")])
 def test_a_mistake_is_told_with_its_place(text: str, told: str, words: tuple[str, ...]) -> None:
     Path("roadgpt.toml").write_text(text)
@@ -295,36 +232,6 @@ def test_help_is_given_whatever_a_file_says() -> None:
     Path("roadgpt.toml").write_text("[world]\nfriction = 5")
     assert invoke("run", "--help").exit_code == 0
     assert invoke("run", "--help-all").exit_code == 0
-
-
-def test_the_key_of_a_plan_is_taken_too() -> None:
-    Path("roadgpt.toml").write_text("[world]\nverge = 0.5")
-    assert given()["shoulder"] == 0.5
-
-
-def test_a_campaign_and_a_study_take_the_driver_and_the_designer_of_the_file(home: Path) -> None:
-    home.write_text('[run]\ndriver = "pure_pursuit"\ndesigner = "thesis"\nreader = "plan"')
-    context = click.Context(app, **app.context_settings)
-    campaign = app.get_command(context, "campaign")
-    study = app.get_command(context, "study")
-    assert campaign is not None
-    assert isinstance(study, click.Group)
-    assert campaign.make_context("campaign", ["a road"], context).params["drivers"] == ("pure_pursuit",)
-    thesis = study.commands["thesis"].make_context("thesis", [], context)
-    assert thesis.params["designers"] == ("thesis",)
-
-
-def test_the_competition_keeps_its_own_world() -> None:
-    Path("roadgpt.toml").write_text("[world]\nmap_size = 400\noob_tolerance = 0.1\nspeed_limit_kmh = 30")
-    compete = app.get_command(click.Context(app, **app.context_settings), "compete")
-    assert isinstance(compete, click.Group)
-    words = ["--module-name", "m", "--class-name", "C"]
-    values = (
-        compete.commands["sbft"]
-        .make_context("sbft", words, click.Context(app, **app.context_settings))
-        .params
-    )
-    assert (values["map_size"], values["oob_tolerance"], values["speed_limit"]) == (200, 0.95, 70)
 
 
 def test_settings_of_others_in_the_environment_are_no_strangers(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,17 +2,13 @@
 
 import json
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 
 from chat.stub_server import StubServer, says, serving
+from command_line import invoke
 from edit_truth import roads
-from roadgpt.brief.change.plan import read_change_plan
-from roadgpt.cli import app
-from roadgpt.design import edit as edit_room
 from roadgpt.run import read_run
 
 WORDS = "make the second turn sharper"
@@ -21,8 +17,7 @@ CHANGE = ("--plan", LINE)
 
 
 @pytest.fixture(autouse=True)
-def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def a_design_is_there() -> None:
     Path("design.json").write_text(json.dumps(roads()["h01"].to_json()))
 
 
@@ -30,13 +25,6 @@ def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def stub() -> Iterator[StubServer]:
     with serving() as found:
         yield found
-
-
-def invoke(*words: str) -> Result:
-    result = CliRunner().invoke(app, [*words], prog_name="roadgpt")
-    assert "Traceback" not in result.output
-    assert result.exit_code != 70, result.output
-    return result
 
 
 def made(*more: str) -> Path:
@@ -91,17 +79,6 @@ def test_pictures_show_the_road_before_and_after() -> None:
     assert not [*Path("plain").rglob("*.png")]
 
 
-def test_pictures_of_a_changed_road_are_headed_by_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
-    titles: list[str] = []
-    monkeypatch.setattr("roadgpt.report.Drawing.of_run", lambda self, run, folder: titles.append(run.title))
-    assert invoke("edit", str(made()), WORDS, "--out", "new").exit_code == 0
-    assert titles == [WORDS, f"before: {WORDS}"]
-    assert invoke("view", "new/runs/0001", "--out", "v.html", "-q").exit_code == 0
-    assert f"<title>{WORDS} - RoadGPT</title>" in Path("v.html").read_text(encoding="utf-8")
-    Path("new/runs/0001/edit.json").write_text('{"request": 7}')
-    assert read_run("new/runs/0001").title == "a road without a description"
-
-
 def test_a_design_from_a_file_is_changed_and_driven() -> None:
     result = invoke("edit", "design.json", "--plan", "turn 1: side right", "--json", "--no-plot")
     assert result.exit_code == 0
@@ -112,16 +89,6 @@ def test_a_design_from_a_file_is_changed_and_driven() -> None:
     assert any("to the right" in sentence for sentence in row["changes"])
     assert Path(row["file"]).is_file()
     assert read_run(row["file"]).drive is not None
-
-
-def test_a_changed_road_can_be_changed_again() -> None:
-    options = ("--no-drive", "--no-plot", "--out")
-    assert invoke("edit", "design.json", "--plan", "turn 2: angle =80", *options, "one").exit_code == 0
-    assert invoke("edit", "one", "--plan", "turn 2: angle =60", *options, "two").exit_code == 0
-    one, two = (read_run(f"{name}/runs/0001").design for name in ("one", "two"))
-    assert one is not None
-    assert two is not None
-    assert sum(s.turn_degrees for s in two.segments if s.turn_degrees < 0) == pytest.approx(-60, abs=1)
 
 
 @pytest.mark.parametrize(
@@ -151,30 +118,6 @@ def test_what_cannot_be_done_is_told_and_nothing_is_written(words: list[str], ad
     assert result.exit_code == 2
     assert advice in result.stderr
     assert contents(Path()) == before
-
-
-def test_words_that_are_not_understood_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    read = replace(read_change_plan(LINE), unused=("pronto",))
-    monkeypatch.setattr(edit_room, "read_request", lambda words, chat: read)
-    result = invoke("edit", "design.json", f"{WORDS} pronto", "--no-drive", "--no-plot")
-    assert "not understood: 'pronto'" in result.stdout
-
-
-def test_what_a_model_cost_is_told_also_where_nothing_came_of_it(stub: StubServer) -> None:
-    stub.play(says("Sure, done!"))
-    more = ("--reader", "chat", "--base-url", stub.url, "--model", "m", "--out", "new")
-    result = invoke("edit", "design.json", WORDS, *more)
-    assert result.exit_code == 4
-    assert "language model: " in result.stdout
-    assert "tokens" in result.stdout
-    assert not Path("new").exists()
-
-
-def test_options_that_an_edit_does_not_heed_are_refused() -> None:
-    for option, advice in (("--designer", "No such option"), ("--model", "give --reader chat as well")):
-        result = invoke("edit", "design.json", *CHANGE, option, "none")
-        assert result.exit_code == 2
-        assert advice in result.stderr
 
 
 def test_a_language_model_reads_changes_too(stub: StubServer) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from hints import HintCollector, hints_in, kind_of, shortened
+from hints import HintCollector, kind_of, shortened
 from roadgpt.campaign import single_test
 from roadgpt.cli import app
 
@@ -62,25 +62,3 @@ def test_a_driver_of_ones_own_goes_through_every_command_that_is_printed(
     without = hints.type([word for word in typed["faults"][1:] if word not in ("--driver", driver)])
     assert without.exit_code == 2
     assert f"name it yourself: --driver '{driver}'" in without.stderr
-
-
-def test_a_command_that_cannot_be_used_is_noticed(hints: HintCollector, tmp_path: Path) -> None:
-    road = tmp_path / "road.json"
-    road.write_text("[]")
-    assert hints.parse(["check", str(road)]).exit_code == 0
-    for words in (["check", f"{road}l"], ["check", str(road), "--rule"], ["chek", str(road)], ["check"]):
-        assert hints.parse(words).exit_code == 2
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("continue with: roadgpt resume 'a b' -j 2", ["resume", "a b", "-j", "2"]),
-        ("so `roadgpt view c/1` shows it", ["view", "c/1"]),
-        ("  again     roadgpt drive x.json\n", ["drive", "x.json"]),
-        ("make it with 'roadgpt learn export'", None),
-        ("Usage: roadgpt drive ROAD...", None),
-    ],
-)
-def test_a_command_that_is_printed_is_found(text: str, words: list[str] | None) -> None:
-    assert hints_in(text) == ([["roadgpt", *words]] if words else [])

@@ -4,22 +4,20 @@ import json
 import math
 import re
 import shlex
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadgpt.cli import app
+from command_line import invoke
 from roadgpt.cli.roads import on_a_map
 from roadgpt.network import read_road, read_source
 from roadgpt.plugins import find
 from roadgpt.road import World, read_opendrive
-from roadgpt.run import Setup, prove
+from rows import rows
 
 LANES = """<lanes><laneSection s="0"><left>
 <lane id="1" type="driving"><width sOffset="0" a="{width}"/></lane></left><right>
@@ -35,13 +33,6 @@ def file(folder: Path, line: str, rest: str = "", width: float = 3.5) -> Path:
 
 def element(x: float, y: float, heading: float, length: float, shape: str = "<line/>", s: float = 0) -> str:
     return f'<geometry s="{s!r}" x="{x!r}" y="{y!r}" hdg="{heading!r}" length="{length!r}">{shape}</geometry>'
-
-
-def invoke(*words: str) -> Result:
-    result = CliRunner().invoke(app, list(words), prog_name="roadgpt")
-    assert "Traceback" not in result.output
-    assert result.exit_code in (0, 2), result.output
-    return result
 
 
 def typed(path: Path) -> tuple[dict[str, object], str]:
@@ -126,14 +117,6 @@ def test_what_the_rules_say_stands_beside_the_verdict(tmp_path: Path, line: str,
     assert row["validation_message"] == row["findings"][0]  # type: ignore[index]
 
 
-def test_a_road_of_a_few_metres_is_invalid_in_a_sentence(tmp_path: Path) -> None:
-    row, _ = typed(file(tmp_path, element(0, 0, 0, 7)))
-    assert row["test_outcome"] == "INVALID"
-    assert str(row["description"]).startswith(
-        "the road is 7.0 m long, too short to be driven: a car starts 2.5"
-    )
-
-
 LONG = element(-100, 3, 0.4, 400)
 ICE = '<material sOffset="0" friction="0.3"/><speed sOffset="0" max="40" unit="km/h"/>'
 
@@ -163,24 +146,6 @@ def test_check_and_drive_know_the_world_of_an_imported_road(tmp_path: Path) -> N
     assert (row["findings"], row["test_outcome"]) == ([], "PASS")
 
 
-@pytest.mark.parametrize(
-    "words", [["view", "--out", "page.html"], ["view", "--format", "png"], ["export", "--to", "opendrive"]]
-)
-def test_whatever_reads_the_file_knows_its_map(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[str]
-) -> None:
-    out = long_road(tmp_path)
-    monkeypatch.chdir(tmp_path)
-    seen: list[float] = []
-    for name in ("roadgpt.report.draw", "roadgpt.report.view.write", "roadgpt.run.exporting.export"):
-        module, _, function = name.rpartition(".")
-        monkeypatch.setattr(
-            import_module(module), function, lambda runs, *_, **__: seen.append(of(runs)) or ()
-        )
-    invoke(words[0], str(out), *words[1:])
-    assert seen == [450.0]
-
-
 def of(runs: Any) -> float:
     """The size of the map of a run, or of the first of several."""
     return float((runs[0] if isinstance(runs, list) else runs).world.site.map_size)
@@ -188,7 +153,7 @@ def of(runs: Any) -> float:
 
 def test_an_option_goes_before_the_file_and_is_said(tmp_path: Path) -> None:
     out = long_road(tmp_path)
-    result = CliRunner().invoke(app, ["check", str(out), "--map-size", "300"])
+    result = invoke("check", str(out), "--map-size", "300")
     assert result.exit_code == 1
     assert "--map-size goes before the 450 of the file" in result.stdout
     assert "the map runs from 0 to 300 m" in result.stdout
@@ -199,7 +164,7 @@ def test_an_option_goes_before_the_file_and_is_said(tmp_path: Path) -> None:
 def test_the_file_goes_before_the_configuration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = long_road(tmp_path)
     monkeypatch.setenv("ROADGPT_MAP_SIZE", "200")
-    result = CliRunner().invoke(app, ["check", str(out)])
+    result = invoke("check", str(out))
     assert result.exit_code == 0
     assert "the 450 of the file goes before --map-size of the configuration" in result.stdout
 
@@ -216,7 +181,7 @@ def test_the_file_goes_before_the_configuration(tmp_path: Path, monkeypatch: pyt
 def test_a_world_that_is_none_is_refused(tmp_path: Path, world: object, sentence: str) -> None:
     out = long_road(tmp_path)
     out.write_text(json.dumps(json.loads(out.read_text()) | {"world": world}))
-    result = CliRunner().invoke(app, ["check", str(out)])
+    result = invoke("check", str(out))
     assert result.exit_code == 2
     assert sentence in result.stderr
 
@@ -244,29 +209,13 @@ def test_the_coordinates_of_the_file_are_those_here_plus_the_origin(
         assert f"add ({origin[0]:.0f}, {origin[1]:.0f}) m for its place in the file" in told
 
 
-def test_a_place_in_a_national_grid_can_be_kept(tmp_path: Path) -> None:
-    path = file(tmp_path, element(691_000.25, 5_335_900.5, 1.1, 120))
-    assert invoke("import", str(path), "--keep-place", "--out", str(tmp_path / "kept.json")).exit_code == 0
-    assert read_road(tmp_path / "kept.json").at(0.0)[:2].tolist() == [691_000.25, 5_335_900.5]
-
-
-@pytest.mark.parametrize(
-    ("length", "word"), [(7, "too short to be driven"), (15, "a road is longer than 20 m")]
-)
-def test_a_road_too_short_for_a_test_says_so_when_it_is_imported(
-    tmp_path: Path, length: float, word: str
-) -> None:
-    path = file(tmp_path, element(0, 0, 0, length))
-    assert word in invoke("import", str(path), "--out", str(tmp_path / "short.json")).stderr
-
-
 @pytest.mark.parametrize(("x", "size"), [(300, 450.0), (20, 250.0), (-20, 250.0)])
 def test_a_road_that_keeps_its_place_gets_a_map_that_has_it(tmp_path: Path, x: float, size: float) -> None:
     path = file(tmp_path, element(x, 60, 0, 120))
     told = invoke("import", str(path), "--keep-place", "--out", str(tmp_path / "kept.json")).stderr
     assert json.loads((tmp_path / "kept.json").read_text())["world"]["map_size"] == size
     assert ("its place is off the map" in told) == (x < 0)
-    assert (CliRunner().invoke(app, ["check", str(tmp_path / "kept.json")]).exit_code == 0) == (x > 0)
+    assert (invoke("check", str(tmp_path / "kept.json")).exit_code == 0) == (x > 0)
 
 
 POINTS = [[20 + 5 * n, 60 + 20 * math.sin(n / 6)] for n in range(30)]
@@ -283,10 +232,7 @@ TESTS = {
 
 @pytest.mark.parametrize("kind", TESTS)
 @pytest.mark.parametrize("form", ["one", "list of one", "list", "lines"])
-def test_tests_of_others_are_imported_one_by_one(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str, form: str
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_tests_of_others_are_imported_one_by_one(kind: str, form: str) -> None:
     test, other = TESTS[kind], {"road_points": [[y, x] for x, y in POINTS]}
     content = {
         "one": json.dumps(test),
@@ -310,8 +256,7 @@ def test_tests_of_others_are_imported_one_by_one(
         assert "roadgpt import" in invoke("check", str(path)).stderr
 
 
-def test_a_bad_test_of_a_list_costs_only_itself(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_a_bad_test_of_a_list_costs_only_itself() -> None:
     Path("tests.json").write_text(
         json.dumps([{"road_points": NAMED}, {"road_points": [[1, 1]]}, {"road_points": POINTS}])
     )
@@ -319,16 +264,6 @@ def test_a_bad_test_of_a_list_costs_only_itself(tmp_path: Path, monkeypatch: pyt
     assert result.exit_code == 2
     assert sorted(path.name for path in Path("tests").iterdir()) == ["1.json", "3.json"]
     assert "tests.json (road 2): " in result.stderr
-
-
-def test_a_list_of_lists_of_points_is_a_list_of_roads(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("two.json").write_text(json.dumps([POINTS, NAMED]))
-    invoke("import", "two.json")
-    one, other = (read_road(Path("two", f"{n}.json")) for n in (1, 2))
-    assert one.to_json() == other.to_json()
 
 
 @pytest.mark.parametrize("file", ["one.json", "lines.jsonl"])
@@ -356,16 +291,13 @@ def test_files_that_know_no_map_get_one_that_holds_them(tmp_path: Path, name: st
     path = file(tmp_path, element(300, 60, 0, 120)).rename(tmp_path / name)
     if name == "far.csv":
         path.write_text("x,y\n" + "\n".join(f"{300 + 4 * n},60" for n in range(31)))
-    result = CliRunner().invoke(app, ["check", str(path)])
+    result = invoke("check", str(path))
     assert result.exit_code == 0, result.output
     assert "its map is 450 m wide" in result.stdout
-    assert CliRunner().invoke(app, ["check", str(path), "--map-size", "250"]).exit_code == 1
+    assert invoke("check", str(path), "--map-size", "250").exit_code == 1
 
 
-def test_the_test_of_a_road_on_a_larger_map_states_its_size(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_the_test_of_a_road_on_a_larger_map_states_its_size() -> None:
     for words, size in (("straight len=100", None), ("straight len=700", 1000)):
         run = invoke(
             "run", "--plan", words, "--no-drive", "--no-plot", "--map-size", str(size or 250), "--out", words
@@ -376,29 +308,7 @@ def test_the_test_of_a_road_on_a_larger_map_states_its_size(
         assert invoke("check", f"{words}/test.0001.json").exit_code == 0
 
 
-def test_python_knows_the_world_of_a_file(tmp_path: Path) -> None:
-    source = read_source(long_road(tmp_path))
-    world = World().changed(**source.world)
-    assert (world.site.map_size, world.site.friction) == (450, 0.3)
-    assert prove(source.blueprint, world=world, setup=Setup(drives=False)).outcome == "VALID"
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "sentence"),
-    [
-        ("a.json", json.dumps({"starting_point": [0, 0, 0], "theta": 0, "road_segment1": {
-            "distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0}}),
-            "is a file of RoadGPT, which needs no import"),
-        ("a.json", json.dumps({"start": [0, 0, 0], "pieces": [[40, 0, 0]], "height": 0, "stations": [0, 40],
-                               "grades": [0, 0]}), "is a file of RoadGPT, which needs no import"),
-        ("a.net.xml", "<net/>", "a file of SUMO: it begins with <net>"),
-        ("a.osm", "<osm/>", "a file of Lanelet2 or OpenStreetMap"),
-        ("a.xml", "<commonRoad/>", "a file of CommonRoad"),
-        ("a.xosc", "<OpenSCENARIO/>", "not OpenDRIVE: it begins with <OpenSCENARIO>"),
-        ("a.json", "{}", "it holds no road"),
-        ("a.jsonl", "{}\n{", "is not valid JSON"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("name", "content", "sentence"), rows(__file__, "no_roads_of_others"))
 def test_what_is_no_road_of_others_is_named(tmp_path: Path, name: str, content: str, sentence: str) -> None:
     path = tmp_path / name
     path.write_text(content)
@@ -407,33 +317,10 @@ def test_what_is_no_road_of_others_is_named(tmp_path: Path, name: str, content: 
     assert sentence in result.stderr
 
 
-def test_columns_and_heights_that_are_not_used_are_told(tmp_path: Path) -> None:
-    table = tmp_path / "table.csv"
-    table.write_text("s_m,x_m,y_m,lane_width_m\n" + "\n".join(f"0,{x},{y},3" for x, y in POINTS))
-    result = invoke("import", str(table), "--out", str(tmp_path / "a.json"))
-    assert "its columns s_m, lane_width_m are not used" in result.stderr
-    mixed = [{"sequenceNumber": n, "x": x, "y": y} for n, (x, y) in enumerate(POINTS)]
-    (tmp_path / "b.json").write_text(json.dumps({"road_points": mixed[::-1], "nodes": POINTS}))
-    told = invoke("import", str(tmp_path / "b.json"), "--out", str(tmp_path / "c.json")).stderr
-    assert "its points are sorted by sequenceNumber" in told
-
-
 def test_the_road_of_a_run_keeps_the_map_of_the_run(tmp_path: Path) -> None:
     run = tmp_path / "runs"
-    made = CliRunner().invoke(
-        app,
-        [
-            "run",
-            "a straight road of 500 metres",
-            "--friction",
-            "0.5",
-            "--no-drive",
-            "--no-plot",
-            "--out",
-            str(run),
-        ],
-    )
-    assert made.exit_code == 0, made.output
+    words = ("run", "a straight road of 500 metres", "--friction", "0.5", "--no-drive", "--no-plot")
+    assert invoke(*words, "--out", run).exit_code == 0
     assert invoke("check", str(run / "runs/0001")).exit_code == 0
     assert invoke("check", str(run / "runs/0001/design.json")).exit_code == 0
     assert read_source(run / "runs/0001").world["friction"] == 0.5

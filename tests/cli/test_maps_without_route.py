@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
 
-from roadgpt.cli import app
+from command_line import invoke
+from rows import rows
 
 MAP: dict[str, Any] = {
     "node1": {"at": [20, 80, 0], "kind": "end"},
@@ -22,17 +22,10 @@ NO_ROUTE = "this map has no route; give it one"
 
 
 @pytest.fixture(autouse=True)
-def in_a_folder_with_maps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def in_a_folder_with_maps() -> None:
     maps = {"map.json": MAP, "empty.json": {**MAP, "route": []}, "routed.json": ROUTED}
     for name, data in maps.items():
         Path(name).write_text(json.dumps(data))
-
-
-def invoke(*args: str) -> Result:
-    done = CliRunner().invoke(app, args)
-    assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
-    return done
 
 
 @pytest.mark.parametrize("name", ["map", "empty"])
@@ -75,14 +68,7 @@ def test_check_says_that_there_is_no_route() -> None:
     assert row["length_m"] is None
 
 
-@pytest.mark.parametrize(
-    ("command", "done_with_it"),
-    [
-        (["drive", "map.json"], "driven"),
-        (["film", "map.json", "--out", "f.mp4"], "filmed"),
-        (["compare", "routed.json", "map.json", "--no-plot"], "compared"),
-    ],
-)
+@pytest.mark.parametrize(("command", "done_with_it"), rows(__file__, "what_needs_a_route"))
 def test_what_needs_a_route_is_refused_in_one_sentence(command: list[str], done_with_it: str) -> None:
     done = invoke(*command)
     assert done.exit_code == 2
@@ -91,34 +77,11 @@ def test_what_needs_a_route_is_refused_in_one_sentence(command: list[str], done_
     assert re.search(wanted, line)
 
 
-def test_view_shows_a_map_without_a_lane_to_drive() -> None:
-    for name in ("map", "routed"):
-        assert invoke("view", f"{name}.json", "--out", f"{name}.html").exit_code == 0
-        pictures = invoke("view", f"{name}.json", "--format", "svg", "--out", "plots").stdout.split()
-        assert len(pictures) == (1 if name == "map" else 3)
-    page, routed = (Path(f"{name}.html").read_text() for name in ("map", "routed"))
-    assert '"hasRoute":false' in page
-    assert '"hasRoute":true' in routed
-    assert "no route; height and curvature are those of the first road of the map" in page
-    drawn, driven = (Path(f"plots/{name}/birds_eye.svg").read_text() for name in ("map", "routed"))
-    assert "lane of the route" in driven
-    assert "lane of the route" not in drawn
-
-
 TOO_NARROW = {**MAP, "node2": {**MAP["node2"], "kerb": 90}}
 
 
 @pytest.mark.parametrize(
-    "command",
-    [
-        ["check", "bad.json"],
-        ["drive", "bad.json"],
-        ["view", "bad.json"],
-        ["view", "bad.json", "--format", "svg"],
-        ["export", "bad.json", "--to", "opendrive"],
-        ["compare", "bad.json", "routed.json"],
-    ],
-    ids=lambda command: " ".join(command),
+    "command", rows(__file__, "commands_for_a_bad_file"), ids=lambda command: " ".join(command)
 )
 @pytest.mark.parametrize(
     ("data", "wanted"),
@@ -134,11 +97,3 @@ def test_what_is_wrong_names_the_file_once(command: list[str], data: Any, wanted
     assert done.exit_code == 2
     assert re.search(rf"bad\.json: ({wanted})", done.output)
     assert done.output.count("bad.json") == 1
-
-
-def test_each_of_several_files_has_its_name_once_in_what_is_wrong_with_it() -> None:
-    Path("bad.json").write_text(json.dumps(TOO_NARROW))
-    rows = [
-        json.loads(line) for line in invoke("check", "--json", "bad.json", "map.json").stdout.splitlines()
-    ]
-    assert re.match(r"bad\.json: nodes 1 and 2 are", rows[0]["description"])

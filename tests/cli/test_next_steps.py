@@ -7,21 +7,14 @@ import shlex
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 
-from roadgpt.cli import app
-from roadgpt.cli.next_steps import HEAD, WithoutFailure, next_steps
+from command_line import roadgpt
+from roadgpt.cli.repeat_commands import HEAD, WithoutFailure, next_steps
 from roadgpt.road import Limits, Site, World
 from roadgpt.run import Request
 
 WORDS = ("turn x2", "--reader", "plan", "--seed", "5")
 REQUEST = Request(words="a road", seed=3)
-
-
-def roadgpt(*words: object) -> Result:
-    result = CliRunner().invoke(app, [str(word) for word in words], prog_name="roadgpt")
-    assert result.exit_code == 0, result.output
-    return result
 
 
 def commands(said: str) -> list[list[str]]:
@@ -30,11 +23,6 @@ def commands(said: str) -> list[list[str]]:
     found = [shlex.split(line) for line in lines if line.startswith("    roadgpt ")]
     assert all(words[0] == "roadgpt" for words in found)
     return [words[1:] for words in found]
-
-
-@pytest.fixture(autouse=True)
-def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
 
 
 @pytest.mark.usefixtures("no_workers")
@@ -82,7 +70,7 @@ def test_a_campaign_without_failures_says_what_to_try(tmp_path: Path) -> None:
     assert all(words[0] == "campaign" and "--driver" in words for words in found)
     assert found[-1][found[-1].index("--goal") + 1] == "hardest"
     assert all(words[words.index("--goal") + 1] == "failures" for words in found[:-1])
-    assert commands(roadgpt("status", out).stdout) == found
+    assert commands(roadgpt("show", "--progress", out).stdout) == found
     assert commands(roadgpt("show", out).stdout) == found
     for number, words in enumerate(found[:2]):
         few = [*words]
@@ -91,13 +79,6 @@ def test_a_campaign_without_failures_says_what_to_try(tmp_path: Path) -> None:
     roadgpt("report", out)
     with (out / "tables" / "next.csv").open(newline="") as file:
         assert [shlex.split(row["command"])[1:] for row in csv.DictReader(file)] == found
-
-
-def test_nothing_is_said_where_a_road_failed_or_few_were_driven() -> None:
-    assert HEAD not in roadgpt("run", *WORDS, "-n", 5, "--no-plot", "--friction", 0.3).stdout
-    assert HEAD not in roadgpt("run", *WORDS, "-n", 2, "--no-plot").stdout
-    assert HEAD not in roadgpt("run", *WORDS, "-n", 5, "--no-plot", "--no-drive").stdout
-    assert roadgpt("run", *WORDS, "-n", 5, "--no-plot", "--quiet").stdout == ""
 
 
 def test_what_is_set_already_is_not_proposed_again() -> None:

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 from roadgpt import plugins
 from roadgpt.cli import app
-from roadgpt.cli.commands import config, doctor
+from roadgpt.cli.commands import set_up
 from roadgpt.errors import PartError
 
 
@@ -26,7 +26,7 @@ def test_a_part_that_cannot_be_loaded_is_listed_with_the_reason(monkeypatch: pyt
         raise PartError(f"the {name} lacks a library")
 
     monkeypatch.setattr(plugins, "find", find)
-    found = config.installed()
+    found = set_up.installed()
     assert not any(part.works for part in found)
     assert found[0].about.endswith("lacks a library")
     result = CliRunner().invoke(app, ["doctor"])
@@ -34,20 +34,9 @@ def test_a_part_that_cannot_be_loaded_is_listed_with_the_reason(monkeypatch: pyt
     assert "PROBLEM" in result.stdout
 
 
-def test_the_first_sentence_may_span_lines() -> None:
-    class LongSentence:
-        """Drives as a
-        person does. And more.
-
-        Much more.
-        """
-
-    assert config._first_sentence(LongSentence) == "Drives as a person does"
-
-
 def test_what_parts_say_has_no_marks_of_documentation() -> None:
     """Nor a formula: the line is for people who choose a part by it."""
-    assert [part.name for part in config.installed() if "`" in part.about or "*" in part.about] == []
+    assert [part.name for part in set_up.installed() if "`" in part.about or "*" in part.about] == []
 
 
 def test_doctor_finds_this_installation_well() -> None:
@@ -58,11 +47,3 @@ def test_doctor_finds_this_installation_well() -> None:
     looks = json.loads(CliRunner().invoke(app, ["doctor", "--json"]).stdout)
     assert {"roadgpt", "Python", "numba", "test drive"} <= {look["about"] for look in looks}
     assert all(look["is_fine"] for look in looks)
-
-
-def test_doctor_survives_what_it_finds(monkeypatch: pytest.MonkeyPatch) -> None:
-    def look() -> str:
-        raise OSError("the disk is full")
-
-    assert doctor._tried("disk", look) == doctor.CheckResult("disk", False, "OSError: the disk is full")
-    assert not doctor._library("no-such-library").is_fine

@@ -9,7 +9,7 @@ from click.testing import CliRunner, Result
 from roadgpt.brief import Brief
 from roadgpt.brief.plan import read_plan
 from roadgpt.cli.app import app
-from roadgpt.cli.commands.run import understood
+from roadgpt.cli.commands.make import understood
 from roadgpt.road import World
 
 WORDS = "two left turns uphill, then a straight of 60 metres"
@@ -32,13 +32,6 @@ def test_json_holds_the_brief_and_how_sure_the_reader_is() -> None:
     brief = Brief.model_validate(data["brief"])
     assert brief.clauses == read_plan(PLAN).clauses
     assert 0 <= data["confidence"] <= 1
-
-
-def test_a_table_has_a_row_for_each_thing() -> None:
-    lines = _read(PLAN + " | len=200", "--table", "--reader", "plan").output.splitlines()
-    cells = [line.split(maxsplit=2) for line in lines[1:]]
-    assert cells[0] == ["what", "how"]
-    assert [cell[0] for cell in cells[1:]] == ["1", "2", "whole"]
 
 
 def test_a_table_speaks_plain_words() -> None:
@@ -74,25 +67,9 @@ def test_a_list_of_readings_gives_each_its_chance_and_warns_once(monkeypatch: py
     assert [int(line.split()[1]) for line in said[:2]] == [60, 40], "of readings one at most is meant"
 
 
-def test_vague_words_have_several_readings_and_the_same_ones_again() -> None:
-    many = [_read("some road with bends", "--alternatives", "4", "--json").output for _ in range(2)]
-    assert many[0] == many[1]
-    plans = [reading["plan"] for reading in json.loads(many[0])]
-    assert 2 <= len(plans) == len({*plans}) <= 4
-
-
 def test_a_plan_has_one_reading() -> None:
     done = _read("| turns=1..", "--alternatives", "3", "--reader", "plan", "--json")
     assert len(json.loads(done.output)) == 1
-
-
-def test_doubt_and_words_that_were_not_used_are_said() -> None:
-    brief = read_plan("turn x3")
-    assert "not sure" not in understood(brief, World(), World())
-    doubtful = brief.model_copy(update={"confidence": 0.4, "unused": ("purple",)})
-    told = understood(doubtful, World(), World())
-    assert "not used: 'purple'" in told
-    assert "perhaps not understood as meant (40 % sure)" in told
 
 
 def test_the_second_reading_is_shown_with_its_plan() -> None:
@@ -101,21 +78,3 @@ def test_the_second_reading_is_shown_with_its_plan() -> None:
     assert "it could also mean: a road with 2 turns, then a hairpin" in told
     assert "--plan 'turn x2; hairpin'" in told
     assert "also mean" not in understood(read_plan("turn x3"), World(), World())
-
-
-def test_json_says_whether_the_reading_is_sure() -> None:
-    found = json.loads(_read("| turns=1..", "--reader", "plan", "--json").output)
-    assert found["is_sure"] is True
-    assert found["other"] == ""
-
-
-def test_what_is_no_road_is_told() -> None:
-    done = _read("what time is it in Paris")
-    assert done.exception is not None
-    assert "road" in str(done.exception)
-
-
-def test_options_of_designers_are_none_of_reading() -> None:
-    for option in ("--repair", "--strategy"):
-        done = CliRunner().invoke(app, ["read", WORDS, option, "full"])
-        assert done.exit_code == 2

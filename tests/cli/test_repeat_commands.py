@@ -31,7 +31,7 @@ def parsed(line: str) -> click.Context:
     """What the command line makes of a line, in ``params``."""
     roadgpt, name, *rest = shlex.split(line)
     assert roadgpt == "roadgpt"
-    command = app.get_command(click.Context(app), name)
+    command = app.get_command(click.Context(app, **app.context_settings), name)
     assert command is not None
     return command.make_context(name, rest, click.Context(app, **app.context_settings))
 
@@ -114,7 +114,7 @@ def test_the_command_line_reads_from_the_lines_what_the_run_was_made_with(
 
 
 def test_the_defaults_of_the_options_are_those_of_world_and_setup() -> None:
-    with click.Context(app):
+    with click.Context(app, **app.context_settings):
         assert world_of({flag.field: flag.default for flag in WORLD}) == World()
     assert Setup(**{flag.field: flag.default for flag in SETUP}) == Setup()
     assert {flag.field for flag in SETUP} | {"drives", "chat"} == set(Setup.model_fields)
@@ -134,11 +134,3 @@ def test_a_campaign_tells_of_roads_that_cannot_be_read(
     lines = show(tmp_path).splitlines()
     assert "cannot be read" in lines[3]
     assert lines[-1] == "1 VALID, 1 unreadable; 1 of 3 still to be made"
-
-
-@pytest.mark.parametrize("name", ["run", "drive"])
-def test_every_flag_is_an_option_of_the_command_that_needs_it(name: str) -> None:
-    command = app.get_command(click.Context(app), name)
-    assert command is not None
-    options = {option for parameter in command.params for option in parameter.opts}
-    assert {flag.flag for flag in WORLD} <= options

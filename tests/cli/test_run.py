@@ -1,34 +1,26 @@
 """`roadgpt run`: what it says, what it writes, how it ends."""
 
-import csv
 import json
 import subprocess
 import sys
-from collections import Counter
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 from click.testing import CliRunner, Result
 
+import command_line
 from roadgpt.campaign import single_test
 from roadgpt.cli import app
 from roadgpt.drive.isolation import process
 from roadgpt.errors import DesignError
+from rows import rows
 
 WORDS = "an uphill road with 3 turns"
 
 
-@pytest.fixture(autouse=True)
-def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-
-
 def invoke(*words: str) -> Result:
-    result = CliRunner().invoke(app, ["run", *words], prog_name="roadgpt")
-    assert "Traceback" not in result.output
-    assert result.exit_code != 70, result.output
-    return result
+    return command_line.invoke("run", *words)
 
 
 def test_it_says_what_it_understood_before_the_first_road_and_ends_with_the_place_of_the_pictures() -> None:
@@ -47,37 +39,6 @@ def test_it_says_what_it_understood_before_the_first_road_and_ends_with_the_plac
         assert all(picture.read_bytes()[:4] == b"\x89PNG" for picture in pictures)
 
 
-def test_the_campaign_folder_has_what_the_competition_has() -> None:
-    result = invoke(WORDS, "-n", "2", "--seed", "7", "--out", "here", "--no-plot", "--json")
-    rows = [json.loads(line) for line in result.stdout.splitlines()]
-    assert [row["file"] for row in rows] == [str(Path("here", f"test.000{i}.json")) for i in (1, 2)]
-    for row in rows:
-        test = json.loads(Path(row["file"]).read_text())
-        assert test["test_outcome"] == row["test_outcome"]
-        assert row["is_valid"] is test["is_valid"] is True
-        assert row["seconds"] > 0
-        assert row["length_m"] > 20
-    with Path("here", "generation_stats.csv").open() as file:
-        (stats,) = csv.DictReader(file)
-    outcomes = Counter(row["test_outcome"] for row in rows)
-    counted = {"passed": "PASS", "failed": "FAIL", "in_error": "ERROR"}
-    assert {name: int(stats[f"test_{name}"]) for name in counted} == {
-        name: outcomes[outcome] for name, outcome in counted.items()
-    }
-    assert (stats["test_generated"], stats["test_valid"], stats["test_invalid"]) == ("2", "2", "0")
-    drives = [json.loads(Path(row["file"]).read_text())["execution_data"] for row in rows]
-    simulated = sum(records[-1][0] for records in drives)
-    assert float(stats["simulated_time_execution"]) == pytest.approx(simulated, abs=0.1)
-    spent = float(stats["real_time_generation"]) + float(stats["real_time_execution"])
-    assert spent == pytest.approx(sum(row["seconds"] for row in rows), abs=0.3)
-    with Path("here", "oob_stats.csv").open() as file:
-        (sides,) = csv.DictReader(file)
-    assert int(sides["total_oob"]) == int(sides["left_oob"]) + int(sides["right_oob"]) == outcomes["FAIL"]
-    with Path("here", "experiment_description.csv").open() as file:
-        (settings,) = csv.DictReader(file)
-    assert (settings["description"], settings["roads"], settings["seed"]) == (WORDS, "2", "7")
-
-
 def test_with_json_the_talk_goes_to_standard_error_and_with_quiet_nowhere() -> None:
     words = (WORDS, "--seed", "1", "--no-drive", "--no-plot")
     loud = invoke(*words, "--json")
@@ -88,16 +49,6 @@ def test_with_json_the_talk_goes_to_standard_error_and_with_quiet_nowhere() -> N
     assert (quiet.stdout, quiet.stderr, quiet.exit_code) == ("", "", 0)
 
 
-def test_the_same_seed_gives_the_same_files() -> None:
-    for out in ("first", "second"):
-        invoke(WORDS, "-n", "2", "--seed", "11", "--no-plot", "--quiet", "--out", out)
-    names = sorted(p.relative_to("first") for p in Path("first").rglob("*") if p.is_file())
-    assert any(name.suffix == ".npz" for name in names)
-    for name in names:
-        if name.name not in ("seconds.json", "generation_stats.csv"):  # they tell the time
-            assert Path("first", name).read_bytes() == Path("second", name).read_bytes(), name
-
-
 def test_without_a_seed_one_is_drawn_and_told() -> None:
     told = [invoke(WORDS, "--no-drive", "--no-plot").stdout.split("seed ")[1].split(",")[0] for _ in range(2)]
     assert told[0] != told[1]
@@ -105,18 +56,6 @@ def test_without_a_seed_one_is_drawn_and_told() -> None:
     assert again.exit_code == 0
     first = next(Path("roadgpt-runs").glob(f"*-{told[0]}"))
     assert (first / "test.0001.json").read_bytes() == Path("again", "test.0001.json").read_bytes()
-
-
-def test_no_drive_ends_as_valid() -> None:
-    result = invoke(WORDS, "--no-drive", "--no-plot", "--json")
-    (row,) = (json.loads(line) for line in result.stdout.splitlines())
-    assert (row["test_outcome"], row["max_oob"], row["margin_m"]) == ("VALID", None, None)
-
-
-def test_words_need_no_quotes() -> None:
-    result = invoke(*WORDS.split(), "--no-drive", "--no-plot")
-    assert result.exit_code == 0
-    assert "3 turns" in result.stdout
 
 
 @pytest.mark.parametrize(
@@ -140,30 +79,14 @@ def test_words_that_cannot_be_a_road_get_one_sentence(words: str) -> None:
     assert not Path("roadgpt-runs").exists()
 
 
-@pytest.mark.parametrize(
-    ("words", "options", "forward", "backward"),
-    [
-        ("straight len=60 | lanes=3 oneway", [], 3, 0),
-        ("turn right | lanes=2 against=1", [], 2, 1),
-        ("straight len=60 | lanes=3 oneway", ["--lanes", "1+1"], 1, 1),
-        ("straight len=60", [], 1, 1),
-    ],
-)
+@pytest.mark.parametrize(("words", "options", "forward", "backward"), rows(__file__, "lanes_asked_for"))
 def test_the_lanes_that_the_words_ask_for_are_built_unless_an_option_gives_others(
     words: str, options: list[str], forward: int, backward: int
 ) -> None:
     given = [
-        "--plan",
-        "--seed",
-        "3",
-        "--no-drive",
-        "--no-plot",
-        "--export",
-        "opendrive",
-        "--out",
-        "r",
+        "--plan", "--seed", "3", "--no-drive", "--no-plot", "--export", "opendrive", "--out", "r",
         *options,
-    ]
+    ]  # fmt: skip
     result = invoke(words, *given)
     assert result.exit_code == 0
     assert ("--lanes 1+1 is set and used" in result.output) == bool(options)
@@ -219,99 +142,12 @@ def test_nothing_that_could_be_designed_ends_with_3(monkeypatch: pytest.MonkeyPa
     assert not Path("here").exists()
 
 
-def test_one_road_that_could_not_be_designed_does_not_stop_the_others(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    honest = single_test.perform
-
-    def sometimes(words, seed, world, setup, index, *rest):  # type: ignore[no-untyped-def]
-        if index == 2:
-            raise DesignError("no road fits; ask for less")
-        return honest(words, seed, world, setup, index, *rest)
-
-    monkeypatch.setattr(single_test, "perform", sometimes)
-    result = invoke(WORDS, "-n", "3", "--no-plot", "--no-drive", "--json")
-    assert result.exit_code == 0
-    outcomes = [json.loads(line)["test_outcome"] for line in result.stdout.splitlines()]
-    assert outcomes == ["VALID", "ERROR", "VALID"]
-
-
-def test_an_interrupted_campaign_is_complete_as_far_as_it_went_and_goes_on(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    honest = single_test.perform
-
-    def stopped(words, seed, world, setup, index, *rest):  # type: ignore[no-untyped-def]
-        if index == 3:
-            raise KeyboardInterrupt
-        return honest(words, seed, world, setup, index, *rest)
-
-    words = (WORDS, "-n", "4", "--seed", "3", "--no-drive", "--no-plot", "--out", "here")
-    with monkeypatch.context() as patched:
-        patched.setattr(single_test, "perform", stopped)
-        result = invoke(*words)
-    assert result.exit_code == 130
-    assert "roadgpt: stopped; 2 of 4 roads are finished and complete" in result.stderr
-    assert "\nroadgpt: continue with: roadgpt resume here\n" in result.stderr
-    assert "2 of 4 roads in " in result.stdout
-    tests = sorted(Path("here").glob("test.*.json"))
-    assert [test.name for test in tests] == ["test.0001.json", "test.0002.json"]
-    assert all(json.loads(test.read_text())["is_valid"] for test in tests)
-    before = [test.read_bytes() for test in tests]
-
-    result = invoke(*words)
-    assert result.exit_code == 0
-    assert "2 roads were finished before" in result.stdout
-    assert len([*Path("here").glob("test.*.json")]) == 4
-    assert [test.read_bytes() for test in tests] == before
-
-
-def test_a_finished_campaign_is_not_written_over() -> None:
-    words = (WORDS, "--seed", "3", "--no-drive", "--no-plot", "--out", "here")
-    assert invoke(*words).exit_code == 0
-    before = {path: path.read_bytes() for path in Path("here").rglob("*") if path.is_file()}
-    for other in (("a flat road", *words[1:]), (WORDS, "--seed", "4", *words[3:])):
-        result = invoke(*other)
-        assert result.exit_code == 2
-        assert "name another folder" in result.stderr
-        assert result.stdout == ""
-    for same in (words, (WORDS, *words[3:])):  # without --seed as well
-        result = invoke(*same)
-        assert result.exit_code == 0
-        assert "all 1 roads are there" in result.stdout
-        assert "1/1  VALID" in result.stdout
-    assert {path: path.read_bytes() for path in Path("here").rglob("*") if path.is_file()} == before
-
-
-def test_without_a_seed_an_interrupted_campaign_goes_on_with_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    def stopped(*_: object) -> None:
-        raise KeyboardInterrupt
-
-    words = (WORDS, "-n", "2", "--no-drive", "--no-plot", "--out", "here")
-    with monkeypatch.context() as patched:
-        patched.setattr(single_test, "perform", stopped)
-        first = invoke(*words)
-    assert first.exit_code == 130
-    again = invoke(*words)
-    assert again.exit_code == 0
-    seeds = [result.stdout.split("seed ")[1].split(",")[0] for result in (first, again)]
-    assert seeds[0] == seeds[1]
-    assert len([*Path("here").glob("test.*.json")]) == 2
-
-
 def test_what_was_understood_is_said_when_nothing_stands_in_the_way() -> None:
     for more in (("--driver", "nobody"), ("--driver", "none.py:Nobody"), ("--out", "taken")):
         Path("taken").mkdir(exist_ok=True)
         Path("taken", "thesis.docx").write_text("")
         result = invoke(WORDS, *more)
         assert (result.exit_code, result.stdout) == (2, "")
-
-
-def test_lines_name_the_test_and_not_its_folder() -> None:
-    result = invoke(WORDS, "--seed", "1", "--no-drive", "--no-plot", "--out", "a-folder")
-    (line,) = [line for line in result.stdout.splitlines() if line.startswith("1/1")]
-    assert line.endswith("  test.0001.json")
-    assert "a-folder" not in line
 
 
 def test_a_driver_that_prints_spoils_no_json(
@@ -338,26 +174,6 @@ def test_a_driver_that_prints_spoils_no_json(
     assert "steering" in warned
 
 
-def test_show_tells_of_a_run_and_of_its_campaign() -> None:
-    invoke(WORDS, "--seed", "7", "--no-plot", "--out", "here")
-    for place in ("here", "here/runs/0001", "here/test.0001.json"):
-        result = CliRunner().invoke(app, ["show", place])
-        assert result.exit_code == 0
-        assert WORDS in result.stdout
-    again = next(line for line in result.stdout.splitlines() if "roadgpt drive" in line)
-    assert "runs/0001/road.json" in again
-
-
-def test_show_of_a_campaign_tells_the_cause_of_a_failure() -> None:
-    Path("asleep.py").write_text(
-        "from roadgpt.drive import Command\n\n\nclass Asleep:\n    def steer(self, view):\n"
-        "        return Command(0.0, throttle=0.3 if view.speed < 8 else 0.0)\n"
-    )
-    invoke(WORDS, "--driver", "asleep.py:Asleep", "--no-plot", "--out", "here", "--seed", "7")
-    shown = CliRunner().invoke(app, ["show", "here"]).stdout
-    assert "FAIL (out of lane)" in shown
-
-
 @pytest.mark.parametrize("command", ["drive", "check"])
 def test_the_folder_of_a_campaign_stands_for_its_roads(command: str) -> None:
     invoke(WORDS, "-n", "2", "--seed", "7", "--no-drive", "--no-plot", "--out", "here")
@@ -370,7 +186,7 @@ def test_the_folder_of_a_campaign_stands_for_its_roads(command: str) -> None:
 
 def test_pictures_of_a_campaign_of_one_road_are_of_that_road_and_of_more_are_refused() -> None:
     invoke(WORDS, "--seed", "7", "--no-drive", "--no-plot", "--out", "one")
-    assert CliRunner().invoke(app, ["plot", "one"]).exit_code == 0
+    assert CliRunner().invoke(app, ["view", "--format", "png", "one"]).exit_code == 0
     assert CliRunner().invoke(app, ["view", "one"]).exit_code == 0
     invoke(WORDS, "-n", "2", "--seed", "7", "--no-drive", "--no-plot", "--out", "two")
     for command in (["view", "--format", "png"], ["view"]):
@@ -380,10 +196,3 @@ def test_pictures_of_a_campaign_of_one_road_are_of_that_road_and_of_more_are_ref
             result.stderr
             == "roadgpt: two holds 2 roads; name one, as two/1, or say --worst, --faults or --failures\n"
         )
-
-
-def test_show_of_a_file_that_is_no_test_names_it() -> None:
-    Path("points.json").write_text("[[1, 2]]")
-    result = CliRunner().invoke(app, ["show", "points.json"])
-    assert result.exit_code == 2
-    assert "points.json belongs to no run; give a folder like DIR/runs/0001" in result.stderr

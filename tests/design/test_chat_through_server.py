@@ -79,10 +79,3 @@ def test_a_model_that_fails_costs_one_road_and_nothing_of_those_before(
     assert [run.road is not None for run in runs] == [True, False, True]
     assert runs[1].outcome == "ERROR"
     assert len(list((tmp_path / "c" / "runs").iterdir())) == 3
-
-
-def test_it_takes_responses_as_well(stub: StubServer) -> None:
-    stub.play(says(GOOD))
-    run = perform(BRIEF, seed=3, setup=setup(stub, api="responses"))
-    assert run.design is not None
-    assert stub.requests[0].path.endswith("/responses")

@@ -11,6 +11,7 @@ from roadgpt.check.measures import Measures, measure
 from roadgpt.design.edit import edit
 from roadgpt.errors import EditError, IdleEditError
 from roadgpt.road import Design, Segment, World, build
+from tables import rows
 
 PARTS = [(30, 0), (26, 50), (45, 0), (30, -60), (40, 0), (32, 70), (50, 0)]
 ROAD = Design(
@@ -23,53 +24,12 @@ ROAD = Design(
         for d, t in PARTS
     ),
 )
-OPPOSITES = [
-    ("road: length +50", "road: length less"),
-    ("road: length x1.2", "road: length -20"),
-    ("turn 2: radius =20", "turn 2: radius =35"),
-    ("turn 2: angle more", "turn 2: angle less"),
-    ("turn 2: side left", "turn 2: side right"),
-    ("turn 2: side other", "turn 2: side left"),
-    ("turn 1: slope up", "turn 1: slope down"),
-    ("turn 1: slope flat", "turn 1: slope down =3"),
-    ("road: slope up", "road: slope down"),
-    ("road: slope more", "road: slope less"),
-    ("straight 1: length 40..", "straight 1: length ..30"),
-    ("straight 1: length =50", "straight 1: length ..40"),
-    ("turn 2: shape sharp", "turn 2: shape gentle"),
-    ("turn 1,-1: swap", "turn 1,3: swap"),
-]
-COMPATIBLE = [
-    ("turn 2: angle more", "turn 2: radius less"),
-    ("turn 2: angle less", "turn 2: radius less"),
-    ("turn 2: angle -15", "turn 2: radius less"),
-    ("turn 2: angle -15", "turn 2: radius +10"),
-    ("turn 1: angle +15", "turn 1: radius +8"),
-    ("turn 1: side right", "turn 1: angle =70"),
-    ("turn 1: side right", "turn 1: radius =60"),
-    ("turn 1: angle =70", "turn 1: angle 60.."),
-    ("turn 1: angle less", "turn 1: radius 20.."),
-    ("turn 3: shape gentle", "turn 3: angle ..60"),
-    ("turn 3: shape hairpin", "turn 3: radius =20"),
-    ("turn 2: angle more", "turn 3: angle less"),
-    ("straight 2: length 20..", "straight 2: length ..30"),
-    ("road: slope down", "road: slope =5"),
-    ("turn 2: radius less", "turn 2: radius 15.."),
-    ("turn 1: slope up =4", "turn 2: slope down =4"),
-    ("road half1: slope up =4", "road half2: slope down =4"),
-]
+OPPOSITES = rows(__file__, "opposites")
+COMPATIBLE = rows(__file__, "compatible")
 
 
 def after(plan: str) -> Design:
     return edit(ROAD, read_change_plan(plan), World()).design
-
-
-def contradiction(plan: str) -> bool:
-    try:
-        after(plan)
-    except EditError as error:
-        return "contradict each other" in str(error)
-    return False
 
 
 @pytest.mark.parametrize(("one", "other"), OPPOSITES)
@@ -128,20 +88,6 @@ def test_a_wish_without_a_number_goes_no_further_than_a_limit() -> None:
     assert now[0::2] == pytest.approx(was[0::2], rel=0.02)
 
 
-def test_of_several_things_one_that_is_at_the_limit_stays() -> None:
-    was = radii(ROAD)
-    assert was == pytest.approx([22.3, 21.5, 19.6], abs=0.1)
-    now = radii(after("turn all: radius less; turn all: radius 19.5.."))
-    assert now == pytest.approx([19.5] * 3, rel=0.04)
-
-
-def test_a_limit_at_the_present_value_leaves_no_room_for_a_wish() -> None:
-    radius = measure(build(ROAD).centreline()).turns[1].radius
-    for limit in (round(radius - 0.2, 1), round(radius + 1, 1)):
-        with pytest.raises(EditError, match=r"need requests of their own|cannot be done"):
-            after(f"turn 2: radius less; turn 2: radius {limit}..")
-
-
 def test_what_would_undo_itself_is_done_once() -> None:
     once, twice = (
         measure(build(after(plan)).centreline()).turns
@@ -160,13 +106,6 @@ def test_a_part_keeps_its_own_wish(plans: str) -> None:
     before, now = (measure(build(design).centreline()).turns for design in (ROAD, after(plans)))
     more = [turn.degrees - was.degrees for turn, was in zip(now, before, strict=True)]
     assert more == pytest.approx([10, 20, 10], abs=2.5)
-
-
-def test_a_limit_holds_for_its_parts_as_well() -> None:
-    turns = measure(build(after("turn all: radius 28..; turn 2: radius more")).centreline()).turns
-    was = measure(build(ROAD).centreline()).turns
-    assert min(turn.radius for turn in turns) >= 27
-    assert turns[1].radius > was[1].radius
 
 
 SIZES = ["more", "less", "=30", "=60", "40..", "..35"]

@@ -12,6 +12,7 @@ from roadgpt.design import draft
 from roadgpt.design.edit import Edited, edit
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Segment, World, build
+from tables import rows
 
 WORLD = World()
 STRAIGHT = draft(read_plan("straight flat len=240"), WORLD, seed=1)
@@ -66,26 +67,6 @@ def test_so_many_metres_of_a_straight_have_a_slope_of_their_own(
     assert check.inspect(build(after), None, WORLD) == ()
 
 
-def test_what_changed_is_told_of_the_stretch() -> None:
-    told = edited(STRAIGHT, "end len=80: slope down =5").changes
-    length = build(STRAIGHT).length
-    before = grades(STRAIGHT, 1 - 80 / length, 1.0).mean()
-    assert told[0].startswith(f"from {length - 80:.0f} to {length:.0f} m: grade {before:+.1f} -> -4.")
-
-
-def test_both_halves_of_a_straight_change_at_once() -> None:
-    after = edited(STRAIGHT, "road half1: slope up =5; road half2: slope down =5").design
-    assert grades(after, 0.0, 0.3) == pytest.approx(5, abs=0.05)
-    assert grades(after, 0.7, 1.0) == pytest.approx(-5, abs=0.05)
-
-
-def test_a_stretch_does_not_end_within_a_transition() -> None:
-    first = turns(LISTED)[0]
-    made = edited(LISTED, f"start len={first.start + 8:.0f}: slope up =4")
-    assert turns(made.design)[0].grade < 1.5
-    assert grades(made.design, 0.0, 30 / build(LISTED).length) == pytest.approx(4, abs=0.05)
-
-
 BENT = draft(
     read_plan(
         "straight len=40; turn left deg=107 r=18; straight len=30; turn right deg=116 r=37; straight len=45 "
@@ -113,16 +94,6 @@ def test_a_stretch_ends_within_an_arc_and_the_line_of_the_road_stays(station: in
     assert check.inspect(after, None, WORLD) == ()
 
 
-def test_an_arc_is_cut_twice() -> None:
-    after = build(edited(BENT, "road between(start len=135, start len=175): slope down =5").design)
-    found = measure(after.centreline())
-    assert [turn.side for turn in found.turns] == ["left", "right"]
-    assert float(after.at(175.0)[2]) - float(after.at(135.0)[2]) == pytest.approx(
-        -2.0, abs=0.5
-    )  # parabolas reach in
-    assert float(after.at(after.length)[2]) - float(after.at(0.0)[2]) == pytest.approx(-2.0, abs=0.1)
-
-
 def test_a_stretch_that_ends_amid_a_long_turn_is_refused() -> None:
     turn = Segment(distance=61.09, direction="left", turn_degrees=70.0, radius=50.0)
     design = Design(
@@ -140,17 +111,7 @@ def test_a_stretch_that_ends_amid_a_long_turn_is_refused() -> None:
 
 @pytest.mark.parametrize(
     ("plan", "complaint"),
-    [
-        ("end len=900: slope down", r"the road is only \d+ m long, not 900 m"),
-        ("end len=50: remove", "is a distance, and only its slope or its climb can be changed"),
-        ("end len=50: length +20", "is a distance, and only its slope or its climb can be changed"),
-        ("straight: x3", "only all turns, or those of a side or a kind, can be counted"),
-        ("straight 2: at_end", "moves a straight; only turns can be moved"),
-        ("turn 1: before(turn 1)", "moves a turn next to itself"),
-        ("turn: x5", "is so already"),
-        ("turn: x..6", "is so already"),
-        ("turn 1: at_start", "is so already"),
-    ],
+    rows(__file__, "what_cannot_be_is_said_in_a_sentence"),
 )
 def test_what_cannot_be_is_said_in_a_sentence(plan: str, complaint: str) -> None:
     with pytest.raises(EditError, match=complaint):
@@ -215,17 +176,6 @@ def test_a_word_for_steepness_is_a_range_of_grades(plan: str, low: float, high: 
     assert low <= feature.grade <= high
 
 
-def test_a_whole_road_is_as_steep_as_the_word_says() -> None:
-    for word, low, high in (("gently_up", 1.8, 5.0), ("steeply_up", 7.5, 15.0)):
-        found = grades(edited(WINDING, f"road: slope {word}").design, 0.1, 0.9)
-        assert low <= found.min() <= found.max() <= high
-
-
-def test_something_new_is_as_steep_as_the_word_says() -> None:
-    after = edited(LISTED, "add straight steeply_up len=50 at_end").design
-    assert grades(after, 1 - 12 / build(after).length, 1.0) == pytest.approx(9.5, abs=1.5)
-
-
 @pytest.mark.parametrize(("kind", "sign"), [("crest", 1), ("dip", -1)])
 def test_a_crest_or_a_dip_lies_where_it_is_asked_for(kind: str, sign: int) -> None:
     made = edited(STRAIGHT, f"add {kind} at_middle")
@@ -267,57 +217,11 @@ def test_a_hill_that_cannot_be_added_is_refused(plan: str, complaint: str) -> No
 
 @pytest.mark.parametrize(
     ("plan", "complaint"),
-    [
-        ("turn: x-3", "gives no number of turns"),
-        ("turn 1,2: x2", "only all turns, or those of a side or a kind, can be counted"),
-        ("turn longest: x1", "only all turns, or those of a side or a kind, can be counted"),
-        ("turn before(turn 3): x4", "only all turns, or those of a side or a kind, can be counted"),
-        ("turn: x4; turn 1: remove", "need requests of their own"),
-        ("turn left: x3; turn: x4", "need requests of their own"),
-        ("turn 1: between(turn 4, turn 2)", "names its places the other way round"),
-        ("turn 1: between(turn 2, turn 1)", "moves a turn next to itself"),
-        ("start len=0.4: climb =1", "too short for a slope; name 5 m or more"),
-        ("start len=0: slope up", "too short for a slope"),
-        ("end len=-50: slope up", "is no distance"),
-        ("end len=80 up: slope =5", "is a distance, which stands alone"),
-        ("road len=80: slope down =5", "write start len=80 or end len=80"),
-        ("road but(end len=80): slope up =4", "is a distance, which cannot name a place"),
-        ("turn after(start len=50): remove", "is a distance, which cannot name a place"),
-        ("road after(straight -1): climb =3", "there is no road at"),
-        ("add crest on(straight 1,2)", "names no single straight"),
-        ("add crest on(turn 2)", "names no single straight"),
-        ("add crest between(turn 1, turn 3)", "names 2 straights"),
-        ("add crest between(turn 3, turn 2)", "names no straights"),
-        ("add crest len=60 pct=8 at_middle", "write only where it is to be"),
-        ("start: climb +5", "does not say which part climbs"),
-    ],
+    rows(__file__, "what_would_be_done_in_part_or_at_another_place_is_refused"),
 )
 def test_what_would_be_done_in_part_or_at_another_place_is_refused(plan: str, complaint: str) -> None:
     with pytest.raises(EditError, match=complaint):
         edited(LISTED if "straight -1" in plan or "turn 3)" in plan else WINDING, plan)
-
-
-@pytest.mark.parametrize(
-    ("plan", "order"),
-    [
-        ("turn 3: at_start; turn 1: at_end", (2, 1, 3, 4, 0)),
-        ("turn 1,2: swap; turn 3,4: swap", (1, 0, 3, 2, 4)),
-        ("turn 1,3: swap; turn 1: at_end", (2, 1, 3, 4, 0)),
-    ],
-)
-def test_several_moves_add_up(plan: str, order: tuple[int, ...]) -> None:
-    before, after = turns(WINDING), turns(edited(WINDING, plan).design)
-    assert [turn.degrees for turn in after] == pytest.approx([before[i].degrees for i in order], abs=6)
-
-
-def test_a_slope_keeps_the_side_of_its_stretch() -> None:
-    hill = edited(STRAIGHT, "road half1: slope up =7; road half2: slope down =3").design
-    assert grades(edited(hill, "end len=60: slope =5").design, 0.93, 1.0) == pytest.approx(-5, abs=0.2)
-
-
-def test_stations_are_those_of_the_road_before() -> None:
-    after = edited(LISTED, "straight 1: length +40; end len=30: slope down =5").design
-    assert grades(after, 1 - 8 / build(after).length, 1.0) == pytest.approx(-5, abs=0.7)
 
 
 def test_limits_of_a_stretch_concern_its_own_slopes() -> None:
@@ -325,23 +229,3 @@ def test_limits_of_a_stretch_concern_its_own_slopes() -> None:
     assert edited(ridge, "end len=80: slope ..2").design != ridge
     with pytest.raises(EditError, match="is so already"):
         edited(ridge, "end len=80: slope ..6")
-
-
-def test_no_climb_at_all_is_a_climb() -> None:
-    rising = edited(STRAIGHT, "road: slope up =5").design
-    assert abs(grades(edited(rising, "road: climb x0").design, 0.1, 0.9)).max() < 0.2
-
-
-def test_the_second_half_behind_a_turn_is_both() -> None:
-    before = turns(WINDING)
-    after = turns(edited(WINDING, "road half2 after(turn 4): radius x0.8").design)
-    ratios = [new.radius / old.radius for old, new in zip(before, after, strict=True)]
-    assert ratios == pytest.approx([1, 1, 1, 1, 0.8], rel=0.02)
-
-
-def test_the_turns_of_a_road_alternate_whatever_lies_between_them() -> None:
-    before = draft(
-        read_plan("turn left; straight len=40; turn left; straight len=40; turn left"), WORLD, seed=1
-    )
-    after = edited(before, "road: alternate").design
-    assert [turn.side for turn in turns(after)] == ["left", "right", "left"]

@@ -6,7 +6,7 @@ from edit_truth import roads
 from roadgpt.brief.change import read_request
 from roadgpt.design.edit import edit
 from roadgpt.errors import EditError
-from roadgpt.road import Site, World
+from roadgpt.road import World
 
 ROAD = roads()["r01"]
 DRY = World()
@@ -44,13 +44,6 @@ def test_a_surface_that_may_be_denied_stays_and_is_named(words: str) -> None:
     made = edit(ROAD, words, DRY)
     assert made.world == DRY
     assert "wet" in made.unused
-
-
-def test_a_surface_that_is_there_already_changes_nothing() -> None:
-    wet = World(site=Site(friction=WET))
-    with pytest.raises(EditError, match=r"friction is 0\.6 already"):
-        edit(ROAD, "make it wet", wet)
-    assert edit(ROAD, "make the second turn sharper and make it wet", wet).world.site.friction == WET
 
 
 def test_messages_about_words_have_no_syntax_of_plans() -> None:

@@ -13,7 +13,7 @@ from roadgpt.brief.ranges import Range
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.fit import Look, Requirements, fit
-from roadgpt.design.road_elements import RoadElements, elements_on_road, joined, numbered
+from roadgpt.design.road_elements import RoadElements, elements_on_road
 from roadgpt.road import Design, World, build
 
 WORLD = World()
@@ -87,27 +87,3 @@ def test_a_length_of_the_road_is_made_by_the_elements_that_are_free() -> None:
     assert build(after.design).length == pytest.approx(found.length + 12, abs=3.5)
     pairs = zip(design.segments, after.design.segments, strict=True)
     assert {i for i, (one, other) in enumerate(pairs) if one != other} <= set(straight.members)
-
-
-def test_with_everything_frozen_only_the_place_may_change() -> None:
-    design = draft(Brief(), WORLD, seed=3)
-    moved = design.model_copy(update={"starting_point": (400.0, 400.0, design.starting_point[2])})
-    elements, _ = elements_on_road(moved)
-    needs = Requirements(WORLD, FREE, before=moved)
-    after = fit(moved, elements, needs, {element.name for element in elements})
-    assert after.design.segments == design.segments
-    assert after.objection == ""
-
-
-def test_an_objection_says_what_is_measured_and_what_was_asked() -> None:
-    design = draft(Brief(), WORLD, seed=4)
-    after = fitted(design, "turn 1", Feature("turn", "turn", radius=Range(2, 4)))
-    assert "asked for 2 to 4 m" in after.objection
-
-
-def test_numbered_elements_name_their_segments() -> None:
-    design = draft(Brief(), WORLD, seed=6)
-    elements, _ = elements_on_road(design)
-    turned = numbered(tuple(reversed(elements)))
-    segments = joined(turned)
-    assert all(segments[i] == s for e in turned for i, s in zip(e.members, e.segments, strict=True))

@@ -85,13 +85,3 @@ def test_a_loop_does_not_keep_clear() -> None:
     loop = [Element(60.0), turn_element(270, 1, 20, 5, None), Element(60.0)]
     assert not keeps_clear(walk(loop), World(), with_shoulders=False)
     assert keeps_clear(walk([Element(60.0), turn_element(170, 1, 20, 5, None), Element(60.0)]), World(), True)
-
-
-def test_headings_are_free_where_there_is_room_and_diagonal_where_there_is_little() -> None:
-    rng = np.random.default_rng(1)
-    short, long = walk([Element(100.0)]), walk([Element(320.0)])
-    octants = {int(place(short, World(), rng).theta // 45) for _ in range(100)}
-    assert octants == set(range(8))
-    thetas = np.array([place(long, World(), rng).theta for _ in range(20)])
-    assert (np.abs(thetas % 90 - 45) < 10).all()
-    assert place(walk([Element(400.0)]), World(), rng) is None

@@ -2,13 +2,11 @@
 
 import pytest
 
-from roadgpt.brief.normal import normal, with_like_numbers
 from roadgpt.brief.outline import outline
-from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.plan import read_plan
 from roadgpt.check.measures import Measures, measure
 from roadgpt.check.rules.promises import complaints
 from roadgpt.design import draft
-from roadgpt.errors import BriefError
 from roadgpt.road import Design, Segment, World, build
 
 WORLD = World()
@@ -75,21 +73,6 @@ def test_other_wishes_are_met_by_like_turns(line: str, degrees: tuple[int, int] 
     assert spread(gaps) < 1.2
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        "| alike turns=4 ends(hairpin)",
-        "| alike turns=4 starts(turn sharp) ends(turn gentle)",
-        "turn x2; straight; turn x2 | alike len=500",
-        "hairpin; straight; hairpin | alike len=500",
-        "straight | alike hills=2",
-        "u_turn | alike turning=..300",
-    ],
-)
-def test_what_has_nothing_to_be_like_is_left_free(line: str) -> None:
-    assert measured(line, 1).length > 50
-
-
 @pytest.mark.parametrize("seed", [1, 2])
 def test_named_straights_are_equally_long(seed: int) -> None:
     found = measured("straight; hairpin; straight | alike len=400", seed)
@@ -99,33 +82,6 @@ def test_named_straights_are_equally_long(seed: int) -> None:
     found = measured("straight len=91.4; turn left deg=70 r=40; straight flat | alike", seed)
     assert found.gaps[0][0].length == pytest.approx(91.4, rel=0.1)
     assert found.gaps[-1][-1].length == pytest.approx(91.4, rel=0.1)
-
-
-def test_groups_that_words_tell_apart_may_differ() -> None:
-    found = measured("turn x2 left gentle; turn x2 right sharp | alike", 4)
-    one, two, three, four = found.turns
-    assert abs(one.degrees - two.degrees) < 3
-    assert abs(three.degrees - four.degrees) < 3
-    assert one.radius > 1.2 * three.radius
-
-
-def test_one_number_is_that_of_all_and_two_are_not() -> None:
-    filled = with_like_numbers(read_plan("turn left deg=90 r=15; straight len=50; turn; straight | alike"))
-    assert plan(filled) == "turn left deg=90 r=15; straight len=50; turn deg=90 r=15; straight len=50 | alike"
-    for line in ("turn r=20; turn r=30; turn | alike", "turn r=20; turn", "turn r=20; turn sharp | alike"):
-        assert with_like_numbers(read_plan(line)) == read_plan(line)
-    assert normal(read_plan("turn r=20; turn | alike")) == normal(read_plan("turn x2 r=20 | alike"))
-
-
-def test_an_older_plan_has_it_beside_the_road_and_a_route_still_does() -> None:
-    assert read_plan("turn x3 | beside(wet, alike)") == read_plan("turn x3 | alike beside(wet)")
-    assert read_plan("turn x3 | beside(alike)") == read_plan("turn x3 | alike")
-    assert read_plan("turn // crossroads left || beside(alike)").beside == ("alike",)
-    for twice in ("turn x3 | alike beside(alike)", "turn x3 | beside(wet, alike) beside(alike)"):
-        with pytest.raises(BriefError, match="gives alike twice; give it once"):
-            read_plan(twice)
-    with pytest.raises(BriefError, match="no word 'alike'"):
-        read_plan("turn alike")
 
 
 def bend(side: int, degrees: float, radius: float) -> Segment:
@@ -162,13 +118,3 @@ def test_a_road_whose_parts_differ_is_told(parts: tuple[float, ...], line: str, 
     found = measure(build(design).sample().points)
     told = [each.sentence for each in complaints(found, outline(read_plan(line)))]
     assert any(says in sentence for sentence in told) if says else told == []
-
-
-def test_turns_that_follow_each_other_without_a_straight_are_not_evenly_spaced() -> None:
-    bends = (bend(1, 40, 30.0), bend(-1, 40, 30.0), straight(60), bend(1, 40, 30.0))
-    design = Design(
-        starting_point=(60.0, 60.0, 0.0), theta=0.0, segments=(straight(40), *bends, straight(40))
-    )
-    found = measure(build(design).sample().points)
-    told = [each.sentence for each in complaints(found, outline(read_plan("turn x3 | alike")))]
-    assert any("straights alike, they have 0 to" in sentence for sentence in told)

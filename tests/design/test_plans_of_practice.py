@@ -6,13 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from roadgpt.brief.plan import read_plan
 from roadgpt.brief.words import LARGEST_MAP
-from roadgpt.design.road_search import DraftSearch
-from roadgpt.design.variety import Shapes
 from roadgpt.errors import BriefError
 from roadgpt.network import Route
-from roadgpt.road import Site, World
+from roadgpt.road import World
 from roadgpt.road.road import MOST_CONTROL_POINTS, control_stations
 from roadgpt.run import Run, Setup, brief_of, perform
 
@@ -38,14 +35,6 @@ def test_a_plan_of_practice_is_built_and_passes_its_own_check(number: int) -> No
     assert not run.findings
 
 
-def test_there_are_200_different_plans_from_50_m_to_30_km_with_up_to_8_junctions() -> None:
-    assert len({row["plan"] for row in ROWS}) == len(ROWS) == 200
-    briefs = [read_plan(row["plan"]) for row in ROWS]
-    assert max(len(brief.junctions) for brief in briefs) >= 8
-    lengths = [brief.length.lo for brief in briefs if brief.length and brief.length.lo]
-    assert (min(lengths), max(lengths)) == (50, 30_000)
-
-
 def test_a_route_over_two_ramps_goes_over_both() -> None:
     route = designed("| motorway // diverge ramp // | motorway // diverge ramp").road
     assert isinstance(route, Route)
@@ -58,18 +47,6 @@ def test_the_map_grows_beyond_what_it_once_could_be_and_no_road_is_longer_than_5
     assert 10_000 < run.road.length / 2**0.5 < run.world.site.map_size <= LARGEST_MAP == 40_000
     with pytest.raises(BriefError, match=r"a straight of 60000 m|no road is longer than 50000 m"):
         designed("straight 60000")
-
-
-def test_roads_are_grown_where_every_draft_as_a_whole_is_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    def too_large(search: DraftSearch, haste: float) -> None:
-        search.failed["too large"] += 1
-
-    monkeypatch.setattr(DraftSearch, "_plan", too_large)
-    monkeypatch.setattr(DraftSearch, "_is_hopeless", lambda _: True)
-    world, rng = World(site=Site(map_size=2000)), np.random.default_rng(1)
-    search = DraftSearch(read_plan("turn x12 alternating | len=3000"), world, Shapes().of(()), rng)
-    assert 2700 <= search.run()[1].length <= 3300
-    assert search.failed["too large"] == 16  # no more than these are composed
 
 
 def test_control_points_of_a_long_road_are_dense_in_its_tight_bend() -> None:

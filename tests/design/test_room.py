@@ -17,7 +17,7 @@ from roadgpt.design import draft
 from roadgpt.design.room import map_remark, world_for
 from roadgpt.errors import RoadGPTError
 from roadgpt.network import NetworkDesign, build_route
-from roadgpt.road import Limits, Site, World, build
+from roadgpt.road import Site, World, build
 from roadgpt.run import Setup, brief_of, perform
 
 PLAN = Setup(reader="plan", drives=False)
@@ -63,23 +63,12 @@ def test_the_map_grows_for_a_route_until_it_has_room(line: str) -> None:
     assert inspect(route, brief, world) == ()
 
 
-def test_it_stays_where_there_is_room_for_a_route() -> None:
-    for line in ("t_junction left", "| len=80 // crossroads left lights // roundabout exit=3 // | up"):
-        assert world_for(read_plan(line), World()) == World()
-
-
 @pytest.mark.parametrize(
     "line", ["turn x3 | up", "straight len=300", "hairpin x4 | up climb=12", "winding | hard"]
 )
 def test_it_stays_where_there_is_room(line: str) -> None:
     assert world_for(read_plan(line), World()) == World()
     assert map_remark(Brief(), World(), World()) == ""
-
-
-def test_it_takes_the_surface_as_well() -> None:
-    world = world_for(read_plan("straight len=700 | beside(ice)"), World())
-    assert world.site.friction == 0.1
-    assert world.site.map_size > 250
 
 
 def test_the_reader_refuses_only_what_a_given_map_cannot_hold() -> None:
@@ -125,19 +114,3 @@ def test_a_map_that_was_given_is_kept(given: World) -> None:
     assert world_for(brief, given) == given
     with short_searches(), pytest.raises(RoadGPTError, match="--map-size"):
         perform(TOO_LARGE[1], 1, given, PLAN)
-
-
-def test_no_map_helps_against_slopes_that_change_too_fast() -> None:
-    brief = read_plan("straight steeply_up len=12; straight steeply_down len=12; straight steeply_up len=12")
-    with short_searches():
-        assert world_for(brief, World(limits=Limits(speed_limit=60))).site.map_size == 250
-
-
-def test_a_long_road_with_an_open_number_of_turns_gets_a_larger_map() -> None:
-    """On the largest map, more turns are drawn than fit into the length; a smaller one has room."""
-    brief = read_plan("| turns=8.. lefts=1.. rights=1.. len=1000")
-    found = world_for(brief, World())
-    assert 250 < found.site.map_size < 1000
-    for seed in range(6):
-        length = sum(segment.distance for segment in draft(brief, found, seed=seed).segments)
-        assert 900 < length < 1100

@@ -46,19 +46,6 @@ def test_the_direction_wins_over_the_sign_and_that_is_told() -> None:
     )
 
 
-def test_the_prompt_says_what_the_thesis_says() -> None:
-    _, _, chat = drafted(json.dumps(EXAMPLE))
-    text = chat.asked[0][0].text
-    facts = ("lane", "above 200", "-28", "15 %", "70 degrees", "road_segment1", "negative numbers", "x axis")
-    for said in facts:
-        assert said in text
-
-
-def test_it_builds_splines_and_is_asked_once_only() -> None:
-    assert ThesisDesigner.geometry == "spline"
-    assert ThesisDesigner.redrafts is False
-
-
 @pytest.mark.parametrize(
     "line",
     [

@@ -6,10 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.brief.model import Brief, exactly
-from roadgpt.design import variety
 from roadgpt.design.designers.planner import Planner
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, apart, apart_by_metres, nearest, shape_of
-from roadgpt.road import Design, World, build, read_design
+from roadgpt.road import Design, World, read_design
 
 
 def lines(seed: int, count: int) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -67,36 +66,6 @@ def test_a_campaign_never_repeats_itself() -> None:
         assert by_metres.min() > 5
 
 
-def test_even_straight_roads_go_on_being_found() -> None:
-    planner, earlier = Planner(), list[Design]()
-    brief = Brief(turns={"lo": 0, "hi": 0})
-    for seed in range(30):
-        earlier.append(planner.draft(brief, World(), (), earlier, seed))
-    lengths = sorted(build(design).length for design in earlier)
-    assert len({round(length, 1) for length in lengths}) == 30
-
-
-def test_shapes_are_remembered_by_design_and_do_not_depend_on_what_came_before() -> None:
-    planner = Planner()
-    designs = [planner.draft(Brief(), World(), (), (), seed) for seed in range(5)]
-    fresh, used = Shapes(), Shapes()
-    used.of(designs[::-1])
-    for one, other in zip(fresh.of(designs), used.of(designs), strict=True):
-        assert np.array_equal(one, other)
-
-
-def test_what_is_forgotten_is_let_go_and_the_row_is_not_grown_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    planner, shapes, grown = Planner(), Shapes(), list[Design]()
-    designs = [planner.draft(Brief(), World(), (), (), seed) for seed in range(8)]
-    monkeypatch.setattr(variety, "REMEMBERED", 3)
-    monkeypatch.setattr(variety, "build", lambda design: grown.append(design) or build(design))
-    shapes.of(designs[:7])
-    shapes.of(designs[5:7])  # the oldest five are forgotten
-    for one, other in zip(shapes.of(designs[5:]), Shapes().of(designs[5:]), strict=True):
-        assert np.array_equal(one, other)
-    assert grown == [*designs, *designs[5:]]  # of each one road, and those of the second opinion
-
-
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 10**6), st.booleans())
 def test_the_nearest_is_found_among_few_of_many(seed: int, by_metres: bool) -> None:
@@ -113,20 +82,6 @@ def test_the_nearest_is_found_among_few_of_many(seed: int, by_metres: bool) -> N
         assert found in known
     else:
         assert found == inf
-
-
-def test_a_row_that_grows_is_not_stacked_anew() -> None:
-    planner, shapes = Planner(), Shapes()
-    designs = [planner.draft(Brief(), World(), (), (), seed) for seed in range(6)]
-    three = shapes.of(designs[:3])
-    before = [column.copy() for column in three]
-    six = shapes.of(designs)
-    assert np.shares_memory(three.shares, six.shares)
-    shapes.of(designs[::-1])  # another row: what was given out stays as it was
-    for one, other in zip(three, before, strict=True):
-        assert np.array_equal(one, other)
-    for one, other in zip(six, Shapes().of(designs), strict=True):
-        assert np.array_equal(one, other)
 
 
 def test_a_resumed_campaign_goes_on_as_it_would_have() -> None:

@@ -3,9 +3,8 @@
 import pytest
 
 from roadgpt.brief.plan import read_plan
-from roadgpt.check.junction_measures import measured_junctions
+from roadgpt.check.network_measures import measured_junctions
 from roadgpt.design import draft
-from roadgpt.design.network_draft import room_for_network
 from roadgpt.errors import BriefError
 from roadgpt.network import build_route
 from roadgpt.road import World
@@ -33,7 +32,7 @@ def test_an_exit_with_a_direction_has_both(
 
 def test_the_exit_that_leads_back_is_the_last() -> None:
     assert measured("roundabout back exit=3", 1).arms == 3
-    with pytest.raises(BriefError, match="the last exit of a roundabout leads back, not exit 2 of 4"):
+    with pytest.raises(BriefError, match="no roundabout can be built as"):
         draft(read_plan("roundabout back exit=2 arms=4"), WORLD, seed=1)
 
 
@@ -45,13 +44,3 @@ def test_the_road_ends_at_a_t_junction_where_one_turns(take: str) -> None:
 def test_a_priority_road_may_go_on_at_a_t_junction() -> None:
     sides = [measured("t_junction left priority", seed).sides for seed in range(8)]
     assert any("straight" in each for each in sides)
-
-
-def test_maps_grow_for_the_usual_exit_with_traffic_on_the_left() -> None:
-    asked = "| lanes=2 against=2 motorway len=400 // diverge ramp side={} {}"
-    sizes = [
-        room_for_network(read_plan(asked.format(*each)), WORLD)
-        for each in (("right", ""), ("left", "|| left_hand"))
-    ]
-    assert sizes[0] == sizes[1]
-    assert sizes[0] is not None

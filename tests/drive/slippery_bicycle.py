@@ -5,7 +5,6 @@ and a friction ellipse, and none of the real simulator's code.
 """
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -104,20 +103,3 @@ def share_outside(t: float, psi: float, k: float, lane: float) -> float:
 
 
 GRID = (np.arange(40) + 0.5) / 40 - 0.5
-
-
-class Fixed:
-    """A driver that always answers the same."""
-
-    def __init__(self, steer: float = 0.0, throttle: float = 0.3, brake: float = 0.0) -> None:
-        self.command = Command(steer, throttle, brake)
-
-    def steer(self, view: View) -> Command:
-        return self.command
-
-
-class Says:
-    """A driver made of a function."""
-
-    def __init__(self, says: Callable[[View], Command]) -> None:
-        self.steer = says

@@ -8,23 +8,23 @@ import sys
 from pathlib import Path
 
 import roadgpt
-from roadgpt.drive.compiled import COMPILING
+from roadgpt.compiled import COMPILING
 
 CALLER = """
-import roadgpt.drive.compiled, roadgpt.scene.compiled
-from roadgpt.drive.simulators.mujoco.chassis_control import slip_valve
+import roadgpt.compiled
+from roadgpt.drive.simulators.mujoco.dynamics import slip_valve
 from roadgpt.scene.patterns import dashed
-from roadgpt.scene.surfaces import PERIOD
+from roadgpt.scene.shade import PERIOD
 
-@roadgpt.drive.compiled.compiled
+@roadgpt.compiled.compiled
 def valve():
     return slip_valve(0.5, 0.3, 0.1, 0.002)
 
-@roadgpt.scene.compiled.compiled
+@roadgpt.compiled.compiled
 def dashes():
     return dashed(7.0, 4.0, 12.0)
 
-@roadgpt.scene.compiled.compiled
+@roadgpt.compiled.compiled
 def period():
     return PERIOD
 
@@ -33,7 +33,7 @@ print(valve(), dashes(), period())
 START = "import logging, runpy; logging.getLogger('roadgpt').setLevel({level}); runpy.run_path({script!r})"
 CALLED = "valve", "dashes", "period"
 CHANGES = [
-    ("drive/simulators/mujoco/chassis_control.py", "rate = 20.0", "rate = 2.0"),
+    ("drive/simulators/mujoco/dynamics.py", "rate = 20.0", "rate = 2.0"),
     ("scene/patterns.py", "return whole * dash +", "return 1.0 +"),
     ("road/profile.py", "DASH, GAP = 4.0", "DASH, GAP = 5.0"),
 ]

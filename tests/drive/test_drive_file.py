@@ -3,7 +3,6 @@
 import contextlib
 import io
 import json
-import pickle
 
 import numpy as np
 import pytest
@@ -31,18 +30,6 @@ def test_a_saved_drive_comes_back(tmp_path):
         np.testing.assert_array_equal(back[name], drive[name])
 
 
-def test_same_content_same_bytes_and_other_content_other_bytes():
-    assert a_drive().to_bytes() == a_drive().to_bytes()
-    assert a_drive(7).to_bytes() != a_drive(8).to_bytes()
-
-
-def test_numpy_alone_can_read_it(tmp_path):
-    drive = a_drive()
-    (tmp_path / "drive.npz").write_bytes(drive.to_bytes())
-    with np.load(tmp_path / "drive.npz") as archive:
-        np.testing.assert_array_equal(archive["x"], drive["x"])
-
-
 def test_columns_cannot_be_written_and_do_not_share_memory():
     source = np.zeros(3)
     columns = Columns({"x": source})
@@ -50,13 +37,6 @@ def test_columns_cannot_be_written_and_do_not_share_memory():
     assert columns["x"][0] == 0.0
     with pytest.raises(ValueError, match="read-only"):
         columns["x"][0] = 1.0
-
-
-def test_a_drive_can_go_to_another_process():
-    back = pickle.loads(pickle.dumps(a_drive()))
-    np.testing.assert_array_equal(back["x"], a_drive()["x"])
-    with pytest.raises(ValueError, match="read-only"):
-        back["x"][0] = 1.0
 
 
 @pytest.mark.parametrize("content", [b"", b"no zip", b"PK\x03\x04 broken"])
@@ -135,14 +115,6 @@ def test_a_damaged_stream_or_an_unknown_compression_is_told_so(tmp_path, method)
     (tmp_path / "bad.npz").write_bytes(broken)
     with pytest.raises(UsageError, match="not a drive"):
         Drive.load(tmp_path / "bad.npz")
-
-
-def test_an_array_file_and_a_missing_file_are_told_so(tmp_path):
-    np.save(tmp_path / "array.npy", np.zeros(3))
-    with pytest.raises(UsageError, match="not a drive"):
-        Drive.load(tmp_path / "array.npy")
-    with pytest.raises(UsageError, match="no drive at"):
-        Drive.load(tmp_path / "missing.npz")
 
 
 def test_corners_are_the_box_turned_and_moved():

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.drive import View
-from roadgpt.drive.driving_line import DrivingLine, line_along, pedals, pursuit_curvature, stations
+from roadgpt.drive.driving_line import line_along, pursuit_curvature, stations
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import SLOWEST, DrivingLimits, plan_speed
@@ -83,19 +83,6 @@ def test_a_line_lies_where_the_road_says_and_heads_along_its_points() -> None:
     assert len(points) * line.step > road.length + 55
 
 
-def test_a_place_on_a_line_is_held_at_its_ends() -> None:
-    line = line_along(circle(50.0), 0.0)
-    assert line.place(-3.0) == (0, 0.0)
-    assert line.place(1.25) == (2, 0.5)
-    assert line.place(1e6) == (len(line.x) - 2, 1.0)
-
-
-@pytest.mark.parametrize(("radius", "grade"), [(20.0, 0.0), (40.0, 0.0), (30.0, 0.1), (30.0, -0.1)])
-def test_the_speed_of_a_circle(radius: float, grade: float) -> None:
-    plan = plan_speed(line_along(circle(radius, grade), 0.0), replace(LIMITS, traction=2.0, braking=2.0))
-    assert plan[100] == pytest.approx(math.sqrt(0.6 * 9.81 * math.cos(math.atan(grade)) * radius), rel=5e-3)
-
-
 def test_a_crest_takes_load_and_a_dip_gives_it() -> None:
     line = line_along(circle(40.0), 0.0)
     n = len(line.x)
@@ -156,22 +143,3 @@ def test_the_engine_bounds_the_forward_sweep() -> None:
     i = 300
     gained = (weak[i + 1] ** 2 - weak[i] ** 2) / 2 / line.step
     assert gained == pytest.approx(50.0 / weak[i], rel=0.01)
-
-
-def still(line: DrivingLine, v: float) -> list[float]:
-    return [v] * len(line.x)
-
-
-def test_pedals_hold_a_speed_against_slope_and_air() -> None:
-    flat, up, down = (line_along(road_of(Piece(100.0), grade=g), 0.0) for g in (0.0, 0.1, -0.1))
-    levels = [pedals(line, still(line, 15.0), 20.0, 15.0) for line in (down, flat, up)]
-    assert levels[0][0] == 0.0
-    assert levels[0][1] > 0.0
-    assert 0.0 < levels[1][0] < levels[2][0] < 0.5
-    assert levels[1][1] == levels[2][1] == 0.0
-
-
-def test_pedals_go_to_the_floor_and_no_further() -> None:
-    line = line_along(road_of(Piece(100.0)), 0.0)
-    assert pedals(line, still(line, 30.0), 20.0, 0.0) == (1.0, 0.0)
-    assert pedals(line, still(line, 1.0), 20.0, 30.0) == (0.0, 1.0)

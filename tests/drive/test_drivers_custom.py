@@ -10,6 +10,7 @@ from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.loading import load_driver
 from roadgpt.errors import PartError, UsageError
 from roadgpt.road import Road, World
+from tables import rows
 
 GOOD = """
 from dataclasses import dataclass
@@ -49,45 +50,9 @@ def test_a_name_of_the_shelf_drives() -> None:
         load_driver("refrence")
 
 
-def test_each_load_reads_the_file_anew(folder: Path) -> None:
-    file = folder / "fresh.py"
-    for number in (1, 22):
-        file.write_text(f"class D:\n    number = {number}\n    def steer(self, view): ...\n")
-        assert load_driver(f"{file}:D").number == number
-
-
 @pytest.mark.parametrize(
     ("text", "spec", "says"),
-    [
-        (None, "none.py:D", r"there is no file .*none\.py: check the path of your driver"),
-        (GOOD, "f.py:Mine", r"f\.py has no class 'Mine'; it has MyDriver, Other"),
-        (GOOD, "f.py", r"say which class of .*f\.py drives, like .*f\.py:MyDriver; it has MyDriver, Other"),
-        ("x = 1\n", "f.py", r"say which class of .*f\.py drives, like .*f\.py:MyDriver; it has none"),
-        (GOOD, "f.py:Other", r"f\.py:Other has no method steer\(self, view\): add it"),
-        ("x = 1\n", "f.py:x", r"f\.py:x has no method steer\(self, view\): add it"),
-        ("class D:\n  def steer(self, v:\n    pass\n", "f.py:D", r"f\.py, line 2: .*; correct the file"),
-        ("import nothing_of_that_name\n", "f.py:D", r"f\.py, line 1: ModuleNotFoundError: No module named"),
-        ("\n\n1 / 0\n", "f.py:D", r"f\.py, line 3: ZeroDivisionError: division by zero; correct the file"),
-        ("def f():\n    1 / 0\n\nf()\n", "f.py:D", r"f\.py, line 2: ZeroDivisionError"),
-        ("raise SystemExit(3)\n", "f.py:D", r"f\.py, line 1: SystemExit: 3; correct the file"),
-        (
-            "class D:\n  def __init__(self, a): ...\n  def steer(self, view): ...\n",
-            "f.py:D",
-            r"f\.py:D cannot be made without arguments: TypeError: .*'a'; give its parameters defaults",
-        ),
-        (
-            "class D:\n  def __init__(self): open('none at all')\n  def steer(self, view): ...\n",
-            "f.py:D",
-            r"f\.py:D cannot be made without arguments: FileNotFoundError",
-        ),
-        ("class D:\n  def steer(self): ...\n", "f.py:D", r"steer must take one argument, the view"),
-        (
-            "class D:\n  def steer(self, view, more): ...\n",
-            "f.py:D",
-            r"steer must take one argument, the view",
-        ),
-        ("class D:\n  steer = 3\n", "f.py:D", r"has no method steer\(self, view\): add it"),
-    ],
+    rows(__file__, "every_mistake_is_one_sentence"),
 )
 def test_every_mistake_is_one_sentence(folder: Path, text: str | None, spec: str, says: str) -> None:
     if text is not None:
@@ -96,13 +61,3 @@ def test_every_mistake_is_one_sentence(folder: Path, text: str | None, spec: str
         load_driver(f"{folder}/{spec}")
     assert "\n" not in str(caught.value)
     sys.modules.pop("neighbour", None)
-
-
-def test_a_file_that_cannot_be_run_leaves_nothing_behind(folder: Path) -> None:
-    before, paths = set(sys.modules), list(sys.path)
-    (folder / "broken.py").write_text("import neighbour\n1 / 0\n")
-    with pytest.raises(UsageError):
-        load_driver(f"{folder}/broken.py:D")
-    assert set(sys.modules) - before == {"neighbour"}
-    assert sys.path == paths
-    del sys.modules["neighbour"]

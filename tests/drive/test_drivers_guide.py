@@ -4,9 +4,10 @@ import re
 from pathlib import Path
 
 from drive.slippery_bicycle import SlipperyBicycle
+from road_parts import road_of
 from roadgpt.drive import View
 from roadgpt.drive.loading import load_driver
-from roadgpt.road import Design, Segment, World, build
+from roadgpt.road import World
 from roadgpt.verdict import judge
 
 GUIDE = Path(__file__).resolve().parents[2] / "docs" / "how-to" / "own-driver.md"
@@ -19,17 +20,8 @@ def test_the_driver_of_the_guide_keeps_its_lane(tmp_path: Path) -> None:
     assert len(lines) <= 15
     (spec,) = set(re.findall(r"--driver (\S+)", text))
     (tmp_path / spec.split(":")[0]).write_text(code)
-    bends = [(20.0, 60.0), (15.0, 0.0), (40.0, -69.0), (30.0, 0.0)]
-    segments = [
-        Segment(
-            distance=distance,
-            direction="left" if turn > 0 else "right" if turn < 0 else "straight",
-            turn_degrees=turn,
-            incline=6,
-        )
-        for distance, turn in [(25.0, 0.0), *bends]
-    ]
-    road = build(Design(starting_point=(20, 20, 0), theta=160, segments=tuple(segments)))
+    parts = [(25.0, 0.0), (20.0, 60.0), (15.0, 0.0), (40.0, -69.0), (30.0, 0.0)]
+    road = road_of(*[(distance, turn, 6) for distance, turn in parts])
     driver = load_driver(str(tmp_path / spec))
     verdict = judge(road, SlipperyBicycle().simulate(road, World(), driver, 0), World())
     assert verdict.kept, verdict.description

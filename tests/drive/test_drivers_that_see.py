@@ -1,6 +1,5 @@
 """The drivers of examples/vision: what they see, beside the camera's own geometry and slow sums."""
 
-import importlib.util
 import math
 import sys
 from collections.abc import Callable
@@ -12,11 +11,12 @@ import numpy as np
 import pytest
 from scipy.signal import correlate
 
-from roadgpt.drive import Drive, View, simulate
+from road_parts import road_of
+from roadgpt.drive import Drive, simulate
 from roadgpt.drive.camera_sensor import CameraSensor
 from roadgpt.drive.loading import load_driver
 from roadgpt.export.ego import CAR
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import Road, World
 from roadgpt.scene import Camera as Pinhole
 from roadgpt.scene import CameraPlacement, Pose
 from roadgpt.verdict import judge
@@ -31,20 +31,6 @@ def made(spec: str) -> Any:
 
 def module_of(spec: str) -> ModuleType:
     return sys.modules[type(made(spec)).__module__]
-
-
-def road_of(*parts: tuple[float, float, float]) -> Road:
-    """Of (length, degrees to the left, climb in percent)."""
-    segments = tuple(
-        Segment(
-            distance=distance,
-            direction="left" if turn > 0 else "right" if turn < 0 else "straight",
-            turn_degrees=turn,
-            incline=climb,
-        )
-        for distance, turn, climb in parts
-    )
-    return build(Design(starting_point=(60, 60, 0), theta=30, segments=segments))
 
 
 def pose(road: Road, s: float, t: float, turned: float) -> dict[str, float]:
@@ -71,24 +57,6 @@ def test_the_ground_lies_where_the_camera_sees_it() -> None:
         assert abs(ground.ahead[row, column] - x) < 0.012 * x * x
         assert abs(ground.aside[row, column] - y) < 0.012 * x * max(abs(y), 1.0)
         assert ground.is_near[row, column]
-
-
-@pytest.mark.parametrize("bend", [-0.07, -1e-4, 0.02, 0.06])
-def test_an_arc_is_the_curve_that_it_says(bend: float) -> None:
-    lane = module_of(DRIVERS[0]).LaneArc(aside=0.7, turned=0.2, bend=bend)
-    # the same curve by small steps
-    way, step = 12.0, 1e-3
-    heading = 0.2 + bend * (np.arange(int(way / step)) + 0.5) * step
-    x, y = np.cumsum(np.cos(heading)) * step, 0.7 + np.cumsum(np.sin(heading)) * step
-    assert lane.at(way) == pytest.approx((x[-1], y[-1]), abs=1e-3)
-    places = np.array([2000, 7000, 11000])
-    left = np.array([1.9, -1.9, 0.4])
-    px, py = x[places] - left * np.sin(heading[places]), y[places] + left * np.cos(heading[places])
-    off, around = lane.across(px, py)
-    assert off == pytest.approx(left, abs=2e-3)
-    assert around == pytest.approx(abs(bend) * step * places, abs=2e-3)
-    on = lane.moved(0.5, 0.0)
-    assert on.turned == pytest.approx(0.2 + 0.5 * bend)
 
 
 @pytest.mark.parametrize(
@@ -141,36 +109,6 @@ def test_it_keeps_the_lane_of_an_easy_road(spec: str, drives: Callable[[str], Dr
     assert np.abs(np.asarray(drive.columns["t"]) + 2.0).max() < 1.0
 
 
-@pytest.mark.parametrize("spec", DRIVERS)
-def test_it_looks_at_nothing_but_picture_and_speeds(spec: str) -> None:
-    road, world = road_of((60.0, 0.0, 0.0)), World()
-    driver = made(spec)
-    image = CameraSensor(driver.camera, road, world).see(pose(road, 10.0, -2.0, 0.0))
-    nothing: Any = None
-    blind = View(
-        time=math.nan, x=math.nan, y=math.nan, z=math.nan, heading=math.nan, speed=6.0, yaw_rate=0.01,
-        s=math.nan, t=math.nan, road=nothing, world=nothing, steer=math.nan, dt=0.02, vx=math.nan,
-        vy=math.nan, image=image,
-    )  # fmt: skip
-    driver.start(nothing, world, 0)
-    answers = [driver.steer(blind) for _ in range(3)]
-    assert all(math.isfinite(number) for answer in answers for number in answer)
-    assert abs(answers[0].steer) < 0.1
-
-
-@pytest.mark.parametrize("spec", DRIVERS)
-def test_its_speed_may_be_set(spec: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert made(spec).pace.speed_kmh == 25.0
-    monkeypatch.setenv("SPEED_KMH", "41.5")
-    driver = made(spec)
-    assert driver.pace.speed_kmh == 41.5
-    throttle, brake = driver.pace.pedals(speed=10.0, bend=0.0, limit=8.0)
-    assert throttle == 0.0
-    assert brake > 0.0
-    assert driver.pace.pedals(speed=10.0, bend=0.0)[0] > 0.0
-    assert driver.pace.pedals(speed=10.0, bend=0.06)[1] > 0.0  # 6 m/s^2 to the side would be too much
-
-
 def test_the_network_says_what_slow_sums_say() -> None:
     module = module_of(DRIVERS[1])
     assert module.WEIGHTS.stat().st_size < 300_000
@@ -188,19 +126,3 @@ def test_the_network_says_what_slow_sums_say() -> None:
         matrix, bias = weights[2 * layer : 2 * layer + 2]
         flat = (np.maximum(flat, 0) if layer > 5 else flat) @ matrix.T + bias
     assert module.answer(driver._weights, image) == pytest.approx(float(flat[0]), rel=1e-3, abs=1e-4)
-
-
-def test_the_network_that_is_trained_is_the_one_that_drives(monkeypatch: pytest.MonkeyPatch) -> None:
-    torch = pytest.importorskip("torch")
-    monkeypatch.syspath_prepend(str(FOLDER))
-    spec = importlib.util.spec_from_file_location("train_small_network", FOLDER / "train_small_network.py")
-    assert spec is not None
-    assert spec.loader is not None
-    train = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(train)
-    torch.manual_seed(3)
-    model = train.network()
-    image = np.random.default_rng(1).integers(0, 256, (66, 200, 3), np.uint8)
-    x = torch.from_numpy(image).permute(2, 0, 1)[None].float() / 127.5 - 1
-    told = train.answer(train.weights_of(model), image)
-    assert told == pytest.approx(float(model(x).detach()[0, 0]), rel=1e-3, abs=1e-5)

@@ -8,9 +8,8 @@ import shapely
 from network.random_designs import random_design
 from roadgpt.drive import Command, View, simulate
 from roadgpt.drive.sampled_road import locate_on, room_at, sample_road, stations_of
-from roadgpt.drive.simulators.mujoco.vehicle import Vehicle
 from roadgpt.network import Route, build_route, read_network_design
-from roadgpt.network.ground import windows
+from roadgpt.network.route import windows
 from roadgpt.road import CrossSection, World
 
 WORLD = World(section=CrossSection(shoulder=1.5))
@@ -84,38 +83,3 @@ def test_a_car_that_misses_the_turn_falls_behind_the_edge_and_not_before() -> No
     # it crossed the whole road behind the T: contact, 4 m to the node and beyond, shoulder
     assert drive["x"][last] + 1.36 == pytest.approx(area.bounds[2], abs=0.2)
     assert height[-1] < -1.0
-
-
-def test_a_car_that_goes_straight_over_crossroads_stays_on_their_arm() -> None:
-    design = {
-        "starting_point": [0, 0, 0],
-        "theta": 0,
-        "road_segment1": {"distance": 50, "direction": "straight", "incline": 0, "turn_degrees": 0},
-        "junction1": {
-            "after": 1, "kind": "crossroads", "take": "left", "kerb": 8,
-            "arms": [{"angle": -90}, {"angle": 0, "length": 20}, {"angle": 90}],
-        },
-        "road_segment2": {"distance": 50, "direction": "straight", "incline": 0, "turn_degrees": 0},
-    }  # fmt: skip
-    route = build_route(read_network_design(design)[0], WORLD).on_ground()
-    drive = simulate(route, WORLD, GoesStraight(), keep_driving=True)
-    height = drive["z"] - drive["z"][0]
-    on_arm = drive["x"] + 1.36 < 92.0  # 50 m, 30 m of junction, 12 m of the arm
-    assert drive["x"][on_arm].max() > 90
-    assert np.abs(height[on_arm]).max() < 0.1
-    assert drive.ended == "fell"  # behind the end of the arm
-    assert drive["x"][-1] < 99.9 + 1.5 + 8.0
-
-
-def test_the_ground_beside_the_lane_is_whole_where_a_junction_begins_and_ends() -> None:
-    route = build_route(read_network_design(random_design(0))[0], WORLD).on_ground()
-    profile = WORLD.profile_of(route)
-    for start in route.starts[1:-1]:
-        s = start + np.linspace(-0.6, 0.6, 25)
-        assert np.ptp(profile.rims(s).right) < 1.5
-        assert (profile.rims(s).left > 5.0).all() or (profile.rims(s).left < 3.0).all()
-
-
-def test_the_ground_ends_one_shoulder_behind_the_ends_of_the_route() -> None:
-    route = build_route(read_network_design(random_design(1))[0], WORLD).on_ground()
-    assert Vehicle.on(route, WORLD)._ground.beyond == pytest.approx(1.5)

@@ -12,7 +12,6 @@ from roadgpt.campaign.traces import read_traces, trace_of, write_traces
 from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, Handover, View, driver_of, simulate
 from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.errors import UsageError
 from roadgpt.road import Road, World
 from roadgpt.verdict import Verdict, judge
 
@@ -72,13 +71,6 @@ def test_a_failure_is_of_whoever_drove_there(handover: tuple[float, float], whos
     assert Verdict.from_json(json.loads(json.dumps(verdict.to_json()))) == verdict
 
 
-def test_a_drive_without_handovers_is_written_and_judged_as_before() -> None:
-    verdict = judge(STRAIGHT, by_hand((), [-2.0] * 9), WORLD)
-    assert (verdict.own_share, verdict.handed_to) == (None, None)
-    assert "drove" not in verdict.description
-    assert b"handovers" not in by_hand((), [-2.0] * 3).to_bytes()
-
-
 class Hands(Reference):
     name = "hands"
     handed_to: Any = None
@@ -112,25 +104,6 @@ def test_files_keep_the_handovers(tmp_path: Path) -> None:
     assert stored.shares == pytest.approx(drive.shares, abs=1e-4)
     steps = range(len(drive))
     assert [stored.handed_to(step) for step in steps] == [drive.handed_to(step) for step in steps]
-
-
-@pytest.mark.parametrize("told", [["x"], [[0, "soon", "he"]], [[0, 1]], [[0, float("inf"), "he"]], 3])
-def test_a_file_with_impossible_handovers_is_refused(tmp_path: Path, told: Any) -> None:
-    import io
-    import zipfile
-
-    data = by_hand((), [-2.0] * 3).to_bytes()
-    with zipfile.ZipFile(io.BytesIO(data)) as old, zipfile.ZipFile(tmp_path / "d.npz", "w") as new:
-        for name in old.namelist():
-            content = old.read(name)
-            if name == "header.npy":
-                header = json.loads(str(np.load(io.BytesIO(content))))
-                out = io.BytesIO()
-                np.save(out, np.array(json.dumps({**header, "handovers": told})))
-                content = out.getvalue()
-            new.writestr(name, content)
-    with pytest.raises(UsageError, match="is not a drive saved by this version"):
-        Drive.load(tmp_path / "d.npz")
 
 
 @pytest.mark.parametrize(

@@ -12,14 +12,12 @@ from roadgpt import plugins
 from roadgpt.brief.plan import read_plan
 from roadgpt.design import draft
 from roadgpt.design.room import world_for
-from roadgpt.drive import Command, Drive, JunctionAhead, View, simulate
+from roadgpt.drive import Drive, JunctionAhead, simulate
 from roadgpt.drive.driving_line import line_along, stations
 from roadgpt.drive.outlook import Outlook
-from roadgpt.drive.simulators.beamng import BeamngSimulator
-from roadgpt.drive.turning import StopSigns, highest_speeds, kept_in_lane, turning_speed
-from roadgpt.errors import UsageError
+from roadgpt.drive.turning import highest_speeds, kept_in_lane, turning_speed
 from roadgpt.network import Route, build_route, made_from, read_network_design
-from roadgpt.road import CrossSection, Limits, Road, World
+from roadgpt.road import Limits, Road, World
 from roadgpt.verdict import judge
 
 WORLD = World(limits=Limits(speed_limit=50 / 3.6))
@@ -76,57 +74,6 @@ def test_a_driver_sees_the_junctions_that_are_still_ahead() -> None:
     assert outlook.at(way.length)[1] == ()
 
 
-def test_exits_are_counted_as_drivers_do() -> None:
-    for kind, number, turn in (("crossroads", 1, -90), ("crossroads", 2, 0), ("t_junction", 2, 90)):
-        (ahead,) = Outlook(route({"kind": kind, "take": number}), WORLD).at(0.0)[1]
-        assert ahead.exit == number
-        assert math.degrees(ahead.turn) == pytest.approx(turn, abs=1e-6)
-    (back,) = Outlook(route({"kind": "roundabout", "take": 4, "radius": 16}), WORLD).at(0.0)[1]
-    assert back.exit == 4
-    assert abs(math.degrees(back.turn)) == pytest.approx(180)
-
-
-def test_on_a_single_road_a_driver_sees_no_junctions_but_its_lanes() -> None:
-    road = Road.through([[0, 0], [50, 0], [100, 0]])
-    assert Outlook(road, WORLD).at(50.0) == (None, (), 1, 0)
-    wide = World(section=CrossSection(lanes="3+1"))  # the car keeps to the rightmost lane
-    assert Outlook(wide.lay(road), wide).at(50.0) == (None, (), 3, 0)
-
-
-def test_a_view_of_sixteen_values_is_still_a_view() -> None:
-    given = (0.0,) * 9 + (None, WORLD) + (0.0,) * 4 + (None,)
-    view = View(*given)  # type: ignore[arg-type]
-    assert (view.route, view.junctions, view.lanes_left, view.lanes_right) == (None, (), 0, 0)
-
-
-class Watches:
-    """Drives like the reference, and keeps what it saw."""
-
-    def __init__(self) -> None:
-        self._own = plugins.find("drivers", "reference")()
-        self.seen: list[View] = []
-
-    def start(self, road: Road, world: World, seed: int) -> None:
-        self._own.start(road, world, seed)
-
-    def steer(self, view: View) -> Command:
-        self.seen.append(view)
-        command: Command = self._own.steer(view)
-        return command
-
-
-def test_views_follow_the_car() -> None:
-    way, driver = route(CROSS), Watches()
-    simulate(way, WORLD, driver)
-    first = driver.seen[0]
-    assert first.route is way
-    assert first.junctions[0].distance == pytest.approx(60 - first.s)
-    assert driver.seen[-1].junctions == ()
-    distances = [view.junctions[0].distance for view in driver.seen if view.junctions]
-    assert distances[-1] == 0.0
-    assert all(a >= b - 0.01 for a, b in pairwise(distances))
-
-
 FILE = """
 from roadgpt.drive import Command
 class Old:
@@ -149,8 +96,9 @@ def slowest_near(drive: Drive, station: float, reach: float) -> float:
     return float(drive["speed"][near].min())
 
 
-@pytest.mark.parametrize("name", ["beamng_like", "reference"])
-@pytest.mark.parametrize("length", [47.3, 50.0, 52.65])
+@pytest.mark.parametrize(
+    ("name", "length"), [("beamng_like", 47.3), ("reference", 50.0), ("reference", 52.65)]
+)
 def test_they_stop_wherever_the_line_is(name: str, length: float) -> None:
     way = route(CROSS, length=length)
     drive = simulate(way, WORLD, name)
@@ -182,16 +130,6 @@ def test_only_a_stop_sign_stops_them() -> None:
         assert slowest_near(drive, 60.0, 4.0) > 3.0
 
 
-def test_a_car_that_stands_too_early_rolls_up_to_the_line() -> None:
-    way = route(CROSS)
-    signs, brakes = StopSigns(way), Command(0.1, 0.0, 0.5)
-    view = View(0.0, 0, 0, 0, 0, 0.0, 0, 60 - 9.0, -2, way, WORLD, 0.0, 0.02, 0.0, 0.0)
-    assert signs.obeyed(view, brakes).throttle > 0
-    assert signs.obeyed(view, brakes).steer == 0.1
-    far = view._replace(s=30.0, speed=10.0)
-    assert signs.obeyed(far, brakes) is brakes
-
-
 def test_lines_in_junctions_keep_one_and_a_half_metres_from_the_edges() -> None:
     way = route({"kind": "crossroads", "take": "left"})
     s = np.linspace(0, way.length, 400)
@@ -217,8 +155,7 @@ def designed(plan: str, left_hand: bool = False) -> tuple[Route, World]:
     return made.on_ground(), world
 
 
-@pytest.mark.parametrize("arms", [3, 4, 5])
-@pytest.mark.parametrize("radius", [14, 16, 22, 32])
+@pytest.mark.parametrize(("arms", "radius"), [(3, 14), (4, 16), (5, 32)])
 def test_lines_through_roundabouts_have_no_kinks(arms: int, radius: int) -> None:
     for leave in range(1, arms + 1):
         way, world = designed(f"roundabout exit={leave} arms={arms} r={radius}", leave == 2)
@@ -228,7 +165,7 @@ def test_lines_through_roundabouts_have_no_kinks(arms: int, radius: int) -> None
         assert 1 / planned > 0.8 / connection  # its radius, against that of the tightest connection
 
 
-@pytest.mark.parametrize("leave", [1, 2, 3, 4])
+@pytest.mark.parametrize("leave", [1, 3])
 def test_they_do_not_crawl_through_a_ring_of_16_m(leave: int) -> None:
     way, world = designed(f"roundabout exit={leave} arms=4 r=16")
     (ring,) = way.passages
@@ -249,16 +186,3 @@ def test_speeds_before_a_junction_fall_no_faster_than_asked() -> None:
     assert max(slowing) == pytest.approx(3.4)
     assert all(gentle <= most for gentle, most in zip(eased, free, strict=True))
     assert min(eased) == min(free)
-
-
-@pytest.mark.parametrize("leave", [2, 3])
-def test_on_a_wet_road_beamng_like_brakes_in_time_for_a_ring(leave: int) -> None:
-    way, usual = designed(f"straight 150 // roundabout exit={leave} arms=4 r=16 // straight 60")
-    world = usual.changed(speed_limit=70 / 3.6, friction=0.6)
-    verdict = judge(way, simulate(way, world, "beamng_like"), world)
-    assert verdict.kept, verdict.description
-
-
-def test_beamng_refuses_routes_in_one_sentence() -> None:
-    with pytest.raises(UsageError, match=r"^this simulator cannot build junctions yet; [^.]*mujoco$"):
-        simulate(route(CROSS), WORLD, "reference", simulator=BeamngSimulator)  # type: ignore[arg-type]

@@ -1,28 +1,18 @@
 """The driver ``lane_centring``: what limits it, what it sees, and on which side it leaves its lane."""
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
 
 from drive.slippery_bicycle import SlipperyBicycle
+from road_parts import road_of
 from roadgpt.drive import Drive
 from roadgpt.drive.drivers.lane_centring import LaneCentring
-from roadgpt.road import Design, Limits, Road, Segment, World, build
+from roadgpt.road import Limits, Road, World
 from roadgpt.verdict import judge
 
 MIDDLE = -2.0  # m, the middle of the right lane of a usual road
-
-
-def road_of(*parts: tuple[float, float, float]) -> Road:
-    """Parts of length in metres, degrees (left positive), grade in percent."""
-    segments = []
-    for length, degrees, grade in parts:
-        turn: Any = {"direction": "left" if degrees > 0 else "right", "turn_degrees": degrees}
-        way = turn if degrees else {"direction": "straight"}
-        segments.append(Segment(distance=length, incline=grade, **way))
-    return build(Design(starting_point=(50, 50, 0), theta=20, segments=tuple(segments)))
 
 
 def bend(radius: float, degrees: float, before: float = 40.0) -> Road:
@@ -82,9 +72,3 @@ def test_it_leaves_its_lane_on_the_outside(hand: int, side: str) -> None:
     drive = driven(road, LaneCentring(strength=1.0))
     verdict = judge(road, drive, World())
     assert (verdict.outcome, verdict.side) == ("FAIL", side)
-
-
-def test_it_keeps_its_lane_where_its_steering_is_strong_enough() -> None:
-    for hand in (1, -1):
-        drive = driven(bend(60.0, hand * 100.0), LaneCentring())
-        assert np.abs(np.array(drive["t"]) - MIDDLE).max() < 0.5

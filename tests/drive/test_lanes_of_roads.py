@@ -9,9 +9,9 @@ import shapely
 from roadgpt.drive import simulate
 from roadgpt.drive.simulators.mujoco.vehicle import Vehicle
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
-from roadgpt.road import CrossSection, Limits, Road, Site, World
-from roadgpt.verdict import consult, judge
-from roadgpt.verdict.margin import margins
+from roadgpt.road import CrossSection, Road, World
+from roadgpt.verdict import judge
+from roadgpt.verdict.oracle import margins
 
 PIECES = (
     Piece(50, 0, 0),
@@ -88,17 +88,15 @@ class Wanders:
 
 
 @pytest.mark.parametrize("name", EVERY)
-@pytest.mark.parametrize("driver", ["reference", "pure_pursuit"])
-def test_cars_keep_to_the_middle_of_their_own_lane(name: str, driver: str) -> None:
+def test_cars_keep_to_the_middle_of_their_own_lane(name: str) -> None:
     world = EVERY[name]
-    drive = simulate(ROAD, world, driver)
+    drive = simulate(ROAD, world, "reference")
     assert drive.ended == "goal"
     off = drive["t"] + inner(world, drive["s"]) + width(world, drive["s"]) / 2
     assert abs(off[0]) < 0.02
-    if driver == "reference":
-        assert np.abs(off).max() < 0.35
-        assert drive.max_outside == 0.0
-        assert judge(world.lay(ROAD), drive, world).kept
+    assert np.abs(off).max() < 0.35
+    assert drive.max_outside == 0.0
+    assert judge(world.lay(ROAD), drive, world).kept
 
 
 @pytest.mark.parametrize("name", EVERY)
@@ -116,8 +114,7 @@ def test_the_share_outside_is_that_of_shapely(name: str) -> None:
     assert max(compared) > 0.1
 
 
-@pytest.mark.parametrize("name", EVERY)
-@pytest.mark.parametrize("tolerance", [0.05, 0.5, 0.95])
+@pytest.mark.parametrize(("name", "tolerance"), [*zip(EVERY, [0.05, 0.5, 0.95] * 3, strict=True)])
 def test_the_margin_is_the_way_to_the_failure(name: str, tolerance: float) -> None:
     """Shifts the box of the car across the road until shapely says that it fails."""
     world = EVERY[name].changed(oob_tolerance=tolerance)
@@ -151,15 +148,6 @@ def test_the_margin_is_the_way_to_the_failure(name: str, tolerance: float) -> No
                 low, high = (low, middle) if fails(side * middle) else (middle, high)
             ways.append(low)
         assert found[step] * math.cos(angle) == pytest.approx(min(ways), abs=0.01), (step, drive["s"][step])
-
-
-@pytest.mark.parametrize("name", EVERY)
-def test_the_distance_of_the_competition_is_that_to_the_middle(name: str) -> None:
-    world = EVERY[name]
-    drive = simulate(ROAD, world, "beamng_like", keep_driving=True)
-    half = width(world, drive["s"]) / 2
-    want = half - np.abs(drive["t"] + inner(world, drive["s"]) + half)
-    np.testing.assert_allclose(consult(world.lay(ROAD), drive, world).oob_distance, want, atol=1e-9)
 
 
 def test_the_next_lane_of_the_same_direction_is_outside() -> None:
@@ -204,18 +192,3 @@ def test_the_ground_ends_at_the_rim_of_its_own_side(world: World, left: float, r
         for _ in range(150):
             car.move(0.0, 0.0, 1.0)
         assert (not car.has_fallen and abs(car.see()["roll"]) < 0.02) == stays, t
-
-
-def test_the_likeness_of_beamng_keeps_off_both_edges_of_a_floating_one_way_road() -> None:
-    for hand in (1, -1):
-        plan = PieceCurve(0, 0, 0, (Piece(60, 0, 0), Piece(60, hand * 0.03, hand * 0.03), Piece(40, 0, 0)))
-        world = World(
-            site=Site(map_size=500),
-            section=CrossSection(lanes="1+0", lane_width=3.5, shoulder=0.0),
-            limits=Limits(speed_limit=12.0),
-        )
-        road = Road(plan, GradeProfile(0.0, (0.0, plan.length), (0.0, 0.0)))
-        drive = simulate(road, world, "beamng_like", keep_driving=True)
-        assert drive.ended == "goal"
-        assert drive["t"].max() < -0.85
-        assert drive["t"].min() > -3.5 + 0.85

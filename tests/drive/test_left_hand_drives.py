@@ -5,7 +5,6 @@ import pytest
 
 from network.mirrored import in_mirror
 from roadgpt.drive import driver_of, simulate
-from roadgpt.drive.outlook import Outlook
 from roadgpt.network import Route, build_route, read_network_design
 from roadgpt.road import World
 from roadgpt.verdict import judge
@@ -43,13 +42,3 @@ def test_a_drive_is_the_mirrored_drive(driver: str) -> None:
     assert [each.kind for each in verdicts[0].incidents or ()] == [
         each.kind for each in verdicts[1].incidents or ()
     ]
-
-
-def test_drivers_see_the_true_take_and_the_lanes_beside_them() -> None:
-    left, right = routes()
-    (_, (mine,), *beside), (_, (theirs,), *other) = (Outlook(each, WORLD).at(0.0) for each in (left, right))
-    assert mine.turn == pytest.approx(-theirs.turn)
-    assert mine.turn > 1
-    assert (mine.exit, mine.distance, mine.control) == (theirs.exit, pytest.approx(theirs.distance), "stop")
-    assert beside == other[::-1]
-    assert sum(beside) == 2

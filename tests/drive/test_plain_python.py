@@ -1,31 +1,26 @@
 """Where the inner loop cannot be compiled, the car drives in plain Python, and tells only those who ask."""
 
-import ctypes
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
 from functools import cache
-from importlib.abc import MetaPathFinder
 from pathlib import Path
 
 import pytest
-
-from roadgpt.drive import compiled
 
 SCRIPT = """
 import ctypes, sys, warnings
 warnings.simplefilter("error")
 {prelude}
-from roadgpt.drive import compiled
+from roadgpt import compiled
 from roadgpt.drive.simulators.mujoco import plane
 car = plane()
 for _ in range(3):
     car.move(0.1, 1.0, 0.0)
-from roadgpt.cli.commands import doctor
+from roadgpt.cli.commands import set_up
 print(compiled.COMPILES, compiled.WHY_NOT)
 print(car.see()["vx"])
-print(doctor._numba())
+print(set_up._numba())
 """
 NOT_LOADED = """
 import numba, mujoco
@@ -89,47 +84,3 @@ def test_the_doctor_tells_which_is_used_and_why() -> None:
     assert said == "False ROADGPT_NO_NUMBA is set"
     assert doctor == "is not used (ROADGPT_NO_NUMBA is set): drives work, but far slower"
     assert speed == pytest.approx(with_numba()[1], rel=1e-9)
-
-
-class Broken(MetaPathFinder):
-    """An installation in which a module raises an error while it is imported."""
-
-    def __init__(self, module: str, error: Exception) -> None:
-        self.module, self.error = module, error
-
-    def find_spec(self, name: str, path: object = None, target: object = None) -> None:
-        if name == self.module:
-            raise self.error
-
-
-@pytest.fixture
-def anew(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The choice may be made once more, in this process."""
-    monkeypatch.setenv("ROADGPT_NO_NUMBA", "0")
-    compiled.addresses.cache_clear()
-    yield
-    compiled.addresses.cache_clear()
-
-
-@pytest.mark.usefixtures("anew")
-@pytest.mark.parametrize(
-    "error",
-    [ImportError("Numba needs NumPy 1.26 or less"), OSError("could not load libllvmlite.so"), KeyError("x")],
-)
-def test_whatever_numba_raises_is_told(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert compiled._numba()[2] == ""
-    monkeypatch.delitem(sys.modules, "numba")
-    monkeypatch.setattr(sys, "meta_path", [Broken("numba", error), *sys.meta_path])
-    assert compiled._numba() == (None, None, f"{type(error).__name__}: {error}")
-
-
-@pytest.mark.usefixtures("anew")
-def test_a_mujoco_without_its_library_or_its_functions_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    with monkeypatch.context() as patched:
-        patched.setattr(Path, "glob", lambda self, name: iter(()))
-        *found, why = compiled._numba()
-    assert found == [None, None]
-    assert why.startswith("FileNotFoundError: MuJoCo's library is not in")
-    monkeypatch.setattr(ctypes, "CDLL", lambda path: object())
-    why = "AttributeError: 'object' object has no attribute 'mj_step1'"
-    assert compiled._numba() == (None, None, why)

@@ -8,13 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadgpt.drive.lane_polygon import LanePolygon
+from road_parts import road_of
 from roadgpt.drive.sampled_road import locate_on, sample_road
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, tables
-from roadgpt.drive.simulators.mujoco.chassis_control import esc_torques, slip_valve
+from roadgpt.drive.simulators.mujoco.dynamics import esc_torques
 from roadgpt.drive.simulators.mujoco.tyres import tyre_forces
 from roadgpt.export.ego import CAR
-from roadgpt.road import Design, Road, Segment, World, build
 
 TYRE = ETK_LIKE.front.tyre
 LOAD = ETK_LIKE.static_wheel_load(ETK_LIKE.front)
@@ -86,14 +85,6 @@ def test_a_heavier_tyre_grips_more_but_less_than_in_proportion():
     assert 1.6 * once < twice < 1.95 * once
 
 
-def test_braking_takes_from_cornering():
-    assert steady(-0.15, 0.06)[1] < 0.75 * steady(0.0, 0.06)[1]
-
-
-def test_a_tyre_in_the_air_does_nothing():
-    assert tyre_forces(AXLES[0], 1.0, 0.0, 0.0, 20.0, 3.0, 0.0, 0.1, 0.1, 0.002) == (0.0, 0.0, 0.0, 0.0)
-
-
 def test_a_slip_builds_up_over_the_relaxation_length():
     x = y = 0.0
     speed, dt = 20.0, 0.002
@@ -101,17 +92,6 @@ def test_a_slip_builds_up_over_the_relaxation_length():
     for _ in range(steps):
         _, _, x, y = tyre_forces(AXLES[0], 1.0, LOAD, 0.0, speed, -0.05 * speed, speed, x, y, dt)
     assert y == pytest.approx(0.05 * (1 - math.exp(-1)), rel=0.05)
-
-
-def test_a_valve_closes_on_slip_and_opens_again():
-    opening = 1.0
-    for _ in range(100):
-        opening = slip_valve(opening, 0.3, 0.1, 0.002)
-    assert opening < 0.2
-    for _ in range(1000):
-        opening = slip_valve(opening, 0.0, 0.1, 0.002)
-    assert opening == 1.0
-    assert slip_valve(0.5, 0.9, 0.0, 0.002) == 1.0
 
 
 def test_esc_brakes_the_wheel_that_turns_the_car_back():
@@ -127,21 +107,16 @@ def test_esc_brakes_the_wheel_that_turns_the_car_back():
     assert esc_torques(without, 20.0, 2.0, 0.3) == (0.0, 0.0, 0.0, 0.0, 1.0)
 
 
-def winding_road() -> Road:
-    parts = [(40, 0, 6), (30, 60, -4), (25, 0, -12), (35, -70, 9), (45, 50, 15), (30, 0, 0)]
-    segments = tuple(
-        Segment(
-            distance=d,
-            direction="straight" if turn == 0 else "left" if turn > 0 else "right",
-            turn_degrees=turn,
-            incline=grade,
-        )
-        for d, turn, grade in parts
-    )
-    return build(Design(starting_point=(60, 60, 3), theta=25, segments=segments))
-
-
-ROAD = winding_road()
+ROAD = road_of(
+    (40, 0, 6),
+    (30, 60, -4),
+    (25, 0, -12),
+    (35, -70, 9),
+    (45, 50, 15),
+    (30, 0, 0),
+    start=(60, 60, 3),
+    theta=25,
+)
 RIBBON = sample_road(ROAD)
 
 
@@ -167,45 +142,12 @@ def test_the_ribbon_knows_the_road(share, t, off):
     assert slope * crowd == pytest.approx(float(ROAD.grade(s)), abs=2e-3)
 
 
-def test_the_ribbon_has_no_seams():
-    s = np.linspace(1.0, ROAD.length - 1.0, 20_000)
-    points = ROAD.at(s, -2.0)
-    found = np.array([on_ribbon(x, y, at) for (x, y, _), at in zip(points, s, strict=True)])
-    step = s[1] - s[0]
-    jumps = np.abs(np.diff(found[:, 2]) - np.diff(points[:, 2]))
-    assert jumps.max() < 3e-6  # m
-    # No step of the slope beyond what the sharpest vertical curve explains.
-    assert np.abs(np.diff(found[:, 3])).max() < 3 * step * 0.15
-
-
 def test_the_ribbon_goes_straight_on_at_both_ends():
     for s, along in ((0.0, -10.0), (ROAD.length, 10.0)):
         heading, grade = float(ROAD.heading(s)), float(ROAD.grade(s))
         x, y, z = ROAD.at(s).tolist()
         place = on_ribbon(x + along * math.cos(heading), y + along * math.sin(heading), s + along / 2)
         assert place[:3] == pytest.approx((s + along, 0.0, z + along * grade), abs=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("t", "expected"),
-    [(-2.0, 0.0), (-2.0 + 1.07 + 0.93, 0.5), (0.93, 1.0), (-4.0, 0.5), (-4.93, 1.0), (-6.0, 1.0)],
-)
-def test_the_share_outside_on_a_straight_is_plain_geometry(t, expected):
-    road = build(
-        Design(starting_point=(50, 50, 0), theta=0, segments=(Segment(distance=60, direction="straight"),))
-    )
-    lane = LanePolygon.along(road, World())
-    box = np.array([[-2.35, -0.93], [2.35, -0.93], [2.35, 0.93], [-2.35, 0.93]]) + [80.0, 50.0 + t]
-    assert lane.outside(box, 30.0) == pytest.approx(expected, abs=1e-9)
-
-
-def test_the_lane_ends_with_the_road():
-    road = build(
-        Design(starting_point=(50, 50, 0), theta=0, segments=(Segment(distance=60, direction="straight"),))
-    )
-    lane = LanePolygon.along(road, World())
-    box = np.array([[-2.35, -0.93], [2.35, -0.93], [2.35, 0.93], [-2.35, 0.93]]) + [110.0, 48.0]
-    assert lane.outside(box, 60.0) == pytest.approx(0.5, abs=1e-9)
 
 
 def test_files_speak_of_the_car_that_drives() -> None:

@@ -12,7 +12,6 @@ from roadgpt.export import save
 from roadgpt.road import Road, World
 
 pycrg.set_message_level(pycrg.MSG_LEVEL_NONE)
-BENDY = [name for name in ROADS if name != "short"]
 
 
 def saved(road: Road, folder: Path, world: World = WORLD) -> Path:
@@ -36,15 +35,6 @@ def test_asams_library_finds_our_points_within_a_millimetre(tmp_path: Path, name
                 assert np.hypot(x - ours[:, 0], y - ours[:, 1]).max() < allowed
                 z = contact.uv_to_z_many(u, np.full(len(u), v))
                 assert np.abs(z - ours[:, 2]).max() < 1e-3
-
-
-@pytest.mark.parametrize("name", BENDY)
-def test_the_library_finds_heights_by_place(tmp_path: Path, name: str) -> None:
-    road = ROADS[name]
-    with pycrg.DataSet.open(saved(road, tmp_path)) as data, data.create_contact_point() as contact:
-        s = np.linspace(1.0, road.length - 1.0, 100)
-        x, y, z = road.at(s, -2.0).T
-        assert contact.xy_to_z_many(x, y) == pytest.approx(z, abs=2e-3)
 
 
 def test_a_bend_too_tight_for_the_verge_narrows_the_surface(tmp_path: Path) -> None:

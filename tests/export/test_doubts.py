@@ -9,11 +9,9 @@ from click.testing import CliRunner
 from exported import ROADS, WORLD
 from profiled import bend
 from roadgpt.cli import app
-from roadgpt.errors import ExportError
-from roadgpt.export import doubts, save
-from roadgpt.geometry import GradeProfile, Piece, PieceCurve
+from roadgpt.export import doubts
 from roadgpt.network import read_road
-from roadgpt.road import Profile, Road, World
+from roadgpt.road import Profile, Road
 
 
 @pytest.mark.parametrize("name", ROADS)
@@ -25,29 +23,13 @@ def test_roads_that_every_format_can_show_raise_no_doubt(name: str) -> None:
 @pytest.mark.parametrize(
     ("format_", "road", "words"),
     [
-        (
-            "sumo",
-            bend(30, ends=True),
-            "sumo: changes of width left out",
-        ),
+        ("sumo", bend(30, ends=True), "sumo: changes of width left out"),
         ("commonroad", ROADS["arcs"], "commonroad: heights left out"),
         ("crg", ROADS["arcs"].with_profile(Profile.of(1, 1, 4.0, 30.0)), "no room for the shoulders"),
     ],
 )
 def test_what_a_format_has_no_place_for_is_said(format_: str, road: Road, words: str) -> None:
     assert any(words in each for each in doubts(road, [format_], WORLD))
-
-
-def test_control_points_too_far_apart_are_said() -> None:
-    long = Road(PieceCurve(0.0, 0.0, 0.0, (Piece(3_000.0),)), GradeProfile.level(3_000.0))
-    (said,) = doubts(long, ["sbft"], WORLD)
-    assert said == "sbft: its control points are 6.0 m apart, so bends may become tighter"
-    assert doubts(ROADS["arcs"], ["sbft"], WORLD) == ()
-
-
-def test_opencrg_names_the_place_that_it_cannot_hold(tmp_path: Path) -> None:
-    with pytest.raises(ExportError, match=r"the bend at s = 3\d m, whose radius of 3\.0 m"):
-        save(bend(3.0), tmp_path, ["crg"], World())
 
 
 def test_the_command_says_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

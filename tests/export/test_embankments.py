@@ -66,16 +66,3 @@ def test_every_slope_leads_outwards_by_1_7_m_for_each_metre_of_drop(side: str, b
 def test_a_slope_whose_land_is_higher_than_the_road_is_only_a_step_of_40_cm() -> None:
     for edge, foot, _ in made(leaning(60.0)).values():
         assert edge[:, 2] - foot[:, 2] == pytest.approx(0.4, abs=1e-9)
-
-
-def test_the_slopes_begin_at_the_edges_of_the_shoulders_and_meet_at_the_corners() -> None:
-    slopes = made(leaning(10.0))
-    assert slopes["left"].edge == pytest.approx(ROAD.at(STATIONS, LEFT), abs=1e-9)
-    assert slopes["right"].edge == pytest.approx(ROAD.at(STATIONS, RIGHT), abs=1e-9)
-    for end, s in (("start", 0.0), ("end", LENGTH)):
-        edge = slopes[end].edge
-        ends = sorted((edge[0].tolist(), edge[-1].tolist()))
-        corners = sorted(ROAD.at(s, t).tolist() for t in (LEFT, RIGHT))
-        assert np.array(ends) == pytest.approx(np.array(corners), abs=1e-9)
-        assert np.ptp(edge @ (edge[-1] - edge[0])) == pytest.approx(13.5**2)
-        assert np.linalg.norm(np.diff(edge, axis=0), axis=1) == pytest.approx(13.5 / (len(edge) - 1))

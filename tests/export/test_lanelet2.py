@@ -1,7 +1,6 @@
 """Lanelet2 maps: the library itself loads them, finds our points again and a way from start to end."""
 
 import re
-import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ from profiled import bend
 from roadgpt.export import doubts, save
 from roadgpt.export.georeference import LATITUDE, LONGITUDE
 from roadgpt.export.lanelets import lanelets_of
-from roadgpt.road import CrossSection, Road, World
+from roadgpt.road import Road, World
 
 NEAR = [name for name in ROADS if name != "far away"]  # the others leave the UTM zone's middle
 
@@ -87,60 +86,11 @@ def test_a_route_leads_from_start_to_end_and_another_one_back(
         assert graph.shortestPath(end, start) is None or len(route) == 1
 
 
-def test_each_way_is_driven_on_its_right(lanelet2: Any, tmp_path: Path) -> None:
-    road = ROADS["arcs"]
-    map_ = loaded(lanelet2, saved("arcs", tmp_path))
-    for t, direction in ((-2.0, 1.0), (2.0, -1.0)):
-        found = lanelet_at(lanelet2, map_, road, 100.0, t)
-        s, _ = road.locate(*np.array([[p.x, p.y] for p in found.centerline]).T)
-        assert (np.diff(s) * direction > 0).all()
-
-
-@pytest.mark.parametrize("name", ROADS)
-def test_everything_that_is_referred_to_is_there_with_its_height(tmp_path: Path, name: str) -> None:
-    road = ROADS[name]
-    root = ET.parse(saved(name, tmp_path)).getroot()
-    ids = [each.attrib["id"] for each in root]
-    assert len(ids) == len(set(ids))
-    nodes = {
-        node.attrib["id"]: {tag.attrib["k"]: tag.attrib["v"] for tag in node} for node in root.iter("node")
-    }
-    ways = {way.attrib["id"]: [nd.attrib["ref"] for nd in way.iter("nd")] for way in root.iter("way")}
-    assert {ref for refs in ways.values() for ref in refs} == set(nodes)
-    assert {member.attrib["ref"] for member in root.iter("member")} == set(ways)
-    x, y, z = np.array(
-        [[float(tags[key]) for key in ("local_x", "local_y", "ele")] for tags in nodes.values()]
-    ).T
-    s, t = road.locate(x, y)
-    assert np.abs(road.at(s, t)[:, 2] - z).max() < 2e-3
-
-
-def test_every_centre_line_has_its_tags(tmp_path: Path) -> None:
-    shown = {}
-    for line in ("solid", "broken", "double", "none"):
-        world = World(section=CrossSection(centre_line=line))
-        (file,) = save(ROADS["short"], tmp_path / line, ["lanelet2"], world)
-        tags = [
-            {each.get("k"): each.get("v") for each in way.iter("tag")} for way in ET.parse(file).iter("way")
-        ]
-        shown[line] = tags[1]
-    assert shown == {
-        "solid": {"type": "line_thin", "subtype": "solid"},
-        "broken": {"type": "line_thin", "subtype": "dashed"},
-        "double": {"type": "line_thin", "subtype": "solid_solid"},
-        "none": {"type": "virtual"},
-    }
-
-
 @pytest.mark.parametrize("ends", [False, True])
 @pytest.mark.parametrize("side", [-1, 1])
-@pytest.mark.parametrize("radius", [2.5, 4.0, 5.0, 6.0, 8.0, 15.0])
+@pytest.mark.parametrize("radius", [2.5, 5.0, 8.0, 15.0])
 def test_where_lanelet2_loses_a_way_or_a_lane_folds_it_is_said(
-    lanelet2: Any,
-    tmp_path: Path,
-    radius: float,
-    side: int,
-    ends: bool,
+    lanelet2: Any, tmp_path: Path, radius: float, side: int, ends: bool
 ) -> None:
     road = bend(radius, 4.5, side, 2, ends)
     (file,) = save(road, tmp_path, ["lanelet2"], World())

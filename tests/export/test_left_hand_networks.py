@@ -16,18 +16,10 @@ from roadgpt.network import build_route, read_network_design
 from roadgpt.road import World
 
 FLIPPED = {
-    "geometry": ("y", "hdg"),
-    "arc": ("curvature",),
-    "spiral": ("curvStart", "curvEnd"),
-    "signal": ("t",),
-    "object": ("t",),
-    "cornerLocal": ("v",),
-    "laneOffset": ("a", "b", "c", "d"),
-    "lane": ("id",),
-    "predecessor": ("id",),
-    "successor": ("id",),
-    "laneLink": ("from", "to"),
-}
+    "geometry": ("y", "hdg"), "arc": ("curvature",), "spiral": ("curvStart", "curvEnd"), "signal": ("t",),
+    "object": ("t",), "cornerLocal": ("v",), "laneOffset": ("a", "b", "c", "d"), "lane": ("id",),
+    "predecessor": ("id",), "successor": ("id",), "laneLink": ("from", "to"),
+}  # fmt: skip
 """The attributes whose sign a mirror changes."""
 
 
@@ -87,14 +79,14 @@ def segments(tree: ET.Element, junction: str) -> list[tuple[Any, ...]]:
 
 
 @pytest.mark.parametrize("format_", ["opendrive", "opendrive17"])
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_file_is_the_mirror_image(tmp_path: Path, format_: str, seed: int) -> None:
     for draw in (random_design, random_lanes_design):
         left, right = trees(draw(seed), tmp_path, format_)
         assert rows(left, is_mirrored=True) == rows(right, is_mirrored=False)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_signs_hold_for_the_lanes_that_see_them_and_boundaries_go_round_the_other_way(
     tmp_path: Path, seed: int
 ) -> None:
@@ -122,7 +114,7 @@ def referee() -> ModuleType:
 
 
 @pytest.mark.parametrize("draw", [random_design, random_lanes_design])
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 def test_a_judge_reads_traffic_on_the_left(tmp_path: Path, referee: ModuleType, draw: Any, seed: int) -> None:
     found = []
     for name, own in (("left", {**draw(seed), "left_hand": True}), ("right", in_mirror(draw(seed)))):

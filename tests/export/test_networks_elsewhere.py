@@ -42,27 +42,6 @@ def test_a_format_for_single_roads_refuses_a_network_in_one_sentence(tmp_path: P
     assert not (tmp_path / "new").exists()  # nor the format that could
 
 
-def test_sumo_names_the_way_that_works(tmp_path: Path) -> None:
-    with pytest.raises(ExportError, match="netconvert reads it"):
-        save(ROUTE, tmp_path, ["sumo"], WORLD)
-
-
-def test_a_plug_in_that_says_nothing_gets_single_roads_only(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    class Foreign:
-        name, suffix = "foreign", ".txt"
-
-        def save(self, road: object, path: Path, world: World, poses: object = None) -> None:
-            path.write_text("written")
-
-    monkeypatch.setattr("roadgpt.export.exporter_of", lambda name: Foreign())
-    with pytest.raises(ExportError, match="foreign cannot hold junctions"):
-        save(ROUTE, tmp_path, ["foreign"], WORLD)
-    straight = ROUTE.network.roads[0].road
-    assert save(straight, tmp_path, ["foreign"], WORLD)[0].read_text() == "written"
-
-
 @pytest.mark.parametrize("format_", sorted(HOLD))
 def test_the_others_write_it(tmp_path: Path, format_: str) -> None:
     assert getattr(exporter_of(format_), "holds_junctions", False)

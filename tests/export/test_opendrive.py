@@ -14,7 +14,7 @@ from roadgpt.errors import ExportError
 from roadgpt.export import save
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
-from roadgpt.road import CrossSection, Limits, Road, Site, World, build
+from roadgpt.road import Road, World, build
 from strategies import designs
 
 LEVEL = GradeProfile(0.0, (0.0, 1.0), (0.0, 0.0))
@@ -108,14 +108,6 @@ def test_a_spiral_that_hardly_bends_is_told_as_arcs_that_stay_on_it() -> None:
         assert by_the_standard(geometry, length) == pytest.approx(plan.at(s + length), abs=2e-5)
 
 
-def test_pieces_too_short_to_be_told_leave_no_gap() -> None:
-    plan = PieceCurve(5, 6, 1, (Piece(1e-8), Piece(10), Piece(1e-7, 0, 0.01), Piece(10, 0.01, 0.01)))
-    geometries = list(parsed(Road(plan, LEVEL)).iter("geometry"))
-    assert [geometry[0].tag for geometry in geometries] == ["line", "arc"]
-    assert [float(each.attrib["s"]) for each in geometries] == pytest.approx([0, 10], abs=1e-6)
-    assert sum(float(each.attrib["length"]) for each in geometries) == pytest.approx(plan.length, abs=1e-12)
-
-
 @pytest.mark.parametrize("short", [2e-6, 1e-4, 0.01])
 def test_the_shortest_pieces_that_are_told_are_told_as_they_are(short: float) -> None:
     pieces = (
@@ -127,46 +119,6 @@ def test_the_shortest_pieces_that_are_told_are_told_as_they_are(short: float) ->
     )
     geometries = list(parsed(Road(PieceCurve(5, 6, 1, pieces), LEVEL)).iter("geometry"))
     assert [float(each.attrib["length"]) for each in geometries] == [piece.length for piece in pieces]
-
-
-def test_a_road_of_nothing_but_short_pieces_is_one_geometry() -> None:
-    plan = PieceCurve(5, 6, 1, (Piece(0.9e-6),) * 3)
-    (geometry,) = parsed(Road(plan, LEVEL)).iter("geometry")
-    assert numbers(geometry, "s", "length") == [0.0, plan.length]
-
-
-def test_lanes_their_marks_and_their_verges() -> None:
-    root = parsed(
-        ROADS["arcs"],
-        World(
-            section=CrossSection(lane_width=3.25, shoulder=1.5),
-            site=Site(friction=0.6),
-            limits=Limits(speed_limit=50 / 3.6),
-        ),
-    )
-    lanes = {int(lane.attrib["id"]): lane for lane in root.iter("lane")}
-    kinds = {id_: lane.attrib["type"] for id_, lane in lanes.items()}
-    assert kinds == {2: "shoulder", 1: "driving", 0: "none", -1: "driving", -2: "shoulder"}
-    widths = {id_: float(lane.find("width").attrib["a"]) for id_, lane in lanes.items() if id_}
-    assert widths == {2: 1.5, 1: 3.25, -1: 3.25, -2: 1.5}
-    marks = {id_: lane.find("roadMark").attrib["type"] for id_, lane in lanes.items() if abs(id_) < 2}
-    assert marks == {1: "solid", 0: "broken", -1: "solid"}
-    assert root.find("road").attrib["rule"] == "RHT"
-    speeds = {(each.attrib["max"], each.attrib["unit"]) for each in root.iter("speed")}
-    assert speeds == {("50", "km/h")}
-    assert {each.attrib["friction"] for each in root.iter("material")} == {"0.6"}
-    of_lanes = [each for lane in lanes.values() for kind in ("speed", "material") for each in lane.iter(kind)]
-    assert len(of_lanes) == 4
-    starts = {each.attrib["sOffset"] for each in of_lanes}
-    assert starts == {"0"}  # of the lane section: no metre is without a limit
-
-
-def test_a_road_that_floats_has_no_verge() -> None:
-    kinds = [
-        lane.attrib["type"]
-        for lane in parsed(ROADS["arcs"], World(section=CrossSection(shoulder=0))).iter("lane")
-    ]
-    assert kinds == ["driving", "none", "driving"]
 
 
 def test_the_header_says_where_and_of_what_revision_and_not_when() -> None:

@@ -16,19 +16,11 @@ from roadgpt.design import draft
 from roadgpt.export import save
 from roadgpt.network import Route, made_from
 from roadgpt.road import Site, World
+from tables import rows as table_rows
 
 WORLD = World(site=Site(map_size=700))
 Saved = Callable[[str, int], tuple[Route, Path]]
-PLANS = [
-    "t_junction left // roundabout exit=2 // | up",
-    "| lanes=2 against=2 // lane_change left // crossroads left lights",
-    "merge ramp // | motorway",
-    "crossroads straight in=left // t_junction right || left_hand",
-    "map columns=3 rows=2",
-    "map columns=2 rows=2 dead_ends=0 || left_hand",
-    "roundabout back",
-    "turn left | divided lanes=2 against=2",
-]
+PLANS = table_rows(__file__, "plans")
 
 
 @pytest.fixture(scope="module")

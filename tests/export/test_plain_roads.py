@@ -10,12 +10,7 @@ from roadgpt.road import World, build, read_design
 
 
 def segment(distance: float, direction: str, incline: float, turn_degrees: float) -> dict:
-    return {
-        "distance": distance,
-        "direction": direction,
-        "incline": incline,
-        "turn_degrees": turn_degrees,
-    }
+    return {"distance": distance, "direction": direction, "incline": incline, "turn_degrees": turn_degrees}
 
 
 HILL = {

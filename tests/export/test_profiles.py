@@ -295,9 +295,3 @@ def test_tables_and_maps_name_every_lane(tmp_path: Path) -> None:
     assert names == ["centre line", "right lane 1", "right lane 2", "left lane"]
     assert features[1]["properties"]["width_min_m"] == 3.0
     assert features[1]["properties"]["width_max_m"] == 4.0
-
-
-def test_the_scenario_is_driven_in_the_rightmost_lane(tmp_path: Path) -> None:
-    save(BANKED, tmp_path, ["openscenario"], WORLD)
-    places = element(tmp_path / "road.xosc").iter("LanePosition")
-    assert {each.attrib["laneId"] for each in places} == {"-2"}

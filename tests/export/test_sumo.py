@@ -93,13 +93,3 @@ def test_what_netconvert_refuses_is_said_and_nothing_is_left(
     with pytest.raises(ExportError, match="netconvert refuses this road"):
         save(ROADS["arcs"], tmp_path / "out", ["sumo"], WORLD)
     assert list((tmp_path / "out").iterdir()) == []
-
-
-def test_netconvert_is_looked_for_under_sumo_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    netconvert_that(monkeypatch, tmp_path, "exit 0")
-    monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr(sumo, "find_spec", lambda _: None)
-    monkeypatch.delenv("SUMO_HOME", raising=False)
-    assert sumo.netconvert() is None
-    monkeypatch.setenv("SUMO_HOME", str(tmp_path))
-    assert sumo.netconvert() == str(tmp_path / "bin" / "netconvert")

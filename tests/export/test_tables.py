@@ -29,26 +29,14 @@ def test_every_column_of_road_and_drive_is_what_its_name_says(tmp_path: Path) ->
     assert (s[0], s[-1]) == pytest.approx((0.0, road.length), abs=1e-6)
     x, y, z = road.at(s).T
     on_road = {
-        "s_m": s,
-        "x_m": x,
-        "y_m": y,
-        "z_m": z,
-        "heading_rad": road.heading(s),
-        "curvature_per_m": road.curvature(s),
-        "grade": road.grade(s),
-        "lane_width_m": 4.0,
-        "verge_m": 3.0,
-    }
+        "s_m": s, "x_m": x, "y_m": y, "z_m": z, "heading_rad": road.heading(s),
+        "curvature_per_m": road.curvature(s), "grade": road.grade(s), "lane_width_m": 4.0, "verge_m": 3.0,
+    }  # fmt: skip
     of_drive = {
-        "time_s": driven.time,
-        "x_m": driven.x,
-        "y_m": driven.y,
-        "z_m": driven.z,
-        "heading_rad": driven.heading,
-        "pitch_rad": driven.pitch,
-        "roll_rad": driven.roll,
+        "time_s": driven.time, "x_m": driven.x, "y_m": driven.y, "z_m": driven.z,
+        "heading_rad": driven.heading, "pitch_rad": driven.pitch, "roll_rad": driven.roll,
         "speed_mps": driven.speed,
-    }
+    }  # fmt: skip
     for found, wanted in ((told, on_road), (moved, of_drive)):
         assert list(found) == list(wanted)
         for name, values in wanted.items():
@@ -107,20 +95,6 @@ def test_geojson_has_each_lane_between_its_edges_and_the_right_way_round(
     np.testing.assert_allclose(way[:, :2], wanted[:, :2], **near)
     assert way[:, 2] == pytest.approx(driven.z, abs=1e-4)
     assert features["drive"]["properties"]["time_s"] == pytest.approx(driven.time, abs=1e-3)
-
-
-def test_geojson_counts_lanes_on_the_side_where_they_are(tmp_path: Path) -> None:
-    """On the left: two lanes along the road and their shoulder; on the right: one lane against it."""
-    profile = Profile.of(2, 1, 4.0, 1.0).mirrored
-    (file,) = save(ROADS["arcs"].with_profile(profile), tmp_path, ["geojson"], WORLD)
-    lanes = [each["properties"] for each in json.loads(file.read_text())["features"][1:]]
-    assert [lane["name"] for lane in lanes] == ["right lane", "left lane 1", "left lane 2"]
-    assert {lane["width_m"] for lane in lanes} == {4.0}
-
-
-def test_the_corner_of_the_map_is_the_place() -> None:
-    longitude, latitude = degrees(0.0, 0.0)
-    assert (float(longitude), float(latitude)) == pytest.approx((LONGITUDE, LATITUDE), abs=1e-12)
 
 
 def on_the_ellipsoid(longitude: np.ndarray, latitude: np.ndarray) -> np.ndarray:

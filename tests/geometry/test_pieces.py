@@ -71,22 +71,9 @@ def test_projection_undoes_offsets_on_an_arc(radius: float, angle: float, share:
     assert (found_s, found_t) == (pytest.approx(s, abs=1e-6), pytest.approx(t, abs=1e-6))
 
 
-def test_a_point_beyond_the_end_belongs_to_the_end() -> None:
-    curve = PieceCurve(0, 0, 0, (Piece(10),))
-    s, t = project(curve, [[15.0, 2.0], [-5.0, -1.0]])
-    assert s.tolist() == [10, 0]
-    assert t.tolist() == [2, -1]
-
-
 def test_neighbours_of_one_curvature_become_one_piece() -> None:
     parts = [Piece(5), Piece(0.0), Piece(7), Piece(3, 0, 0.1), Piece(4, 0.1, 0.1), Piece(6, 0.1, 0.1)]
     assert joined(parts) == (Piece(12), Piece(3, 0, 0.1), Piece(10, 0.1, 0.1))
-
-
-@pytest.mark.parametrize("pieces", [(), (Piece(0.0),), (Piece(5), Piece(-1))])
-def test_a_curve_of_nothing_is_refused(pieces: tuple[Piece, ...]) -> None:
-    with pytest.raises(ValueError, match="longer than 0 m"):
-        PieceCurve(0, 0, 0, pieces)
 
 
 @given(st.floats(-1e4, 1e4))

@@ -91,43 +91,4 @@ def test_what_lies_farthest_outside_a_range_is_found(
         assert (np.abs(s - found[0]) + np.abs(z - found[1])).min() < 0.01
 
 
-@pytest.mark.parametrize(
-    ("stations", "grades"),
-    [((0.0,), (0.1,)), ((0.0, 1.0), (0.1,)), ((0.0, 1.0), (0.1,) * 3), ((0.0, 1.0, 1.0), (0.1,) * 3)],
-)
-def test_profiles_that_make_no_sense_are_refused(
-    stations: tuple[float, ...], grades: tuple[float, ...]
-) -> None:
-    with pytest.raises(ValueError, match="stations"):
-        GradeProfile(0.0, stations, grades)
-
-
 CUBIC = (1.0, 0.0, 0.0, 0.0)
-
-
-@pytest.mark.parametrize(
-    ("stations", "rows", "said"),
-    [
-        ((), (), "same number of cubics"),
-        ((0.0, 1.0), (CUBIC,), "same number of cubics"),
-        ((0.0,), (CUBIC, CUBIC), "same number of cubics"),
-        ((0.0, 1.0, 1.0), (CUBIC,) * 3, "must increase"),
-        ((0.0, 1.0), (CUBIC, CUBIC[:3]), "four coefficients"),
-        ((0.0, 1.0), (CUBIC, (*CUBIC, 0.0)), "four coefficients"),
-    ],
-)
-def test_cubics_that_make_no_sense_are_refused(
-    stations: tuple[float, ...], rows: tuple[tuple[float, ...], ...], said: str
-) -> None:
-    with pytest.raises(ValueError, match=said):
-        CubicProfile(stations, rows)  # type: ignore[arg-type]
-
-
-def test_profiles_are_made_of_knots_rows_and_tables() -> None:
-    grades, cubics = GradeProfile(2.0, (0.0, 9.0), (0.1, 0.2)), CubicProfile.smooth([(0.0, 3.0), (5.0, 4.0)])
-    assert GradeProfile.of(2.0, grades.knots).knots == [(0.0, 0.1), (9.0, 0.2)]
-    assert GradeProfile.level(9.0, 2.0).knots == [(0.0, 0.0), (9.0, 0.0)]
-    assert GradeProfile.level(9.0, 2.0).height(4.0) == 2.0
-    assert CubicProfile.of_rows(cubics.rows) == cubics
-    assert CubicProfile.of_table(cubics.stations, np.array(cubics.coefficients)) == cubics
-    assert CubicProfile.constant(3.0).height(7.0) == 3.0

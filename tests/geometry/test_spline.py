@@ -48,13 +48,6 @@ def test_the_heights_follow_the_points() -> None:
     assert profile.height(0.0) == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("points", [BENT[:2], BENT[:3]])
-def test_two_and_three_points_are_enough(points: list[list[float]]) -> None:
-    curve = SplineCurve.through(points)
-    assert curve.at(curve.length) == pytest.approx(points[-1][:2], abs=1e-6)
-    assert np.isfinite(curve.curvature(np.linspace(0, curve.length, 50))).all()
-
-
 def test_sixty_metres_give_a_point_a_metre_and_short_roads_twenty() -> None:
     assert len(interpolate([[0.0, 0.0], [60.0, 0.0]])) == 61
     assert len(interpolate([[0.0, 0.0], [5.0, 0.0]])) == 21

@@ -9,11 +9,9 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 from gym.agents import LOCK, episode, good, made, straight
-from roadgpt.check import inspect
 from roadgpt.drive import Camera, Command, View, simulate
 from roadgpt.errors import BriefError, UsageError
 from roadgpt.road import World
-from roadgpt.run import Setup, brief_of
 
 SMALL = Camera(width=48, height=24, every=1)
 
@@ -141,19 +139,6 @@ def test_the_camera_gives_the_same_bytes_and_sees_the_car_turn() -> None:
     assert top[2] > bottom[2]  # the sky is above
 
 
-@pytest.mark.parametrize(
-    "prompt", ["an uphill road with 3 turns", "two hairpins", "a flat road with a left turn"]
-)
-def test_every_road_keeps_its_description(prompt: str) -> None:
-    env = made(prompt)
-    brief = brief_of(prompt, World(), Setup())
-    for seed in range(4):
-        _, info = env.reset(seed=seed)
-        assert inspect(env.unwrapped.road, brief, World()) == ()
-        assert info["prompt"] == prompt
-        assert info["understood"][0].isupper()
-
-
 def test_descriptions_take_turns_and_one_may_be_asked_for() -> None:
     env = made(["a straight road", "two hairpins"])
     told = {env.reset(seed=seed)[1]["prompt"] for seed in range(12)}
@@ -223,24 +208,6 @@ def test_wrong_arguments_are_refused_in_a_sentence(arguments: dict[str, Any], ki
     with pytest.raises(kind, match=said) as caught:
         LaneKeeping(**arguments)
     assert "\n" not in str(caught.value)
-
-
-def test_a_render_mode_that_is_none_is_refused() -> None:
-    from roadgpt.gym.lane_keeping import LaneKeeping
-
-    with pytest.raises(UsageError, match="rgb_array"):
-        LaneKeeping(render_mode="human")
-    env = LaneKeeping()
-    env.reset(seed=1)
-    assert env.render() is None
-
-
-def test_a_description_for_one_road_that_cannot_be_is_refused_and_loses_nothing() -> None:
-    env = made()
-    env.reset(seed=1)
-    with pytest.raises(BriefError):
-        env.reset(options={"prompt": "a road with 500 hairpins"})
-    assert env.reset(seed=1)[1]["prompt"] == "a road with 2 turns"
 
 
 def test_render_shows_the_car_on_its_road() -> None:

@@ -1,7 +1,6 @@
 """Arms with road segments of their own: read, written, refused, and built as roads out of the junction."""
 
 import copy
-import json
 import math
 from typing import Any
 
@@ -9,12 +8,11 @@ import numpy as np
 import pytest
 
 from network.changing import built, design
-from network.mirrored import in_mirror
-from network.ruled import findings
-from network.shared_laws import pose, sentence_of
+from network.shared_laws import sentence_of
 from roadgpt.check import inspect
-from roadgpt.network import NetworkRoad, Route, build_map, read_map_design, read_network_design
+from roadgpt.network import NetworkRoad, Route, read_network_design
 from roadgpt.road import Design, Road, Segment, Site, World, build
+from tables import rows
 
 SEGMENTS = {
     "road_segment1": {"distance": 40, "direction": "left", "incline": 3, "turn_degrees": 30},
@@ -55,16 +53,6 @@ def as_single_road(start: np.ndarray, degrees: float) -> Road:
     return build(Design(starting_point=tuple(start.tolist()), theta=degrees, segments=segments))
 
 
-def test_what_is_written_is_read() -> None:
-    data = data_of(CURVED)
-    design_, remarks = read_network_design(data)
-    assert remarks == ()
-    assert design_.to_json()["junction1"]["arms"] == data["junction1"]["arms"]
-    assert read_network_design(json.loads(json.dumps(design_.to_json())))[0] == design_
-    assert design_.mirrored() != design_
-    assert design_.mirrored().mirrored() == design_
-
-
 @pytest.mark.parametrize("left_hand", [False, True])
 @pytest.mark.parametrize("one_way", [None, "in", "out"])
 def test_the_arm_leads_along_its_segments(one_way: str | None, left_hand: bool) -> None:
@@ -84,62 +72,9 @@ def test_the_arm_leads_along_its_segments(one_way: str | None, left_hand: bool) 
     assert inspect(route, None, World(site=Site(map_size=500))) == ()
 
 
-@pytest.mark.parametrize("one_way", [None, "in", "out"])
-def test_the_junction_stays_level(one_way: str | None) -> None:
-    route = built(data_of(CURVED if one_way is None else {**CURVED, "one_way": one_way}))
-    (junction,) = route.network.junctions
-    for arm in junction.arms:
-        *_, grade = found = pose(route.network, arm.end, inwards=True)
-        assert found[2] == pytest.approx(2.0, abs=EXACT)
-        assert grade == 0
-    road, contact = arm_of(route, -80)
-    assert outwards(road, contact, np.linspace(0, 6, 13))[:, 2] == pytest.approx(2.0, abs=EXACT)
-
-
-def test_the_arm_is_the_road_of_a_route_that_takes_it() -> None:
-    beside, _ = arm_of(built(data_of(CURVED)), -80)
-    taken = data_of({"angle": -80})
-    taken["junction1"]["take"] = "right"
-    taken |= {f"road_segment{n}": each for n, each in enumerate(SEGMENTS.values(), 2)}
-    along, _ = arm_of(built(taken), -80)
-    s = np.linspace(0.0, LENGTH, 91)
-    assert beside.road.at(s) == pytest.approx(along.road.at(s), abs=EXACT)
-
-
-@pytest.mark.parametrize("one_way", [None, "in"])
-def test_left_hand_traffic_is_the_mirror_image(one_way: str | None) -> None:
-    data = data_of(CURVED if one_way is None else {**CURVED, "one_way": one_way})
-    left, right = built({**data, "left_hand": True}), built(in_mirror(data))
-    for one, two in zip(left.network.roads, right.network.roads, strict=True):
-        s = np.linspace(0.0, one.road.length, 15)
-        assert one.road.at(s) == pytest.approx(two.road.at(s) * [1, -1, 1], abs=EXACT)
-
-
-def test_an_arm_of_a_roundabout_and_the_way_back() -> None:
-    data = data_of(CURVED)
-    data["junction1"] |= {"kind": "roundabout", "take": 4}
-    del data["road_segment2"]
-    lengths = [each.road.length for each in built(data).network.roads_outside]
-    assert any(length == pytest.approx(LENGTH) for length in lengths)
-
-
 @pytest.mark.parametrize(
     ("arm", "wanted"),
-    [
-        ({**CURVED, "length": 90}, "cannot be read: arms.0: has length and road segments; leave one of them"),
-        ({**CURVED, "segments": []}, "arm 1 of junction 1 has a field 'segments' that is unknown"),
-        ({"angle": -80, "road_segment1": 5}, "arm 1 of junction 1: segment 1 cannot be read: give an object"),
-        ({"angle": -80, "road_segment1": {"distance": 5}}, "of junction 1: segment 1 cannot be read: direct"),
-        ({"angle": -80, "road_segmentx": {}}, "arms.0.road_segmentx: is not a field of a design; remove it"),
-        (
-            {"angle": -80, "road_segment1": {**SEGMENTS["road_segment1"], "distance": True}},
-            "arm 1 of junction 1: segment 1 cannot be read: distance: is not a number",
-        ),
-        (
-            {"angle": -80, "road_segment1": {**SEGMENTS["road_segment1"], "distance": 60_000}},
-            "junction 1: the road is 60000 m long in plan; give one of up to 50 km",
-        ),
-    ],
+    rows(__file__, "an_arm_that_is_wrong"),
 )  # fmt: skip
 def test_an_arm_that_is_wrong(arm: dict[str, Any], wanted: str) -> None:
     assert wanted in sentence_of(built, data_of(arm))
@@ -156,16 +91,6 @@ def test_the_arm_taken_has_no_segments(take: str | int, left_hand: bool) -> None
     )
 
 
-def test_an_arm_of_a_map_is_no_place_for_segments() -> None:
-    nodes = {
-        "node1": {"at": [0, 0, 0], "kind": "end", **SEGMENTS},
-        "node2": {"at": [90, 0, 0], "kind": "end"},
-    }
-    assert "road_segment1" in sentence_of(
-        lambda data: build_map(read_map_design(data)[0], World()), {**nodes, "roads": [[1, 2]]}
-    )
-
-
 def test_remarks_on_segments_name_the_arm() -> None:
     arm = copy.deepcopy(CURVED)
     arm["road_segment2"]["direction"] = "left"
@@ -177,19 +102,3 @@ def test_remarks_on_segments_name_the_arm() -> None:
         f"{what}segment 2: direction 'left' and turn_degrees -45 disagree; the direction wins: 45",
     )
     assert [each.distance for each in found.junctions[0].arms[0].segments] == [50, 40]
-
-
-@pytest.mark.parametrize(
-    ("rule", "segment"),
-    [
-        ("too_steep", {"distance": 60, "direction": "straight", "incline": 16, "turn_degrees": 0}),
-        ("too_tight", {"distance": 15, "direction": "left", "incline": 0, "turn_degrees": 70, "radius": 9}),
-        ("leaves_map", {"distance": 260, "direction": "straight", "incline": 0, "turn_degrees": 0}),
-        ("conflicting_overlap", {"distance": 110, "direction": "left", "incline": 0, "turn_degrees": 220}),
-        ("below_floor", {"distance": 240, "direction": "straight", "incline": -14, "turn_degrees": 0}),
-    ],
-)
-def test_the_rules_hold_for_the_arm(rule: str, segment: dict[str, Any]) -> None:
-    assert findings(rule, built(data_of(CURVED))) == ()
-    route = built(data_of({"angle": -80, "road_segment1": segment}))
-    assert len(findings(rule, route)) == 1

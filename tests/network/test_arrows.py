@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from hypothesis import example, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from network.changing import design
@@ -15,7 +15,6 @@ from network.mirrored import in_mirror
 from network.random_designs import random_design, random_lanes_design
 from roadgpt.network import Network, RoadEnd, Route, build_route, read_network_design
 from roadgpt.network.arrows import PaintedArrow, arrows
-from roadgpt.network.paved import ribbon
 from roadgpt.road import Site, World
 
 WORLD = World(site=Site(map_size=600))
@@ -150,22 +149,6 @@ def is_crossed(network: Network, end: RoadEnd) -> bool:
 
 @given(seed=seeds)
 @settled
-@example(seed=131)
-def test_arrows_of_a_mirrored_network_are_mirrored(seed: int) -> None:
-    network = network_of(random_lanes_design(seed))
-    there = {(each.end, -each.lane): each for each in arrows(network.mirrored)}
-    here = {(each.end, each.lane): each for each in arrows(network)}
-    assert there.keys() == here.keys()
-    for key, arrow in here.items():
-        other = there[key]
-        assert sorted(map(OTHER.get, other.ways)) == sorted(arrow.ways)
-        outline, seen = (shapely.Polygon(each.points[:, :2]) for each in (arrow, other))
-        flipped = shapely.transform(seen, lambda points: points * [1.0, -1.0])
-        assert shapely.symmetric_difference(outline, flipped).area < 1e-6
-
-
-@given(seed=seeds)
-@settled
 def test_traffic_on_the_left_has_the_arrows_of_the_mirrored_design(seed: int) -> None:
     data = random_lanes_design(seed)
     left, right = network_of({**data, "left_hand": True}), network_of(in_mirror(data))
@@ -189,27 +172,3 @@ def test_a_road_that_is_too_short_has_no_arrows(distance: float, crosswalk: bool
     route = crossing(distance, crosswalk=crosswalk)
     first = route.legs[0].road
     assert len([each for each in arrows(route.network) if each.end.road == first]) == count
-
-
-@pytest.mark.parametrize(("width", "count"), [(2.1, 0), (2.3, 1)])
-def test_a_narrow_lane_has_no_arrow_that_would_touch_its_edges(width: float, count: int) -> None:
-    data = design(60.0, {"kind": "t_junction", "take": "left"}, 60.0)
-    data["lanes"] = {"forward": 1, "backward": 0, "width": width}
-    (ways,) = set(walked(network_of(data)).values())
-    assert ways == {"left", "right"}
-    assert len(arrows(network_of(data))) == count
-
-
-def test_one_lane_each_way_needs_no_arrows() -> None:
-    data = design(60.0, {"kind": "crossroads", "take": "left"}, 60.0)
-    assert arrows(network_of(data)) == ()
-
-
-def test_the_tip_is_ten_metres_before_the_stop_line() -> None:
-    network = crossing(control="stop").network
-    arrow = next(each for each in arrows(network) if each.end == RoadEnd(1, "end"))
-    member = network.road(1)
-    assert arrow.points[:, 0].max() == pytest.approx(member.road.at(60.0 - 0.5 - 10.0)[0])
-    assert np.ptp(arrow.points[:, 0]) == pytest.approx(5.0)
-    assert arrow.points[:, 2] == pytest.approx(member.road.at(45.0)[2])
-    assert ribbon(member.road).contains(shapely.Polygon(arrow.points[:, :2]))

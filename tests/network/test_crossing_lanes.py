@@ -1,7 +1,6 @@
 """Which lanes lead where at a junction: every lane leads on where it can, and no two ways cross."""
 
 import math
-from collections import Counter
 from itertools import pairwise
 
 import pytest
@@ -10,7 +9,7 @@ from hypothesis import strategies as st
 
 from roadgpt.network import RoadEnd
 from roadgpt.network.building import Stub
-from roadgpt.network.crossing_lanes import LaneWay, lane_ways
+from roadgpt.network.crossing import LaneWay, lane_ways
 from roadgpt.road import Profile
 
 Arms = list[tuple[float, int, int]]
@@ -116,25 +115,3 @@ def test_between_roads_with_as_many_lanes_every_lane_is_left_and_reached(
             reached |= {((start + to) % len(directions), j) for _, j in way}
     everything = {(arm, lane) for arm in range(len(directions)) for lane in range(lanes)}
     assert (left, reached) == (everything, everything)
-
-
-def test_lanes_of_a_star_are_shared_out() -> None:
-    arms = [(180.0, 3, 0), *((180.0 + turned, 0, 3) for turned in (72.0, 144.0, 216.0, 288.0))]
-    led = Counter(i for way in ways(arms).values() for i, _ in way)
-    assert set(led) == {0, 1, 2}
-
-
-@pytest.mark.parametrize("wide", [(0, 2), (1, 2)])
-@pytest.mark.parametrize("few", [1, 2])
-def test_a_narrow_arm_of_a_t_junction_leaves_no_lane_of_the_others_empty(
-    wide: tuple[int, int], few: int
-) -> None:
-    """Two of three roads have three lanes: the road that ends (number 0) and one of the road that goes on."""
-    directions, counts = (270.0, 360.0, 540.0), [3 if n in wide else few for n in range(3)]
-    reached = set()
-    for start in range(3):
-        order = [(start + n) % 3 for n in range(3)]
-        arms = [(directions[n], counts[n], counts[n]) for n in order]
-        for to, way in ways(arms).items():
-            reached |= {(order[to], lane) for _, lane in way}
-    assert reached == {(n, lane) for n in range(3) for lane in range(counts[n])}

@@ -8,8 +8,6 @@ import pytest
 from network.changing import WORLD, design
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.network import Route, build_route, read_network_design
-from roadgpt.network.markings import strokes
-from roadgpt.road.profile import LINE
 
 CROSSING = {"kind": "crossroads", "take": "straight", "crosswalk": True}
 BOTH = ((1, "broken"), (2, None), (-1, "broken"), (-2, None))
@@ -47,31 +45,8 @@ def test_the_outer_edges_of_a_road_have_this_line(edge: str | None, wanted: str,
     assert right.marking == wanted
 
 
-def test_the_line_is_written_only_if_it_is_not_solid() -> None:
-    assert "edge" not in read_network_design(made("solid"))[0].to_json()["lanes"]
-    written = read_network_design(made("broken"))[0].to_json()
-    assert written["lanes"]["edge"] == "broken"
-    assert read_network_design(written)[0].to_json() == written
-
-
 @pytest.mark.parametrize("kind", ["merge", "diverge"])
 def test_the_lane_beside_a_ramp_has_the_edges_of_its_road(kind: str) -> None:
     route = route_of(made("none", {"kind": kind, "take": "main"}, backward=0))
     beside = next(road.id for road in route.network.roads_outside if road.profile.count == (3, 0))
     assert marks(route, beside) == {-1: "broken", -2: "broken", -3: "none"}
-
-
-@pytest.mark.parametrize("centre", ["solid", "none"])
-def test_pictures_show_an_edge_line_only_where_there_is_one(centre: str) -> None:
-    kinds = {}
-    for edge in ("solid", "none"):
-        route = route_of(made(edge, forward=1, backward=1, centre=centre))
-        road = route.network.road(route.legs[0].road)
-        kinds[edge] = sorted(each.kind for each in strokes(route.network) if each.road == road.id)
-        for stroke in (each for each in strokes(route.network) if each.road == road.id):
-            away = abs(road.road.locate(*stroke.points[0][:2])[1])
-            assert (stroke.kind == "edge") == (abs(away - (4.0 - LINE / 2)) < 1e-6)
-    assert kinds["solid"].count("edge") == 2
-    assert kinds["none"].count("edge") == 0
-    # a line between the lanes ends at the crosswalk, and is no edge line without edges
-    assert kinds["none"].count("lane") == kinds["solid"].count("lane") == (centre == "solid")

@@ -130,16 +130,6 @@ class TestRefusals:
         assert "\n" not in said
         return said
 
-    def test_the_legs_of_a_route_make_the_route(self) -> None:
-        again = Route.along(self.route.network, self.route.legs)
-        assert again.length == self.route.length
-        assert again.to_route_json() == {"route": [list(leg) for leg in self.route.legs]}
-
-    def test_one_road_is_a_route(self) -> None:
-        assert Route.along(self.route.network, [Leg(1, -1)]).length == pytest.approx(60)
-        against = Route.along(self.route.network, [Leg(1, 1)])
-        assert against.at(0.0) == pytest.approx(self.route.at(60.0), abs=1e-9)
-
     def test_no_leg_means_that_no_route_was_asked_for(self) -> None:
         none = Route.along(self.route.network, [])
         assert has_no_route(none)

@@ -9,6 +9,7 @@ import pytest
 from roadgpt.errors import UsageError
 from roadgpt.network import read_road, read_source
 from roadgpt.road import Road, build, read_design
+from tables import rows
 
 DESIGN = {
     "starting_point": [20, 20, 0],
@@ -59,55 +60,9 @@ def test_a_design_and_a_run_folder(tmp_path: Path) -> None:
     assert read_road(tmp_path).centreline().tobytes() == ours.centreline().tobytes()
 
 
-def test_control_points_are_dense_and_few_enough() -> None:
-    road = build(read_design(DESIGN)[0])
-    steps = np.hypot(*np.diff(road.control_points(), axis=0).T)
-    assert steps.max() <= 2.0 + 1e-9
-    long = Road.from_json({**road.to_json(), "pieces": [[5000.0, 0.0, 0.0]]})
-    assert len(long.control_points()) == 500
-
-
 @pytest.mark.parametrize(
     ("text", "hint"),
-    [
-        ("{", "not valid JSON"),
-        ("[" * 100_000, "not valid JSON"),
-        ("{}", "no road"),
-        ("3", "no road"),
-        ('{"road_points": [[1, 2]]}', "two points"),
-        ('{"road_points": [[1, 2], [1, 2]]}', "same"),
-        ('{"road_points": [[1, 2], [3]]}', "lists of two or three"),
-        ('{"road_points": [["a", 2], [3, 4]]}', "lists of two or three"),
-        ("[[1, 2], [3, NaN]]", "finite"),
-        ("[[1, 2], [3, 1e300]]", "finite"),
-        ("[[5, 5, 0], [5, 5, 10]]", "0 m long"),
-        ("[[10, 10], [300000, 10]]", "up to 50 km"),
-        (
-            '{"start": [0, 0, 0],"pieces": [[6e4, 0, 0]],"height": 0, "stations": [0, 1], "grades": [0, 0]}',
-            "50",
-        ),
-        ('{"pieces": [[1, 0, 0]]}', "start"),
-        (
-            '{"start": [0, 0, 0], "pieces": [[-1, 0, 0]], "height": 0, "stations": [0, 1], "grades": [0, 0]}',
-            "-1 m long",
-        ),
-        (
-            '{"start": [0, 0, 0], "pieces": [[1, NaN, 0]],"height": 0, "stations": [0, 1], "grades": [0, 0]}',
-            "finite",
-        ),
-        (
-            '{"start": [0, 0, 0], "pieces": [[9, 0, 1e9]],"height": 0, "stations": [0, 9], "grades": [0, 0]}',
-            "curvature",
-        ),
-        (
-            '{"start": [0, 0, 1e9], "pieces": [[9, 0, 0]],"height": 0, "stations": [0, 9], "grades": [0, 0]}',
-            "beyond 25,000,000",
-        ),
-        (
-            '{"start": [0, 0, 0], "pieces": [[9, 0, 0]],"height": 1e9, "stations": [0, 9], "grades": [0, 0]}',
-            "beyond 25,000,000",
-        ),
-    ],
+    rows(__file__, "files_without_a_road_get_one_sentence"),
 )
 def test_files_without_a_road_get_one_sentence(tmp_path: Path, text: str, hint: str) -> None:
     path = tmp_path / "bad.json"

@@ -62,15 +62,3 @@ def test_a_damaged_link_is_refused_in_one_sentence(lanes: Any) -> None:
     with pytest.raises(UsageError, match=r"^the network cannot be read") as error:
         road_from_json(data)
     assert "\n" not in str(error.value)
-
-
-@pytest.mark.parametrize(
-    "continuations",
-    [[{"before": [1, "end"], "after": [99, "start"], "lanes": [[-1, -1]]}], [{"before": [1, "end"]}], "none"],
-)
-def test_a_damaged_continuation_is_refused_in_one_sentence(continuations: Any) -> None:
-    data = json.loads(OLD.read_text())
-    data["network"]["continuations"] = continuations
-    with pytest.raises(UsageError, match=r"^the network cannot be read") as error:
-        road_from_json(data)
-    assert "\n" not in str(error.value)

@@ -12,35 +12,20 @@ import av
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from matplotlib.colors import to_rgb
 from scipy.interpolate import interp1d
 
+from road_parts import design_of, named
 from roadgpt.cli import app
 from roadgpt.errors import RoadGPTError, UsageError
-from roadgpt.report.canvas import OUTCOMES, SEVERE, outcome_of
-from roadgpt.report.film import HOLD, SEAM, Film, Settings, encoding, film_of, split_film
-from roadgpt.report.film.glyphs import width_of, write
-from roadgpt.report.film.trip import TURN_LAG, Trip
-from roadgpt.report.text_width import inches
-from roadgpt.road import Design, Segment
+from roadgpt.report.film import HOLD, SEAM, TURN_LAG, Film, Settings, Trip, film_of, split_film, write_film
+from roadgpt.road import Design
 from roadgpt.run import Run, Setup, prove, write_run
 
 SMALL = Settings(160, 96, 10)
 
 
 def design(turn: float) -> Design:
-    return Design(
-        starting_point=(60, 60, 0),
-        theta=20,
-        segments=(
-            Segment(distance=30, direction="straight", incline=5),
-            Segment(distance=30, direction="left", incline=0, turn_degrees=turn),
-        ),
-    )
-
-
-def named(run: Run, words: str) -> Run:
-    return replace(run, request=run.request.model_copy(update={"words": words}))
+    return design_of((30, 0, 5), (30, turn, 0))
 
 
 @pytest.fixture(scope="module")
@@ -115,32 +100,6 @@ def test_two_drives_stand_side_by_side_and_two_views_one_above_the_other(
     assert Film.of([driven], "both", settings).frame(0).shape == (96, 2 * 160 + SEAM, 3)
 
 
-def test_the_shorter_of_two_drives_waits_with_its_outcome(driven: Run, other: Run) -> None:
-    assert driven.drive is not None
-    assert other.drive is not None
-    durations = driven.drive.duration, other.drive.duration
-    film = Film.of([driven, other], "chase", SMALL)
-    assert len(film) == int(max(durations) * 10 + 1e-6) + HOLD * 10
-    early, late = np.argsort(durations)
-    graded = [OUTCOMES[outcome_of(run)] for run in (driven, other)]
-    assert graded == [SEVERE[run.verdict.severity] for run in (driven, other) if run.verdict]
-    badge = [np.array([round(255 * part) for part in to_rgb(colour)]) for colour in graded]
-
-    def badges(n: int) -> list[int]:
-        frame = film.frame(n)
-        halves = frame[10:50, :160], frame[10:50, 160 + SEAM :]
-        pairs = zip(halves, badge, strict=True)
-        return [int((half == colour).all(axis=2).sum()) for half, colour in pairs]
-
-    assert driven.outcome == other.outcome == "PASS"
-    assert badges(3) == [0, 0]
-    waits = next(n for n, time in enumerate(film.times) if time >= durations[early])
-    if film.times[waits] < durations[late]:
-        assert badges(waits)[early] > 100
-        assert badges(waits)[late] == 0
-    assert min(badges(len(film) - 1)) > 100
-
-
 def test_a_trip_is_the_drive_and_its_camera_lags(driven: Run) -> None:
     drive = driven.drive
     assert drive is not None
@@ -174,34 +133,6 @@ def test_along_a_road_that_nobody_drove_the_camera_rides_alone(alone: Run) -> No
     assert not blue.any()  # no car
 
 
-def test_text_is_as_wide_as_everywhere_and_ends_at_the_border() -> None:
-    for weight in ("normal", "bold"):
-        wide = inches("An uphill road, 12 m", 20, weight == "bold") * 72
-        assert width_of("An uphill road, 12 m", 20, weight) == pytest.approx(wide, abs=1.5)
-    frame = np.zeros((40, 60, 3), np.uint8)
-    write(frame, 20, 30, "H", 24)
-    rows, columns = np.nonzero(frame[..., 0] > 128)
-    assert rows.max() == 29  # it stands on its baseline
-    assert 22 <= columns.min() < columns.max() <= 40
-    for x, y in ((-9, 30), (55, 30), (20, 3), (20, 52), (500, 500)):
-        write(frame, x, y, "Hg", 24)
-
-
-@pytest.mark.parametrize(
-    ("numbers", "said"),
-    [
-        ({"width": 161}, "161x96 pixels.*even"),
-        ({"height": 10_000}, "even numbers from 64 to 3840"),
-        ({"fps": 0}, "0 pictures a second"),
-        ({"begin": -1.0}, "second 0"),
-        ({"seconds": 0.0}, "longer than nothing"),
-    ],
-)
-def test_a_film_that_cannot_be_is_refused_in_a_sentence(numbers: dict, said: str) -> None:
-    with pytest.raises(UsageError, match=said):
-        replace(SMALL, **numbers)
-
-
 def test_what_cannot_be_filmed_is_told(driven: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(UsageError, match="chase, bonnet, both"):
         film_of(driven, tmp_path / "a.mp4", "roof")
@@ -232,7 +163,7 @@ def test_a_film_that_is_interrupted_leaves_nothing(
 
     frames = Film.of([driven], "chase", SMALL).frames()
     with pytest.raises(KeyboardInterrupt):
-        encoding.write_film(stopped(frames), old, 10)
+        write_film(stopped(frames), old, 10)
     frames.close()
     assert old.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [old]

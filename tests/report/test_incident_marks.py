@@ -1,20 +1,17 @@
 """Pictures and page of a route mark everything that the car did wrong, and the cause of the failure most."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from itertools import combinations
-from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation, Text
-from tests import chromium
 
 from roadgpt.network import made_from, read_network_design
 from roadgpt.report import birds_eye, view
 from roadgpt.report.places import minor_places_of, places_of
-from roadgpt.road import Road, World
+from roadgpt.road import World
 from roadgpt.run import Run, Setup, prove
 from roadgpt.verdict import Incident
 
@@ -143,61 +140,3 @@ def test_a_drive_that_passed_has_marks_too(run: Run) -> None:
     assert places_of(kept) == []
     assert "a wheel off the road, 30 m" in [text.get_text() for text in labels(birds_eye(kept))]
     assert [place["text"] for place in view.scene(kept)["places"]] == ["a wheel off the road, 30 m"]
-
-
-def test_a_single_road_has_no_other_marks() -> None:
-    road = prove(Road.through([[40, 100], [90, 100], [140, 100]]), 1)
-    assert road.verdict is not None
-    assert minor_places_of(road) == []
-    assert minor_places_of(replace(road, verdict=None)) == []
-
-
-@pytest.fixture(scope="module")
-def page() -> Iterator[chromium.BrowserTab]:
-    if chromium.FOUND is None:
-        pytest.skip("needs chromium")
-    with chromium.browser() as page:
-        page.size(1100, 700)
-        yield page
-
-
-def test_the_page_names_every_incident_and_no_plate_covers_another(
-    page: chromium.BrowserTab, run: Run, tmp_path: Path
-) -> None:
-    made = view.scene(crowd(run))
-    texts = [place["text"] for place in made["places"] if place["text"]]
-    assert len(made["places"]) == 3 + 5 + 5
-    assert made["places"][-1]["isMinor"] is False  # the cause, over all others
-    assert sum(place["isMinor"] for place in made["places"]) == len(made["places"]) - 1
-    path = tmp_path / "page.html"
-    path.write_text(view.page_of([made]), encoding="utf-8")
-    page.open(path)
-    page.run("roadgpt.player.choose('free'); 0")
-    page.settle()
-    (plates,) = page.run("roadgpt.plates")
-    assert page.told == []
-    assert len(plates) == len(texts)
-    for one, other in combinations(plates, 2):
-        is_beside = one["right"] <= other["left"] + 1e-9 or other["right"] <= one["left"] + 1e-9
-        assert is_beside or one["bottom"] <= other["top"] + 1e-9 or other["bottom"] <= one["top"] + 1e-9
-    highs = sorted(plate["bottom"] - plate["top"] for plate in plates)  # pixels, downwards
-    assert (
-        highs.count(pytest.approx(highs[0])) == len(texts) - 2
-    )  # all but the cause and the one of two lines
-
-
-def test_a_place_without_a_label_is_drawn_on_the_page(
-    page: chromium.BrowserTab, run: Run, tmp_path: Path
-) -> None:
-    made = view.scene(crowd(run))
-    (unnamed, *_) = (place for place in made["places"] if not place["text"])
-    pictures = []
-    for name, places in (("with", [unnamed]), ("without", [])):
-        path = tmp_path / f"{name}.html"
-        path.write_text(view.page_of([{**made, "places": places}]), encoding="utf-8")
-        page.open(path, f"#t={unnamed['time'] - 2}&camera=bonnet")
-        pictures.append([page.picture(part)[..., :3] for part in (".stage .scene", ".plan canvas")])
-        assert page.told == []
-        assert page.run("roadgpt.plates[0].length") == 0
-    for one, other in zip(*pictures, strict=True):
-        assert (np.abs(one - other).max(axis=2) > 0.2).any()

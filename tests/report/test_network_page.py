@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from tests import chromium
 from tests.report.test_networks import TWO
 
 from roadgpt.network import Route, made_from, read_network_design
 from roadgpt.network.arrows import arrows
 from roadgpt.network.markings import strokes
 from roadgpt.report import view
-from roadgpt.road import CrossSection, Design, Segment, World
+from roadgpt.road import CrossSection, World
 from roadgpt.run import Run, Setup, prove
+from tests import chromium
 
 
 @cache
@@ -64,12 +64,6 @@ def test_roads_and_junctions_of_the_page_are_the_paved_area(run: Run, route: Rou
     assert sum(part.area for part in parts) == pytest.approx(route.network.paved.area, rel=0.002)
 
 
-def test_triangles_are_seen_from_above(run: Run) -> None:
-    for area in view.scene(run)["network"]["areas"]:
-        for triangles in (area["paved"], *area["shoulder"], *area["green"], *area["kerbed"]):
-            assert all(polygon.exterior.is_ccw for polygon in polygons(triangles))
-
-
 def test_every_line_and_every_sign_is_on_the_page(run: Run, route: Route) -> None:
     network = view.scene(run)["network"]
     assert len(network["strokes"]) == len(strokes(route.network))
@@ -89,25 +83,6 @@ def test_every_arrow_is_on_the_page_with_triangles_seen_from_above() -> None:
         assert all(polygon.exterior.is_ccw for polygon in flat)
         outline = shapely.Polygon(arrow.points[:, :2])
         assert sum(polygon.area for polygon in flat) == pytest.approx(outline.area, abs=0.02)
-
-
-def test_a_floating_network_has_no_ground(route: Route) -> None:
-    network = view.scene(run_of(shoulder=0.0))["network"]
-    assert network["plan"]["ground"] == []
-    assert not any(area["shoulder"] for area in network["areas"])
-
-
-def test_the_page_stays_small(run: Run) -> None:
-    plain = prove(
-        Design(
-            starting_point=(50, 50, 0),
-            theta=0,
-            segments=(Segment(distance=100, direction="straight", incline=0, turn_degrees=0),),
-        ),
-        setup=Setup(drives=False),
-    )
-    assert len(view.page([run])) < len(view.page([plain])) + 250_000
-    assert "network" not in view.scene(plain)
 
 
 @pytest.fixture(scope="module")

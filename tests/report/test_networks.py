@@ -7,24 +7,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from roadgpt.drive.outlook import passages
 from roadgpt.network import NetworkDesign, Route, made_from, read_network_design
 from roadgpt.network.arrows import arrows
-from roadgpt.report import birds_eye, draw, height_profile, strip, view
+from roadgpt.report import birds_eye, height_profile, strip, view
 from roadgpt.report.network_view import ASPHALT, GRASS, KERB, PAINT, TINT
 from roadgpt.report.overview import pages
-from roadgpt.report.page.failure_site import draw_site, site_of
+from roadgpt.report.page.maps import draw_site, site_of
 from roadgpt.report.plan_view import Frame
-from roadgpt.report.plotting import plot
-from roadgpt.road import CrossSection, Profile, Road, World
+from roadgpt.road import Profile, Road, World
 from roadgpt.run import Run, Setup, prove, write_run
-from roadgpt.study.survey.media import Axes as SurveyAxes
 
 TWO = {
     "starting_point": [20, 90, 0],
@@ -61,12 +56,6 @@ def above(alone: Run) -> Figure:
 @pytest.fixture(scope="module")
 def driven(route: Route) -> Run:
     return prove(route, 7)
-
-
-def test_the_pictures_of_a_survey_show_the_whole_network(route: Route) -> None:
-    frame = SurveyAxes.of([route]).frame
-    for each in route.network.roads:
-        assert all(frame.holds(x, y) for x, y in each.road.centreline(1.0)[:, :2])
 
 
 def colour(text: str) -> np.ndarray:
@@ -143,13 +132,6 @@ def test_the_stop_line_is_white_where_the_road_ends(above: Figure, route: Route)
     assert not near(seen(above, before), PAINT, 40).any()
 
 
-def test_the_frame_shows_the_whole_network(above: Figure, route: Route) -> None:
-    axes = above.axes[0]
-    (x0, y0), (x1, y1) = route.network.bounds()
-    assert axes.get_xlim()[0] < x0 < x1 < axes.get_xlim()[1]
-    assert axes.get_ylim()[0] < y0 < y1 < axes.get_ylim()[1]
-
-
 def test_a_key_explains_the_signs_that_are_drawn(above: Figure, alone: Run) -> None:
     entries = {"stop sign", "give-way sign", "priority sign", "traffic lights"}
     assert {text.get_text() for text in above.texts} & entries == entries - {"traffic lights"}
@@ -160,49 +142,11 @@ def test_a_key_explains_the_signs_that_are_drawn(above: Figure, alone: Run) -> N
     assert not {text.get_text() for text in lone.texts} & entries
 
 
-def test_from_far_away_all_roads_are_lines(route: Route) -> None:
-    figure = Figure(figsize=(2, 2))
-    axes = figure.add_subplot()
-    axes.set(xlim=(-4000, 4000), ylim=(-4000, 4000))
-    plot(route, axes)
-    assert axes.get_xlim()[0] < 20 < route.network.bounds()[1, 0] < axes.get_xlim()[1]
-
-
-def test_stretches_are_those_where_the_route_is_inside(route: Route) -> None:
-    one, two = route.passages
-    assert (one.entered.kind, two.entered.kind) == ("crossroads", "roundabout")
-    inside = [
-        (a, b)
-        for a, b, leg in zip(route.starts, route.starts[1:], route.legs, strict=False)
-        if route.network.road(leg.road).junction is not None or leg.road in route.network.roundabout_of
-    ]
-    assert (one.start, one.end) == inside[0]
-    assert (two.start, two.end) == (inside[1][0], inside[-1][1])
-    assert one.start == pytest.approx(70)
-
-
 def test_heights_and_curvature_name_the_junctions(driven: Run) -> None:
     for figure in (height_profile(driven), strip(driven)):
         names = [text.get_text() for text in figure.findobj(Text)]
         assert names.count("crossroads") == 1
         assert names.count("roundabout") == 1
-
-
-def test_a_road_without_junctions_has_no_stretches(driven: Run) -> None:
-    assert passages(Road.through([[0, 0], [50, 0], [100, 10], [160, 0]])) == ()
-
-
-@pytest.mark.parametrize("shoulder", [0.0, 3.0])
-def test_all_pictures_are_drawn_twice_the_same(driven: Run, tmp_path: Path, shoulder: float) -> None:
-    run = driven
-    if shoulder != run.world.section.shoulder:
-        world = World(section=CrossSection(shoulder=shoulder))
-        run = prove(made_from(design(), world), setup=Setup(drives=False), world=world)
-    for name in ("one", "two"):
-        (tmp_path / name).mkdir()
-        assert len(draw(run, tmp_path / name, formats=("svg",))) == 3
-    for path in sorted((tmp_path / "one").iterdir()):
-        assert path.read_bytes() == (tmp_path / "two" / path.name).read_bytes()
 
 
 def greys(folder: Path) -> int:
@@ -240,35 +184,6 @@ def test_arrows_before_a_junction_are_drawn() -> None:
     site = site_of(found, World(), None, 60.0)
     assert any(np.array_equal(each, outer.points[:, :2]) for each in site.arrows)
     assert f"{len(site.arrows)}" == f"{draw_site(site, 'arrows').count('<polygon')}"
-
-
-def test_the_limit_of_curvature_is_not_drawn_in_junctions(driven: Run, route: Route) -> None:
-    curvature, _radius, grade = strip(driven).axes[:3]
-
-    def drawn(axes: Axes) -> list[tuple[float, ...]]:
-        lines = [each for each in axes.collections if isinstance(each, LineCollection)]
-        return sorted({tuple(piece[:, 0].tolist()) for each in lines for piece in each.get_segments()})
-
-    one, two = route.passages
-    assert drawn(curvature) == [(0.0, one.start), (one.end, two.start), (two.end, route.length)]
-    assert drawn(grade) == [(0.0, route.length)]
-
-
-def test_the_bars_at_both_ends_lie_over_the_lanes_of_the_drive(above: Figure, route: Route) -> None:
-    assert route.profile is not None
-    for s, least, most in ((0.0, 0.99, 1.0), (route.length, 0.3, 0.7)):
-        edges = route.profile.lane(s)
-        inside = np.linspace(float(edges.left) - 0.6, float(edges.right) + 0.6, 41)
-        oncoming = float(edges.left) + np.linspace(0.8, 3.2, 41)
-        is_black = [
-            near(seen(above, route.at(np.full(41, s), t)[:, :2]), "#1b1e23", 60) for t in (inside, oncoming)
-        ]
-        assert least <= is_black[0].mean() <= most
-        assert not is_black[1].any()
-
-
-def test_a_key_explains_the_tint_of_the_route(above: Figure) -> None:
-    assert "lane of the route" in {text.get_text() for text in above.texts}
 
 
 @pytest.mark.parametrize("is_route", [True, False])

@@ -16,7 +16,7 @@ from roadgpt.report import overview
 from roadgpt.report.overview import Thumbnail, page_of, pages
 from roadgpt.road import World
 from roadgpt.run import Request, Setup
-from roadgpt.run.card import CARD, Card
+from roadgpt.run.folder import CARD, Card
 
 OUTCOMES = ["PASS", "FAIL", "INVALID", "ERROR", None]
 
@@ -108,11 +108,6 @@ def test_the_colour_along_a_road_is_that_of_the_record_on_the_scale(tmp_path: Pa
     assert path.cmap(path.norm(2.0)) == path.cmap(path.norm(1.0))
 
 
-def test_a_page_without_drives_has_no_scale_of_colours() -> None:
-    line = np.array([[10.0, 20.0], [30.0, 40.0]])
-    assert len(page_of([Thumbnail(1, "VALID", line)], ("", ""), "").axes) == 1
-
-
 def test_the_page_counts_outcomes_in_words(tmp_path: Path) -> None:
     campaign(tmp_path, 5)
     world, setup = World().changed(map_size=200.0, oracle="sbft"), Setup(driver="beamng_like")
@@ -129,41 +124,9 @@ def test_the_page_counts_outcomes_in_words(tmp_path: Path) -> None:
     assert any("seed 4" in text and "page 2 of 3" in text for text in said)
 
 
-def test_the_page_says_what_its_signs_mean() -> None:
-    line = np.array([[10.0, 20.0], [30.0, 40.0]])
-
-    def said(entries: list[Thumbnail]) -> set[str]:
-        return {text.get_text() for text in page_of(entries, ("", ""), "").axes[0].texts}
-
-    kept, failed = Thumbnail(1, "PASS", line, None), Thumbnail(2, "FAIL", line, (20.0, 30.0))
-    assert {"start", "where the car failed"} <= said([kept, failed])
-    assert "where the car failed" not in said([kept, kept])
-    assert "start" not in said([Thumbnail(1, "ERROR", np.empty((0, 2)), None)])
-
-
 def test_no_tests_no_page(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"holds no test\.0001\.json"):
         overview(tmp_path)
     (tmp_path / "test.0001.json").write_text("{")
     with pytest.raises(UsageError, match="cannot be read"):
         overview(tmp_path)
-
-
-def test_an_outcome_of_another_tool_is_shown_as_it_is(tmp_path: Path) -> None:
-    test = test_file(1) | {"test_outcome": "NOT_EXECUTED"}
-    (tmp_path / "test.0001.json").write_text(json.dumps(test))
-    assert overview(tmp_path)
-    entries = [Thumbnail(1, "NOT_EXECUTED", np.array([[1.0, 2.0], [30.0, 40.0]]), None)] * 2
-    said = [text.get_text() for text in page_of(entries, ("", ""), "").axes[0].texts]
-    assert said.count("NOT_EXECUTED") == 2
-    assert "2 NOT_EXECUTED" in said
-
-
-def test_the_cross_marks_the_first_record_outside(tmp_path: Path) -> None:
-    """The competition's record has is_oob in the 13th place, and the position in the second."""
-    from roadgpt.report.overview import _thumbnail
-
-    records = [[i / 10, [10.0 * i, 5.0, 1.0], *[0] * 10, i >= 3, 0, 0, 0, 0] for i in range(6)]
-    path = tmp_path / "test.0002.json"
-    path.write_text(json.dumps(test_file(1) | {"test_outcome": "FAIL", "execution_data": records}))
-    assert _thumbnail(path).failed_at == (30.0, 5.0)

@@ -14,14 +14,9 @@ from matplotlib.image import imread
 
 from roadgpt.errors import RoadGPTError
 from roadgpt.report.overview import Thumbnail
-from roadgpt.report.page import write
-from roadgpt.report.page.chart import palette
-from roadgpt.report.page.failure_site import draw_site, site_of
-from roadgpt.report.page.forest import Share, forest
-from roadgpt.report.page.gallery import gallery
-from roadgpt.report.page.heat import AxisRange, heat, is_map
-from roadgpt.report.page.html import STYLE, html_of
-from roadgpt.report.page.lines import bars, lines
+from roadgpt.report.page import STYLE, csv_of, html_of, latex_of, write
+from roadgpt.report.page.charts import AxisRange, Share, bars, forest, heat, is_map, lines, palette
+from roadgpt.report.page.maps import draw_site, gallery, site_of
 from roadgpt.report.page.model import (
     Cards,
     Details,
@@ -34,7 +29,6 @@ from roadgpt.report.page.model import (
     cell,
     linked,
 )
-from roadgpt.report.page.text import csv_of, latex_of, markdown_of
 from roadgpt.road import CrossSection, Road, World
 
 NASTY = "<script>alert(1)</script> & \"100 %\" | $x_1$ \\ {y} 'z'"
@@ -86,26 +80,11 @@ def test_nothing_in_the_words_becomes_markup() -> None:
     assert reader.text.count(NASTY) >= 6
 
 
-def test_words_are_no_tags_in_markdown_and_no_letters_that_latex_lacks() -> None:
-    text = markdown_of(page(NASTY, TABLE, Details(NASTY, [NASTY]), Figure("f", NASTY, "")))
-    outside = "\n".join(line for line in text.splitlines() if not line.startswith("- command: `"))
-    assert "<script" not in outside
-    assert outside.count("&lt;script>alert(1)&lt;/script> &amp;") == 9
-    assert "# two lines" in markdown_of(Page("two\nlines", [], []))
-    assert r"\textless{}script\textgreater{}" in latex_of(TABLE)
-    assert r"\textbar{} \$x" in latex_of(TABLE)
-
-
 @pytest.mark.parametrize("start", ["=", "+", "-", "@", "\t"])
 def test_words_are_no_formulas_in_a_spreadsheet(start: str) -> None:
     told = Table("t", "", ["a", "b"], [[cell(f"{start}cmd|' /C calc'!A0"), cell(-0.25)]])
     rows = list(csv.reader(io.StringIO(csv_of(told), newline="")))
     assert rows[1] == [f"'{start}cmd|' /C calc'!A0", "-0.25"]
-
-
-def test_words_of_several_lines_are_one_cell() -> None:
-    told = Table("t", "", ["a", "b"], [[cell("one\rtwo\r\nthree"), cell(4)]])
-    assert list(csv.reader(io.StringIO(csv_of(told), newline=""))) == [["a", "b"], ["one\ntwo\nthree", "4"]]
 
 
 def test_a_page_asks_for_nothing() -> None:
@@ -124,9 +103,6 @@ def test_every_form_of_a_table_has_its_numbers() -> None:
     assert r"\$x\_1\$ \textbackslash{} \{y\}" in latex
     assert latex.count(r"\\") == 3
     assert latex.index(r"\midrule", latex.index("3 ")) < latex.index(r"25 \%")
-    markdown = markdown_of(page(TABLE))
-    cells = next(line for line in markdown.splitlines() if "(a%20b/c.png)" in line)
-    assert len(re.findall(r"(?<!\\)\|", cells)) == 3
 
 
 def test_writing_puts_all_of_it_into_a_folder(tmp_path: Path) -> None:
@@ -210,12 +186,6 @@ def test_what_is_counted_has_whole_numbers_at_its_axes() -> None:
         assert [number for number in shown if "." in number] == []
 
 
-def test_a_gallery_of_one_road_is_a_small_picture() -> None:
-    road = [Thumbnail(1, "PASS", np.array([[0.0, 0.0], [125.0, 125.0]]))]
-    assert "narrow" in parsed(gallery(road, 250.0, "label")).get("class", "")
-    assert "narrow" not in parsed(gallery(road * 20, 250.0, "label")).get("class", "")
-
-
 def test_shares_lie_where_they_should() -> None:
     svg = forest([("a", [Share(0, 0.0, 0.0, 0.1, "0"), Share(1, 1.0, 0.9, 1.0, "1")])], ["x", "y"], "label")
     dots = [each for hue in ("s0", "s1") for each in styled(svg, "use", hue)]
@@ -250,14 +220,6 @@ def test_bars_are_as_high_as_their_counts() -> None:
     assert corners(mark)[0, 0] == pytest.approx(axis[0][:, 0].mean()), "halfway from 0 to 3"
 
 
-def test_a_curve_goes_up_where_it_rises() -> None:
-    svg = lines([("a", [0, 1, 2], [0, 0, 5])], "x", "y", "label")
-    (curve,) = styled(svg, "path", "s0")
-    heights = corners(curve)[:, 1]
-    assert heights[0] == heights[1] > heights[2]
-    assert not styled(lines([("none", [], [])], "x", "y", "label"), "path", "s0")
-
-
 def test_every_road_of_a_gallery_leads_somewhere() -> None:
     road = np.array([[0.0, 0.0], [125.0, 125.0], [250.0, 250.0]])
     small = [
@@ -273,7 +235,7 @@ def test_every_road_of_a_gallery_leads_somewhere() -> None:
 
 
 def test_cards_stand_beside_each_other_with_what_can_be_typed() -> None:
-    """Pictures only in HTML; every word in both forms, nothing of it taken for markup."""
+    """Nothing of the words is taken for markup."""
     card = FigureCard(
         ["2 · ", linked("3 tests", "a b.png")], "<svg><rect/></svg>", [NASTY, [ShellCommand(NASTY)]]
     )
@@ -284,7 +246,6 @@ def test_cards_stand_beside_each_other_with_what_can_be_typed() -> None:
     reader.feed(text)
     assert reader.text.count(NASTY) >= 4
     assert "<script" not in text
-    assert "**2 · [3 tests](a%20b.png)**" in markdown_of(whole)
     assert "<code>" in text
 
 
@@ -308,7 +269,7 @@ def test_a_map_that_shows_nothing_is_none(filled: list[float], is_one: bool) -> 
 def test_the_place_of_a_failure_is_to_scale_and_the_way_there_leads_up() -> None:
     """A car on a straight to the east: its way is drawn upwards, in the right lane, 240 px for 52 m."""
     from roadgpt.drive import COLUMNS, Box, Columns, Drive
-    from roadgpt.report.page.failure_site import draw_site, site_of
+    from roadgpt.report.page.maps import draw_site, site_of
     from roadgpt.road import Design, Segment, World, build
 
     straight = Segment(distance=120.0, direction="straight")

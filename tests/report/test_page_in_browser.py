@@ -9,8 +9,7 @@ import pytest
 
 from chromium import FOUND, BrowserTab, browser
 from roadgpt.report.page import write
-from roadgpt.report.page.forest import Share, forest
-from roadgpt.report.page.heat import AxisRange, heat
+from roadgpt.report.page.charts import AxisRange, Share, forest, heat
 from roadgpt.report.page.model import Figure, Page, Section, Table, cell
 
 pytestmark = pytest.mark.skipif(FOUND is None, reason="there is no chromium")

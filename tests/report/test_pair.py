@@ -29,15 +29,6 @@ def test_both_roads_have_the_same_scales() -> None:
     assert above.get_position().y0 > above2.get_position().y1
 
 
-def test_the_thesis_axes_say_what_they_do_not_show() -> None:
-    figure = pair(run_of(LONG), run_of(SHORT), "thesis")  # type: ignore[arg-type]
-    assert figure.axes[0].get_xlim() == (0, 220)
-    assert figure.axes[1].get_ylim() == (0, 20)
-    said = [text.get_text() for axes in figure.axes[:2] for text in axes.texts]
-    assert any("goes on to" in text and "m high" in text for text in said)
-    assert not any("goes on" in text.get_text() for text in figure.axes[3].texts)
-
-
 def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import json
 

@@ -12,12 +12,12 @@ from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from road_parts import design_of, named
 from roadgpt.cli import app
 from roadgpt.errors import RoadGPTError, UsageError
-from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.report import view
-from roadgpt.report.view.scene import DRIVE, MOST_STEPS
-from roadgpt.road import CrossSection, Design, Road, Segment, Site, World
+from roadgpt.report.view.scene import DRIVE
+from roadgpt.road import CrossSection, Design, Road, Site, World
 from roadgpt.run import Run, Setup, prove, write_run
 from roadgpt.scene import Scene
 
@@ -28,19 +28,7 @@ EVIL = (
 
 
 def design(turn: float = 65) -> Design:
-    return Design(
-        starting_point=(60, 60, 0),
-        theta=20,
-        segments=(
-            Segment(distance=60, direction="straight", incline=5),
-            Segment(distance=45, direction="left", incline=2, turn_degrees=turn),
-            Segment(distance=50, direction="straight", incline=-3),
-        ),
-    )
-
-
-def named(run: Run, words: str) -> Run:
-    return replace(run, request=run.request.model_copy(update={"words": words}))
+    return design_of((60, 0, 5), (45, turn, 2), (50, 0, -3))
 
 
 @pytest.fixture(scope="module")
@@ -103,17 +91,6 @@ def test_the_page_holds_everything_and_fetches_nothing(driven: Run) -> None:
     assert "@import" not in page
     assert not re.search(r"url\(", page.split("</style>")[0])
     assert "@@" not in page.replace(reader.scripts[2], "")
-
-
-def test_three_js_comes_with_its_licence(driven: Run) -> None:
-    licence = (Path(view.__file__).parent / "three" / "LICENSE").read_text(encoding="utf-8")
-    assert "The MIT License" in licence
-    assert "three.js authors" in licence
-    assert licence in view.page([driven])
-
-
-def test_the_same_run_gives_the_same_page(driven: Run) -> None:
-    assert view.page([driven]) == view.page([driven])
 
 
 def test_a_description_cannot_break_out(driven: Run) -> None:
@@ -204,21 +181,6 @@ def test_the_drive_is_that_of_the_run(driven: Run) -> None:
     assert drive["car"]["length"] == driven.drive.car.length
 
 
-def test_a_long_drive_is_thinned_and_keeps_its_end(driven: Run) -> None:
-    drive = driven.drive
-    assert drive is not None
-    count = 5 * MOST_STEPS + 3
-    long = {
-        name: np.interp(np.linspace(0, 1, count), np.linspace(0, 1, len(drive)), drive[name])
-        for name in drive.columns
-    }
-    columns = view.scene(replace(driven, drive=replace(drive, columns=type(drive.columns)(long))))["drive"][
-        "columns"
-    ]
-    assert len(columns["time"]) <= MOST_STEPS + 1
-    assert columns["time"][-1] == pytest.approx(drive.duration, abs=1e-3)
-
-
 def test_a_failed_drive_tells_where_and_when() -> None:
     run = prove(design(), 7, World(site=Site(friction=0.15)))
     assert run.outcome == "FAIL"
@@ -226,16 +188,6 @@ def test_a_failed_drive_tells_where_and_when() -> None:
     (place,) = view.scene(run)["places"]
     assert place["time"] == pytest.approx(run.verdict.at_time, abs=0.02)
     assert (place["x"], place["y"]) == pytest.approx(run.verdict.at_xy)
-
-
-def test_a_road_without_a_drive_and_one_that_rules_object_to(alone: Run) -> None:
-    shown = view.scene(alone)
-    assert shown["drive"] is None
-    assert shown["title"] == "alone.json"
-    assert shown["places"] == []
-    tight = prove(Road.through([[20, 20], [60, 20], [62, 24], [20, 30]]), setup=Setup(drives=False))
-    assert view.scene(tight)["outcome"] == "INVALID"
-    assert view.scene(tight)["places"]
 
 
 def test_what_cannot_be_shown_is_told(driven: Run, alone: Run, tmp_path: Path) -> None:
@@ -249,10 +201,6 @@ def test_what_cannot_be_shown_is_told(driven: Run, alone: Run, tmp_path: Path) -
     with pytest.raises(RoadGPTError, match="--out"):
         view.write([alone], tmp_path / "file" / "page.html")
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
-
-
-def test_a_folder_that_is_not_there_is_made(alone: Run, tmp_path: Path) -> None:
-    assert view.write([alone], tmp_path / "none" / "deep" / "page.html").is_file()
 
 
 @pytest.fixture
@@ -299,16 +247,6 @@ def test_wrong_words_get_advice(
     assert not [*folder.glob("*.html")]
 
 
-def test_the_test_file_of_a_campaign_stands_for_its_run(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(folder)
-    done = CliRunner().invoke(app, ["view", "campaign/test.0001.json"])
-    assert done.exit_code == 0, done.output
-    (shown,) = data_of((folder / "test.0001-view.html").read_text(encoding="utf-8"))
-    assert shown["drive"] is not None
-
-
 def test_the_page_is_named_after_its_roads(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
     monkeypatch.setattr("webbrowser.open", lambda address: False)
@@ -318,12 +256,3 @@ def test_the_page_is_named_after_its_roads(folder: Path, monkeypatch: pytest.Mon
     done = CliRunner().invoke(app, ["view", "road.json", "campaign/runs/0001"])
     assert (done.exit_code, done.stdout) == (0, "road-and-0001-view.html\n")
     assert len(data_of((folder / "road-and-0001-view.html").read_text(encoding="utf-8"))) == 2
-
-
-def test_the_car_stands_on_the_inclined_surface() -> None:
-    """The page draws the car ``height`` above the road; on a bank that is the height above its own place."""
-    plan = PieceCurve(100.0, 60.0, 0.0, (Piece(90.0, 1 / 60, 1 / 60),))
-    road = Road(plan, GradeProfile(3.0, (0.0, 90.0), (0.0, 0.0)))
-    run = prove(road, 0, World(section=CrossSection(lanes="3+1", bank=0.08)), Setup(driver="reference"))
-    made = view.scene(run)
-    assert made["drive"]["car"]["height"] == pytest.approx(0.56, abs=0.05)

@@ -78,31 +78,6 @@ def test_a_radius_is_kept_and_the_rest_stays_straight() -> None:
     assert bent == pytest.approx(25 * np.radians(60) + 10)
 
 
-def test_without_a_radius_the_whole_distance_turns() -> None:
-    road = build(one(distance=40, turn_degrees=60))
-    assert sum(p.length for p in road.plan.pieces if p.k0 or p.k1) == pytest.approx(40)
-
-
-def test_a_radius_that_does_not_fit_gives_way_to_distance_and_turn() -> None:
-    road = build(one(distance=20, turn_degrees=60, radius=100))
-    assert road.length == pytest.approx(60)
-    assert np.degrees(road.heading(road.length)) == pytest.approx(60)
-
-
-def test_a_hairpin_in_three_segments_is_one_arc() -> None:
-    radius, ramp, turn = 20.0, 12.0, 50.0
-    arc = radius * np.radians(turn)
-    parts = [
-        Segment(distance=d, direction="right", turn_degrees=-turn, radius=radius, transition=ramp)
-        for d in (arc + ramp / 2, arc, arc + ramp / 2)
-    ]
-    lead = Segment(distance=20, direction="straight")
-    road = build(Design(starting_point=(100, 100, 0), theta=90, segments=(lead, *parts, lead)))
-    assert [round(p.length, 6) for p in road.plan.pieces if abs(p.k0 - p.k1) < 1e-9 < abs(p.k0)] == [
-        pytest.approx(radius * np.radians(150) - ramp, abs=1e-4)
-    ]
-
-
 def test_spline_geometry_is_roadgpts_translation() -> None:
     """Worked by hand from the thesis: start, 5 m level stub, then turn and hop; 0 degrees looks along +x."""
     design = Design(

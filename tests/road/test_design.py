@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, read_design
+from tables import rows
 
 THESIS = """{"starting_point": [50, 30, 0], "theta": 90,
  "road_segment1": {"distance": 50, "direction": "right", "incline": 5, "turn_degrees": 40},
@@ -34,13 +35,6 @@ def test_what_was_read_is_written_alike() -> None:
     assert json.dumps(read_design(data)[0].to_json()) == json.dumps(data)
 
 
-def test_segments_come_in_the_order_of_their_numbers() -> None:
-    data = good()
-    shuffled = {key: data[key] for key in reversed(data)}
-    shuffled["road_segment10"] = {"distance": 7, "direction": "straight", "incline": 0, "turn_degrees": 0}
-    assert [s.distance for s in read_design(shuffled)[0].segments] == [50, 40, 30, 7]
-
-
 def test_steep_inclines_and_wide_turns_are_kept_and_remarked_on() -> None:
     data = good()
     data["road_segment3"] = {"distance": 30, "direction": "left", "incline": -17, "turn_degrees": 95}
@@ -58,51 +52,17 @@ def test_a_gap_in_the_numbers_is_remarked_on() -> None:
     assert remarks[0].startswith("segments are numbered 1, 2, 7 instead of 1, 2, 3")
 
 
-def test_a_radius_that_cannot_be_is_remarked_on() -> None:
-    data = good()
-    data["road_segment1"] = {**SEGMENT, "distance": 20, "turn_degrees": 60, "radius": 30}  # needs 31.4 m
-    remarks = read_design(data)[1]
-    assert "60 degrees at a radius of 30 m do not fit into 20 m; the distance is kept" in remarks[0]
-    data["road_segment1"] = {**SEGMENT, "distance": 40, "turn_degrees": 60, "radius": 30}
-    assert not any("radius" in remark for remark in read_design(data)[1])
-
-
 SEGMENT = {"distance": 50, "direction": "left", "incline": 5, "turn_degrees": 40}
 
 
 @pytest.mark.parametrize(
     ("change", "hint"),
-    [
-        ({"theta": None}, "theta: is not a number; give one"),
-        ({"theta": "north"}, "theta"),
-        ({"theta": float("nan")}, "theta"),
-        ({"starting_point": [1, 2]}, "starting_point"),
-        ({"starting_point": [1, 2, float("inf")]}, "starting_point"),
-        (
-            {"road_segment1": {**SEGMENT, "distance": 0}},
-            "segment 1 .*distance: is out of range; give 0.001 or more",
-        ),
-        ({"road_segment1": {**SEGMENT, "incline": 400}}, "incline: is out of range; give 100 or less"),
-        ({"road_segment1": {"direction": "left"}}, "distance: is missing; add it"),
-        ({"road_segment1": {**SEGMENT, "distance": 1e-10}}, "segment 1"),
-        ({"road_segment1": {**SEGMENT, "distance": "far"}}, "distance"),
-        ({"road_segment1": {**SEGMENT, "direction": "up"}}, "direction: is unknown; give 'left', 'right' or"),
-        ({"road_segment1": {**SEGMENT, "incline": float("nan")}}, "incline"),
-        ({"road_segment1": {**SEGMENT, "colour": "red"}}, "colour: is not a field of a design; remove it"),
-        ({"road_segment1": [1, 2, 3]}, "segment 1"),
-        ({"segment1": SEGMENT}, "that is unknown"),
-    ],
+    rows(__file__, "bad_fields_get_one_sentence_that_names_them"),
 )
 def test_bad_fields_get_one_sentence_that_names_them(change: dict[str, object], hint: str) -> None:
     with pytest.raises(UsageError, match=hint) as caught:
         read_design({**good(), **change})
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize("data", [[], "road", {}, {"starting_point": [0, 0, 0], "theta": 0}])
-def test_no_design_at_all(data: object) -> None:
-    with pytest.raises(UsageError):
-        read_design(data)  # type: ignore[arg-type]
 
 
 junk = st.recursive(

@@ -21,16 +21,6 @@ def land() -> Land:
     return Land.around(ROAD, World())
 
 
-def test_the_terrain_reaches_seven_kilometres_beyond_the_road_on_all_sides(land: Land) -> None:
-    points = ROAD.centreline(2.0)
-    for v, along in ((land.x, points[:, 0]), (land.y, points[:, 1])):
-        assert v[4] == pytest.approx(along.min() - 130)
-        assert along.max() + 130 <= v[-5] < along.max() + 130 + 2 * land.cell
-        assert np.diff(v[4:-4]) == pytest.approx(land.cell)
-        assert v[4] - v[3::-1] == pytest.approx(FAR)
-        assert v[-4:] - v[-5] == pytest.approx(FAR)
-
-
 def test_far_ground_comes_down_by_shares_to_four_metres_below_the_mean(land: Land) -> None:
     """Each far row and column: half of the way, nine tenths of it, and all of it in the last two."""
     near = land.heights[4:-4, 4:-4]
@@ -87,15 +77,6 @@ def test_without_a_shoulder_the_land_is_flat_and_a_metre_or_more_below_the_road(
     assert land.heights[4:-4, 4:-4] == pytest.approx(level)
     assert land.heights[0] == pytest.approx(level - 4)
     assert np.isinf(land.away).all()
-
-
-def test_a_short_road_has_terrain_of_40_m_and_the_margins() -> None:
-    road = Road(PieceCurve(10.0, 20.0, 0.0, (Piece(10.0),)), GradeProfile.level(10.0))
-    land = Land.around(road, World())
-    assert (land.x[4], land.y[4]) == pytest.approx((15 - 20 - 130, 20 - 20 - 130))
-    assert land.cell == 4.0
-    long = Road(PieceCurve(0.0, 0.0, 0.0, (Piece(1000.0),)), GradeProfile.level(1000.0))
-    assert Land.around(long, World()).cell == pytest.approx(1260 / 160)
 
 
 @pytest.mark.parametrize("side", [-1, 1])

@@ -19,8 +19,7 @@ from roadgpt.export import save
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.network import read_source
 from roadgpt.road import Profile, Road, World, read_opendrive
-from roadgpt.road.profile import Lane
-from roadgpt.road.profile_json import STEEPEST, WIDEST
+from roadgpt.road.profile import STEEPEST, WIDEST
 
 LENGTH = 110.0
 FILE = """<OpenDRIVE><road id="1"><planView>
@@ -151,64 +150,6 @@ def test_the_world_of_an_export_comes_back_or_is_limited_in_a_sentence(
         assert (what not in said) or back in (pytest.approx(low), pytest.approx(high))
 
 
-@given(
-    st.sampled_from(["csv", "sbft"]), st.lists(st.floats(5, 40), min_size=2, max_size=8), st.floats(-0.3, 0.3)
-)
-@settings(max_examples=20, deadline=None)
-def test_tables_and_tests_come_back_to_their_last_digit(
-    tmp_path_factory: pytest.TempPathFactory, format_: str, lengths: list[float], grade: float
-) -> None:
-    folder = tmp_path_factory.mktemp("table")
-    pieces = tuple(Piece(length, 0.02 * (-1) ** n, 0.02 * (-1) ** n) for n, length in enumerate(lengths))
-    plan = PieceCurve(1e6 / 3, -2e6 / 3, 1.0, pieces)
-    road = Road(plan, GradeProfile(7.0, (0.0, plan.length), (grade, grade / 2)))
-    (path,) = save(road, folder, [format_], World())
-    back, remarks, *_ = read_source(path)
-    assert isinstance(back, Road)
-    s, t = back.locate(*road.centreline()[:, :2].T)
-    assert np.abs(t).max() < 1e-4
-    assert back.elevation.height(s) == pytest.approx(road.centreline()[:, 2], abs=1e-3)
-    assert remarks == (
-        ()
-        if format_ == "sbft"
-        else ("its columns s_m, heading_rad, curvature_per_m, grade, lane_width_m, verge_m are not used",)
-    )
-
-
-@pytest.mark.parametrize(
-    ("rest", "words"),
-    [
-        ('<elevationProfile><elevation s="0" a="0" b="10"/></elevationProfile>', None),
-        (
-            '<elevationProfile><elevation s="0" a="0" b="10.001"/></elevationProfile>',
-            "grade of 10, .* at s = 0.0 m",
-        ),
-        ('<elevationProfile><elevation s="0" a="2.5e7"/></elevationProfile>', None),
-        (
-            '<elevationProfile><elevation s="0" a="2.6e7"/></elevationProfile>',
-            "elevation of 26,000,000 is beyond",
-        ),
-    ],
-)
-def test_heights_are_refused_when_they_are_read_and_not_later(
-    tmp_path: Path, rest: str, words: str | None
-) -> None:
-    if words is None:
-        told_and_read(tmp_path, rest, WIDTH)
-    else:
-        with pytest.raises(UsageError, match=words):
-            told_and_read(tmp_path, rest, WIDTH)
-
-
-@pytest.mark.parametrize("count", [20, 21])
-def test_the_number_of_lanes(tmp_path: Path, count: int) -> None:
-    more = "".join(f'<lane id="-{n}" type="driving">{WIDTH}</lane>' for n in range(2, count + 1))
-    said, road, _ = told_and_read(tmp_path, "", WIDTH, more)
-    assert road.profile is not None
-    assert road.profile.count == (20, 0)
-    assert ("left out: 1 further lane (1 driving)" in said) == (count > 20)
-
-
 def test_the_worlds_of_files_and_of_options_have_the_same_limits(tmp_path: Path) -> None:
     """At each limit that a file is clamped to, the option of the command takes the same number."""
     from roadgpt.cli.options import WORLD
@@ -233,13 +174,3 @@ def test_the_worlds_of_files_and_of_options_have_the_same_limits(tmp_path: Path)
                 assert not is_allowed, (name, value)
             else:
                 assert is_allowed, (name, value)
-
-
-def test_a_lane_of_a_profile_may_not_be_negative_by_more_than_rounding() -> None:
-    for width, is_refused in ((-0.9e-6, False), (-1.1e-6, True)):
-        try:
-            Profile((), (Lane("driving", width),))
-        except ValueError:
-            assert is_refused
-        else:
-            assert not is_refused

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from roadgpt.errors import UsageError
 from roadgpt.road import ORACLES, Limits, World
-from roadgpt.road.oracles import oracle_in_words, oracle_limits, oracle_name
+from roadgpt.road.world import oracle_in_words, oracle_limits, oracle_name
 
 MEANT = {"half": (0.5, False), "sbft": (0.85, False), "thesis": (0.95, False), "departure": (0.5, True)}
 

@@ -11,6 +11,7 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Profile, Road, World
 from roadgpt.road.profile import Lane
+from tables import rows
 
 STATIONS = np.array([[0.0, 1.0, 2.5], [40.0, 60.0, 80.0]])
 BEND = Road(
@@ -36,15 +37,6 @@ def test_a_two_lane_road_has_its_edges_where_a_drawing_has_them() -> None:
     assert (profile.paved_reach, profile.reach) == (3.25, 4.75)
 
 
-def test_edges_of_a_bend_lie_on_circles_about_its_centre() -> None:
-    s = np.linspace(0.0, 80.0, 9)
-    profile = World(section=CrossSection(lane_width=3.0, shoulder=2.5)).profile_of(BEND)
-    edges, rims = profile.edges(s), profile.rims(s)
-    for offsets, radius in ((edges.left, 37.0), (edges.right, 43.0), (rims.left, 34.5), (rims.right, 45.5)):
-        away = BEND.at(s, offsets)[:, :2] - [0.0, 40.0]  # a left bend of 40 m from (0, 0) along +x
-        assert np.hypot(*away.T) == pytest.approx(radius, abs=1e-9)
-
-
 def test_three_lanes_along_and_two_against_have_the_edges_of_a_drawing() -> None:
     profile = Profile.of(3, 2, 3.5, 2.0)
     left, right = profile.lane_edges(0.0)
@@ -58,18 +50,16 @@ def test_three_lanes_along_and_two_against_have_the_edges_of_a_drawing() -> None
 
 def test_markings_are_painted_over_boundaries_and_inside_the_edges_of_the_carriageway() -> None:
     lines = Profile.of(2, 1, 3.0, 1.0).markings(0.0)
-    found = [
-        (line.marking, round(float(line.edges.left), 3), round(float(line.edges.right), 3)) for line in lines
-    ]
+    found = [(marking, round(float(edges.left), 3), round(float(edges.right), 3)) for marking, edges in lines]
     assert found == [
         ("solid", 3.0, 2.88),
         ("solid", 0.06, -0.06),
         ("broken", -2.94, -3.06),
         ("solid", -5.88, -6.0),
     ]
-    usual = [line.marking for line in Profile.of().markings(0.0)]
+    usual = [marking for marking, _ in Profile.of().markings(0.0)]
     assert usual == ["solid", "broken", "solid"]
-    one_way = [float(line.edges.left) for line in Profile.of(1, 0, 3.0).markings(0.0)]
+    one_way = [float(edges.left) for _, edges in Profile.of(1, 0, 3.0).markings(0.0)]
     assert one_way == pytest.approx([0.0, -2.88])
 
 
@@ -120,22 +110,7 @@ def test_a_road_file_keeps_the_cross_section_to_the_last_digit() -> None:
 
 @pytest.mark.parametrize(
     ("change", "sentence"),
-    [
-        ({"driven": 3}, "driven lane"),
-        ({"driven": True}, "index"),
-        ({"right": [{"kind": "driving", "width": float("nan"), "marking": "solid"}]}, "width"),
-        ({"right": [{"kind": "driving", "width": 1e9, "marking": "solid"}]}, "width"),
-        ({"right": [{"kind": "driving", "width": [[0, 3, 0, 0]], "marking": "solid"}]}, "five numbers"),
-        ({"right": [{"kind": "tram", "width": 3, "marking": "solid"}]}, "tram"),
-        ({"right": "all"}, "list"),
-        ({"left": [{"kind": "driving", "width": 3}]}, "marking"),
-        ({"superelevation": [[0, 0.5, 0, 0, 0]]}, "beyond"),
-        ({"superelevation": [[0, 0, 1e308, 0, 0], [30, 0, 0, 0, 0]]}, "beyond"),
-        ({"superelevation": [[0, 0, 0, 1e308, -1e308], [30, 0, 0, 0, 0]]}, "beyond"),
-        ({"superelevation": [[0, 0, 0, 0, 0], [9e18, 0, 0, 0, 0]]}, "beyond"),
-        ({"superelevation": [[0, 0, 1, 0, 0], [30, 0, 0, 0, 0]]}, "beyond"),
-        ({"colour": 3}, "colour"),
-    ],
+    rows(__file__, "cross_sections_in_files_that_cannot_be_are_refused_in_one_sentence"),
 )
 def test_cross_sections_in_files_that_cannot_be_are_refused_in_one_sentence(
     change: dict[str, object], sentence: str
@@ -155,21 +130,6 @@ def test_a_world_lays_its_lanes_on_roads_that_have_none() -> None:
     assert World(section=CrossSection(lane_width=3.0)).lay(BEND) is BEND
     assert world.section.road_width == 16.0
     assert World().section.profile(80.0) == Profile.of()
-
-
-def test_a_world_with_banked_bends_asks_for_its_road() -> None:
-    with pytest.raises(UsageError, match="lay"):
-        World(section=CrossSection(bank="auto")).profile_of(BEND)
-
-
-def test_files_of_a_usual_world_name_no_lanes() -> None:
-    assert not {"lanes", "bank", "lane_width_end"} & set(World().model_dump())
-    world = World(section=CrossSection(lanes="2+2", bank=0.05))
-    assert World.model_validate_json(world.model_dump_json()) == world
-    texts = [{"lanes": text} for text in ("0+1", "2+", "9+2+13", "2+5")]
-    for wrong in (*texts, {"bank": "steep"}, {"bank": 0.5}, {"bank": -0.1}, {"lane_width_end": 0}):
-        with pytest.raises(ValidationError):
-            World.model_validate(wrong)
 
 
 def test_the_shoulder_is_read_under_both_names_and_written_under_the_old_one() -> None:

@@ -103,4 +103,4 @@ def put_on_shelf(monkeypatch: pytest.MonkeyPatch, **parts: Any) -> None:
 
     monkeypatch.setattr(plugins, "find", find)
     monkeypatch.setattr("roadgpt.run.designer_of", designer_of)
-    monkeypatch.setattr("roadgpt.campaign.folder_campaign.designer_of", designer_of)
+    monkeypatch.setattr("roadgpt.campaign.run_folder.designer_of", designer_of)

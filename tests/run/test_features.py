@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadgpt.run.execution import ExecutionRecord
-from roadgpt.run.features import features_of
+from roadgpt.run.execution import ExecutionRecord, features_of
 
 
 def circle(radius: float, count: int = 2000, turn: float = 2 * math.pi) -> np.ndarray:

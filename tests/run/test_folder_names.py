@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.errors import UsageError
-from roadgpt.run.folder_names import new_folder, slug
+from roadgpt.run.folder import new_folder, slug
 from roadgpt.run.model import seed_of
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.errors import GivenUpError
-from roadgpt.run.lost_drives import LostDrives
+from roadgpt.run.model import LostDrives
 
 
 @given(st.lists(st.booleans(), max_size=30))

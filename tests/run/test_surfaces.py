@@ -12,20 +12,20 @@ from types import SimpleNamespace
 import pytest
 from click.testing import CliRunner, Result
 
+from page_words import words_of
 from roadgpt.brief import Brief, exactly, read, remarks, sentence
-from roadgpt.campaign.folder_campaign import campaign
 from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import CellBudget
-from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.plan_file import read_plan
+from roadgpt.campaign.plan import Plan, read_plan
 from roadgpt.campaign.record import Record
+from roadgpt.campaign.run_folder import campaign
 from roadgpt.cli import app
 from roadgpt.cli.options import WORLD
 from roadgpt.errors import UsageError
 from roadgpt.gym.lane_keeping import LaneKeeping
 from roadgpt.road import Limits, Road, Site, World
 from roadgpt.run import Setup, perform, prove, read_run
-from roadgpt.sbft import RoadGPTTestGenerator
+from roadgpt_sbft import RoadGPTTestGenerator
 
 WET, ICE, DRY = "turn x2 | beside(wet)", "turn x2 | beside(wet, ice)", "turn x2"
 PLANS = Setup(reader="plan", drives=False)
@@ -201,7 +201,7 @@ def test_a_campaign_of_one_description_says_it_and_its_report_repeats_it() -> No
     assert f"note: {SET.format('0.9')}" in roadgpt("campaign", *words, "--friction", 0.9, "--out", "d").stdout
     for folder, friction in (("c", 0.6), ("d", 0.9)):
         roadgpt("report", folder)
-        assert f"--friction {friction}" in Path(folder, "report.md").read_text()
+        assert f"--friction {friction}" in words_of(folder)
 
 
 def test_campaigns_from_python_take_it(tmp_path: Path) -> None:
@@ -222,7 +222,7 @@ def test_a_study_makes_each_part_on_its_surface_and_says_so() -> None:
     assert said.count(USED) == 1
     cards = [json.loads(path.read_text()) for path in sorted(Path("s").rglob("run.json"))]
     assert [card["request"]["world"]["friction"] for card in cards] == [0.6, 1.0]
-    assert "0.6 and 1, by what the words say" in Path("s/report.md").read_text()
+    assert "0.6 and 1, by what the words say" in words_of("s")
     assert "--friction" not in json.loads(Path("s/study.json").read_text())["command"]
     assert SET.format(1) in roadgpt(*words, "--out", "t", "--friction", 1).stdout
     assert "--friction 1 " in json.loads(Path("t/study.json").read_text())["command"]

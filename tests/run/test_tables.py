@@ -43,7 +43,7 @@ def test_every_column_counts_the_tests_that_it_names(tmp_path: Path) -> None:
     for entry in entries:
         tally.add(entry)
     tally.write(tmp_path)
-    assert row_of(tmp_path / "generation_stats.csv") == {
+    columns = {
         "test_generated": "10",
         "test_valid": "8",
         "test_invalid": "2",
@@ -54,6 +54,7 @@ def test_every_column_counts_the_tests_that_it_names(tmp_path: Path) -> None:
         "real_time_execution": "310.375",
         "simulated_time_execution": "150.0001",
     }
+    assert [*row_of(tmp_path / "generation_stats.csv").items()] == [*columns.items()]
     assert tally.with_road == 9
     row = row_of(tmp_path / "oob_stats.csv")
     assert [row[name] for name in ("total_oob", "left_oob", "right_oob")] == ["4", "2", "2"]
@@ -78,6 +79,7 @@ def test_fewer_than_two_failures_have_no_sparseness(failures: int, tmp_path: Pat
     tally.write(tmp_path)
     row = row_of(tmp_path / "oob_stats.csv")
     assert list(row.values()) == [str(failures), str(failures), "0", "nan", "nan"]
+    assert list(row) == ["total_oob", "left_oob", "right_oob", "avg_sparseness", "stdev_sparseness"]
 
 
 def test_every_setting_is_in_the_description_of_an_experiment(tmp_path: Path) -> None:

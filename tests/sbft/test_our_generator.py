@@ -14,7 +14,7 @@ import pytest
 from authorities.sbft_official_slow import verdict
 from roadgpt.campaign.model import Cell
 from roadgpt.errors import BriefError, UsageError
-from roadgpt.sbft import RoadGPTTestGenerator
+from roadgpt_sbft import RoadGPTTestGenerator
 
 ROOT = Path(__file__).resolve().parents[2]
 LEFT = {"ROADGPT_DESCRIPTION": "two sharp left turns", "ROADGPT_SEED": "3"}
@@ -78,7 +78,7 @@ def run_pipeline(folder: Path, module: str, name: str, **environment: str) -> li
 
 
 def test_it_works_in_a_pipeline_that_knows_nothing_of_it(tmp_path: Path) -> None:
-    roads = run_pipeline(tmp_path, "roadgpt.sbft", "RoadGPTTestGenerator", **LEFT)
+    roads = run_pipeline(tmp_path, "roadgpt_sbft", "RoadGPTTestGenerator", **LEFT)
     assert len(roads) == FEW
     assert all(verdict(points, 200) == (True, "") for points in roads)
     assert all(turned(points) > 1.2 for points in roads)  # rad to the left, of two sharp turns
@@ -104,7 +104,7 @@ def turned(points: list[list[float]]) -> float:
 @pytest.fixture
 def few(monkeypatch: pytest.MonkeyPatch) -> None:
     """A third of the usual sketches for each road."""
-    monkeypatch.setattr("roadgpt.sbft.generator.Cell", partial(Cell, settings={"candidates": 4}))
+    monkeypatch.setattr("roadgpt_sbft.generator.Cell", partial(Cell, settings={"candidates": 4}))
 
 
 @pytest.mark.usefixtures("few")
@@ -126,14 +126,6 @@ def test_every_road_is_dense_and_valid_for_the_competition(words: str) -> None:
         assert max(math.dist(a, b) for a, b in pairwise(points)) <= 2.0 + 1e-4
         assert verdict(points, 200) == (True, "")
     assert len({tuple(points) for points in roads}) == 5
-
-
-@pytest.mark.usefixtures("few")
-@pytest.mark.parametrize("size", [100, 1000])
-def test_other_maps(size: int) -> None:
-    generator = RoadGPTTestGenerator(map_size=size)
-    for points in islice(generator.roads(), 3):
-        assert verdict(points, size) == (True, "")
 
 
 @pytest.mark.usefixtures("few")

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from misbehaving import SEARCHER, write
+from misbehaving import write
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
-from roadgpt.sbft import Competition, Experiment, compete
-from roadgpt.sbft.generator_process import NAMES
+from roadgpt_sbft import Competition, Experiment, compete
+from roadgpt_sbft.generator_process import NAMES
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "sbft"
 POSIX = os.name == "posix"
@@ -158,15 +158,6 @@ def test_the_budget_of_tests_ends_it_with_123(tmp_path: Path) -> None:
     assert "left with 123" in (tmp_path / "out" / "generator.log").read_text()
 
 
-def test_one_that_does_not_leave_when_its_budget_is_over_is_stopped(tmp_path: Path) -> None:
-    write(tmp_path, "while True:\n    try:\n        self.two()\n    except BaseException:\n        pass")
-    work, runs = let_loose(tmp_path, tests=3, grace=1)
-    assert work.ending is not None
-    assert work.ending.how == "budget"
-    assert len(runs) == 3
-    assert numbers(tmp_path) == [1, 2, 3]
-
-
 def test_the_budget_of_time_drops_the_last_test(tmp_path: Path) -> None:
     write(tmp_path, "while True:\n    self.two()")
     work, runs = let_loose(tmp_path, tests=None, time_budget=2, grace=20)
@@ -175,40 +166,6 @@ def test_the_budget_of_time_drops_the_last_test(tmp_path: Path) -> None:
     assert runs
     assert numbers(tmp_path) == [*range(1, len(runs) + 1)]
     assert int(counted(tmp_path)["test_generated"]) == len(runs)
-
-
-def test_one_of_2021_is_told_its_budget_as_a_number(tmp_path: Path) -> None:
-    (tmp_path / "misbehaves.py").write_text(
-        "from code_pipeline.tests_generation import RoadTestFactory\n"
-        "class Generator:\n"
-        "    def __init__(self, time_budget=None, executor=None, map_size=None):\n"
-        "        assert 0 < time_budget <= 60 and map_size == 200\n"
-        "        self.executor = executor\n"
-        "    def start(self):\n"
-        "        left = self.executor.get_remaining_time()\n"
-        "        assert left > 0 and not left <= 0 and 60 - left >= 0 and f'{left:.0f}'.isdigit()\n"
-        "        assert self.executor.time_budget.get_remaining_time()['time-budget'] <= 60\n"
-        "        test = RoadTestFactory.create_road_test([(60, 100), (80, 100), (100, 100)])\n"
-        "        assert test.get_road_length() > 39 and test.get_road_polygon().polygon.area > 300\n"
-        "        assert self.executor.validate_test(test) == (True, '')\n"
-        "        self.executor.execute_test(test)\n"
-    )
-    work, runs = let_loose(tmp_path, tests=None, time_budget=60)
-    assert work.ending is not None
-    assert work.ending.how == "done", work.ending.sentence
-    assert len(runs) == 1
-
-
-def test_a_search_as_others_write_it_runs_unchanged(tmp_path: Path) -> None:
-    (tmp_path / "searches.py").write_text(SEARCHER)
-    work, runs = let_loose(tmp_path, 12, module_name="searches", class_name="Searcher")
-    assert work.ending is not None
-    assert work.ending.how == "done", work.ending.sentence
-    outcomes = {run.outcome for run in runs}
-    assert len(runs) == 12
-    assert "INVALID" in outcomes
-    assert outcomes & {"PASS", "FAIL"}
-    assert (tmp_path / "out" / "generator.log").read_text().count(" MAX_CURV ") == 12
 
 
 @pytest.mark.parametrize(
@@ -244,17 +201,6 @@ def test_the_examples_work(module: str, name: str, tests: int, tmp_path: Path) -
     assert len(runs) == tests
     assert {run.outcome for run in runs} <= {"PASS", "FAIL", "INVALID"}
     assert any(run.outcome == "PASS" for run in runs)
-
-
-def test_the_same_seed_gives_the_same_tests(tmp_path: Path) -> None:
-    made = []
-    for folder in (tmp_path / "one", tmp_path / "other"):
-        folder.mkdir()
-        values = {"module_name": "curvature_walk", "class_name": "CurvatureWalk"}
-        let_loose(folder, 2, **values, module_path=str(EXAMPLES))
-        made.append([path.read_bytes() for path in sorted((folder / "out").glob("test.*.json"))])
-    assert made[0] == made[1]
-    assert len(made[0]) == 2
 
 
 def test_a_generators_process_needs_no_simulator() -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from roadgpt.scene.network_mesh import _kerb_line, _painted
+from roadgpt.scene.network_mesh import _kerb_line
 
 
 def test_along_a_kerb_lie_30_cm_of_asphalt_from_the_outer_edge_of_a_line_of_12_cm() -> None:
@@ -31,12 +31,3 @@ def test_around_an_island_the_line_is_closed_and_no_end_overlaps() -> None:
     assert np.hypot(*edge[:, :2].T) == pytest.approx(8 - 0.06, abs=1e-3)
     assert np.hypot(*inner[:, :2].T) == pytest.approx(8 + 0.24, abs=1e-3)
     assert edge[0] == pytest.approx(edge[-1], abs=0.02)
-
-
-def test_paint_lies_half_of_its_width_on_either_side_of_its_middle() -> None:
-    y = np.linspace(0.0, 3.0, 7)
-    right, left = (
-        _painted(np.column_stack([np.zeros(7), y, 0.1 * y]), 0.5).points.reshape(-1, 2, 3).swapaxes(0, 1)
-    )
-    assert right == pytest.approx(np.column_stack([np.full(7, 0.25), y, 0.1 * y + 0.006]), abs=1e-9)
-    assert left == pytest.approx(np.column_stack([np.full(7, -0.25), y, 0.1 * y + 0.006]), abs=1e-9)

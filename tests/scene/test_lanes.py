@@ -8,10 +8,9 @@ import pytest
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Profile, Road, World
 from roadgpt.scene import Camera, Pose, Scene
-from roadgpt.scene.road_mesh import road_patches
-from roadgpt.scene.surfaces import LaneBoundaries, paved
-from roadgpt.scene.terrain import LitTerrain
-from roadgpt.scene.textures import noise
+from roadgpt.scene.patterns import noise
+from roadgpt.scene.road_mesh import LitTerrain, road_patches
+from roadgpt.scene.shade import LaneBoundaries, paved
 
 LENGTH = 120.0
 STRAIGHT = Road(PieceCurve(60.0, 100.0, 0.0, (Piece(LENGTH),)), GradeProfile(0.0, (0.0, LENGTH), (0.0, 0.0)))

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from roadgpt.errors import UsageError
-from roadgpt.road import CrossSection, Design, Road, Segment, World, build
+from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.scene import Camera, CameraPlacement, Pose, Scene
 
 CAMERA = Camera(320, 180)
@@ -185,53 +185,6 @@ def test_the_car_is_seen_from_behind_with_a_shadow_and_its_lights_brake(straight
     assert np.abs(red - red[:, ::-1].astype(int)).mean() < 0.02  # a lamp on either side
     shadow = (still.sum(axis=2) < empty.sum(axis=2) - 40) & (np.ptp(still, axis=2) < 20)
     assert shadow.sum() > 50
-
-
-def test_its_wheels_roll_and_those_in_front_steer(straight: Scene) -> None:
-    camera = Camera(320, 180, math.radians(50), "chase", CameraPlacement(-7.0, 1.4, -0.1))
-    pose = on(straight.road, 40.0)
-    car = pose._replace(heading=pose.heading + math.pi / 2)  # its nose to the left: we see its right side
-    still, rolled, round_, steered = (
-        straight.render(camera, pose, car=each).astype(int)
-        for each in (car, car._replace(wheel=0.6), car._replace(wheel=0.4 * math.pi), car._replace(steer=0.4))
-    )
-    rolling, steering = (np.abs(other - still).sum(axis=2) > 60 for other in (rolled, steered))
-    assert rolling[:, :160].sum() > 10
-    assert rolling[:, 160:].sum() > 10
-    assert steering[:, :160].sum() > 20
-    assert not steering[:, 160:].any()
-    assert (np.abs(round_ - still).sum(axis=2) > 60).sum() < 0.2 * rolling.sum()  # five spokes, all alike
-
-
-def test_the_bonnet_is_seen_below_and_only_there(straight: Scene) -> None:
-    pose = on(straight.road, 30.0)
-    without, car = straight.render(CAMERA, pose), straight.render(CAMERA, pose, car=pose)
-    changed = (without != car).any(axis=2)
-    assert changed[175, 100:220].all()
-    assert not changed[:120].any()
-
-
-def test_a_road_without_verge_floats_and_can_be_seen_from_below() -> None:
-    road = build(design(50))
-    scene = Scene.of(road, World(section=CrossSection(shoulder=0.0)))
-    camera = Camera(160, 90)
-    pose = on(road, 20.0)
-    above = scene.render(camera, pose).astype(int)
-    beside = scene.render(
-        camera, pose._replace(y=pose.y - 12, z=pose.z - 8, heading=pose.heading + 1.2, pitch=0.3)
-    )
-    assert asphalt(above)[60:].mean() > 0.4
-    assert beside.astype(int)[10:40].std() > 10
-
-
-def test_a_picture_goes_where_it_is_wanted(straight: Scene) -> None:
-    out = np.zeros((180, 320, 3), np.uint8)
-    assert straight.render(CAMERA, on(straight.road, 5.0), out) is out
-    assert out.any()
-    with pytest.raises(UsageError, match=r"\(180, 320, 3\)"):
-        straight.render(CAMERA, on(straight.road, 5.0), out[:90])
-    with pytest.raises(UsageError, match="not finite"):
-        straight.render(CAMERA, on(straight.road, 5.0)._replace(x=math.nan))
 
 
 @pytest.mark.parametrize(

@@ -4,12 +4,9 @@ from typing import Any
 
 import pytest
 
-from roadgpt.brief import read
-from roadgpt.brief.outline import outline
 from roadgpt.check.measures import Measures, measure
-from roadgpt.road import Design, World, build, read_design
-from roadgpt.study.criteria import criteria_of
-from roadgpt.study.truth import Truth
+from roadgpt.check.truth import Truth, criteria_of
+from roadgpt.road import Design, build, read_design
 
 
 def road(*segments: tuple[str, float, float, float]) -> Measures:
@@ -62,28 +59,6 @@ def test_what_nobody_asked_for_is_no_criterion() -> None:
     assert {*criteria_of(UP, Truth(turns=(2, 2)).outline())} == {"turns", "general"}
     found = criteria_of(UP, Truth.model_validate({"sequence": TWO}).outline())
     assert {*found} == {"turns", "incline", "order", "general"}
-
-
-def test_a_wrong_number_of_turns_spoils_what_is_told_turn_by_turn() -> None:
-    found = criteria_of(UP, Truth.model_validate({"sequence": [*TWO, {"kind": "turn"}]}).outline())
-    assert found == {"turns": False, "incline": False, "order": False, "general": False}
-
-
-@pytest.mark.parametrize(
-    ("line", "broken"),
-    [
-        ("turn x2 | up", set()),
-        ("turn x3 | up", {"turns", "extent", "general"}),
-        ("turn x2 | down", {"incline", "general"}),
-        ("turn left; turn right", set()),
-        ("turn right; turn left", {"order", "general"}),
-        ("turn x2 deg=90", {"extent", "general"}),
-    ],
-)
-def test_without_a_truth_the_reading_is_the_truth(line: str, broken: set[str]) -> None:
-    asked = outline(read(line, "plan"), World().site.map_size)
-    found = criteria_of(UP, asked)
-    assert {name for name, good in found.items() if not good} == broken
 
 
 def test_a_road_that_is_too_short_keeps_nothing() -> None:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from roadgpt.study.plan import Prompt
-from roadgpt.study.truth import Truth
+from roadgpt.check.truth import Truth
+from roadgpt_study.plan import Prompt
 
 GUIDE = (Path(__file__).resolve().parents[2] / "docs" / "how-to" / "evaluate-roads.md").read_text(
     encoding="utf-8"

@@ -6,21 +6,14 @@ from pathlib import Path
 import pytest
 
 from roadgpt.errors import UsageError
-from roadgpt.study.chapters.validity import THESIS
-from roadgpt.study.plan import read_prompts, thesis_prompts
+from roadgpt_study.plan import read_prompts
+from tables import rows
 
 
 def written(folder: Path, *lines: object) -> Path:
     file = folder / "prompts.jsonl"
     file.write_text("\n".join(line if isinstance(line, str) else json.dumps(line) for line in lines) + "\n")
     return file
-
-
-def test_the_thesis_prompts_begin_with_those_of_its_table() -> None:
-    prompts = [prompt.prompt for prompt in thesis_prompts()]
-    assert prompts[:3] == [*THESIS]
-    assert len(prompts) == 5
-    assert all(prompt.truth for prompt in thesis_prompts())
 
 
 def test_a_truth_is_optional_and_so_is_an_id(tmp_path: Path) -> None:
@@ -36,18 +29,7 @@ def test_a_truth_is_optional_and_so_is_an_id(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("line", "says"),
-    [
-        ("{", "no JSON"),
-        ("[]", "no object"),
-        ({"id": "1"}, "prompt: Field required"),
-        ({"prompt": "x", "truth": {"turn": 1}}, "truth.turn: Extra inputs"),
-        ({"prompt": "x", "truth": {"turns": [3, 1]}}, "bounds 3 and 1 are swapped"),
-        ({"prompt": "x", "truth": {"turns": [None, None]}}, "one of the two bounds"),
-        ({"prompt": "x", "truth": {"turns": "3"}}, "truth.turns"),
-        ({"prompt": "x", "truth": {"sequence": [{"kind": "bend"}]}}, "truth.sequence.0.kind"),
-        ({"prompt": "", "truth": {}}, "prompt"),
-        ('{"prompt": "x", "truth": {"length": [NaN, 3]}}', "truth.length"),
-    ],
+    rows(__file__, "a_wrong_line_is_named"),
 )
 def test_a_wrong_line_is_named(tmp_path: Path, line: object, says: str) -> None:
     file = written(tmp_path, {"prompt": "a road"}, line)

@@ -2,7 +2,6 @@
 
 import csv
 import shlex
-import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -20,16 +19,14 @@ from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Record, Store
 from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.campaign.status import status_of
-from roadgpt.campaign.workers.in_process import InProcess
+from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
-from roadgpt.cli.next_steps import next_steps, of_status
-from roadgpt.errors import UsageError
+from roadgpt.cli.repeat_commands import next_steps, of_status
+from roadgpt.report.chapters import same_roads
 from roadgpt.report.page import write
 from roadgpt.report.page.model import Figure, Page
 from roadgpt.road import Design, Segment
 from roadgpt.run.model import Seconds
-from roadgpt.study import campaign_report
-from roadgpt.study.chapters import same_roads
 
 DRIVERS = ("reference", "/srv/me/one/driver.py:Mine", "/srv/me/two/driver.py:Mine")
 SHORT = ["reference", "one/driver.py:Mine", "two/driver.py:Mine"]
@@ -137,22 +134,6 @@ def test_every_figure_is_that_of_others(
     assert "/srv" not in latex + "".join(said) + str(rows)
 
 
-def test_no_table_names_a_folder_of_the_machine_and_no_picture_of_before_is_left(
-    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(same_roads, "_figure", lambda *_: Figure("x", "", "<svg/>"))
-    monkeypatch.setattr(campaign_report, "failures", lambda *_: [])
-    again = shutil.copytree(folder, tmp_path / "again")
-    (again / "differ").mkdir()
-    for name in ("3.png", "3.pdf", "mine.png", "3 of mine.png"):
-        (again / "differ" / name).touch()
-    page = campaign_report.write_store_report(again)
-    tables = {path.name: path.read_text(encoding="utf-8") for path in (page.parent / "tables").iterdir()}
-    assert [row["driver"] for row in csv.DictReader(tables["outcomes.csv"].splitlines())] == SHORT
-    assert [name for name, text in tables.items() if "/srv" in text] == []
-    assert sorted(path.name for path in (again / "differ").iterdir()) == ["3 of mine.png", "mine.png"]
-
-
 def test_what_is_proposed_has_all_drivers(tmp_path: Path) -> None:
     def passed(driver: int, road: int) -> Result:
         return replace(result_of(driver, road), outcome="PASS", margin=1.0)
@@ -166,17 +147,6 @@ def test_what_is_proposed_has_all_drivers(tmp_path: Path) -> None:
         assert campaign is not None
         with campaign.make_context(verb, [*words, "--out", str(tmp_path)]) as context:
             assert (context.params["paired"], context.params["drivers"]) == (True, DRIVERS)
-
-
-def test_drivers_can_be_compared_only_on_the_same_roads() -> None:
-    for other in (
-        {"drivers": ("reference",)},
-        {"drives": False},
-        {"goal": "failures", "generators": ("quality_diversity",)},
-    ):  # fmt: skip
-        values = {"prompts": ("a road",), "drivers": ("reference", "pure_pursuit"), "paired": True, **other}
-        with pytest.raises(UsageError, match="same roads can be compared"):
-            Plan(**values, budget=CellBudget(tests=2)).check()
 
 
 def test_a_campaign_of_pairs_goes_on_and_ends_with_its_report(

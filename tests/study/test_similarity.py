@@ -6,11 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import procrustes
 
-from roadgpt.check.sbft import sbft_verdict
 from roadgpt.errors import UsageError
+from roadgpt.report.similarity import compare, edits, likeness, similarity, spread
 from roadgpt.road import Road, build
-from roadgpt.study import compare
-from roadgpt.study.similarity import edits, likeness, similarity, spread
 from strategies import designs
 
 CRITERIA = ("turns", "sequence", "direction", "length", "incline", "shape", "general")
@@ -68,13 +66,6 @@ def test_the_distance_of_plans_is_that_of_procrustes() -> None:
     assert found.metres == pytest.approx(np.sqrt(square), rel=1e-6)
 
 
-def test_heights_make_a_difference() -> None:
-    flat = [[x, y, 0] for x, y, _ in BEND]
-    found = compare(moved(BEND), moved(flat))
-    assert found.shape > 0.99
-    assert found.incline < 0.6
-
-
 @settings(max_examples=60)
 @given(one=st.text("LRS", max_size=8), other=st.text("LRS", max_size=8))
 def test_edits_are_those_of_the_slow_way(one: str, other: str) -> None:
@@ -103,15 +94,6 @@ def test_twins_among_many_are_named() -> None:
     assert np.isnan(spread(roads[:1]).general)
 
 
-def test_sparseness_of_equal_roads_is_nothing() -> None:
-    same = [likeness(moved(BEND, angle)) for angle in (0.0, 1.0)]
-    assert spread(same).sparseness == pytest.approx(0, abs=0.2)
-
-
 def test_a_road_of_one_place_cannot_be_compared() -> None:
     with pytest.raises(UsageError):
         compare(Road.through([[1, 1], [1, 1]]), moved(BEND))
-
-
-def test_the_roads_here_are_roads() -> None:
-    assert sbft_verdict(np.array(BEND)[:, :2], 250)[0]

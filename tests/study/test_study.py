@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from fake_chat import FakeChat
+from page_words import words_of
 from roadgpt.brief.model import Brief
 from roadgpt.chat import ChatError, ChatSettings
 from roadgpt.cli import app
@@ -18,12 +19,9 @@ from roadgpt.design.designers import thesis as thesis_designer
 from roadgpt.design.designers.planner import Planner
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.run import Setup
-from roadgpt.run.atomic import alone_in
-from roadgpt.study.chapters.validity import Count, Source, chi_squared_blocks
-from roadgpt.study.execution import work
-from roadgpt.study.plan import Prompt, StudyPlan, open_folder, read_plan, thesis_prompts
-from roadgpt.study.study_report import keep_problems, write_run_report, write_study
-from roadgpt.study.truth import Truth
+from roadgpt_study.execution import work
+from roadgpt_study.plan import Prompt, StudyPlan, open_folder, read_plan, thesis_prompts
+from roadgpt_study.study_report import keep_problems, write_study
 
 GOLDEN = Path(__file__).parent / "golden"
 CLOCK = ("seconds.json", "generation_stats.csv", "workers.log")  # what the clock and workers write
@@ -77,7 +75,7 @@ def test_the_golden_study(study: Path) -> None:
 
 
 def test_the_page_tells_what_the_tables_tell(study: Path) -> None:
-    page, text = (study / "report.html").read_text(), (study / "report.md").read_text()
+    page, text = (study / "report.html").read_text(), words_of(study)
     for said in ("182 of 300 (60.7 %)", "55.35", "p = 9.6e-13", "z = −7.37", "These roads were not driven"):
         assert said in page
         assert said in text
@@ -89,35 +87,6 @@ def test_the_page_tells_what_the_tables_tell(study: Path) -> None:
     assert re.search(r"weights [0-9a-f]{16}", page)
     for target in re.findall(r'<a href="([^"#]+)"', page):
         assert (study / target).is_file(), target
-
-
-def test_the_report_is_written_again_from_the_folder_alone(study: Path) -> None:
-    before = (study / "report.html").read_bytes()
-    (study / "report.html").unlink()
-    result = CliRunner().invoke(app, ["report", str(study)])
-    assert result.exit_code == 0, result.output
-    assert (study / "report.html").read_bytes() == before
-
-
-def test_pictures_of_a_study_are_of_the_format_that_is_asked_for(tmp_path: Path) -> None:
-    (tmp_path / "p.jsonl").write_text('{"id": "1", "prompt": "straight | turns=0 len=40"}\n')
-    words = [
-        "study",
-        "alignment",
-        str(tmp_path / "p.jsonl"),
-        "-n",
-        "1",
-        "--reader",
-        "plan",
-        "--workers",
-        "1",
-    ]
-    result = CliRunner().invoke(app, [*words, "--format", "svg", "--out", str(tmp_path / "s")])
-    assert result.exit_code == 0, result.output
-    assert not list(tmp_path.rglob("*.png"))
-    targets = re.findall(r'<a href="([^"#]+)"', (tmp_path / "s" / "report.html").read_text())
-    assert {Path(target).name for target in targets} >= {"overview.svg", "birds_eye.svg"}
-    assert all((tmp_path / "s" / target).is_file() for target in targets)
 
 
 def test_processes_and_a_pause_change_nothing(tmp_path: Path) -> None:
@@ -137,16 +106,6 @@ def test_processes_and_a_pause_change_nothing(tmp_path: Path) -> None:
     work(plan, halted)
     write_study(halted)
     assert content(halted) == content(tmp_path / "one")
-
-
-def test_one_process_works_in_a_study(tmp_path: Path) -> None:
-    plan = small(ANY)
-    open_folder(plan, tmp_path)
-    (part,) = plan.parts()
-    for folder in (tmp_path, tmp_path / part.name):
-        with alone_in(folder), pytest.raises(UsageError, match="another process is at work"):
-            work(plan, tmp_path)
-    assert work(plan, tmp_path) == []
 
 
 def test_another_study_is_left_alone(tmp_path: Path) -> None:
@@ -170,31 +129,6 @@ def test_another_study_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "x" / "mine.txt").write_text("mine")
     with pytest.raises(UsageError, match="holds no study"):
         open_folder(plan, tmp_path / "x")
-
-
-def test_a_designer_that_asks_a_model_joins_a_study_in_which_none_was_asked(tmp_path: Path) -> None:
-    """The second command of the guide 'Evaluate roads', in the folder of the first one."""
-    plan = small(ANY)
-    open_folder(plan, tmp_path)
-    asking = QUICK.model_copy(update={"chat": ChatSettings(model="one")})
-    both = plan.model_copy(update={"designers": ("planner", "thesis"), "setup": asking})
-    open_folder(both, tmp_path)
-    assert read_plan(tmp_path) == both
-    another = asking.model_copy(update={"chat": ChatSettings(model="two")})
-    with pytest.raises(UsageError, match="another study"):
-        open_folder(both.model_copy(update={"setup": another}), tmp_path)
-
-
-def test_a_plan_survives_its_file(tmp_path: Path) -> None:
-    truth = Truth.model_validate(
-        {"sequence": [{"kind": "turn", "dir": "left", "deg": [80, None]}], "hilly": 2}
-    )
-    plan = small(ANY).model_copy(update={"prompts": (Prompt(id="1", prompt="x", truth=truth),)})
-    open_folder(plan, tmp_path)
-    assert read_plan(tmp_path) == plan
-    (tmp_path / "study.json").write_text("{")
-    with pytest.raises(UsageError, match="cannot be read"):
-        read_plan(tmp_path)
 
 
 def test_a_designer_that_nobody_answers_is_said_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -261,46 +195,11 @@ def test_the_thesis_method_stands_beside_the_planner(tmp_path: Path, monkeypatch
     assert strict["RoadGPT's thesis, its own checks"] in ("182", "88")
 
 
-def test_recorded_answers_stand_beside_the_planner(tmp_path: Path) -> None:
-    """Those that lie in examples/: no server, no key."""
-    file = tmp_path / "prompts.jsonl"
-    file.write_text('{"prompt": "a road", "truth": {"turns": [1, null]}}')
-    replay = Path(__file__).resolve().parents[2] / "examples" / "chat-replay"
-    words = ["study", "alignment", str(file), "-n", "1", "--seed", "1", "--no-plot"]
-    words += ["--designer", "planner", "--designer", "thesis", "--max-completion", "400"]
-    words += ["--replay", str(replay), "--workers", "1", "--out", str(tmp_path / "s"), "-q"]
-    result = CliRunner().invoke(app, words)
-    assert result.exit_code == 0, result.output
-    text = (tmp_path / "s" / "report.md").read_text()
-    assert "planner: 1 of 1" in text
-    assert "thesis: 0 of 1" in text
-
-
-def test_words_that_cannot_be_read_count_as_not_kept(tmp_path: Path) -> None:
-    plan = small(ANY, "turn x3 | turns=2")
-    open_folder(plan, tmp_path)
-    (problem,) = work(plan, tmp_path)
-    assert problem.part.endswith("02-turn-x3-turns-2")
-    keep_problems(tmp_path, [problem])
-    text = write_study(tmp_path).with_name("report.md").read_text()
-    assert "1 of 2 (50.0 %) roads keep every word" in text
-    assert problem.sentence in text
-
-
-def test_one_prompt_with_roads_is_not_compared_with_none() -> None:
-    half = Source("ours", (Count("a", 3, 5), Count("b", 0, 0)), "ours")
-    said = chi_squared_blocks(half, "left", "kept", "departures")[1]
-    assert "only one prompt" in str(said)
-    assert "all roads" not in str(said)
-    full = Source("ours", (Count("a", 5, 5), Count("b", 4, 4)), "ours")
-    assert "all roads are valid" in str(chi_squared_blocks(full, "valid", "invalid", "validity")[1])
-
-
 def test_words_that_cannot_be_read_weigh_as_much_as_others(tmp_path: Path) -> None:
     plan = small(ANY, "turn x3 | turns=2", roads=3)
     open_folder(plan, tmp_path)
     keep_problems(tmp_path, work(plan, tmp_path))
-    assert "3 of 6 (50.0 %) roads keep every word" in write_study(tmp_path).with_name("report.md").read_text()
+    assert "3 of 6 (50.0 %) roads keep every word" in words_of(write_study(tmp_path).parent)
 
 
 def test_alignment_by_the_command(tmp_path: Path) -> None:
@@ -316,39 +215,6 @@ def test_alignment_by_the_command(tmp_path: Path) -> None:
     rows = list(csv.DictReader((tmp_path / "s" / "tables" / "alignment-planner.csv").open()))
     assert [(row["id"], float(row["general"])) for row in rows] == [("u", 1), ("w", 0)]
     assert "written down by people" in (tmp_path / "s" / "report.html").read_text()
-
-
-def test_a_campaign_of_run_has_a_report_too(tmp_path: Path) -> None:
-    place = tmp_path / "runs"
-    words = ["run", "turn x2 left", "-n", "2", "--seed", "4", "--no-plot", "--reader", "plan", "-q"]
-    assert CliRunner().invoke(app, [*words, "--out", str(place)]).exit_code == 0
-    result = CliRunner().invoke(app, ["report", str(place)])
-    assert result.exit_code == 0, result.output
-    page = (place / "report.html").read_text()
-    assert "turn x2 left" in page
-    assert "roadgpt run &#x27;turn x2 left&#x27; -n 2 --seed 4 --reader plan" in page
-    for target in re.findall(r'<a href="([^"#]+)"', page):
-        assert (place / target).is_file(), target
-
-
-def test_a_report_names_the_lanes_and_banks_of_its_roads(tmp_path: Path) -> None:
-    words = ["run", "turn x2 left", "-n", "1", "--seed", "4", "--no-plot", "--reader", "plan", "-q"]
-    for bank, said in (("auto", "bank auto"), ("5", "bank 5 %")):
-        place = tmp_path / bank
-        lanes = ["--lanes", "2+1", "--lane-width", "3.5", "--bank", bank, "--out", str(place)]
-        assert CliRunner().invoke(app, [*words, *lanes]).exit_code == 0
-        assert CliRunner().invoke(app, ["report", str(place)]).exit_code == 0
-        text = (place / "report.md").read_text()
-        for each in ("lanes 2+1", "lane width 3.5 m", said):
-            assert each in text
-
-
-def test_folders_that_hold_nothing(tmp_path: Path) -> None:
-    result = CliRunner().invoke(app, ["report", str(tmp_path)])
-    assert result.exit_code == 2
-    assert f"there is no campaign in {tmp_path}, and there are no runs" in result.stderr
-    with pytest.raises(UsageError):
-        write_run_report(tmp_path)
 
 
 def test_the_report_opens_with_what_a_manager_asks_and_statistics_come_after(tmp_path: Path) -> None:

@@ -13,7 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.drive import COLUMNS, Command, Drive, View, drive_monitor
-from roadgpt.drive.simulators.mujoco import MujocoSimulator, simulator
+from roadgpt.drive.simulators import mujoco
+from roadgpt.drive.simulators.mujoco import MujocoSimulator
 from roadgpt.road import Limits, Road, World
 from roadgpt.verdict import Verdict, consult, judge
 
@@ -58,7 +59,7 @@ def driven(way: list[Step], keep_driving: bool) -> tuple[Drive, Verdict]:
     def on(*_: Any) -> OnRails:
         return OnRails(way)
 
-    with patch.object(simulator.Vehicle, "on", on), patch.object(drive_monitor, "STUCK_TIME", PATIENCE):
+    with patch.object(mujoco.Vehicle, "on", on), patch.object(drive_monitor, "STUCK_TIME", PATIENCE):
         drive = MujocoSimulator().simulate(ROAD, WORLD, Sits(), seed=0, keep_driving=keep_driving)
     return drive, judge(ROAD, drive, WORLD)
 

@@ -8,17 +8,20 @@ method
 
 ``read`` raises BriefError, with one sentence that says what to change, if the description is empty, is not
 about a road, contradicts itself or asks for something impossible. Words that the reader did not understand
-are listed in ``Brief.unused``. All readers take the meanings of words from one table, in ``words.py``.
+are listed in ``Brief.unused``. All readers take the meanings of words from one table, in ``words.py``. A
+reader may also have a method ``alternatives(words, number, temperature, seed)``, which returns several
+different readings of a vague description, the likeliest first.
 """
 
+from collections.abc import Callable
 from functools import cache
-from typing import Protocol, cast, runtime_checkable
+from typing import Protocol, cast
 
 from roadgpt import plugins
 from roadgpt.brief import beside
 from roadgpt.brief.expressions import said_map_size, says_motorway, with_driving_side
 from roadgpt.brief.feasible import check, is_possible
-from roadgpt.brief.map_fit import ROAD_WIDTH
+from roadgpt.brief.map_fit import ROAD_WIDTH, motorway_remarks
 from roadgpt.brief.model import (
     Amount,
     Brief,
@@ -99,23 +102,6 @@ class Reader(Protocol):
         ...
 
 
-@runtime_checkable
-class ReaderWithAlternatives(Protocol):
-    """A reader that can return several different readings of a vague description."""
-
-    def alternatives(self, words: str, number: int, temperature: float, seed: int) -> tuple[Brief, ...]:
-        """Returns up to ``number`` different readings, the likeliest first.
-
-        Args:
-            words: the description.
-            number: the largest number of readings.
-            temperature: how freely the readings after the first are sampled; 1 samples from the reader's own
-                distribution, lower values stay closer to the likeliest reading.
-            seed: seed of the sampling; the same seed gives the same readings.
-        """
-        ...
-
-
 def read(
     words: str,
     reader: str = "model",
@@ -153,11 +139,11 @@ def read(
     words = words.encode("utf-8", "replace").decode()  # lone surrogates cannot be written to a file
     sized = None if reader == PLAN else said_map_size(words)
     try:
-        brief, too_much = reader_of(reader, chat).read(sized.rest if sized else words), None
+        brief, too_much = reader_of(reader, chat).read(sized[1] if sized else words), None
     except TooMuchError as refusal:
         brief, too_much = refusal.brief, refusal
     if sized:
-        size = {"map_size": sized.metres}
+        size = {"map_size": sized[0]}
         other = plan(read_plan(brief.other).model_copy(update=size)) if brief.other else ""
         brief = brief.model_copy(update={"words": words, "other": other, **size})
     if brief.map_size is not None and not is_map_fixed:
@@ -218,12 +204,12 @@ def alternatives(
         PartError: no reader of that name is installed.
     """
     first = read(words, reader, map_size, min_radius, max_grade)
-    part = reader_of(reader)
-    if not isinstance(part, ReaderWithAlternatives):
+    more: Callable[..., tuple[Brief, ...]] | None = getattr(reader_of(reader), "alternatives", None)
+    if more is None:
         return (first,)
     try:
         sized = said_map_size(first.words)
-        others = part.alternatives(sized.rest if sized else first.words, number, temperature, seed)[1:]
+        others = more(sized[1] if sized else first.words, number, temperature, seed)[1:]
     except TooMuchError:  # such a description has only one reading
         return (first,)
     same = {"words": first.words, "map_size": first.map_size} | ({"motorway": True} if first.motorway else {})
@@ -243,12 +229,7 @@ def remarks(brief: Brief, map_size: float, friction: float | None = None) -> tup
         map_size: side of the square map in metres.
         friction: friction coefficient of the road; with None, a surface named in the description sets it.
     """
-    told = tuple(beside.remarks(brief.beside, friction))
-    if not brief.motorway:
-        return told
-    from roadgpt.brief import motorway  # only for motorways
-
-    return (*told, *motorway.remarks(brief, map_size))
+    return (*beside.remarks(brief.beside, friction), *motorway_remarks(brief, map_size))
 
 
 def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:

@@ -7,7 +7,6 @@ therefore removed from the words before a reader reads the words.
 
 import re
 from itertools import pairwise
-from typing import NamedTuple
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, unaccented
@@ -59,16 +58,9 @@ LOOSE = re.compile(r"^[\s,;:.]+|[,;:]\s*(?=[,;:.!?]|$)|\s+(?=[,.;:!?])")
 """Spaces and marks that are left over where words were taken out."""
 
 
-class SizedMap(NamedTuple):
-    """The size of a map, and the rest of the words."""
-
-    metres: float
-    """The side of the square map in metres; if the words give two sides, the shorter side."""
-    rest: str
-
-
-def said_map_size(words: str) -> SizedMap | None:
-    """Returns the size of the map that words ask for, and the other words; None if the words give no size.
+def said_map_size(words: str) -> tuple[float, str] | None:
+    """Returns the side in metres of the square map that words ask for (the shorter one, if they give two),
+    and the other words; None if the words give no size.
 
     "On a map of 500 m by 500 m" is removed; "a map of 500 m by 500 m with two crossroads" only loses the
     size. Raises BriefError if no map may have this size, or if the words say nothing else.
@@ -94,15 +86,9 @@ def said_map_size(words: str) -> SizedMap | None:
     rest = LOOSE.sub("", f"{words[: found.start()]}{noun}{words[found.end() :]}").strip()
     if not re.search(r"\w", rest):
         raise BriefError(ONLY_SIZE)
-    return SizedMap(metres, rest)
+    return metres, rest
 
 
-COUNTRIES = (
-    r"(?:great )?britain|the uk|england|scotland|wales|ireland|dublin|london|bristol|japan|australia|"
-    r"india|kenya|new zealand|south africa|malta|cyprus|schottland|irland|grossbritannien|"
-    r"großbritannien|australien|angleterre|ecosse|irlande|londres|japon|australie|royaume-uni|jersey|"
-    r"inglaterra|escocia|irlanda|reino unido|inghilterra|scozia|londra|giappone|regno unito|cipro"
-)
 LEFT_HAND = re.compile(
     r"left[- ]?hand traffic|\blht\b|traffic (?:(?:is|keeps|drives|goes) )?(?:on the )?left\b(?! lane)|"
     r"\bdriv(?:e|es|ing) (?:on|to) the left\b(?! lane)|\bso on the left|"
@@ -113,13 +99,6 @@ LEFT_HAND = re.compile(
     r"\bguida\w* a sinistra|\b(?:si|che) (?:viaggia|guida|circola|tiene) (?:a |la |sulla )?sinistra|"
     r"\bbritish (?:rules|traffic)"
 )
-LEFT_HAND_BY_PLACE = re.compile(
-    rf"\b(?:as|like|wie|comme|como|come)(?: we| man)?(?: drive| roads?)? (?:in|en|a|au) (?:{COUNTRIES})\b|"
-    rf"\b(?:in|en|a|au|siamo a|this is) (?:{COUNTRIES})\b[^.;]{{0,24}}"
-    r"\b(?:left|links|gauche|izquierda|sinistra)(?=\b(?!.{0,8}(?:bend|turn|kurve|virage|curva)))|"
-    rf"\bthis is (?:{COUNTRIES})\b|^(?:in|en|a|au) (?:{COUNTRIES})\b[:,]|"
-    r"\bbritish roads|like the (?:british|uk)\b|ponmelo britanico"
-)
 TRAFFIC = re.compile(r"traffic|verkehr|circulation|circulacion|circolazione|trafico")
 FORK = re.compile(r"\b(?:bivio|biforcazione|fourche|bifurcation)\b")
 """Words for a fork, where "keep left" tells the way of the route instead of the driving side."""
@@ -128,15 +107,13 @@ NEGATED = re.compile(
 )
 
 
-def says_left_hand(words: str, by_place: bool = False) -> bool:
-    """Returns True if a description in English, German, French, Spanish or Italian asks for traffic that
-    drives on the left; with ``by_place``, naming a country ("as in Scotland") also asks for it.
-    """
+def says_left_hand(words: str) -> bool:
+    """Returns True if a description in one of the five languages asks for traffic that drives on the left."""
     said = unaccented(words)
-    found = [*LEFT_HAND.finditer(said), *(LEFT_HAND_BY_PLACE.finditer(said) if by_place else ())]
     is_at_fork = FORK.search(said) is not None
     return any(
-        not NEGATED.search(said[: each.start()]) and not (is_at_fork and "tien" in each[0]) for each in found
+        not NEGATED.search(said[: each.start()]) and not (is_at_fork and "tien" in each[0])
+        for each in LEFT_HAND.finditer(said)
     )
 
 

@@ -158,11 +158,17 @@ class MapClause(Frozen):
     def _one_form(self) -> Self:
         is_grid = self.columns is not None and self.rows is not None
         if is_grid == bool(self.junctions) or (self.columns is None) != (self.rows is None):
-            raise ValueError("a map has either columns and rows of blocks, or kinds of junctions")
+            raise ValueError(
+                "a map has either columns and rows of blocks, as in map columns=3 rows=2, or kinds of "
+                "junctions, as in map crossroads x3"
+            )
         if self.signed and not (is_grid and all(each.control for each in self.signed)):
-            raise ValueError("kinds of junctions beside columns and rows have a control each")
+            raise ValueError(
+                "the kinds of junctions of a grid say which of them have signs of their own; give a sign "
+                "behind each kind, as in map columns=2 rows=2; junction x2 lights"
+            )
         if is_grid and self.blocks is not None:
-            raise ValueError("the blocks of a grid are its columns and rows; leave out blocks=")
+            raise ValueError("the blocks of a grid are columns and rows, so leave blocks= out of the plan")
         if self.junctions and all(each.control for each in self.junctions):
             raise ValueError("if every kind of junction has a control, the last one's is that of the map")
         return self
@@ -179,3 +185,54 @@ class MapClause(Frozen):
     def control_of(self, junctions: JunctionCount) -> Control | None:
         """Returns the sign or light that these junctions of the map must have; None if that is open."""
         return junctions.control or self.control
+
+
+ARMS: Mapping[JunctionKind, Range] = {
+    "t_junction": Range(3, 3),
+    "y_junction": Range(3, 3),
+    "crossroads": Range(4, 4),
+    "star": Range(5, 6),
+    "roundabout": Range(3, 6),
+    "junction": Range(3, 6),
+    "merge": Range(3, 3),
+    "diverge": Range(3, 3),
+    **dict.fromkeys(LANE_KINDS, Range(2, 2)),
+}
+"""The number of arms of each kind, including the road on which the route arrives."""
+SIZES: Mapping[IslandSize, Range] = {
+    "mini": Range(13, 25),
+    "normal": Range(26, 45),
+    "large": Range(46, 70),
+}
+"""The range of the outer diameter of a roundabout in metres, for each word for its size.
+
+CD 116 Geometric design of roundabouts (National Highways) calls a roundabout of less than 28 m "compact" or
+"mini"; the other limits are usual figures.
+"""
+ACROSS = Range(18, 70)
+"""The outer diameters in metres with which roundabouts can be built."""
+SKEW = 70.0  # degrees; crossroads with a smaller angle between two neighbouring arms are skew
+SIDE = 25.0  # degrees; a smaller change of direction is straight on
+ABOUT = 5.0  # degrees: the tolerance of an angle that is given as one number
+BENDS = {"slight": Range(SIDE, 75), "sharp": Range(95, 180)}
+"""How many degrees the route turns if it bears slightly, or turns sharply, to a side."""
+
+
+def side_of(turn: float) -> Way:
+    """Returns the way that corresponds to a change of direction in degrees, positive to the left. Changes of
+    up to ``SIDE`` degrees are "straight".
+    """
+    return "left" if turn > SIDE else "right" if turn < -SIDE else "straight"
+
+
+def bends_as(take: Take | None, turn: float) -> bool:
+    """Returns whether a change of direction in degrees is as slight or as sharp as ``take``, such as
+    "slight_left", requires; the sides are not compared.
+    """
+    return abs(turn) in BENDS.get((take or "").partition("_")[0], Range())
+
+
+def is_about(degrees: float, asked: Amount) -> bool:
+    """Returns whether an angle in degrees is as required; the tolerance of a single number is ``ABOUT``."""
+    wanted, slack = span(asked), ABOUT if asked.exact else 0.0
+    return degrees in Range(wanted.lo - slack, wanted.hi + slack)

@@ -3,7 +3,8 @@
 Numbers in a Brief are in everyday units (degrees, metres and percent), so that people can write Briefs.
 """
 
-from typing import Annotated, Literal, Self
+import re
+from typing import Annotated, Any, Literal, Self, cast
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -35,6 +36,7 @@ __all__ = [
 ]
 
 OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
+SIDE = re.compile("left(?!_hand)|right")
 CentreLine = Literal["solid", "broken", "double", "none"]
 OF_THE_WORDS = ("words", "beside", "unused", "confidence", "other", "map_size")
 """The fields of a Brief that require nothing of the shape of a road."""
@@ -117,7 +119,7 @@ class Brief(Frozen):
     ends: Clause | None = None
     """The last feature, if the clauses do not already name it."""
     motorway: bool = False
-    """True if the description asks for a motorway; see ``brief.motorway``."""
+    """True if the description asks for a motorway; see ``brief.map_fit``."""
     alike: bool = False
     """True if turns of one kind must have the same angle and radius, and straights the same length. Turns and
     straights with different numbers of their own are excepted. If the clauses name no straights between the
@@ -179,7 +181,6 @@ class Brief(Frozen):
         return self._requires_only(OF_THE_WORDS)
 
     def _requires_only(self, names: tuple[str, ...]) -> bool:
-        """Returns whether all fields but those with these names have their usual values."""
         fields = Brief.model_fields.items()
         return all(name in names or getattr(self, name) == field.default for name, field in fields)
 
@@ -243,3 +244,24 @@ class Brief(Frozen):
     def friction(self) -> float | None:
         """The friction coefficient of the slipperiest surface in ``beside``; None if there is no surface."""
         return friction_of(self.beside)
+
+
+def mirrored(brief: Brief) -> Brief:
+    """Returns the same requirements with left and right exchanged, and with traffic on the other side. A
+    route with traffic on the left meets a Brief exactly if its mirror image meets the mirrored Brief.
+
+    The numbers of exits stay, because exits are counted in the direction in which traffic drives around a
+    roundabout. ``map`` also stays as it is.
+    """
+    names = {"clauses", "starts", "ends", "left", "right", "junctions", "stretches"}
+    other = {**brief.model_dump(exclude=names), **_with_other_sides(brief.model_dump(include=names))}
+    return Brief.model_validate({**other, "left_hand": not brief.left_hand})
+
+
+def _with_other_sides(value: Any) -> Any:
+    """Exchanges left and right in all keys and texts of a value."""
+    if isinstance(value, dict):
+        return {_with_other_sides(key): _with_other_sides(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return tuple(map(_with_other_sides, value))
+    return SIDE.sub(lambda side: OTHER_SIDE[cast(Side, side[0])], value) if isinstance(value, str) else value

@@ -63,7 +63,6 @@ def normal(brief: Brief) -> Brief:
 
 
 def _normal_stretch(brief: Brief) -> Brief:
-    """Returns the normal form of the requirements for a road of a route, which needs no turn."""
     if brief.clauses or brief.turns is not None:
         return normal(brief)
     return normal(brief).model_copy(update={"turns": None})
@@ -219,7 +218,6 @@ def _singles(clause: Clause) -> list[Clause]:
 
 
 def _with_ends_as_clauses(brief: Brief) -> Brief:
-    """Converts the first and last feature to clauses where possible."""
     clauses = brief.clauses
     starts, ends = (None if end is None else _plain(end) for end in (brief.starts, brief.ends))
     if not clauses and (brief.turns is None or brief.turns == at_least(1)):
@@ -306,7 +304,6 @@ def _with_clause_as_turns(brief: Brief) -> Brief:
 
 
 def _pushed_down(brief: Brief) -> Brief:
-    """Moves requirements for every turn to the clauses that turn."""
     turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
     if not turning:
         return brief
@@ -334,7 +331,6 @@ def _shaped(brief: Brief, clause: Clause) -> Clause:
 
 
 def _with_one_slope(brief: Brief) -> Brief:
-    """Gives the whole road the slope of its clauses if they all have the same one."""
     said = {(clause.slope, clause.incline) for clause in brief.clauses}
     # the grade of a part with a height need not be the usual one of the word
     is_apart = any(clause.kind in BUMPS or clause.climb for clause in brief.clauses)
@@ -345,7 +341,6 @@ def _with_one_slope(brief: Brief) -> Brief:
 
 
 def _merged(brief: Brief) -> Brief:
-    """Merges like clauses in a row, without the slope that is that of the whole road."""
     out: list[Clause] = []
     for clause in brief.clauses:
         is_said_alone = clause.incline in (None, brief.incline) and clause.climb is None
@@ -370,7 +365,6 @@ def _like(one: Clause, other: Clause) -> bool:
 
 
 def _without_repeats(brief: Brief) -> Brief:
-    """Clears the fields that only repeat the clauses."""
     clauses = brief.clauses
     turning = [clause for clause in clauses if clause.kind not in STRAIGHT]
     if not turning:
@@ -391,5 +385,4 @@ def _without_repeats(brief: Brief) -> Brief:
 
 
 def _within(one: Amount, other: Amount) -> bool:
-    """True if ``other`` allows every number that ``one`` allows."""
     return span(other).lo <= span(one).lo and span(one).hi <= span(other).hi

@@ -5,19 +5,21 @@ with them. All numbers are in the units of ``words.py`` (degrees, metres, percen
 are measured as in ``check.measures``.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, Literal, TypeVar
 
-from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
-from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of, with_continued_grades, with_like_numbers
-from roadgpt.brief.part_climb import (
-    climb_of_each,
-    limits_of_climb,
-    slopes_of_bump,
-    sum_of,
-    without_joints,
+from roadgpt.brief.map_fit import has_low_grades, has_wide_turns
+from roadgpt.brief.model import Amount, Brief, Clause, Kind, Side, Slope, span
+from roadgpt.brief.normal import (
+    BUMPS,
+    SHAPED,
+    STRAIGHT,
+    clauses_turn,
+    turns_of,
+    with_continued_grades,
+    with_like_numbers,
 )
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import (
@@ -44,6 +46,11 @@ ROOMY = 150.0  # metres: a map of this side holds a sweeping turn of 60 m radius
 EASIER = 0.75  # the usual grades of a word are kept if the least of them is at most this share of a limit
 WIDER, WIDER_THAN_MOST = 1.5, 1.1
 """Ratios to the least and to the greatest radius that is asked for; a wider bend is not a turn."""
+USUALLY_STEEPEST = 12.0  # percent, of a part whose height is given and whose length and grade are open
+BUMP_SLOPES: Mapping[Kind, tuple[Slope, Slope]] = {"crest": ("up", "down"), "dip": ("down", "up")}
+STRAIGHT_ON = Clause(kind="straight")
+TOGETHER = frozenset({"s_bend", "chicane"}) | (SHAPED - {"turn"}) | {"slalom"}
+"""The kinds that consist of several turns; the turns share the height of the clause."""
 NO_LIMIT = Range()
 OF_SEVERAL = frozenset(kind.names[0] for kind in KINDS.values() if kind.turns and kind.turns.lo > 1)
 """The names of features that consist of several turns, such as 'S-bend'."""
@@ -245,9 +252,6 @@ def _within(said: Sloped, most: float) -> Sloped:
 
 
 def _as_motorway(found: Outline, brief: Brief, map_size: float) -> Outline:
-    """Returns the Outline with the grades and wide turns of a motorway, unless others are asked for."""
-    from roadgpt.brief.motorway import has_low_grades, has_wide_turns  # only for motorways
-
     if has_low_grades(brief):
         found = replace(found, steepest=overlap(found.steepest, Range(0, MOTORWAY_GRADE)))
     if not has_wide_turns(brief, map_size):
@@ -257,7 +261,6 @@ def _as_motorway(found: Outline, brief: Brief, map_size: float) -> Outline:
 
 
 def _groups(clause: Clause, roomy: bool) -> list[Group]:
-    """Returns the groups of a clause; a crest or a dip becomes two straights."""
     if clause.kind in BUMPS:
         one = [Group(_straight(slope)) for slope in slopes_of_bump(clause)]
         return int(max(span(clause.count).lo, 1)) * one
@@ -297,6 +300,72 @@ def _straight(clause: Clause) -> Feature:
     grade = _grade(clause.slope, clause.incline)
     asked = Feature("straight", "straight", None, KINDS["straight"].degrees, None, length, grade)
     return _climbing(asked, clause)
+
+
+def climb_of_each(clause: Clause) -> Amount | None:
+    """Returns how many metres each single turn or straight of a clause rises or falls; None if the clause
+    asks for no height. The turns of an S-bend share its height equally.
+    """
+    if clause.climb is None or clause.kind in STRAIGHT or clause.kind not in TOGETHER:
+        return clause.climb
+    turns = KINDS[clause.kind].turns
+    share = turns.lo if turns else 1.0
+    if clause.kind not in ("s_bend", "chicane"):
+        share = max(share, span(clause.count).lo)
+    return clause.climb.times(1 / share)
+
+
+def slopes_of_bump(clause: Clause) -> list[Clause]:
+    """Returns the two slopes of a crest or a dip: each has the whole height, and half of the length."""
+    length = clause.length and clause.length.times(0.5)
+    return [clause.model_copy(update={"slope": way, "length": length}) for way in BUMP_SLOPES[clause.kind]]
+
+
+def without_joints(clauses: tuple[Clause, ...]) -> list[Clause]:
+    """Leaves out each crest between a climbing and a falling straight, and each dip between a falling and a
+    climbing straight: such a crest or dip is only the place where the straights meet. A crest or dip with
+    requirements of its own stays.
+    """
+    around = zip((STRAIGHT_ON, *clauses), clauses, (*clauses[1:], STRAIGHT_ON), strict=False)
+    return [clause for before, clause, after in around if not _is_joint(before, clause, after)]
+
+
+def _is_joint(before: Clause, clause: Clause, after: Clause) -> bool:
+    if clause != Clause(kind=clause.kind) or not before.kind == after.kind == "straight":
+        return False
+    slopes = tuple((each.slope or "").rpartition("_")[2] for each in (before, after))
+    return slopes == BUMP_SLOPES.get(clause.kind)
+
+
+def sum_of(one: Range | None, other: Range | None) -> Range | None:
+    """Returns the range of the length, or of the height, of two straights that are measured as one."""
+    if one is None or other is None:
+        return one or other
+    number = one.number + other.number if one.number is not None and other.number is not None else None
+    return Range(one.lo + other.lo, one.hi + other.hi, number)
+
+
+def limits_of_climb(
+    climb: Range, length: Range | None, grade: Range | None, has_radius: bool
+) -> tuple[Range | None, Range]:
+    """Returns the ranges of length (metres) and grade (percent, positive) of a part of a given height.
+
+    ``length`` and ``grade`` are the ranges that are asked for, or None. ``has_radius`` is True for a turn
+    whose radius is given; the angle and the radius then determine the length.
+    """
+    allowed = grade or Range(LEAST_GRADE, STEEPEST)
+    low, high = max(climb.lo, 0.0), climb.hi
+    if length is None and not has_radius:
+        least = 100 * low / min(allowed.hi, USUALLY_STEEPEST if grade is None else inf)
+        most = 100 * high / allowed.lo if grade else inf
+        number = 100 * climb.number / grade.number if grade and grade.number and climb.number else None
+        length = Range(least, most, number)
+    if length is None or length.lo <= 0:
+        return length, allowed
+    number = 100 * climb.number / length.number if climb.number and length.number else None
+    implied = Range(100 * low / length.hi, 100 * high / length.lo, number)
+    found = overlap(implied, allowed) or implied
+    return length, found if found.lo <= found.hi else implied
 
 
 def _climbing(feature: Feature, clause: Clause) -> Feature:

@@ -2,20 +2,39 @@
 who label data, and by users who want to state requirements without words that a reader has to interpret.
 
     turn x3 left up; straight long down; hairpin right | len=300 hard beside(traffic, night)
+    straight 80 // crossroads left lights // | up // roundabout exit=3 arms=4 || len=300
+    map columns=3 rows=2 lights; junction x2 stop
 
 The clauses are in driving order, separated by ``;``. The requirements for the whole road follow after ``|``.
+Junctions and the roads between them alternate, separated by ``//``; a road without requirements is left out,
+and requirements for the whole route follow after ``||``. A map is a grid, or junctions joined by roads.
 A number is exact (``3``), a bound (``3..`` or ``..3``) or a range (``3..5``), in the units of the Brief. The
 page docs/reference/plans.md describes the language.
 """
 
 import re
-from typing import TypeVar, get_args
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, NamedTuple, TypeVar, get_args
 
 from pydantic import ValidationError
 
 from roadgpt.brief.amount import amount_text, figure, read_amount
-from roadgpt.brief.junctions import MAP, JunctionKind, Side
-from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, exactly, span
+from roadgpt.brief.junctions import (
+    LONGEST_ROUTE,
+    MAP,
+    ROUTE,
+    Control,
+    IslandSize,
+    JunctionClause,
+    JunctionCount,
+    JunctionKind,
+    MapClause,
+    MapJunctionKind,
+    Side,
+    Take,
+    Way,
+)
+from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Frozen, exactly, span
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.refusal import refused
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, Kind, Sharpness, Size, Slope
@@ -25,21 +44,11 @@ KINDS = frozenset(get_args(Kind))
 JUNCTIONS: frozenset[str] = frozenset(get_args(JunctionKind))
 BETWEEN = "//"
 WHOLE = "||"
-WORDS = {
-    **dict.fromkeys(get_args(Side), "side"),
-    **dict.fromkeys(get_args(Sharpness), "sharpness"),
-    **dict.fromkeys(get_args(Size), "size"),
-    **dict.fromkeys(get_args(Slope), "slope"),
-}
 BARE: dict[str, str] = dict.fromkeys(("straight", *BUMPS), "length")
 """The field that a number without a key sets, by kind of clause; for turns, the number is their angle."""
-FLAGS = ("alternating", "alike", "hard", "motorway", "divided", "left_hand")
 ONE_WAY = "oneway"
 NO_LANE = exactly(0)
-CENTRE = "centre="
-MAP_SIZE = "map_size="
 KEYS = {"deg": "degrees", "r": "radius", "len": "length", "pct": "incline"}
-CLAUSE_KEYS = {**KEYS, "climb": "climb"}
 ROAD_KEYS = {
     "turns": "turns",
     "lefts": "left",
@@ -58,66 +67,184 @@ PLACES = ("starts", "ends")
 INNER = "(starts|ends|beside)"
 ALIKE = "alike"
 """A flag of a road. In older plans, and for a whole route or map, the word stands in ``beside(...)``."""
-ONE = Amount(lo=1, hi=1)
 HALFWAY = "halfway"
 """The word for half of the length of the whole route, as in ``| halfway // t_junction left || len=400``."""
-HALF = re.compile(rf"\b{HALFWAY}\b")
 SHARES_OF_HALF = (0.45, 0.55)
 """The least and the greatest share of the route's length that count as half of the route."""
 WHOLE_LENGTH = re.compile(r"\|\|[^|]*\blen=(\d+(?:\.\d+)?)(?![\d.])")
-Model = TypeVar("Model", Brief, Clause)
+Model = TypeVar("Model", bound=Frozen)
+
+
+class _Language(NamedTuple):
+    """The words that describe one kind of thing in a plan, in the order in which they are written."""
+
+    words: Mapping[str, tuple[str, object]]
+    """The field that a word sets, and its value."""
+    keys: Mapping[str, str]
+    """The field of the number behind a key such as "len="."""
+    others: Mapping[str, tuple[str, Callable[[str], object]]] = {}
+    """The field of what stands behind some other key, and the function that reads it."""
+    of: str = ""
+    """The thing, for messages; empty for a road and its parts."""
+
+
+def _words(*kinds: Any, flags: Iterable[str] = (), **fields: Any) -> dict[str, tuple[str, object]]:
+    said = {word: (field, word) for field, kind in fields.items() for word in get_args(kind)}
+    return said | {flag: (flag, True) for flag in flags}
+
+
+def _sides(text: str) -> tuple[str, ...]:
+    ways = tuple(text.split("+"))
+    if not {*ways} <= {*get_args(Way)}:
+        known = " or ".join(get_args(Way))
+        raise BriefError(f"a plan has no ways '{text[:40]}'; ways are {known}, joined by +")
+    return ways
+
+
+def _centre(text: str) -> str:
+    if text not in get_args(CentreLine):
+        raise BriefError(
+            f"a plan has no centre line '{text[:40]}'; there are {', '.join(get_args(CentreLine))}"
+        )
+    return text
+
+
+def _size_of_map(text: str) -> float | None:
+    size = read_amount(text)
+    if not size.exact or not SMALLEST_MAP <= (size.lo or 0) <= LARGEST_MAP:
+        raise BriefError(
+            f"a map has one size of {SMALLEST_MAP:g} to {LARGEST_MAP:g} m, not {text[:40]}; write for "
+            "example map_size=500"
+        )
+    return size.lo
+
+
+def read_ways(text: str) -> tuple[Way, ...]:
+    """Returns the ways that a route takes at junctions, from a text such as "left, straight"; raises
+    BriefError unless the text is 1 to 12 of left, right and straight.
+    """
+    words = [word for word in re.split(r"[+,\s]+", text) if word]
+    ways: list[Way] = [way for word in words for way in get_args(Way) if way == word]
+    if not 1 <= len(ways) == len(words) <= LONGEST_ROUTE:
+        raise BriefError(
+            f"the route '{text[:40]}' through a map cannot be read; give 1 to {LONGEST_ROUTE} of "
+            f"{', '.join(get_args(Way))}, one for each junction that it passes, as in left+straight+right"
+        )
+    return tuple(ways)
+
+
+CLAUSE = _Language(
+    _words(side=Side, sharpness=Sharpness, size=Size, slope=Slope, flags=("alternating",)),
+    {**KEYS, "climb": "climb"},
+)
+ROAD = _Language(
+    {
+        **_words(
+            sharpness=Sharpness,
+            slope=Slope,
+            flags=("alternating", ALIKE, "hard", "motorway", "divided", "left_hand"),
+        ),
+        ONE_WAY: ("against", NO_LANE),
+    },
+    ROAD_KEYS,
+    {"centre": ("centre", _centre), "map_size": ("map_size", _size_of_map)},
+)
+JUNCTION = _Language(
+    {
+        **_words(
+            take=Take,
+            size=IslandSize,
+            control=Control,
+            flags=("skew", "all_way", "crosswalk", "others_stop"),
+        ),
+        **{f"side={side}": ("side", side) for side in get_args(Side)},
+    },
+    {
+        "deg": "degrees",
+        "angle": "angle",
+        "exit": "exit",
+        "arms": "arms",
+        "r": "radius",
+        "outer": "outer",
+        "lanes": "lanes",
+        "len": "length",
+        "taper": "taper",
+    },
+    {
+        "ways": ("ways", _sides),
+        "in": ("only_in", _sides),
+        "out": ("only_out", _sides),
+        "d": ("radius", lambda text: read_amount(text).times(0.5)),
+    },
+    "junction",
+)
+MAP_OF_ROADS = _Language(
+    _words(control=Control),
+    {"columns": "columns", "rows": "rows", "len": "length", "blocks": "blocks", "dead_ends": "dead_ends"},
+    {ROUTE: (ROUTE, read_ways)},
+    "map",
+)
 
 
 def plan(brief: Brief) -> str:
     """Returns the plan of a Brief, without ``words``, ``unused``, ``confidence`` and ``other``."""
     mark, wishes = WHOLE, _wishes(brief)
     if brief.junctions:
-        from roadgpt.brief.junction_plan import junction_plan  # only for networks
-
         parts = [plan(brief.stretches[0])]
         for junction, stretch in zip(brief.junctions, brief.stretches[1:], strict=True):
             parts += [junction_plan(junction), plan(stretch)]
         line = f" {BETWEEN} ".join(filter(None, parts))
     elif brief.map is not None:
-        from roadgpt.brief.map_plan import map_plan  # only for maps
-
         line = map_plan(brief.map)
     else:
         mark, line = "|", "; ".join(map(_clause, brief.clauses))
     return f"{line} {mark} {' '.join(wishes)}".strip() if wishes else line
 
 
+def _written(thing: Frozen, language: _Language) -> list[str]:
+    out = [word for word, (field, value) in language.words.items() if getattr(thing, field) == value]
+    for key, (field, read) in language.others.items():
+        if read is _sides and (ways := getattr(thing, field)):
+            out.append(f"{key}={'+'.join(ways)}")
+    amounts = {key: getattr(thing, field) for key, field in language.keys.items()}
+    return out + [f"{key}={amount_text(amount)}" for key, amount in amounts.items() if amount is not None]
+
+
 def _wishes(brief: Brief) -> list[str]:
-    """Returns the requirements for the whole road as parts of a plan."""
-    wishes = _mods(brief, ROAD_KEYS)
-    if brief.against == NO_LANE:
+    wishes = _written(brief, ROAD)
+    if ONE_WAY in wishes:  # it stands in the place of the number
+        wishes.remove(ONE_WAY)
         wishes[wishes.index("against=0")] = ONE_WAY
-    for place in PLACES:
-        clause = getattr(brief, place)
-        if clause:
-            wishes.append(f"{place}({_clause(clause)})")
-    if brief.beside:
-        wishes.append(f"beside({', '.join(brief.beside)})")
-    if brief.centre is not None:
-        wishes.append(f"{CENTRE}{brief.centre}")
-    if brief.map_size is not None:
-        wishes.append(f"{MAP_SIZE}{brief.map_size:g}")
-    return wishes
+    wishes += [f"{name}({_clause(clause)})" for name in PLACES if (clause := getattr(brief, name))]
+    wishes += [f"beside({', '.join(brief.beside)})"] if brief.beside else []
+    wishes += [f"centre={brief.centre}"] if brief.centre is not None else []
+    return wishes + ([f"map_size={brief.map_size:g}"] if brief.map_size is not None else [])
 
 
 def _clause(clause: Clause) -> str:
-    count = [] if clause.count == ONE else [f"x{amount_text(clause.count)}"]
-    return " ".join([clause.kind, *count, *_mods(clause, CLAUSE_KEYS)])
+    return " ".join([clause.kind, *_times(clause.count), *_written(clause, CLAUSE)])
 
 
-def _mods(thing: Clause | Brief, keys: dict[str, str]) -> list[str]:
-    """Returns the words, flags and numbers of a clause or of the whole road, in one fixed order."""
-    fields = ("side", "sharpness", "size", "slope")
-    out = [value for name in fields if (value := getattr(thing, name, None))]
-    out += [flag for flag in FLAGS if getattr(thing, flag, False)]
-    return out + [
-        f"{key}={amount_text(a)}" for key, name in keys.items() if (a := getattr(thing, name)) is not None
-    ]
+def _times(count: Amount) -> list[str]:
+    return [] if count == exactly(1) else [f"x{amount_text(count)}"]
+
+
+def junction_plan(junction: JunctionClause) -> str:
+    """Returns a junction as part of a plan, such as "crossroads left lights"."""
+    return " ".join([junction.kind, *_written(junction, JUNCTION)])
+
+
+def map_plan(asked: MapClause) -> str:
+    """Returns a map as a plan, such as "map columns=3 rows=2"."""
+    kinds = [_counted(each) for each in sorted(asked.junctions, key=lambda each: each.control is None)]
+    numbers = _written(asked.model_copy(update={"control": None}), MAP_OF_ROADS)
+    route = f"{ROUTE}={'+'.join(asked.route)}" if asked.route else ""
+    line = " ".join(filter(None, [MAP, "; ".join(kinds), *numbers, asked.control, route]))
+    return "; ".join([line, *map(_counted, asked.signed)])
+
+
+def _counted(each: JunctionCount) -> str:
+    return " ".join(filter(None, [each.kind, *_times(each.count), each.control]))
 
 
 def read_plan(line: str) -> Brief:
@@ -132,9 +259,7 @@ def read_plan(line: str) -> Brief:
         return _read_network(_without_halfway(line))
     road, _, whole = line.partition(WHOLE)
     if is_map(line):
-        from roadgpt.brief.map_plan import read_map  # only for maps
-
-        return _made(Brief, {"map": read_map(road), **_read_whole(whole)}, line)
+        return _made(Brief, {"map": _read_map(road), **_read_whole(whole)}, line)
     clauses, _, own = road.partition("|")  # for a single road, | and || mean the same
     wishes = f"{own} {whole}"
     fields: dict[str, object] = {
@@ -148,11 +273,11 @@ def read_plan(line: str) -> Brief:
         if names:
             _set(fields, place, names if place == "beside" else _read_clause(inner))
     for word in re.sub(rf"{INNER}\([^()]*\)", " ", wishes).split():
-        _read_mod(fields, word, ROAD_KEYS)
+        _read_word(fields, word, ROAD)
     return _made(Brief, fields, line)
 
 
-def _half_of_route(line: str) -> str:
+def half_of_route(line: str) -> str:
     """Returns the lengths that are half of the route of a plan, such as "len=180..220"; "" if the plan does
     not give the length of the whole route as one number.
     """
@@ -161,17 +286,10 @@ def _half_of_route(line: str) -> str:
 
 
 def _without_halfway(line: str) -> str:
-    """Returns a plan with a range of lengths in place of each word "halfway"."""
-    half = _half_of_route(line)
-    if HALF.search(line) and not half:
+    half, word = half_of_route(line), rf"\b{HALFWAY}\b"
+    if re.search(word, line) and not half:
         raise BriefError("'halfway' in a plan needs the length of the whole route, as in || len=400")
-    return HALF.sub(half, line)
-
-
-def with_halfway(line: str) -> str:
-    """Returns a plan with the word "halfway" in place of each length that means half of the whole route."""
-    half = _half_of_route(line)
-    return re.sub(rf"{re.escape(half)}(?![\d.])", HALFWAY, line) if half else line
+    return re.sub(word, half, line)
 
 
 def is_junction(text: str) -> bool:
@@ -185,15 +303,12 @@ def is_map(line: str) -> bool:
 
 
 def _read_network(line: str) -> Brief:
-    """Returns the Brief of a plan with junctions."""
-    from roadgpt.brief.junction_plan import read_junction  # only for networks
-
     route, _, whole = line.partition(WHOLE)
-    junctions: list[str] = []
+    junctions: list[JunctionClause] = []
     roads = [""]
     for part in filter(None, map(str.strip, route.split(BETWEEN))):
         if is_junction(part):
-            junctions.append(part)
+            junctions.append(_read_junction(part))
             roads.append("")
         elif roads[-1]:
             raise BriefError(
@@ -204,16 +319,11 @@ def _read_network(line: str) -> Brief:
             roads[-1] = part
     if not junctions:
         raise BriefError(f"a plan with {BETWEEN} needs a junction, such as crossroads left")
-    fields: dict[str, object] = {
-        "junctions": tuple(map(read_junction, junctions)),
-        "stretches": tuple(map(read_plan, roads)),
-        **_read_whole(whole),
-    }
-    return _made(Brief, fields, line)
+    stretches = tuple(map(read_plan, roads))
+    return _made(Brief, {"junctions": tuple(junctions), "stretches": stretches, **_read_whole(whole)}, line)
 
 
 def _read_whole(text: str) -> dict[str, object]:
-    """Returns the fields of a Brief that are asked of a whole route or map."""
     asked = read_plan(f"| {text}") if text.strip() else Brief()
     if asked.alike:  # which of several roads are alike is not said
         asked = asked.model_copy(update={"alike": False, "beside": (*asked.beside, ALIKE)})
@@ -225,6 +335,48 @@ def _read_whole(text: str) -> dict[str, object]:
             f"after {WHOLE}, only {known} can be asked; what holds for one road stands with it, after |"
         )
     return fields
+
+
+def _read_junction(text: str) -> JunctionClause:
+    kind, *words = text.split()
+    fields: dict[str, object] = {"kind": kind}
+    for word in words:
+        _read_word(fields, word, JUNCTION)
+    return _made(JunctionClause, fields, text)
+
+
+def _read_map(line: str) -> MapClause:
+    """Returns the map that a plan describes. A sign behind the last kind of junction is that of the whole
+    map, except in a grid.
+    """
+    fields: dict[str, object] = {}
+    counts: list[dict[str, object]] = []
+    words = line.replace(";", " ").split()
+    is_grid = any(word.startswith("columns=") for word in words)
+    places = [place for place, word in enumerate(words) if word in get_args(MapJunctionKind)]
+    last = len(words) if is_grid else max(places, default=0)
+    for place, word in enumerate(words[1:], 1):
+        if place in places:
+            counts.append({"kind": word})
+        elif counts and re.match(r"x[\d.]", word):
+            _set(counts[-1], "count", read_amount(word[1:]))
+        else:
+            is_of_kind = bool(counts) and place < last and word in get_args(Control)
+            _read_word(counts[-1] if is_of_kind else fields, word, MAP_OF_ROADS)
+    kinds = tuple(_made(JunctionCount, each, line) for each in counts)
+    return _made(MapClause, {**fields, "signed" if is_grid else "junctions": kinds}, line)
+
+
+def with_route(asked: MapClause | None, text: str) -> MapClause:
+    """Returns the map ``asked`` with the route that a text such as "left,straight" describes. Raises
+    BriefError if the description asks for no map (None), or the text cannot be read.
+    """
+    if asked is None:
+        raise BriefError(
+            "a route can be named through a map only, such as 'a grid of 3 by 2 blocks'; this description "
+            "has a route or a road of its own, so leave --route out"
+        )
+    return asked.model_copy(update={"route": read_ways(text)})
 
 
 def _read_clause(text: str) -> Clause:
@@ -243,7 +395,7 @@ def _read_clause(text: str) -> Clause:
         elif word[0] == "r" and word[1:2] in "0123456789." and word[1:]:
             _set(fields, "radius", read_amount(word[1:]))
         else:
-            _read_mod(fields, word, CLAUSE_KEYS)
+            _read_word(fields, word, CLAUSE)
     return _made(Clause, _with_side_of_climb(fields), text)
 
 
@@ -253,45 +405,30 @@ def _with_side_of_climb(fields: dict[str, object]) -> dict[str, object]:
     if not isinstance(climb, Amount):
         return fields
     falls = span(climb).hi <= 0 and climb != exactly(0)
-    if falls and fields["kind"] in BUMPS:
-        raise BriefError(f"a {fields['kind']} has a height above 0; leave out the minus of {climb}")
-    if falls and str(fields.get("slope", "down")).endswith("up"):
-        raise BriefError(f"a plan gives '{fields['slope']}' and a climb of {climb} m; leave out the minus")
-    if falls:
-        climb = climb.times(-1)
-    elif span(climb).lo < 0 < span(climb).hi and climb.lo is not None:
+    is_torn = span(climb).lo < 0 < span(climb).hi and climb.lo is not None
+    if is_torn or (falls and (fields["kind"] in BUMPS or str(fields.get("slope", "down")).endswith("up"))):
         raise BriefError(
-            f"a part cannot both rise and fall: 'climb={amount_text(climb)}'; give one of the two"
+            f"'climb={amount_text(climb)}' contradicts '{fields.get('slope', fields['kind'])}'; leave out the"
+            " minus, and say up or down"
         )
+    climb = climb.times(-1) if falls else climb
     way = {} if fields["kind"] in BUMPS else {"slope": fields.get("slope", "down" if falls else "up")}
     return {**fields, **way, "climb": climb}
 
 
-def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> None:
+def _read_word(fields: dict[str, object], word: str, language: _Language) -> None:
     key, equals, value = word.partition("=")
-    if equals and key in keys:
-        _set(fields, keys[key], read_amount(value))
-    elif word in FLAGS and (keys is ROAD_KEYS or word != ALIKE):
-        _set(fields, word, True)
-    elif word == ONE_WAY and keys is ROAD_KEYS:
-        _set(fields, "against", NO_LANE)
-    elif word.startswith(CENTRE) and keys is ROAD_KEYS:
-        if value not in get_args(CentreLine):
-            known = ", ".join(get_args(CentreLine))
-            raise BriefError(f"a plan has no centre line '{value[:40]}'; there are {known}")
-        _set(fields, "centre", value)
-    elif word.startswith(MAP_SIZE) and keys is ROAD_KEYS:
-        amount = read_amount(value)
-        if not amount.exact:
-            raise BriefError(f"a map has one size, not '{value[:40]}'; write for example {MAP_SIZE}500")
-        if not SMALLEST_MAP <= (amount.lo or 0) <= LARGEST_MAP:
-            raise BriefError(
-                f"a map is {SMALLEST_MAP:g} to {LARGEST_MAP:g} m wide, not {value[:40]}; write for example "
-                f"{MAP_SIZE}500"
-            )
-        _set(fields, "map_size", amount.lo)
-    elif word in WORDS:
-        _set(fields, WORDS[word], word)
+    if word in language.words:
+        _set(fields, *language.words[word])
+    elif equals and key in language.keys:
+        _set(fields, language.keys[key], read_amount(value))
+    elif equals and key in language.others:
+        name, read = language.others[key]
+        _set(fields, name, read(value))
+    elif language.of:
+        keys = (f"{key}=" for key in (*language.keys, *language.others))
+        known = ", ".join(sorted((*language.words, *keys)))
+        raise BriefError(f"a plan has no word '{word[:40]}' for a {language.of}; there are {known}")
     else:
         raise BriefError(
             f"a plan has no word '{word[:40]}' here; what is asked of the whole road stands behind |, and "
@@ -311,4 +448,4 @@ def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
         return model.model_validate(fields)
     except ValidationError as error:
         problem = error.errors()[0]["msg"].removeprefix("Value error, ")
-        raise BriefError(f"the plan '{text.strip()[:60]}' is not a Brief: {problem}") from error
+        raise BriefError(f"the plan '{text.strip()[:60]}' cannot be read: {problem}") from error

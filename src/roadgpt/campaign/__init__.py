@@ -19,8 +19,7 @@ from typing import Any
 
 # Each module is imported when it is first used, because a starting worker needs none of them yet.
 _MODULES = {
-    "Budget": "model",
-    "Campaign": "folder_campaign",
+    "Campaign": "run_folder",
     "Cell": "model",
     "CellBudget": "model",
     "Generator": "model",
@@ -31,11 +30,11 @@ _MODULES = {
     "Plan": "plan",
     "Record": "record",
     "begin": "lifecycle",
-    "campaign": "folder_campaign",
-    "read_plan": "plan_file",
-    "kept_run": "rerun",
-    "read_trace": "rerun",
-    "run_again": "rerun",
+    "campaign": "run_folder",
+    "read_plan": "plan",
+    "kept_run": "folder_record",
+    "read_trace": "folder_record",
+    "run_again": "folder_record",
     "status_of": "status",
     "work": "lifecycle",
 }

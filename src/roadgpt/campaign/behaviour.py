@@ -2,7 +2,7 @@
 
 This space is called the feature map. It is divided into cells or bins, which are not the cells of a campaign.
 
-``run.features`` has the five features of the SBFT competition: MAX_CURV, DIR_COV, STD_SA, MEAN_LP, MAX_LP.
+``run.execution`` has the five features of the SBFT competition: MAX_CURV, DIR_COV, STD_SA, MEAN_LP, MAX_LP.
 This module adds features of the road's geometry; all but the first come from ``check.measures``:
 
     DIR_COV_360   share of the 36 sectors of 10 degrees that contain a heading of the road
@@ -27,10 +27,9 @@ from roadgpt.brief.outline import outline
 from roadgpt.check.measures import measure
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
-from roadgpt.run.features import features_of
+from roadgpt.run.execution import features_of
 
-DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP")
-"""The features that a road has only after a drive."""
+DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP")  # the features that a road has only after a drive
 DIRECTIONS = 36  # of 10 degrees each
 WIDEST = 1000.0  # m; larger radii count as this radius
 MOST_TURNS = 6  # that have features of their own
@@ -53,8 +52,7 @@ BOUNDS: dict[str, tuple[float, float]] = {
 }
 """The range of the feature map along each axis; values beyond this range belong to the outermost cell."""
 
-DEGREES = (0.0, 180.0)
-"""The range of the feature map along the axes DEGREES_1, DEGREES_2, and so on."""
+DEGREES = (0.0, 180.0)  # the range of the feature map along the axes DEGREES_1, DEGREES_2, and so on
 
 
 def behaviour_of(road: Road, brief: Brief | None) -> dict[str, float]:
@@ -96,9 +94,8 @@ def behaviour_of_line(points: Array, axes: Sequence[str], brief: Brief | None) -
 
 
 def turns_asked(brief: Brief | None) -> int:
-    """Returns the number of turns that get separate features such as RADIUS_1. This is the number of turns
-    in the Brief; 0 if the Brief states none, a range, or more than six.
-    """
+    """Returns the number of turns that the Brief states, which get features such as RADIUS_1; 0 if it states
+    none, a range, or more than six."""
     asked = outline(brief).turns if brief else None
     return int(asked.lo) if asked and 0 < asked.lo == asked.hi <= MOST_TURNS else 0
 

@@ -18,13 +18,10 @@ from roadgpt.design.elements import elements_of
 class Measure(NamedTuple):
     """A numeric property, such as a radius, by which two turns or two straights are compared."""
 
-    field: str
-    """Name of the field of ``Element`` that holds the property."""
-    called: str
-    """Name of the property in texts."""
+    field: str  # name of the field of ``Element`` that holds the property
+    called: str  # name of the property in texts
     unit: str
-    scale: float
-    """The difference in this property that counts as a distance of 1 between two roads."""
+    scale: float  # the difference in this property that counts as a distance of 1 between two roads
 
 
 GRADE = Measure("incline", "grade", " %", 1.0)
@@ -41,10 +38,8 @@ OF_STRAIGHT = (GRADE, Measure("length", "length", " m", 10.0))
 class BoundaryPair:
     """A road on which the car kept its lane, and a similar road on which the car failed."""
 
-    kept: int
-    """Number of the test that passed."""
-    lost: int
-    """Number of the test that failed."""
+    kept: int  # number of the test that passed
+    lost: int  # number of the test that failed
     distance: float
     """Distance between the two roads: the square root of the sum of squared differences over all turns and
     straights, where 10 m of a straight, 2 m of a radius or a clothoid, 10 degrees of a turn and 1 % of a
@@ -53,9 +48,7 @@ class BoundaryPair:
 
 
 def distance(one: Elements, other: Elements) -> float:
-    """Returns the distance between two roads, as defined in ``BoundaryPair.distance``. The distance is
-    infinite if the roads do not correspond.
-    """
+    """Returns ``BoundaryPair.distance`` of two roads; infinite if they do not correspond."""
     if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return np.inf
     total = 0.0
@@ -66,10 +59,8 @@ def distance(one: Elements, other: Elements) -> float:
 
 
 def weightiest(kept: Elements, lost: Elements) -> str:
-    """Returns the largest difference between two corresponding roads as text, such as 'turn 2: radius 15.4 m,
-    then 14.9 m'. Differences are compared in units of ``Measure.scale``. Returns '' if the roads do not
-    differ.
-    """
+    """Returns the largest difference between two corresponding roads, in units of ``Measure.scale``, as text
+    such as 'turn 2: radius 15.4 m, then 14.9 m'; empty if they do not differ."""
     most, found = 0.0, ""
     turns = straights = 0
     for a, b in zip(kept, lost, strict=True):
@@ -95,11 +86,8 @@ def _figure(element: Element, measure: Measure) -> str:
 
 
 def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
-    """Returns the boundary pairs among the results of one cell, the closest pair first.
-
-    The closest corresponding roads are paired first; each test is in at most one pair. Tests that neither
-    passed nor failed, and roads with junctions, are left out.
-    """
+    """Returns the boundary pairs among the results of one cell, the closest first; each test is in at most
+    one pair. Roads with junctions are left out."""
     roads = {
         r.number: elements_of(r.plain_design.segments)
         for r in results

@@ -7,8 +7,6 @@ cells.csv      one row per cell: its settings, the number of tests with each out
 """
 
 import csv
-import json
-import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -16,10 +14,8 @@ from typing import Any
 
 from roadgpt.campaign.behaviour import BOUNDS, cell_of
 from roadgpt.campaign.model import Cell
-from roadgpt.campaign.record import Record
-from roadgpt.campaign.rows import MEASURED
+from roadgpt.campaign.record import MEASURED, Record, reading_store
 from roadgpt.campaign.status import CellStatus, cell_statuses
-from roadgpt.campaign.store_check import reading_store
 from roadgpt.reading import json_of
 from roadgpt.run import seed_of
 from roadgpt.run.atomic import write_lines
@@ -67,24 +63,11 @@ _line = csv.writer(_Echo(), lineterminator="\n").writerow
 
 
 def _lines(rows: Iterator[tuple[Any, ...]], features: Sequence[str]) -> Iterator[str]:
-    """Yields the lines of the table of results; numbers are copied as text, since there may be a million
-    rows."""
     yield _line((*COLUMNS, *features))
-    written = _written(features)
     for cell, number, batch, origin, seed, given, *rest, found in rows:
-        row = (cell, number, batch, origin, seed if given else seed_of(seed, number), *rest)
-        match = written.fullmatch(found)
-        if match is not None:
-            yield ",".join((_line(row)[:-1], *match.groups(""))) + "\n"
-        else:
-            values = {name: float(value) for name, value in json_of(found).items()}
-            yield _line((*row, *(values.get(name) for name in features)))
-
-
-def _written(features: Sequence[str]) -> re.Pattern[str]:
-    """Returns a pattern that matches features as the store has them, with one group for each number."""
-    each = (rf"(?:{re.escape(json.dumps(name))}: ([-+.\de]+)(?:, |(?=\}})))?" for name in features)
-    return re.compile(rf"\{{{''.join(each)}\}}")
+        values = {name: float(value) for name, value in json_of(found).items()}
+        named = (values.get(name) for name in features)
+        yield _line((cell, number, batch, origin, seed if given else seed_of(seed, number), *rest, *named))
 
 
 def _cell_row(record: Record, cell: Cell, status: CellStatus) -> dict[str, Any]:

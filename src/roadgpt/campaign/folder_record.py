@@ -1,23 +1,25 @@
-"""Opens tests for reading: those of a campaign, of a folder of runs, or of a single run."""
+"""Opens the tests of a folder, whatever wrote them; returns the drive or the Run of one of them, either as
+stored or by driving its road again.
+"""
 
 import json
 import sqlite3
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from roadgpt.campaign.folder_store import FolderStore
 from roadgpt.campaign.model import Cell, NumberedTest, Result
-from roadgpt.campaign.record import STORE, Record, no_tests
-from roadgpt.campaign.run_folder import RunFolder, finished_run
+from roadgpt.campaign.record import STORE, Record, no_road, no_tests
+from roadgpt.campaign.run_folder import FolderStore, RunFolder, finished_run
+from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.road import Road
-from roadgpt.run import Request, Run, Setup, read_run
+from roadgpt.run import Request, Run, Setup, prove, read_run
 from roadgpt.run.atomic import is_locked
-from roadgpt.run.card import CARD, read_card
-from roadgpt.run.folder import RUNS, finished, is_run, run_folder
-from roadgpt.run.sbft_json import test_name
+from roadgpt.run.execution import test_name
+from roadgpt.run.folder import CARD, RUNS, finished, is_run, read_card, run_folder
 
 
 def is_store(folder: Path) -> bool:
@@ -31,11 +33,7 @@ def has_tests(folder: Path) -> bool:
 
 
 def open_record(folder: Path) -> Record:
-    """Opens the tests of a campaign, of a folder of runs, or of a single run.
-
-    Raises:
-        UsageError: the folder holds none of these, or it cannot be read.
-    """
+    """Opens the tests of a campaign, of a folder of runs, or of a single run."""
     if is_store(folder):
         return Record.opened(folder)
     if not has_tests(folder) and not is_run(folder):
@@ -49,20 +47,14 @@ def setups_of(folder: Path) -> list[Setup]:
         return [cell.request.setup for cell in record.cells()]
 
 
-class FolderRecord(FolderStore, Record):
-    """The tests in a folder of runs, open for reading.
-
-    All Runs are read when the tables are first queried; if one of them cannot be read, that query fails.
-    """
+class FolderRecord(FolderStore):
+    """The tests in a folder of runs, open for reading; all Runs are read when the tables are first
+    queried."""
 
     has_run = "1"
 
     def __init__(self, folder: Path) -> None:
-        """Opens a folder of runs, or the folder of one Run.
-
-        Raises:
-            UsageError: ``campaign.json`` is damaged, or it is missing and the first Run cannot be read.
-        """
+        """Opens a folder of runs, or the folder of one Run."""
         self._is_entered = False
         if is_run(folder):
             self._places = {read_run(folder).index: folder}
@@ -134,3 +126,40 @@ class FolderRecord(FolderStore, Record):
     def file(self, number: int) -> str:
         """Returns the path of a test's ``test.NNNN.json``."""
         return str(self.folder / test_name(number))
+
+
+def read_trace(folder: Path, cell: str, number: int) -> Drive:
+    """Returns the stored drive of a test: every column at 50 Hz, positions exact to half a millimetre."""
+    with Record.opened(folder) as record:
+        record.result(cell, number)
+        found = record.drive(cell, number)
+    if found is None:
+        raise UsageError(f"test {number} of {cell} in {folder} was not driven")
+    return found
+
+
+def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Run:
+    """Returns the stored Run of a test; no road is driven, and no driver's file is loaded.
+
+    The road is built from the stored design. The drive, unless it is left out, is the stored one, with
+    positions exact to half a millimetre; outcome, margin and the place of a failure are those recorded.
+    ``cell`` is empty in a folder of runs or of one run, whose Runs always have their drives.
+    """
+    with open_record(folder) as record:
+        return record.run(cell, number, has_drive)
+
+
+def run_again(folder: Path, cell: str, number: int) -> tuple[Run, Result]:
+    """Checks and drives the road of a test again; returns the new Run, the same bit for bit on one machine,
+    and the stored Result."""
+    with open_record(folder) as record:
+        result, kept = record.result(cell, number), record.run(cell, number, has_drive=False)
+    if kept.road is None:
+        raise no_road(folder, cell, result)
+    run = prove(kept.road, kept.seed, kept.world, kept.request.setup, number, kept.brief)
+    return replace(run, request=kept.request, design=kept.design), result
+
+
+def is_same(run: Run, result: Result) -> bool:
+    """Returns whether a Run has the same outcome and exactly the same margin as a stored Result."""
+    return run.outcome == result.outcome and (run.verdict and run.verdict.margin) == result.margin

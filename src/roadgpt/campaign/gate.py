@@ -18,7 +18,7 @@ from roadgpt.errors import GateError, RoadGPTError, UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.plural import plural
 from roadgpt.road import Road, World
-from roadgpt.road.oracles import oracle_limits
+from roadgpt.road.world import oracle_limits
 from roadgpt.run import Outcome, Request, Run
 
 LOSS = 0.1  # m; a road from files of two formats was driven with margins that differ by up to 0.041 m
@@ -40,10 +40,9 @@ class Gate:
     def __init__(
         self, out: Path | None, rules: Sequence[str], baseline: Path | None = None, loss: float | None = None
     ) -> None:
-        """Reads the baseline: a campaign, a folder of runs or a run, but not ``out``, the folder for the
-        results; raises UsageError if it cannot be used. A rule is an outcome that no test may have, or a
-        share such as '10%': no more of the driven tests may FAIL. A margin that is smaller than in the
-        baseline by at most ``loss`` metres is not worse."""
+        """Reads the baseline: a campaign, a folder of runs or a run, but not ``out``. A rule is an outcome
+        that no test may have, or a share such as '10%' of the driven tests that may FAIL. A margin that is
+        smaller than in the baseline by at most ``loss`` metres is not worse."""
         if baseline is None and loss is not None:
             raise UsageError("--margin-loss is for --baseline; give both, or leave it out")
         if baseline and out and baseline.resolve() == out.resolve():
@@ -55,8 +54,7 @@ class Gate:
             raise UsageError(f"{baseline} holds no test with a road; name another folder with --baseline")
         self._outlines: Any = cKDTree([each.outline for each in self._before]) if baseline else None
         self._compared, self._found, self._differences = 0, set[int](), dict[str, str]()
-        self.worse: dict[str, str] = {}
-        """The tests that are worse than in the baseline, by name, and in what."""
+        self.worse: dict[str, str] = {}  # the tests that are worse than in the baseline, by name, and in what
 
     def add(self, name: str, run: Run | None) -> str:
         """Counts a Run, or None for a file that cannot be read; returns in what it is worse, or nothing."""

@@ -5,24 +5,22 @@ work      runs the remaining tests; interruptions do not change the resulting ta
 """
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.csv_tables import CELLS, RESULTS, write_tables
-from roadgpt.campaign.executors import Executor
-from roadgpt.campaign.folder_campaign import campaign
 from roadgpt.campaign.folder_record import has_tests, is_store, open_record
-from roadgpt.campaign.jobs import WorkerConfig
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.record import STORE, Record, Store, no_tests
+from roadgpt.campaign.record import STORE, Record, Store, no_tests, refusals
+from roadgpt.campaign.run_folder import campaign
 from roadgpt.campaign.scheduler import Progress, Scheduler
 from roadgpt.campaign.single_test import WorkerSetup
-from roadgpt.campaign.store_tables import refusals
-from roadgpt.campaign.traces import OLD_SUFFIX, SUFFIX, TRACES
-from roadgpt.campaign.workers.worker_log import LOG
+from roadgpt.campaign.traces import SUFFIX, TRACES
+from roadgpt.campaign.workers import LOG, WorkerConfig
 from roadgpt.chat import ChatSettings, Meter, Spent
 from roadgpt.chat.config import key_for
 from roadgpt.design.room import world_for
@@ -32,7 +30,7 @@ from roadgpt.errors import UsageError, command_line
 from roadgpt.road import World
 from roadgpt.run import Draw, brief_of
 from roadgpt.run.atomic import LOCK, alone_in, is_new, refuse_links, set_aside, sweep
-from roadgpt.run.card import read_card
+from roadgpt.run.folder import read_card
 from roadgpt.run.versions import Versions, versions_now
 
 USER_NAMES = {
@@ -46,13 +44,6 @@ USER_NAMES = {
 def begin(plan: Plan, folder: Path, again: bool = False) -> bool:
     """Makes a campaign's folder, and reads its descriptions into Briefs; returns True if the folder already
     held the same campaign. With ``again``, the results in the folder are set aside first.
-
-    Raises:
-        UsageError: the plan cannot be carried out, the folder holds something other than this campaign, or
-            what decides the results of its tests has changed.
-        DriverError: a driver did not finish its constructor in time.
-        BriefError: a description cannot be read.
-        ChatError: the language model that reads the descriptions did not answer.
     """
     plan.check()
     _admit(plan)
@@ -77,7 +68,6 @@ def begin(plan: Plan, folder: Path, again: bool = False) -> bool:
 
 @contextmanager
 def _without_trace(folder: Path) -> Iterator[None]:
-    """Removes the folder again if an error leaves nothing in it."""
     try:
         yield
     except BaseException:
@@ -99,14 +89,12 @@ def _admit(plan: Plan) -> None:
 
 
 def _refuse_ignored(plan: Plan, *worlds: World) -> None:
-    """Raises UsageError if a simulator of the plan cannot apply a setting of one of the Worlds."""
     for simulator in plan.simulators if plan.drives else ():
         for world in worlds:
             refuse_ignored(plugins.find("simulators", simulator), world)
 
 
 def _briefs(plan: Plan) -> tuple[dict[str, Brief], Spent]:
-    """Returns the Brief read from each description, and what the language model was paid for it."""
     request, _ = next(plan.requests())
     meter = Meter.of(plan.chat)
     words = dict.fromkeys(text for text in plan.prompts if text.strip())
@@ -143,29 +131,13 @@ def work(
     again: bool = False,
 ) -> Iterator[Progress]:
     """Runs the remaining tests of a campaign, or of a folder that ``roadgpt run`` made, lazily: they run
-    while the caller iterates.
+    while the caller iterates. Yields the progress after every group of results.
 
-    Args:
-        folder: the campaign's folder, made by ``begin``, or the folder of runs.
-        workers: number of workers; the roads of a folder of runs are made one after another.
-        executor: name of an installed executor.
-        address: address of the workers, for executors that connect to other machines.
-        chat: the settings of the language model with changed limits; None: the stored settings.
-        draw: draws pictures and saves them in a folder of runs; None: no pictures.
-        again: whether the results in the folder are set aside first, and all its tests are made anew.
-
-    Yields:
-        The progress of the campaign, after every group of results.
-
-    Raises:
-        UsageError: there are no tests to run, or another process is working on them, or a plug-in is not
-            installed, or what decides their results has changed.
-        ChatError: a language model could not be reached, or a token or cost limit is reached; finished
-            tests are stored.
-        GivenUpError: the simulator failed three times in a row; these three tests have to be run again.
-        RoadGPTError: a file cannot be written, or there are no workers.
+    ``chat`` replaces the stored settings of the language model, whose limits may differ. The roads of a
+    folder of runs are made one after another, and ``draw`` draws them. With ``again``, the results are set
+    aside first.
     """
-    kind: type[Executor] = plugins.find("executors", executor)
+    kind: Callable[[WorkerConfig], Executor] = plugins.find("executors", executor)
     if not is_store(folder):
         yield from _make_runs(folder, chat, draw, again)
         return
@@ -194,7 +166,6 @@ def work(
 
 
 def _make_runs(folder: Path, chat: ChatSettings | None, draw: Draw | None, again: bool) -> Iterator[Progress]:
-    """Makes the missing roads of a folder that ``roadgpt run`` made, from the Brief of the others."""
     if not has_tests(folder):
         raise no_tests(folder)
     card = read_card(folder)
@@ -223,5 +194,5 @@ def _sweep(folder: Path, store: Store) -> None:
         sweep(folder / TRACES)
         known = {name for (name,) in store.query("SELECT file FROM traces")}
         for path in (folder / TRACES).iterdir():
-            if path.name not in known and path.suffix in (SUFFIX, OLD_SUFFIX) and path.stem.isdecimal():
+            if path.name not in known and path.suffix == SUFFIX and path.stem.isdecimal():
                 path.unlink()

@@ -28,13 +28,10 @@ U = TypeVar("U")
 
 
 class NumberedTest(NamedTuple):
-    """Cell and number of a test.
+    """Cell and number of a test; as text the end of a command's argument: ``c01/17`` in ``view
+    hard/c01/17``."""
 
-    Its text is the part after the folder's name in a command: ``c01/17`` in ``roadgpt view hard/c01/17``.
-    """
-
-    cell: str
-    """Name of the test's cell; empty for a run in a folder of runs."""
+    cell: str  # name of the test's cell; empty for a run in a folder of runs
     number: int
 
     def __str__(self) -> str:
@@ -57,7 +54,6 @@ class CellBudget(Frozen):
         return self.tests or MOST_TESTS
 
 
-Budget = CellBudget  # the former name; users' programs may import it
 UNLIMITED = CellBudget()
 
 
@@ -79,10 +75,8 @@ class Proposal:
 
 @dataclass(frozen=True)
 class Result:
-    """The result of one test.
-
-    It holds only values that do not depend on the time, the load of the machine or the number of workers.
-    """
+    """The result of one test: values that depend neither on the time, nor on the load or number of
+    workers."""
 
     number: int
     """Number of the test in its cell, from 1."""
@@ -97,7 +91,7 @@ class Result:
     length: float = 0.0
     """Length of the road seen from above, metres; 0 if there is no road."""
     margin: float | None = None
-    """Margin to out of bounds, metres, see ``roadgpt.verdict.margin``; None if the road was not driven."""
+    """Margin to out of bounds, metres, see ``roadgpt.verdict.oracle``; None if the road was not driven."""
     max_oob: float | None = None
     """Largest share of the car that was outside its lane at one time, 0 to 1."""
     beyond: float | None = None
@@ -113,7 +107,7 @@ class Result:
     handed_to: str | None = None
     """Who drove where the car failed, if the driver had handed over; see ``Verdict.handed_to``."""
     features: Mapping[str, float] = field(default_factory=dict)
-    """Features of the road and of the drive, by name: see ``run.features`` and ``campaign.behaviour``."""
+    """Features of the road and of the drive, by name: see ``run.execution`` and ``campaign.behaviour``."""
 
     @property
     def plain_design(self) -> Design | None:
@@ -151,11 +145,7 @@ class Pool(Protocol):
     """The workers of a campaign, on which a generator can run functions without side effects."""
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """Returns the results of ``function`` for all items, in the order of the items.
-
-        The function must be defined at the top level of a module. If the function raises an error, ``map``
-        raises the same error.
-        """
+        """Returns the results of a function at the top level of a module for all items, in their order."""
         ...
 
 
@@ -163,26 +153,20 @@ class Generator(Protocol):
     """Proposes tests, batch by batch; a generator is constructed with a Cell.
 
     Before batch k is requested, the generator has received the results of batches 0 to k - 2, in order of the
-    test numbers, and no later results. The generator's state may depend only on its Cell and these results.
-    The random numbers for batch k come from ``np.random.default_rng([cell.request.seed, k])``. Therefore a
+    test numbers, and no later results. Its state may depend only on its Cell and these results, and the
+    random numbers for batch k come from ``np.random.default_rng([cell.request.seed, k])``. Therefore a
     campaign's results depend neither on the number of workers nor on interruptions.
 
-    A generator that searches has an attribute ``goals``, which lists the goals that it supports. A generator
-    without ``goals`` does not search, and its cells have no goal.
+    A generator that searches lists the goals that it supports in an attribute ``goals``; the cells of others
+    have no goal.
     """
 
     batch_size: int
     """Number of tests in one batch, about 10 to 20; up to two batches run at the same time."""
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """Returns the next n tests, or fewer if there is nothing left to propose.
-
-        Args:
-            batch: number of the batch, from 0.
-            first: number of the first test in the batch, from 1.
-            n: number of tests to return, at most ``batch_size``.
-            pool: the workers of the campaign, for long computations.
-        """
+        """Returns the next n tests, numbered from ``first``, or fewer if there is nothing left to propose.
+        Long computations go to the ``pool``."""
         ...
 
     def tell(self, results: Sequence[Result]) -> None:

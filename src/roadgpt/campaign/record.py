@@ -1,31 +1,59 @@
-"""Opens the file of a campaign: for reading, even while a process works on the campaign, or for writing."""
+"""The file of a campaign: its tables, in SQLite, and what is read from them and written to them.
+
+    meta      format, plan, versions (of each driver's tests), and whether the campaign is finished
+    cells     the settings of each cell; how long it has taken; why it was closed early
+    batches   which tests were requested together; a batch and its tests are written in one transaction,
+              so that no test is requested twice
+    tests     one row per test with its short columns, so that a million tests are counted in a second;
+              a test without an outcome has not ended
+    details   one row per test with its long columns: design, sentences, features
+    traces    the names of the files with the drives
+    leases    which worker runs which test now; deleted at the start of the next session
+    sittings  the sessions: when each began and was last active, and the cost of language models outside tests
+    features  names of all features that occur
+
+``results.csv`` and ``cells.csv`` are made from the deterministic columns of ``tests`` and ``details``. The
+column ``ended`` and all columns after it depend on the clock.
+
+A store from another person or from a bad disk may contain anything: text in place of a number, a number that
+is not finite, or a cell whose name is a path. When a store is opened, all tables except ``details`` are
+checked; this takes a second for a million tests. The table ``details`` holds long texts, such as designs, and
+each of its rows is checked when it is read.
+"""
 
 import json
+import math
 import sqlite3
 import time
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
-from functools import cached_property
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from roadgpt.campaign.model import Cell, NumberedTest, Result
-from roadgpt.campaign.rows import cell_text
-from roadgpt.campaign.single_test import FinishedTest, seed_of_driver
-from roadgpt.campaign.store_check import LATER, check_store, reading_store
-from roadgpt.campaign.store_tables import SCHEMA, Tables, refusals
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+from roadgpt.campaign.model import Cell, NumberedTest, Proposal, Result
+from roadgpt.campaign.single_test import OF_VERDICT, FinishedTest, Task, seed_of_driver
 from roadgpt.chat import Spent
+from roadgpt.check import inspect
 from roadgpt.drive import Drive
-from roadgpt.errors import UsageError
+from roadgpt.errors import RoadGPTError, UsageError, command_line
 from roadgpt.network import made_from
 from roadgpt.reading import json_of
-from roadgpt.road import Road
+from roadgpt.road import Design, Road
 from roadgpt.run import Run
-from roadgpt.run.atomic import refuse_links
+from roadgpt.run.atomic import refuse_links, to_bytes
+from roadgpt.run.model import permissions
 from roadgpt.run.versions import Versions, joined, still
+from roadgpt.verdict import Verdict, judge
 
 if TYPE_CHECKING:
     from roadgpt.campaign.plan import Plan
+    from roadgpt.network import AnyDesign
 
 STORE = "campaign.sqlite"
 FORMAT = 1
@@ -36,6 +64,232 @@ WHICH = {
     "worst": ("outcome IN ('FAIL', 'PASS')", "outcome != 'FAIL', margin IS NULL, margin, max_oob DESC,"),
 }
 """For each choice of tests that users can make: the SQL condition on the tests, and the SQL order."""
+MEASURED = (
+    "outcome", "cause", "side", "length", "margin", "max_oob", "beyond", "at_s", "own_share", "handed_to",
+)  # fmt: skip
+"""The columns of the table ``tests`` that hold the fields of a Result with the same names."""
+SPENT = ("ended", "design_s", "drive_s", "tokens", "cost", "trace")
+"""The columns of the table ``tests`` that depend on the clock or on the session."""
+RESULT = ", ".join(("tests.number, batch, seed, given", *MEASURED, "origin, design, description, features"))
+"""The columns of a result in the joined tables ``tests`` and ``details``."""
+
+
+def design_text(design: "AnyDesign | None") -> str | None:
+    """Returns a design as JSON; ``design_of`` restores the same design."""
+    return None if design is None else design.model_dump_json(exclude_none=True)
+
+
+def design_of(text: str | None) -> "AnyDesign | None":
+    """Restores a design from JSON text as returned by ``design_text``."""
+    if text is None:
+        return None
+    try:
+        return Design.model_validate_json(text)
+    except ValidationError:  # it has junctions or is a map, or is nothing at all
+        return _designs().validate_json(text)
+
+
+@cache
+def _designs() -> "TypeAdapter[AnyDesign]":
+    from roadgpt.network import AnyDesign
+
+    return TypeAdapter(AnyDesign)
+
+
+def values_of_test(ended: FinishedTest, now: float, trace: int | None) -> tuple[Any, ...]:
+    """Returns the values for the columns ``MEASURED`` and ``SPENT`` of a test that has ended at ``now``.
+    ``trace`` is the number of the file that holds the test's drive."""
+    spent = ended.spent
+    return (
+        *(getattr(ended.result, name) for name in MEASURED),  # SQLite stores NaN as NULL
+        now,
+        round(ended.seconds.design, 4),
+        round(ended.seconds.drive, 4),
+        spent and spent.usage.total,
+        spent and spent.cost,
+        None if ended.trace is None else trace,
+    )
+
+
+def detail_values(ended: FinishedTest) -> tuple[Any, ...]:
+    """Returns the values for the table ``details`` when a test has ended."""
+    result = ended.result
+    features = {name: float(value) for name, value in sorted(result.features.items()) if math.isfinite(value)}
+    texts = (plain(result.description), json.dumps(features), plain(ended.error) or None)
+    return (design_text(result.design), *texts)
+
+
+def plain(text: str) -> str:
+    """Returns text that UTF-8 can encode; other characters, as from a broken terminal, become escapes."""
+    return to_bytes(text).decode()
+
+
+def result_of_row(row: tuple[Any, ...]) -> Result:
+    """Converts a row with the columns ``RESULT`` to a result."""
+    number, batch, seed, given, *measured, origin, text, description, features = row
+    values = _features_of(features)
+    if not (isinstance(description, str) and isinstance(origin, str)):
+        raise TypeError("a description is a text")
+    design = design_of(text)
+    proposal = Proposal(design if given else None, seed, origin)
+    named = dict(zip(MEASURED, measured, strict=True))
+    return Result(number, batch, proposal, description=description, design=design, features=values, **named)
+
+
+def _features_of(text: str) -> dict[str, float]:
+    """Reads features as ``detail_values`` wrote them; raises TypeError if there is anything else."""
+    values = json_of(text)
+    if not isinstance(values, dict) or not all(
+        isinstance(value, (int, float)) and math.isfinite(value) for value in values.values()
+    ):
+        raise TypeError("features are finite numbers by name")
+    return values
+
+
+@cache
+def _cells() -> TypeAdapter[Cell]:
+    return TypeAdapter(Cell)
+
+
+def cell_text(cell: Cell) -> str:
+    """Returns a cell as JSON."""
+    return _cells().dump_json(cell).decode()
+
+
+def cell_of_text(text: str, file: object) -> Cell:
+    """Restores a cell from JSON text as returned by ``cell_text``."""
+    cell = _cells().validate_python(json_of(text))
+    return replace(cell, request=cell.request.came_with(file))
+
+
+TEXT = "typeof({0}) = 'text'"
+WHOLE = "(typeof({0}) = 'integer' AND {0} BETWEEN 0 AND 9223372036854775807)"
+COUNT = "(typeof({0}) = 'integer' AND {0} BETWEEN 0 AND 10000000)"
+NUMBER = "(typeof({0}) IN ('integer', 'real') AND {0} BETWEEN -1e15 AND 1e15)"
+NAME = "(typeof({0}) = 'text' AND {0} GLOB 'c[0-9]*' AND {0} NOT GLOB '*[^c0-9]*')"
+FILES = "{0} GLOB '[0-9]*.npz' AND {0} NOT GLOB '*[^0-9npz.]*'"
+FILE = f"(typeof({{0}}) = 'text' AND {FILES})"
+OUTCOME = "{0} IN ('PASS', 'FAIL', 'INVALID', 'ERROR', 'VALID')"
+SIDE = "{0} IN ('left', 'right')"
+
+TABLES: dict[str, dict[str, str]] = {
+    "meta": {"name": TEXT, "value": TEXT},
+    "cells": {"name": NAME, "cell": TEXT, "seconds": NUMBER, "closed": f"({{0}} IS NULL OR {TEXT})"},
+    "batches": dict.fromkeys(("batch", "first", "n", "left"), COUNT) | {"cell": NAME},
+    "tests": {
+        "cell": NAME + " AND {0} IN (SELECT name FROM cells)",  # noqa: S608 - our own words
+        **dict.fromkeys(("number", "batch"), COUNT),
+        **dict.fromkeys(("seed", "given"), WHOLE),
+        "outcome": f"({{0}} IS NULL OR {OUTCOME})",
+        "cause": f"({{0}} IS NULL OR {TEXT})",
+        "side": f"({{0}} IS NULL OR {SIDE})",
+        **dict.fromkeys(MEASURED[3:-1] + SPENT, f"({{0}} IS NULL OR {NUMBER})"),
+        "handed_to": f"({{0}} IS NULL OR {TEXT})",
+    },
+    "details": dict.fromkeys(("cell", "number", "origin", "design", "description", "features", "error"), ""),
+    "traces": {"trace": WHOLE, "file": FILE},
+    "leases": {"cell": NAME, "number": COUNT, "worker": TEXT, "until": NUMBER},
+    "sittings": dict.fromkeys(("begun", "seen", "workers", "is_over", "tokens", "cost"), NUMBER),
+    "features": {"name": TEXT},
+}
+"""The SQL condition that the values of each column must satisfy; empty for columns that are checked when
+they are read.
+"""
+META = ("finished", "plan", "versions")
+_checked: set[tuple[str, int]] = set()
+BUSY = {
+    sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_FULL, sqlite3.SQLITE_NOMEM,
+    sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_PERM, sqlite3.SQLITE_INTERRUPT,
+}  # fmt: skip
+"""SQLite's errors that do not mean that the store is damaged, such as a lock or a full disk."""
+
+
+def damaged(path: Path, why: object) -> UsageError:
+    """Returns the error to raise for a store with content that RoadGPT never writes."""
+    reason = " ".join(str(why).split())[:160]
+    return UsageError(
+        f"{path} is damaged, or not as roadgpt wrote it ({reason}); "
+        "start the campaign again in another folder"
+    )
+
+
+@contextmanager
+def reading_store(path: Path) -> Iterator[None]:
+    """Raises one clear error if code in a ``with`` block fails because a store's content is damaged."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        if getattr(error, "sqlite_errorcode", 0) & 0xFF in BUSY:
+            raise
+        raise damaged(path, error) from error
+    except (ValueError, TypeError, LookupError, AttributeError, OverflowError) as error:
+        raise damaged(path, f"{type(error).__name__}: {error}") from error
+
+
+def check_store(path: Path, db: sqlite3.Connection) -> None:
+    """Checks a store's tables, once per process."""
+    key = (str(path.absolute()), path.stat().st_ino)
+    if key in _checked:
+        return
+    with reading_store(path):
+        for table, columns in TABLES.items():
+            db.execute(f"SELECT {', '.join(columns)} FROM {table} LIMIT 1").fetchone()  # noqa: S608 - our words
+            rules = {name: rule.format(name) for name, rule in columns.items() if rule}
+            if not rules:
+                continue
+            unlike = f"NOT coalesce({' AND '.join(rules.values())}, 0)"
+            if db.execute(f"SELECT 1 FROM {table} WHERE {unlike} LIMIT 1").fetchone():  # noqa: S608
+                named = (
+                    name
+                    for name, rule in rules.items()
+                    if db.execute(f"SELECT 1 FROM {table} WHERE NOT coalesce({rule}, 0) LIMIT 1").fetchone()  # noqa: S608
+                )
+                raise damaged(path, f"{table}.{next(named, '')} holds what it cannot")
+        there = {name for (name,) in db.execute("SELECT name FROM meta")}
+        if not there >= {*META} or not db.execute("SELECT 1 FROM cells").fetchone():
+            raise damaged(path, "it has no plan or no cells")
+    _checked.add(key)
+
+
+SCHEMA = """
+CREATE TABLE meta(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE cells(name TEXT PRIMARY KEY, cell TEXT NOT NULL, seconds REAL NOT NULL DEFAULT 0, closed TEXT)
+  WITHOUT ROWID;
+CREATE TABLE batches(cell TEXT, batch INTEGER, first INTEGER NOT NULL, n INTEGER NOT NULL,
+  left INTEGER NOT NULL, PRIMARY KEY(cell, batch)) WITHOUT ROWID;
+CREATE TABLE tests(cell TEXT, number INTEGER, batch INTEGER NOT NULL, seed INTEGER NOT NULL,
+  given INTEGER NOT NULL, outcome TEXT, cause TEXT, side TEXT, length REAL, margin REAL, max_oob REAL,
+  beyond REAL, at_s REAL, own_share REAL, handed_to TEXT, ended REAL, design_s REAL, drive_s REAL,
+  tokens INTEGER, cost REAL, trace INTEGER,
+  PRIMARY KEY(cell, number)) WITHOUT ROWID;
+CREATE TABLE details(cell TEXT, number INTEGER, origin TEXT NOT NULL, design TEXT, description TEXT,
+  features TEXT, error TEXT, PRIMARY KEY(cell, number));
+CREATE TABLE traces(trace INTEGER PRIMARY KEY, file TEXT NOT NULL);
+CREATE TABLE leases(cell TEXT, number INTEGER, worker TEXT NOT NULL, until REAL NOT NULL,
+  PRIMARY KEY(cell, number)) WITHOUT ROWID;
+CREATE TABLE sittings(begun REAL NOT NULL, seen REAL NOT NULL, workers INTEGER NOT NULL,
+  is_over INTEGER NOT NULL DEFAULT 0, tokens INTEGER NOT NULL DEFAULT 0, cost REAL NOT NULL DEFAULT 0);
+CREATE TABLE features(name TEXT PRIMARY KEY) WITHOUT ROWID;
+CREATE INDEX waiting ON tests(cell, number) WHERE outcome IS NULL;
+"""
+
+
+OF_A_DRIVE = (*MEASURED, *(name for name in SPENT if name not in ("tokens", "cost")))
+"""The columns of ``tests`` that a test loses when it is opened again."""
+
+
+def _set(names: Sequence[str], value: str) -> str:
+    return ", ".join(f"{name} = {value}" for name in names)
+
+
+@dataclass
+class Batch:
+    """One batch of a cell."""
+
+    number: int
+    first: int
+    n: int
+    left: int  # number of its tests that have not ended yet
 
 
 def _connected(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
@@ -71,13 +325,27 @@ def no_tests(folder: Path) -> UsageError:
     )
 
 
-class Record(Tables):
-    """The tables in the file of a campaign, open for reading."""
+class Record:
+    """The tables in a database: in the file of a campaign, or in memory (``FolderStore``)."""
 
     has_run = "design IS NOT NULL"
     """The SQL condition that selects the tests whose Runs the method ``run`` can return."""
-    missing: tuple[str, ...] = ()
-    """Columns of ``tests`` that this store lacks; they read as empty."""
+
+    group_seconds = 1.0
+    """Longest time in seconds that a result waits to be stored; if the process is killed, the results of
+    this time are lost.
+    """
+
+    def __init__(self, path: Path, db: sqlite3.Connection) -> None:
+        self.path = path
+        self._db = db
+        self._features: set[str] = set()
+        self._session = 0
+
+    @property
+    def folder(self) -> Path:
+        """The campaign's folder."""
+        return self.path.parent
 
     @classmethod
     def opened(cls, folder: Path) -> Self:
@@ -104,16 +372,10 @@ class Record(Tables):
             )
         try:
             check_store(path, db)
-            record = cls(path, db)
-            there = {row[1] for row in db.execute("PRAGMA table_info(tests)")}
-            record.missing = tuple(name for name in LATER if name not in there)
+            return cls(path, db)
         except BaseException:
             db.close()
             raise
-        if record.missing and mode == "ro":
-            empty = ", ".join(f"NULL AS {name}" for name in record.missing)
-            db.execute(f"CREATE TEMP VIEW tests AS SELECT *, {empty} FROM main.tests")  # noqa: S608 - ours
-        return record
 
     def plan(self) -> "Plan":
         """Returns the campaign's plan."""
@@ -134,9 +396,7 @@ class Record(Tables):
         raise UsageError(f"{self.path.parent} holds no result of test {number} of {cell}")
 
     def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
-        """Returns the stored Run of a test; see ``rerun.kept_run``."""
-        from roadgpt.campaign.stored_run import no_road, stored_run
-
+        """Returns the stored Run of a test; see ``folder_record.kept_run``."""
         own, result = self.cell(cell), self.result(cell, number)
         road = self.road(own, result)
         if road is None:
@@ -147,7 +407,7 @@ class Record(Tables):
     def versions(self, driver: str) -> Versions:
         """Returns what decided the results of a driver's tests besides the plan, see ``run.versions``."""
         with reading_store(self.path):
-            found = json_of(self.meta("versions"))  # earlier versions stored one record, for all drivers
+            found = json_of(self.meta("versions"))  # a folder of runs has one record for all its tests
             its = found if isinstance(found, dict) else found[self._drivers.index(driver)]
             return {str(name): str(value) for name, value in its.items()}
 
@@ -185,11 +445,9 @@ class Record(Tables):
         return ""
 
     def tests(self, cell: str = "", which: str | None = None) -> list[NumberedTest]:
-        """Returns the names of the ended tests whose Runs can be read, of one cell or (empty) of all cells.
-
-        ``which`` is None for all tests, in order; "failures" for those that failed; "worst" for those that
-        failed and then those that passed, each by increasing margin.
-        """
+        """Returns the names of the ended tests whose Runs can be read, of one cell or (empty) of all cells:
+        all of them in order, the "failures", or the "worst", which are those that failed and then those that
+        passed, each by margin."""
         condition, order = WHICH[which]
         sql = (
             "SELECT tests.cell, tests.number FROM tests JOIN details USING (cell, number) "  # noqa: S608 - ours
@@ -213,6 +471,281 @@ class Record(Tables):
         """Returns the names of all features that occur in the results, sorted."""
         return [name for (name,) in self.query("SELECT name FROM features ORDER BY name")]
 
+    def close(self) -> None:
+        """Closes the database."""
+        self._db.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _execute(self, sql: str, values: Sequence[Any]) -> sqlite3.Cursor:
+        return self._db.execute(sql, values)
+
+    def query(self, sql: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
+        """Returns all rows of a SELECT as a list; use ``stream`` for large results."""
+        with reading_store(self.path):
+            return self._execute(sql, values).fetchall()
+
+    def stream(self, sql: str, values: Sequence[Any] = ()) -> Iterator[tuple[Any, ...]]:
+        """Yields the rows of a SELECT one by one."""
+        with reading_store(self.path):
+            cursor = self._execute(sql, values)
+        while True:
+            with reading_store(self.path):
+                row = cursor.fetchone()
+            if row is None:
+                return
+            yield row
+
+    def meta(self, name: str) -> str:
+        """Returns one value of the table ``meta``, by its key: ``plan``, ``versions`` or ``finished``."""
+        return str(self.query("SELECT value FROM meta WHERE name = ?", (name,))[0][0])
+
+    def names(self) -> list[str]:
+        """Returns the names of all cells, in the order of the plan."""
+        return [name for (name,) in self.query("SELECT name FROM cells ORDER BY name")]
+
+    def cells(self) -> list[Cell]:
+        """Returns all cells, in the order of the plan."""
+        rows = self.query("SELECT name, cell FROM cells ORDER BY name")
+        return [self._cell(name, text) for name, text in rows]
+
+    def _cell(self, name: str, text: str) -> Cell:
+        with reading_store(self.path):
+            found = cell_of_text(text, self.path)
+            if found.name != name:
+                raise ValueError(f"cell {name} calls itself {found.name[:20]}")
+            return found
+
+    def cell(self, name: str) -> Cell:
+        """Returns one cell; raises UsageError if there is none of that name."""
+        found = self.query("SELECT cell FROM cells WHERE name = ?", (name,))
+        if not found:
+            names = ", ".join(self.names()[:10])
+            raise UsageError(f"there is no cell '{name}' in {self.path.parent}; cells are {names}")
+        return self._cell(name, found[0][0])
+
+    def results(
+        self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()
+    ) -> Iterator[Result]:
+        """Yields the results of the ended tests of a cell (None: of all cells), sorted by cell and number.
+        ``where`` is a condition in SQL on ``tests`` and ``details``, with placeholders for ``values``."""
+        chosen, names = ("tests.cell = ? AND", [cell]) if cell is not None else ("", [])
+        sql = (
+            f"SELECT {RESULT} FROM tests JOIN details USING (cell, number) "  # noqa: S608 - our own words
+            f"WHERE {chosen} outcome IS NOT NULL AND ({where}) ORDER BY tests.cell, tests.number"
+        )
+        for row in self.stream(sql, (*names, *values)):
+            with reading_store(self.path):
+                found = result_of_row(row)
+            yield found
+
+    def batches(self, cell: str) -> list[Batch]:
+        """Returns the batches of a cell that have been requested, in order."""
+        rows = self.query("SELECT batch, first, n, left FROM batches WHERE cell = ? ORDER BY batch", (cell,))
+        return [Batch(*row) for row in rows]
+
+    def waiting(self, cell: str) -> list[Task]:
+        """Returns the tests of a cell that have not ended, sorted by number."""
+        rows = self.query(
+            "SELECT tests.number, batch, seed, origin, design FROM tests JOIN details USING (cell, number) "
+            "WHERE tests.cell = ? AND outcome IS NULL ORDER BY tests.number",
+            (cell,),
+        )
+        with reading_store(self.path):
+            return [
+                Task(number, batch, Proposal(design_of(text), seed, origin))
+                for number, batch, seed, origin, text in rows
+            ]
+
+    def spent(self) -> tuple[int, float]:
+        """Returns the tokens and the USD spent on language models so far."""
+        sql = "SELECT coalesce(sum(tokens), 0), coalesce(sum(cost), 0) FROM "
+        tests, other = (self.query(sql + table)[0] for table in ("tests", "sittings"))
+        return tests[0] + other[0], tests[1] + other[1]
+
+    def to_resume(self, *more: object) -> str:
+        """Returns the command that continues the campaign, with further options."""
+        permitted = permissions([cell.request.setup for cell in self.cells()], asks=True)
+        return command_line("resume", self.folder, *permitted, *more)
+
+    @contextmanager
+    def _whole(self) -> Iterator[sqlite3.Connection]:
+        with refusals(self.folder, self):
+            self._db.execute("BEGIN IMMEDIATE")
+            try:
+                yield self._db
+                self._db.execute("COMMIT")
+            except BaseException:
+                if self._db.in_transaction:
+                    self._db.execute("ROLLBACK")
+                raise
+
+    def begin_session(self, workers: int) -> None:
+        """Begins a session, and deletes the leases of earlier sessions."""
+        now = time.time()
+        with self._whole() as db:
+            db.execute("DELETE FROM leases")
+            done = db.execute(
+                "INSERT INTO sittings(begun, seen, workers) VALUES (?, ?, ?)", (now, now, workers)
+            )
+            self._session = done.lastrowid or 0
+
+    def end_session(self) -> None:
+        """Ends the session."""
+        with self._whole() as db:
+            db.execute("UPDATE sittings SET is_over = 1 WHERE rowid = ?", (self._session,))
+
+    def add_batch(self, cell: str, batch: int, first: int, proposals: Sequence[Proposal]) -> None:
+        """Adds a batch with all its tests."""
+        n, numbered = len(proposals), [*enumerate(proposals, first)]
+        with self._whole() as db:
+            db.execute("INSERT INTO batches VALUES (?, ?, ?, ?, ?)", (cell, batch, first, n, n))
+            db.executemany(
+                "INSERT INTO tests(cell, number, batch, seed, given) VALUES (?, ?, ?, ?, ?)",
+                [(cell, number, batch, made.seed, made.design is not None) for number, made in numbered],
+            )
+            db.executemany(
+                "INSERT INTO details(cell, number, origin, design) VALUES (?, ?, ?, ?)",
+                [(cell, number, plain(made.origin), design_text(made.design)) for number, made in numbered],
+            )
+
+    def reopen(self, cell: str, number: int, batch: int) -> None:
+        """Marks a test that ended without a drive as not ended, so that it is run again."""
+        with self._whole() as db:
+            db.execute(
+                f"UPDATE tests SET {_set(OF_A_DRIVE, 'NULL')} WHERE cell = ? AND number = ?",  # noqa: S608
+                (cell, number),
+            )
+            db.execute(
+                "UPDATE details SET description = NULL, features = NULL, error = NULL, design = CASE "
+                "(SELECT given FROM tests WHERE cell = ? AND number = ?) WHEN 1 THEN design END "
+                "WHERE cell = ? AND number = ?",
+                (cell, number) * 2,
+            )
+            db.execute("UPDATE batches SET left = left + 1 WHERE cell = ? AND batch = ?", (cell, batch))
+
+    def close_cell(self, cell: str, why: str) -> None:
+        """Records that no further batch of a cell will be requested, and the reason."""
+        with self._whole() as db:
+            db.execute("UPDATE cells SET closed = ? WHERE name = ?", (why, cell))
+
+    def finish(self) -> None:
+        """Records that the campaign is finished."""
+        with self._whole() as db:
+            db.execute("UPDATE meta SET value = 'yes' WHERE name = 'finished'")
+
+    def spend(self, spent: Spent) -> None:
+        """Adds what a language model used outside of finished tests, as in a test beyond its allowance."""
+        with self._whole() as db:
+            db.execute(
+                "UPDATE sittings SET tokens = tokens + ?, cost = cost + ? WHERE rowid = ?",
+                (spent.usage.total, spent.cost or 0.0, self._session),
+            )
+
+    def next_trace(self) -> int:
+        """Returns the number of the next file of drives to write."""
+        return int(self.query("SELECT coalesce(max(trace), 0) + 1 FROM traces")[0][0])
+
+    def keep(
+        self,
+        ended: Sequence[tuple[str, FinishedTest]],
+        trace: tuple[int, str] | None,
+        leases: Sequence[tuple[str, int, str, float]],
+        seconds: Mapping[str, float],
+    ) -> None:
+        """Stores a group of results, each with the name of its cell, in one transaction; with them the number
+        and name of the file with their drives, the running tests (cell, number, worker, until when), and the
+        seconds that each cell has worked since."""
+        now = time.time()
+        left = Counter((cell, one.result.batch) for cell, one in ended)
+        names = {name for _, one in ended for name in one.result.features} - self._features
+        with self._whole() as db:
+            if trace is not None:
+                db.execute("INSERT INTO traces VALUES (?, ?)", trace)
+            db.executemany(
+                f"UPDATE tests SET {_set(MEASURED + SPENT, '?')} WHERE cell = ? AND number = ?",  # noqa: S608
+                [
+                    (*values_of_test(one, now, trace and trace[0]), cell, one.result.number)
+                    for cell, one in ended
+                ],
+            )
+            db.executemany(
+                "UPDATE details SET design = ?, description = ?, features = ?, error = ? "
+                "WHERE cell = ? AND number = ?",
+                [(*detail_values(one), cell, one.result.number) for cell, one in ended],
+            )
+            db.executemany(
+                "UPDATE batches SET left = left - ? WHERE cell = ? AND batch = ?",
+                [(count, cell, batch) for (cell, batch), count in left.items()],
+            )
+            db.executemany("INSERT OR IGNORE INTO features VALUES (?)", [(name,) for name in sorted(names)])
+            db.execute("DELETE FROM leases")
+            db.executemany("INSERT OR REPLACE INTO leases VALUES (?, ?, ?, ?)", leases)
+            db.executemany(
+                "UPDATE cells SET seconds = seconds + ? WHERE name = ?",
+                [(taken, cell) for cell, taken in seconds.items()],
+            )
+            db.execute("UPDATE sittings SET seen = ? WHERE rowid = ?", (now, self._session))
+        self._features |= names
+
+
+@contextmanager
+def refusals(folder: Path, store: Record | None = None) -> Iterator[None]:
+    """Turns errors of SQLite or the operating system in a ``with`` block into one clear error message, which
+    says how to continue the campaign in ``store``."""
+    try:
+        yield
+    except (sqlite3.Error, OSError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or error
+        again = f"then say: {store.to_resume()}" if store else "and repeat the command"
+        raise RoadGPTError(f"cannot write into {folder}: {reason}; make room there, {again}") from error
+
+
+def stored_run(
+    cell: Cell, result: Result, road: Road, drive: Drive | None, versions: Mapping[str, str]
+) -> Run:
+    """Returns the Run of a test from its stored result, the road of its design, and its stored drive. Without
+    a drive, the Run has no verdict; ``versions`` are those of the software that made the campaign."""
+    request, brief = cell.request, cell.brief
+    is_invalid = result.outcome == "INVALID"
+    return Run(
+        request,
+        result.number,
+        seed_of_driver(result.number, result.proposal),
+        outcome=result.outcome,
+        description=result.description,
+        brief=brief,
+        design=result.design,
+        road=road,
+        findings=inspect(road, brief, request.world, request.setup.rules) if is_invalid else (),
+        drive=drive,
+        verdict=None if drive is None else _verdict_of(road, drive, cell, result),
+        versions=versions,
+    )
+
+
+def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict | None:
+    """Judges the stored drive, and then replaces values of the verdict by those that the campaign stored,
+    because the drive's rounded positions may give others. Returns None if the test was not judged."""
+    if result.outcome not in ("PASS", "FAIL") or result.margin is None:
+        return None
+    step = len(drive) - 1
+    if result.at_s is not None and result.cause in ("out of lane", "fell"):
+        step = int(np.argmin(np.abs(drive["s"] - result.at_s)))
+    judged = judge(road, drive, cell.request.world, (step, result.cause))
+    kept = {name: getattr(result, name) for name in ("outcome", *OF_VERDICT)}
+    return replace(judged, **{name: value for name, value in kept.items() if value is not None})
+
+
+def no_road(folder: Path, cell: str, result: Result) -> UsageError:
+    """Returns the error for a test of a folder that has no road."""
+    name = NumberedTest(cell, result.number)
+    return UsageError(f"test {name} in {folder} has no road: {result.description}")
+
 
 class Store(Record):
     """The tables in the file of a campaign, open for writing. One process writes it; any process may read it.
@@ -231,18 +764,8 @@ class Store(Record):
         versions: Mapping[str, Versions],
         spent: Spent | None = None,
     ) -> Self:
-        """Makes a store without tests.
-
-        Args:
-            folder: the campaign's folder.
-            plan: the campaign's plan as JSON.
-            cells: the cells of the plan.
-            versions: what decides the results of each driver's tests besides the plan.
-            spent: what a language model used to read the descriptions.
-
-        Raises:
-            RoadGPTError: the file cannot be written.
-        """
+        """Makes a store without tests, for a plan (as JSON) and its cells. ``versions`` has what decides the
+        results of each driver's tests besides, and ``spent`` what was used to read the descriptions."""
         path = folder / STORE
         draft = path.with_name(f"{path.name}.part")
         with refusals(folder):
@@ -272,8 +795,6 @@ class Store(Record):
         refuse_links(folder / STORE)
         store = cls._opened(folder, "rw")
         try:
-            for name in store.missing:  # an older version made this store
-                store._db.execute(f"ALTER TABLE tests ADD COLUMN {name} {LATER[name]}")
             store._db.execute("PRAGMA journal_mode = WAL")
             store._db.execute("PRAGMA synchronous = NORMAL")
         except sqlite3.Error as error:

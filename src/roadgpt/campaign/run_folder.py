@@ -1,29 +1,47 @@
-"""Uses a folder of runs, as ``roadgpt run`` and each part of a study write it, as the store of one cell.
+"""Folders of runs, as ``roadgpt run`` and each part of a study write them, as the stores of cells.
 
-The files in the folder, which are those of the SBFT competition, are the only record of its tests. A test has
+The files in a folder, which are those of the SBFT competition, are the only record of its tests. A test has
 ended when its ``test.NNNN.json`` exists: this file is written last, by the process that holds the folder's
 lock.
 """
 
-from collections.abc import Mapping
-from contextlib import AbstractContextManager
+import sqlite3
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager, ExitStack, closing
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
+from roadgpt import plugins
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.model import WITHOUT_GOAL, Cell, CellBudget, Proposal
-from roadgpt.campaign.single_test import FinishedTest, Task, result_of, run_test
-from roadgpt.chat import Meter, Spent
-from roadgpt.errors import RoadGPTError, UsageError, explained
-from roadgpt.road import Design
-from roadgpt.run import Request, Run, atomic, read_run
+from roadgpt.campaign.model import PATIENCE, WITHOUT_GOAL, Cell, CellBudget, Proposal
+from roadgpt.campaign.record import SCHEMA, Record
+from roadgpt.campaign.scheduler import Scheduler
+from roadgpt.campaign.single_test import FinishedTest, Task, WorkerSetup, error_run, result_of, run_test
+from roadgpt.campaign.workers import LOG, InProcess, WorkerConfig
+from roadgpt.chat import ChatError, Meter, Spent
+from roadgpt.design import designer_of
+from roadgpt.design.room import world_for
+from roadgpt.errors import DesignError, RoadGPTError, UsageError, explained
+from roadgpt.road import Design, World
+from roadgpt.run import PLAIN, USUAL, Request, Run, Setup, atomic, brief_of, check_parts, read_run
 from roadgpt.run.atomic import LOCK, json_text, missing, refuse_links, sweep, take_away, write_whole
-from roadgpt.run.card import CARD, Card, read_card
-from roadgpt.run.folder import RUNS, Draw, finished, remove_run, run_folder, write_run_folder
-from roadgpt.run.folder_names import HOME, new_folder
-from roadgpt.run.sbft_json import test_name, test_text
+from roadgpt.run.execution import test_name, test_text
+from roadgpt.run.folder import (
+    CARD,
+    HOME,
+    RUNS,
+    Card,
+    Draw,
+    finished,
+    new_folder,
+    read_card,
+    remove_run,
+    run_folder,
+    write_run_folder,
+)
 from roadgpt.run.tables import DESCRIPTION, TABLES, Tally, TallyEntry, write_description
 from roadgpt.run.versions import Versions, joined, still, versions_now
 
@@ -31,51 +49,31 @@ GIVEN = "given"  # origin of roads that were not made from a description
 
 
 @dataclass(frozen=True)
-class FinishedRun(FinishedTest):
-    """A test that has ended and whose Run is stored in a folder of runs."""
-
-    test_file: str = ""
-    """Text to write into ``test.NNNN.json``; empty if this file exists already."""
-    entry: TallyEntry | None = None
-    """The values of this test that are counted in the folder's tables."""
-    run: Run | None = None
-    """The Run; None if a worker process or an earlier session ran the test."""
-
-
-@dataclass(frozen=True)
 class RunWriter:
     """Runs tests and writes their Runs into folders."""
 
-    folders: Mapping[str, Path]
-    """The folder of each cell."""
-    draw: Draw | None = None
-    """Draws pictures into the folders of Runs; None: no pictures."""
-    meter: Meter | None = None
-    """Counts the use of language models in this process; None on workers."""
+    folders: Mapping[str, Path]  # the folder of each cell
+    draw: Draw | None = None  # draws pictures into the folders of Runs; None: no pictures
+    meter: Meter | None = None  # counts the use of language models in this process; None on workers
 
-    def __call__(self, task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedRun:
-        """Runs one test and writes the folder of its Run, but not its ``test.NNNN.json``.
-
-        Raises the errors of ``single_test.execute``, and RoadGPTError if a file cannot be written.
-        """
+    def __call__(self, task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTest:
+        """Runs one test and writes the folder of its Run, but not its ``test.NNNN.json``."""
         return self.written(run_test(task, cell, earlier, self.meter or Meter()), task, cell.name)
 
-    def written(self, run: Run, task: Task, cell: str) -> FinishedRun:
-        """Writes the folder of a Run, and returns its test as a FinishedRun."""
+    def written(self, run: Run, task: Task, cell: str) -> FinishedTest:
+        """Writes the folder of a Run, and returns its test as a FinishedTest."""
         with writing(self.folders[cell]):
             write_run_folder(run, self.folders[cell], self.draw)
         result, text, entry = result_of(run, task, {}), test_text(run), TallyEntry.of(run)
-        made = FinishedRun(
-            result, None, run.seconds, run.spent, run.trace, run.is_lost, run.driver_files, text, entry
-        )
-        return made if self.meter is None else replace(made, run=run)
+        rest = (run.seconds, run.spent, run.trace, run.is_lost, run.driver_files, text, entry)
+        return FinishedTest(result, None, *rest, run=None if self.meter is None else run)
 
 
-def finished_run(run: Run) -> FinishedRun:
-    """Converts the Run of an earlier session to a FinishedRun."""
+def finished_run(run: Run) -> FinishedTest:
+    """Converts the Run of an earlier session to a FinishedTest."""
     proposal = Proposal(run.design, run.seed, "draft" if run.words or run.brief else GIVEN)
     task = Task(run.index, run.index - 1, proposal)
-    return FinishedRun(result_of(run, task, {}), None, run.seconds, run.spent, run.trace)
+    return FinishedTest(result_of(run, task, {}), None, run.seconds, run.spent, run.trace)
 
 
 def writing(folder: Path) -> AbstractContextManager[None]:
@@ -90,16 +88,13 @@ class RunFolder:
 
     folder: Path
     request: Request
-    brief: Brief | None
-    """The requirements read from the description; None if there is none."""
-    roads: int
-    """Number of roads requested."""
+    brief: Brief | None  # the requirements read from the description; None if there is none
+    roads: int  # number of roads requested
     made: tuple[Path, ...] = ()
     """The folders (this folder or parents of it) that this session created, innermost first. They are removed
     if no road can be designed.
     """
-    tests: dict[int, FinishedRun] = field(default_factory=dict)
-    """The tests that have ended, by number."""
+    tests: dict[int, FinishedTest] = field(default_factory=dict)  # the tests that have ended, by number
     spent: Spent = field(default_factory=Spent)
     """Tokens and money that language models used for the tests of earlier sessions."""
     failure: str = ""
@@ -107,18 +102,13 @@ class RunFolder:
     versions: Versions = field(default_factory=dict)
     """What decides the results of the tests besides the request."""
     _tally: Tally = field(default_factory=Tally)
-    _held_back: list[FinishedRun] = field(default_factory=list)
+    _held_back: list[FinishedTest] = field(default_factory=list)
 
     @classmethod
     def opened(
         cls, request: Request, brief: Brief, roads: int, out: Path | str | None, again: bool = False
     ) -> Self:
-        """Opens a folder: a new one, or one that holds tests of the same request, which ``again`` sets aside.
-
-        Raises:
-            UsageError: the folder holds something other than tests of this request, what decides their
-                results has changed, or the folder cannot be created.
-        """
+        """Opens a new folder, or one that holds tests of the same request, which ``again`` sets aside."""
         if roads < 1:
             raise UsageError(f"{roads} roads cannot be made; ask for 1 or more")
         read = brief.model_dump_json(exclude={"confidence", "other", "unused"}, exclude_defaults=True)
@@ -147,8 +137,8 @@ class RunFolder:
 
     def take_up(self) -> Card:
         """Reads the folder's finished tests that are not in ``tests`` yet; ignores Runs that cannot be read.
-        Raises UsageError if the folder holds Runs of another request, or more than were requested, or if
-        what decides their results has changed."""
+        Raises UsageError if it holds Runs of another request, or more than asked for, or of other versions.
+        """
         card = read_card(self.folder)
         there_was = card.request.settings()
         other = [name for name, value in self.request.settings().items() if there_was[name] != value]
@@ -199,13 +189,10 @@ class RunFolder:
             write_description(self.request, self.roads, self.folder)
         return False
 
-    def add(self, ended: FinishedRun) -> list[FinishedRun]:
+    def add(self, ended: FinishedTest) -> list[FinishedTest]:
         """Writes the file of a test that has ended, and then the tables; returns the tests that were written.
-
-        Tests without a road are held back until a road has been designed, so that the folder stays without
-        tests if no road can satisfy the description. Raises UsageError if a file of the driver has changed
-        since an earlier test.
-        """
+        Tests without a road are held back until a road has been designed, so that the folder stays empty if
+        none can be."""
         self.versions = joined(self.versions, ended.driver_files, self.folder)
         self._held_back.append(ended)
         if not (self._tally.with_road or (ended.entry and ended.entry.has_road)):
@@ -216,7 +203,7 @@ class RunFolder:
                 self.keep(one)
         return written
 
-    def keep(self, ended: FinishedRun) -> None:
+    def keep(self, ended: FinishedTest) -> None:
         """Writes the ``test.NNNN.json`` of a test, after its Run, and the tables; raises OSError."""
         self.write_card(is_finished=False)
         write_whole(self.folder / test_name(ended.result.number), ended.test_file)
@@ -265,7 +252,7 @@ class RunFolder:
         every = (CARD, DESCRIPTION, *TABLES, *names)
         take_away((self.folder / name for name in every), (self.folder / RUNS, *self.made))
 
-    def _count(self, ended: FinishedRun) -> None:
+    def _count(self, ended: FinishedTest) -> None:
         self.tests[ended.result.number] = replace(ended, test_file="", run=None)
         if ended.entry is not None:
             self._tally.add(ended.entry)
@@ -274,3 +261,210 @@ class RunFolder:
         """Writes ``campaign.json``; raises OSError."""
         card = Card(request=self.request, roads=self.roads, is_finished=is_finished, versions=self.versions)
         write_whole(self.folder / CARD, json_text(card.model_dump(mode="json")))
+
+
+class FolderStore(Record):
+    """A store whose tests lie in folders of runs, one for each cell; the tables are built from them in
+    memory, so that the same code schedules, resumes and counts both kinds of campaigns."""
+
+    group_seconds = 0.0
+
+    def __init__(self, home: Path, folders: Mapping[str, RunFolder], cells: Sequence[Cell]) -> None:
+        """Builds the tables from the tests in the folder of each cell; messages name the folder ``home``."""
+        super().__init__(home / CARD, sqlite3.connect(":memory:", isolation_level=None))
+        self._folders = folders
+        self._cells = {cell.name: cell for cell in cells}
+        self.written: list[tuple[str, FinishedTest]] = []
+        """Tests whose files were written, with their cells' names; code that reads this list empties it."""
+        self._db.executescript(SCHEMA)
+        self._db.execute("INSERT INTO meta VALUES ('finished', '')")
+        self._db.executemany(
+            "INSERT INTO cells(name, cell) VALUES (?, '')", [(name,) for name in self._cells]
+        )
+        for name, folder in folders.items():
+            self._enter(name, folder.tests, range(1, max(folder.tests, default=0) + 1))
+
+    def _enter(
+        self, cell: str, ended: Mapping[int, FinishedTest], numbers: Iterable[int] | None = None
+    ) -> None:
+        """Enters tests into the tables; tests of ``numbers`` that have not ended are still to be run."""
+        seed = self._cells[cell].request.seed
+        for number in ended if numbers is None else numbers:
+            made = ended[number].result.proposal if number in ended else Proposal(None, seed, "draft")
+            self.add_batch(cell, number - 1, number, [made])
+        super().keep([(cell, one) for one in ended.values()], None, (), {})
+
+    def to_resume(self, *more: object) -> str:
+        """Returns the command that continues the tests, with further options."""
+        if all(each.folder == self.folder for each in self._folders.values()):
+            return super().to_resume(*more)
+        return " ".join(map(str, ("the same command with --out", self.folder, *more)))
+
+    def names(self) -> list[str]:
+        """Returns the names of all cells."""
+        return [*self._cells]
+
+    def cells(self) -> list[Cell]:
+        """Returns all cells."""
+        return [*self._cells.values()]
+
+    def cell(self, name: str) -> Cell:
+        """Returns one cell; raises UsageError if there is none of that name."""
+        return self._cells[name] if name in self._cells else super().cell(name)
+
+    def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
+        """Enters tests that have ended into the tables, and writes their files; see ``RunFolder.add``."""
+        super().keep(ended, *rest)
+        for name, one in ended:
+            if one.entry is None:  # its workers died, perhaps while they drew pictures
+                task = Task(one.result.number, one.result.batch, one.result.proposal)
+                run = error_run(task, self._cells[name], one.result.description)
+                one = RunWriter({name: self._folders[name].folder}).written(run, task, name)
+            self.written += [(name, each) for each in self._folders[name].add(one)]
+
+    def reopen(self, cell: str, number: int, batch: int) -> None:
+        """Removes a test that ended without a drive, so that it runs again."""
+        super().reopen(cell, number, batch)
+        self._folders[cell].remove(number)
+
+
+def work_in(
+    home: Path,
+    folders: Mapping[str, RunFolder],
+    draw: Draw | None = None,
+    meter: Meter | None = None,
+    workers: int = 0,
+    with_earlier: bool = False,
+) -> Generator[tuple[str, FinishedTest], None, None]:
+    """Runs the remaining tests of folders of runs, lazily: each test runs while the caller iterates. Yields
+    the name of the folder and the test, as soon as the files of the test are complete.
+
+    If no road can be designed for a folder, ``RunFolder.failure`` gives the reason, and the folder stays
+    without tests. Messages refer to ``home``, in which ``workers`` processes write their log; with 0, the
+    tests run in this process, where ``meter`` counts the use of language models. ``with_earlier``: the tests
+    of earlier sessions are yielded first.
+    """
+    with ExitStack() as stack:
+        for folder in folders.values():
+            stack.enter_context(atomic.alone_in(folder.folder))
+        left = {name: folder for name, folder in folders.items() if not folder.begin()}
+        for name, folder in folders.items() if with_earlier else ():
+            for number, ended in sorted(folder.tests.items()):
+                yield name, replace(ended, run=read_run(run_folder(folder.folder, number)))
+        if not left:
+            return
+        refuse_links(home / LOG)
+        cells = [each.cell(name) for name, each in left.items()]
+        setups = tuple(dict.fromkeys(cell.request.setup for cell in cells))
+        staff = WorkerConfig(max(workers, 1), WorkerSetup(setups), PATIENCE, home / LOG)
+        kind: Callable[[WorkerConfig], Executor] = (
+            plugins.find("executors", "processes") if workers else InProcess
+        )
+        places = {name: each.folder for name, each in left.items()}
+        writer = RunWriter(places, draw, None if workers else meter or Meter())
+        store = stack.enter_context(FolderStore(home, {**left}, cells))
+        try:
+            with closing(Scheduler(store, staff, kind, run_test=writer).run()) as steps:
+                for _ in steps:
+                    written, store.written = store.written, []
+                    yield from written
+                    for name in [name for name, folder in left.items() if folder.is_complete]:
+                        left.pop(name).close(draw)
+        except BaseException as error:
+            for folder in left.values():  # their tables must count every finished road
+                folder.drop_held_back() if isinstance(error, ChatError) else folder.write_tables()
+            raise
+        for folder in left.values():
+            folder.drop_held_back()
+
+
+@dataclass(repr=False, eq=False)
+class Campaign(RunFolder):
+    """The Runs of one description. Iterating over the Campaign makes the missing Runs; each Run is on disk
+    when it is yielded.
+    """
+
+    draw: Draw | None = None
+    """Draws pictures into the folders of Runs; None: no pictures."""
+    meter: Meter = field(default_factory=Meter)
+    """Counts the tokens and cost of language models, including those of earlier sessions in the folder."""
+
+    def __repr__(self) -> str:
+        done = f"{len(self.tests)} of {self.roads} roads"
+        return f"Campaign({self.request.words!r}, seed {self.request.seed}, {done}, in {str(self.folder)!r})"
+
+    @property
+    def kept(self) -> tuple[int, ...]:
+        """Numbers of the finished roads."""
+        return tuple(sorted(self.tests))
+
+    def __iter__(self) -> Iterator[Run]:
+        """Makes the missing Runs and yields them one by one; raises the same errors as ``all_runs``."""
+        return self._runs(with_earlier=False)
+
+    def all_runs(self) -> Iterator[Run]:
+        """Yields the Runs that exist, read from disk, then makes the missing ones and yields them.
+
+        Raises:
+            DesignError: no road could be designed; the folder is removed, unless it was there before.
+            ChatError: a language model cannot be reached, or a token or cost limit is reached; the
+                roads finished before this are saved.
+            GivenUpError: the simulator failed three times in a row; the three roads have to be made again.
+            UsageError: a plug-in is not installed, or another process is using the folder.
+            RoadGPTError: a file cannot be written.
+        """
+        return self._runs(with_earlier=True)
+
+    def _runs(self, with_earlier: bool) -> Iterator[Run]:
+        tests = work_in(self.folder, {"": self}, self.draw, self.meter, with_earlier=with_earlier)
+        with closing(tests):
+            for _, ended in tests:
+                assert ended.run is not None
+                yield ended.run
+        if self.failure:
+            raise DesignError(self.failure)
+
+
+def campaign(
+    words: str | Brief,
+    n: int,
+    seed: int = 0,
+    world: World = USUAL,
+    setup: Setup = PLAIN,
+    out: Path | str | None = None,
+    draw: Draw | None = None,
+    meter: Meter | None = None,
+    again: bool = False,
+) -> Campaign:
+    """Makes many Runs of one description in one folder; each Run is written as soon as it is finished.
+
+    The roads are made while you iterate over the returned Campaign. Iterate over ``.all_runs()`` instead to
+    receive the Runs of earlier sessions as well. ``.folder`` is the campaign's folder. If a driver or a
+    simulator fails, only the Run in which it failed is lost.
+
+    Args:
+        words: a description, or the Brief that was read from it.
+        n: number of roads.
+        seed: seed of the campaign; each road's own seed is derived from this seed and the road's index.
+        world: the map, the limits that the rules apply, and the friction, as for ``perform``.
+        setup: the reader, designer, rules, simulator and driver.
+        out: the folder. If it holds an interrupted campaign of the same request, that campaign is continued;
+            a finished campaign is left unchanged. None makes a new folder under ``roadgpt-runs``.
+        draw: writes pictures into the folders, as ``report.Drawing`` does; None: no pictures.
+        meter: as for ``perform``; the cost of earlier roads in the folder is added to it.
+        again: whether all roads are made anew; earlier results move into the subfolder ``before-1``.
+
+    Raises:
+        BriefError: the words cannot be read.
+        UsageError: the folder contains something other than this campaign, something that decides results has
+            changed since its first road was made, or a plug-in is not installed.
+    """
+    meter = meter or Meter.of(setup.chat)
+    brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
+    request = Request(words=brief.words, seed=seed, world=world_for(brief, world), setup=setup)
+    designer_of(setup.designer, setup.chat)
+    check_parts(setup, request.world)
+    made = Campaign.opened(request, brief, n, out, again)
+    made.draw, made.meter = draw, meter
+    meter.add(made.spent)
+    return made

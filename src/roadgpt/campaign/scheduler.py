@@ -1,15 +1,21 @@
-"""Schedules the tests of a campaign."""
+"""Schedules the tests of a campaign: when the next batch of a cell is requested from its generator, what each
+test may spend, which tests the workers get, and what is stored.
+"""
 
 import time
+from bisect import bisect
 from collections import Counter
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Hashable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NamedTuple
+from functools import partial
+from typing import Any, NamedTuple, TypeVar
 
-from roadgpt.campaign.batch_scheduler import BatchScheduler
-from roadgpt.campaign.budget_allocator import BudgetAllocator
-from roadgpt.campaign.jobs import FinishedJob, Job, WorkerConfig
-from roadgpt.campaign.model import Cell
+from roadgpt import plugins
+from roadgpt.campaign.model import Cell, Pool, Result
+from roadgpt.campaign.model import Generator as TestGenerator
+from roadgpt.campaign.record import Batch, Record
 from roadgpt.campaign.single_test import (
     Allowance,
     FinishedTest,
@@ -19,26 +25,210 @@ from roadgpt.campaign.single_test import (
     execute,
     result_of,
 )
-from roadgpt.campaign.store_tables import Tables
-from roadgpt.chat import ChatSettings
+from roadgpt.campaign.workers import LostWorkerError, Shared, WorkerConfig
+from roadgpt.chat import ChatSettings, Spent
 from roadgpt.errors import BudgetError, RoadGPTError
-from roadgpt.run.lost_drives import LostDrives
+from roadgpt.road import Design
+from roadgpt.run.model import MOST, LostDrives
 from roadgpt.stopping import look
 
-if TYPE_CHECKING:
-    from roadgpt.campaign.executors import Executor
+
+class BudgetAllocator:
+    """Divides a campaign's limits on tokens and money among the tests that run at the same time. The campaign
+    stays within the limits even if every test spends its whole allowance."""
+
+    def __init__(self, chat: ChatSettings | None, tokens: int, cost: float) -> None:
+        """Takes the limits, and the tokens and USD that were spent before."""
+        self._limits = Allowance(chat.max_tokens, chat.max_cost) if chat else Allowance()
+        self._spent = [float(tokens), cost]
+        self._given: dict[Hashable, Allowance] = {}
+
+    def share(self, parts: int = 1) -> Allowance:
+        """Divides the remaining tokens and money into ``parts`` equal parts; returns one part."""
+        tokens, cost = self._limits
+        if tokens is not None:
+            tokens -= int(self._spent[0] + sum(given.tokens or 0 for given in self._given.values()))
+            tokens = int(max(tokens, 0) / parts)
+        if cost is not None:
+            cost -= self._spent[1] + sum(given.cost or 0.0 for given in self._given.values())
+            cost = max(cost, 0.0) / parts
+        return Allowance(tokens, cost)
+
+    def give(self, key: Hashable, allowance: Allowance) -> None:
+        """Reserves an allowance for a test that is about to start; ``key`` identifies the test."""
+        self._given[key] = allowance
+
+    def back(self, key: Hashable, spent: Spent | None) -> None:
+        """Releases the allowance of a test that has ended, and counts the tokens and money it spent."""
+        self._given.pop(key, None)
+        if spent is not None:
+            self._spent[0] += spent.usage.total
+            self._spent[1] += spent.cost or 0.0
+
+    def sentence(self, to_resume: Callable[..., str]) -> str:
+        """Returns a message that says which limit was reached, and how to go on with twice this limit;
+        ``to_resume`` returns the command that continues the campaign, with further options."""
+        tokens, cost = self._limits
+        is_cost = tokens is None or (cost is not None and self.share().cost == 0)
+        limit = f"{cost:g} USD" if is_cost else f"{tokens:,} tokens"
+        more = ("--max-cost", f"{2 * (cost or 0):g}") if is_cost else ("--max-tokens", 2 * (tokens or 0))
+        so_far = f"{self._spent[0]:,.0f} tokens and {self._spent[1]:.4f} USD are spent"
+        return (
+            f"the limit of {limit} leaves no room for the next question ({so_far}); "
+            f"continue with a higher one, such as: {to_resume(*more)}"
+        )
+
+
+REMEMBERED = 2048  # latest designs that a draft must differ from, 50 MB per worker; older ones are left out
+STRIDE = 512  # designs that are dropped at a time, so that designers' caches of the others stay valid
+LAG = 2  # batches: batch k is requested with the results of batches up to k - 2
+GIVE_UP = 3  # tests without a road, after which a cell is closed if it has no road yet
+
+
+class BatchScheduler:
+    """Requests batches of tests from the generator of one cell.
+
+    Batch k is requested once all tests of batch k - 2 have ended; by then the generator was told the results
+    of batches 0 to k - 2, and no others. If the tests of the cell run one after another, each is a batch of
+    its own and is requested once all earlier ones have ended.
+    """
+
+    def __init__(self, cell: Cell, store: Record) -> None:
+        self.cell = cell
+        self._store = store
+        self.batches: list[Batch] = store.batches(cell.name)
+        ((self.seconds, self.closed),) = store.query(
+            "SELECT seconds, closed FROM cells WHERE name = ?", (cell.name,)
+        )
+        self._generator: TestGenerator | None = None
+        self._lag = 1 if cell.in_sequence else LAG
+        self._unfinished = {batch.number for batch in self.batches if batch.left}
+        self._batches_told = self._tests_told = 0
+        self._has_road = False
+        self._blocks: dict[int, Shared[tuple[Design, ...]]] = {}
+
+    @property
+    def asked(self) -> int:
+        """Number of tests that the generator has proposed so far."""
+        return self.batches[-1].first + self.batches[-1].n - 1 if self.batches else 0
+
+    @property
+    def is_closed(self) -> bool:
+        """True if the generator will not be asked for further tests."""
+        return self.closed is not None or self.asked >= self.cell.budget.most
+
+    @property
+    def is_done(self) -> bool:
+        """True if all tests of the cell have ended and no further ones will be requested."""
+        return self.is_closed and not self._unfinished
+
+    @property
+    def may_ask(self) -> bool:
+        """True if the next batch may be requested now."""
+        last = len(self.batches) - self._lag
+        return not self.is_closed and not any(number <= last for number in self._unfinished)
+
+    @property
+    def is_late(self) -> bool:
+        """True if the cell's time limit has been reached."""
+        limit = self.cell.budget.seconds
+        return limit is not None and self.seconds >= limit
+
+    def ended(self, batch: int) -> None:
+        """Counts one more test of the given batch as ended."""
+        self.batches[batch].left -= 1
+        if not self.batches[batch].left:
+            self._unfinished.remove(batch)
+
+    def close(self, why: str) -> None:
+        """Closes the cell and stores the reason: no further batch is requested."""
+        self._store.close_cell(self.cell.name, why)
+        self.closed = why
+
+    def ask(self, pool: Pool) -> list[Task]:
+        """Requests the next batch, stores it, and returns its tests; closes the cell and returns nothing if
+        the generator has nothing left, or if three tests or more have ended and none has a road."""
+        batch, first = len(self.batches), self.asked + 1
+        generator = self._taught(batch - self._lag)
+        if self._tests_told >= GIVE_UP and not self._has_road:
+            self.close(f"no road could be designed: {self._last.description}")
+            return []
+        most = 1 if self.cell.in_sequence else generator.batch_size
+        n = min(most, self.cell.budget.most - self.asked)
+        proposals = generator.ask(batch, first, n, pool)
+        if len(proposals) > n:
+            raise RoadGPTError(
+                f"the generator '{self.cell.generator}' proposed {len(proposals)} tests, "
+                f"although {n} were asked for"
+            )
+        if self.cell.brief is None and any(proposal.design is None for proposal in proposals):
+            raise RoadGPTError(
+                f"the generator '{self.cell.generator}' drafts roads from a description, and there is none; "
+                "give a description"
+            )
+        if not proposals:
+            self.close("the generator had nothing left to propose")
+            return []
+        self._store.add_batch(self.cell.name, batch, first, proposals)
+        self.batches.append(Batch(batch, first, len(proposals), len(proposals)))
+        self._unfinished.add(batch)
+        return [Task(number, batch, made) for number, made in enumerate(proposals, first)]
+
+    def _taught(self, last: int) -> TestGenerator:
+        """Returns the generator after passing it the results of all batches up to number ``last``."""
+        if self._generator is None:
+            self._generator = plugins.find("generators", self.cell.generator)(self.cell)
+        generator: TestGenerator = self._generator
+        while self._batches_told <= last:
+            results = self._results(self.batches[self._batches_told])
+            self._has_road = self._has_road or any(result.design for result in results)
+            self._last = results[-1]
+            generator.tell(results)
+            self._batches_told += 1
+            self._tests_told += len(results)
+        return generator
+
+    def _results(self, batch: Batch) -> list[Result]:
+        between = "tests.number BETWEEN ? AND ?"
+        return [*self._store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
+
+    def earlier(self, test: Task) -> list[Shared[tuple[Design, ...]]]:
+        """Returns the designs from which a draft must differ: one tuple for each earlier batch."""
+        if test.proposal.design is not None:
+            return []
+        known = self._known(test.batch)
+        self._blocks = {batch: self._blocks.get(batch) or Shared(self._designs(batch)) for batch in known}
+        return [*self._blocks.values()]
+
+    def _known(self, batch: int) -> range:
+        """Returns the indices of earlier batches from whose roads every draft in ``batch`` must differ."""
+        last = batch - self._lag
+        if last < 0 or self.cell.in_sequence:
+            return range(last + 1)
+        last_known = self.batches[last].first + self.batches[last].n - 1
+        oldest = max(0, -(-(last_known - REMEMBERED) // STRIDE) * STRIDE)
+        begin = bisect(self.batches, oldest, key=lambda one: one.first + one.n - 1)
+        return range(begin, last + 1)
+
+    def _designs(self, batch: int) -> tuple[Design, ...]:
+        designs = (result.plain_design for result in self._results(self.batches[batch]))
+        return tuple(design for design in designs if design is not None)
+
+
+T = TypeVar("T")
+U = TypeVar("U")
 
 WAIT = 0.25  # s to wait for results at a time
 GROUP = 128  # most results that are stored together: 10 MB of drives
 PER_WORKER = 2  # tests per worker, running or queued; with fewer, the next cell is begun
+PARTS = 4  # per worker, of the items of a generator: few messages, no long wait for the last
 
 
 @dataclass
 class Progress:
     """The progress of a campaign."""
 
-    total: int | None
-    """Number of tests; None if the campaign has a time limit but no limit on tests."""
+    total: int | None  # number of tests; None if the campaign has a time limit but no limit on tests
     outcomes: Counter[str] = field(default_factory=Counter)
     under_way: int = 0
 
@@ -49,8 +239,6 @@ class Progress:
 
 
 class _Out(NamedTuple):
-    """A test that was handed to a worker."""
-
     schedule: BatchScheduler
     task: Task
 
@@ -60,24 +248,16 @@ class Scheduler:
 
     def __init__(
         self,
-        store: Tables,
+        store: Record,
         staff: WorkerConfig,
-        kind: "type[Executor]",
+        kind: Callable[[WorkerConfig], Executor],
         tests: int | None = None,
         chat: ChatSettings | None = None,
         run_test: Callable[..., FinishedTest | OutOfAllowance] | None = None,
     ) -> None:
-        """Prepares the session.
-
-        Args:
-            store: the tables of the campaign.
-            staff: the workers to request.
-            kind: the executor.
-            tests: number of tests of each cell; None if only time limits them.
-            chat: this session's settings of the language model, whose limits hold for all tests together;
-                None: the settings of each cell, without limits for the session.
-            run_test: runs a test on a worker, as ``single_test.execute`` does, which None stands for.
-        """
+        """Prepares the session, with executors of a ``kind`` and ``tests`` tests of each cell (None: only
+        time limits them). The limits of ``chat`` hold for all tests together; None stands for the settings of
+        each cell. ``run_test`` runs a test on a worker, by default ``single_test.execute``."""
         self._store = store
         self._staff = staff
         self._names = store.names()
@@ -89,13 +269,12 @@ class Scheduler:
         self.progress = Progress(total, Counter(dict(counts)))
         self._next = 0
         self._schedules: list[BatchScheduler] = []
-        self._out: dict[int, _Out] = {}
-        self._keys = 0
+        self._cells: dict[str, Shared[Cell]] = {}
+        self._out: dict[Future[FinishedTest | OutOfAllowance], _Out] = {}
         self._underfunded: list[_Out] = []
-        self._shared: dict[str, set[int]] = {}
         self._pending: list[tuple[str, FinishedTest]] = []
         self._oldest = self._looked = time.monotonic()
-        self._losses: LostDrives[_Out] = LostDrives()
+        self._lost: dict[tuple[int, int], tuple[_Out, str]] = {}  # by place of cell and number of test
         self._error: Exception | None = None
         self._may_write = True
         self._has_news = False
@@ -110,7 +289,7 @@ class Scheduler:
             self._leave()
             raise
         finally:
-            self.executor.stop()
+            self.executor.shutdown(cancel_futures=True)
 
     def _run(self) -> Iterator[Progress]:
         self._store.begin_session(self._staff.workers)
@@ -119,7 +298,8 @@ class Scheduler:
             self._fill()
             if not self._out and not self._underfunded:
                 break
-            self._take(self.executor.done(WAIT))
+            wait(self._out, WAIT, FIRST_COMPLETED)
+            self._take()
             if self._is_due():
                 self._keep()
             if self._has_news:
@@ -131,12 +311,10 @@ class Scheduler:
         yield self.progress
 
     def _leave(self) -> None:
-        self.executor.stop()
+        self.executor.shutdown(cancel_futures=True)
         if self._may_write and self._error is None:
-            try:
-                self._take(self.executor.done(0.0))
-            except RoadGPTError:
-                self._error = None  # the caller has it already
+            with suppress(RoadGPTError):  # the caller has an error already
+                self._take()
         if self._may_write:
             self._keep()
             self._store.end_session()
@@ -160,11 +338,10 @@ class Scheduler:
         if schedule.is_late:
             schedule.close("its time limit was reached")
         else:
-            self._hand_out(schedule, schedule.ask(self.executor))
+            self._hand_out(schedule, schedule.ask(self))
         self._drop_if_done(schedule)
 
     def _open(self) -> bool:
-        """Begins the next cell that is not done; returns False if there is none."""
         while self._next < len(self._names):
             schedule = BatchScheduler(self._store.cell(self._names[self._next]), self._store)
             self._next += 1
@@ -172,8 +349,7 @@ class Scheduler:
                 continue
             self._schedules.append(schedule)
             name = schedule.cell.name
-            self.executor.share(name, self._with_chat(schedule.cell))
-            self._shared[name] = set()
+            self._cells[name] = Shared(self._with_chat(schedule.cell))
             self._hand_out(schedule, self._store.waiting(name))
             return True
         return False
@@ -190,33 +366,18 @@ class Scheduler:
     ) -> None:
         """Queues tests, each with the given allowance; if it is None, the tests share half of the tokens and
         money that are left, and the other half is left for later tests."""
-        jobs = []
         each = allowance or self._allocator.share(2 * max(len(tests), 1))
         for test in [replace(test, allowance=each) for test in tests]:
-            self._keys += 1
-            self._out[self._keys] = _Out(schedule, test)
-            self._allocator.give(self._keys, test.allowance)
-            needs = (schedule.cell.name, *self._earlier(schedule, test))
-            jobs.append(Job(self._keys, self._run_test, test, needs))
-        self.executor.submit(jobs)
+            shared: list[Shared[Any]] = [self._cells[schedule.cell.name], *schedule.earlier(test)]
+            future = self.executor.submit(_run_with, self._run_test, test, *shared)
+            self._out[future] = _Out(schedule, test)
+            self._allocator.give(future, each)
 
-    def _earlier(self, schedule: BatchScheduler, test: Task) -> list[str]:
-        """Returns the names of the blocks of designs that a draft has to differ from; shares those that
-        workers may lack, and drops those that no later test needs."""
-        if test.proposal.design is not None:
-            return []
-        name = schedule.cell.name
-        wanted, shared = schedule.known(test.batch), self._shared[name]
-        for batch in wanted:
-            if batch not in shared:
-                self.executor.share(f"{name}/{batch}", schedule.designs(batch))
-                shared.add(batch)
-        # tests of the previous batch may still need blocks that this test does not need
-        oldest = schedule.known(max(test.batch - 1, 0)).start
-        for batch in [batch for batch in shared if batch < oldest]:
-            self.executor.forget(f"{name}/{batch}")
-            shared.remove(batch)
-        return [f"{name}/{batch}" for batch in wanted]
+    def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
+        """Returns the results of ``function`` for all items, in order, for generators: see ``model.Pool``."""
+        size = max(1, -(-len(items) // (PARTS * self._staff.workers)))
+        parts = [[*items[first : first + size]] for first in range(0, len(items), size)]
+        return [one for part in self.executor.map(partial(_for_each, function), parts) for one in part]
 
     def _retry_underfunded(self) -> None:
         """Runs the tests whose allowance was too small one after another, each with all that is left."""
@@ -231,17 +392,21 @@ class Scheduler:
 
     # Taking in
 
-    def _take(self, ended: Sequence[FinishedJob]) -> None:
-        for done in ended:
-            out = self._out.pop(done.key)
-            if done.error is not None:
-                self._error = self._error or done.error
+    def _take(self) -> None:
+        """Takes in the tests that have ended, in the order in which they were handed out."""
+        for future in [future for future in self._out if future.done()]:
+            out = self._out.pop(future)
+            try:
+                value = future.result()
+            except CancelledError:  # the executor was shut down meanwhile
                 continue
-            value: FinishedTest | OutOfAllowance = done.value
-            if done.lost:  # its workers died
-                run = error_run(out.task, out.schedule.cell, done.lost)
+            except LostWorkerError as lost:
+                run = error_run(out.task, out.schedule.cell, str(lost))
                 value = FinishedTest(result_of(run, out.task, {}))
-            self._allocator.back(done.key, value.spent)
+            except Exception as error:  # it would occur in every other test as well
+                self._error = self._error or error
+                continue
+            self._allocator.back(future, value.spent)
             if isinstance(value, OutOfAllowance):
                 self._store.spend(value.spent)
                 self._underfunded.append(out)
@@ -251,19 +416,34 @@ class Scheduler:
             self._pending.append((out.schedule.cell.name, value))
             self.progress.outcomes[value.result.outcome] += 1
             out.schedule.ended(out.task.batch)
-            self._count_losses(out, value)
+            if value.is_lost:
+                place = self._names.index(out.schedule.cell.name), out.task.number
+                self._lost[place] = out, value.result.description
+        self._give_up_if_lost()
 
-    def _count_losses(self, out: _Out, ended: FinishedTest) -> None:
-        """Ends the session if the simulator has failed three times in a row; the tests that were lost are
-        reopened for the next session."""
-        if not self._losses.count(out, ended.is_lost) or self._error is not None:
+    def _give_up_if_lost(self) -> None:
+        """Ends the session if the simulator has failed in three successive tests, whichever ended first. They
+        and the lost ones after them are reopened for the next session, as if they had not been begun."""
+        row: list[tuple[int, int]] = []
+        for place in sorted(self._lost):
+            row = [*row, place] if row and self._is_next(row[-1], place) else [place]
+            if len(row) == MOST and self._error is None:
+                break
+        else:
             return
         self._keep()
-        for lost in self._losses.lost:
-            self._store.reopen(lost.schedule.cell.name, lost.task.number, lost.task.batch)
-        self.progress.outcomes["ERROR"] -= len(self._losses.lost)
-        reason = ended.result.description
-        self._error = self._losses.given_up(reason, "fix it and continue")
+        again = [out for place, (out, _) in self._lost.items() if place >= row[0]]
+        for out in again:
+            self._store.reopen(out.schedule.cell.name, out.task.number, out.task.batch)
+        self.progress.outcomes["ERROR"] -= len(again)
+        self._error = LostDrives.given_up(self._lost[row[-1]][1], "fix it and continue")
+
+    def _is_next(self, place: tuple[int, int], other: tuple[int, int]) -> bool:
+        """Returns whether ``other`` is the next test after ``place``, perhaps the first of the next cell."""
+        cell, number = place
+        schedule = self._lost[place][0].schedule
+        is_last = schedule.is_closed and number == schedule.asked
+        return other == ((cell + 1, 1) if is_last else (cell, number + 1))
 
     def _is_due(self) -> bool:
         waited = time.monotonic() - (self._oldest if self._pending else self._looked)
@@ -293,10 +473,11 @@ class Scheduler:
             self._drop_if_done(schedule)
 
     def _leases(self) -> list[tuple[str, int, str, float]]:
-        due = time.time() + self._staff.patience
-        doing = [(self._out[one.key], one) for one in self.executor.under_way() if one.key in self._out]
+        patience = self._staff.patience
         return [
-            (out.schedule.cell.name, out.task.number, one.worker, due - one.seconds) for out, one in doing
+            (out.schedule.cell.name, out.task.number, worker, getattr(future, "begun", 0.0) + patience)
+            for future, out in self._out.items()
+            if (worker := getattr(future, "worker", ""))
         ]
 
     def _drop_if_done(self, schedule: BatchScheduler) -> None:
@@ -307,6 +488,12 @@ class Scheduler:
         if is_pending or any(out.schedule is schedule for out in self._underfunded):
             return
         self._schedules.remove(schedule)
-        for batch in self._shared.pop(name):
-            self.executor.forget(f"{name}/{batch}")
-        self.executor.forget(name)
+        del self._cells[name]
+
+
+def _run_with(function: Callable[..., T], task: Task, *shared: Shared[Any]) -> T:
+    return function(task, *(each.value for each in shared))
+
+
+def _for_each(function: Callable[[T], U], items: Sequence[T]) -> list[U]:
+    return [function(item) for item in items]

@@ -20,12 +20,8 @@ USUAL_AXES, USUAL_ALSO = ("MAX_CURV", "STD_SA"), ("MAX_CURV", "DIR_COV")
 
 
 class SearchSettings(Frozen):
-    """Settings of the generators that search.
-
-    A plan has one table of settings for all its generators. Each generator therefore accepts all settings and
-    ignores those that it does not use. ``random``, ``genetic`` and ``quality_diversity`` use ``batch``; only
-    ``quality_diversity`` uses the others.
-    """
+    """Settings of the generators that search. A plan has one table for all of them, so each accepts all
+    settings; all three use ``batch``, and only ``quality_diversity`` the others."""
 
     batch: Annotated[int, Field(ge=1, le=1000)] = 5
     """Number of tests in a batch. At most two batches are driven at the same time."""
@@ -70,12 +66,7 @@ class SearchSettings(Frozen):
 
 
 def settings_of(cell: Cell) -> SearchSettings:
-    """Returns the settings of a generator.
-
-    Raises:
-        UsageError: a setting is unknown or out of range, the cell's roads are splines, or the description
-            requires something that only networks have, such as a junction or a median.
-    """
+    """Returns the settings of a generator."""
     if cell.request.setup.geometry != "arcs":
         raise UsageError(f"the generator '{cell.generator}' searches roads of arcs; say geometry = \"arcs\"")
     if cell.brief is not None and cell.brief.is_of_network:
@@ -107,7 +98,6 @@ class SearchGenerator:
         self._setting = VariationContext(cell.brief, cell.request.world, cell.request.setup.rules, axes)
 
     def _rng(self, batch: int) -> np.random.Generator:
-        """Returns the random number generator of a batch."""
         return np.random.default_rng([self._cell.request.seed, batch])
 
     def _candidates(self, tasks: Sequence[VariationTask], pool: Pool) -> list[Candidate]:

@@ -13,10 +13,9 @@ from typing import Literal
 
 from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.faults.fault_log import kept_analysis
-from roadgpt.campaign.folder_record import has_tests, open_record
+from roadgpt.campaign.folder_record import has_tests, kept_run, open_record
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
 
@@ -36,10 +35,8 @@ class Selection:
 
     said: str
     folder: Path
-    cell: str = ""
-    """Name of the cell; empty: all cells."""
-    number: int | None = None
-    """Number of the test; None: all tests."""
+    cell: str = ""  # name of the cell; empty: all cells
+    number: int | None = None  # number of the test; None: all tests
 
     def of(self, name: NumberedTest) -> "Selection":
         """Returns the Selection of one test in the same folder, as 'hard/c01/17' selects it."""
@@ -52,22 +49,13 @@ class Selection:
         return "-".join(part for part in parts if part)
 
     def run(self) -> Run:
-        """Returns the stored Run of the selected test; no road is driven.
-
-        Raises:
-            UsageError: the Run cannot be read, or it has no road.
-        """
+        """Returns the stored Run of the selected test; no road is driven."""
         assert self.number is not None
         return kept_run(self.folder, self.cell, self.number)
 
 
 def selection_of(text: str) -> Selection | None:
-    """Returns the Selection for the text of a command's argument; None if the text names something else, such
-    as a single run or a road file.
-
-    Raises:
-        UsageError: the text names a test or a cell that does not exist.
-    """
+    """Returns what the text of a command's argument selects; None if it names a single run or a road file."""
     path = Path(text)
     if any(len(part.encode()) > LONGEST for part in path.parts):
         raise UsageError(f"there is no test or file called {text[:100]}...: the name is too long")
@@ -118,12 +106,8 @@ def _cell(record: Record, name: str) -> str:
 
 
 def chosen(place: Selection, choice: Choice | None) -> list[Selection]:
-    """Splits a Selection into one Selection per test, in order. Returns the tests that the Choice selects; if
-    ``choice`` is None, all tests whose Runs can be read.
-
-    Raises:
-        UsageError: a file cannot be read.
-    """
+    """Returns a Selection of each test that the Choice selects, in order; without one, of each that can be
+    read."""
     if place.number is not None:
         return [place]
     if choice == "faults":

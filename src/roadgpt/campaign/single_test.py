@@ -14,6 +14,7 @@ from roadgpt.run import Run, Seconds, Setup, check_parts, perform, prove, seed_o
 
 if TYPE_CHECKING:
     from roadgpt.campaign.traces import Trace
+    from roadgpt.run.tables import TallyEntry
 
 CONCERNS_ALL = (PartError, UsageError, ChatError)  # errors that are not due to one test
 
@@ -49,12 +50,12 @@ class FinishedTest:
     trace: "Trace | None" = None
     seconds: Seconds = NO_TIME
     spent: Spent | None = None
-    error: str = ""
-    """The traceback if the test raised an error; else empty."""
-    is_lost: bool = False
-    """True if the simulator itself failed, so that the test says nothing about the road."""
-    driver_files: Mapping[str, str] = field(default_factory=dict)
-    """As in the Run."""
+    error: str = ""  # the traceback if the test raised an error; else empty
+    is_lost: bool = False  # true if the simulator itself failed, so that the test says nothing about the road
+    driver_files: Mapping[str, str] = field(default_factory=dict)  # as in the Run
+    test_file: str = ""  # of a folder of runs: text for ``test.NNNN.json``; empty if the file exists already
+    entry: "TallyEntry | None" = None  # what the tables of a folder of runs count
+    run: Run | None = None  # of a folder of runs; None if a worker or an earlier session ran the test
 
 
 @dataclass(frozen=True)
@@ -73,11 +74,7 @@ class WorkerSetup:
     """The drivers and servers that the user has named."""
 
     def __call__(self) -> None:
-        """Loads all plug-ins, after telling this process which drivers and servers the user has named.
-
-        Raises:
-            UsageError: a plug-in is not installed, or a driver's file does not define a driver.
-        """
+        """Loads all plug-ins, after telling this process which drivers and servers the user has named."""
         join(self.known)
         for setup in self.setups:
             check_parts(setup)
@@ -85,11 +82,7 @@ class WorkerSetup:
 
 def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTest | OutOfAllowance:
     """Runs one test of a campaign whose results go into a store. A drafted road must differ from all of the
-    ``earlier`` designs, which are one tuple per batch.
-
-    Raises:
-        PartError, UsageError, ChatError: an error that would occur in every other test as well.
-    """
+    ``earlier`` designs."""
     from roadgpt.campaign.traces import trace_of
 
     meter = Meter(task.allowance.tokens, task.allowance.cost)
@@ -108,11 +101,8 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
 
 
 def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], meter: Meter) -> Run:
-    """Returns the Run of a test. The Run has the outcome ERROR if no road can be designed, or if the language
-    model gives no usable reply.
-
-    All other errors of ``run.perform`` and ``run.prove`` are raised.
-    """
+    """Returns the Run of a test, also if no road can be designed, or the language model gives no usable
+    reply."""
     before, request, proposal = meter.spent, cell.request, task.proposal
     world, setup = request.world, request.setup
     try:
@@ -141,9 +131,7 @@ def seed_of_driver(number: int, proposal: Proposal) -> int:
 def features_in(run: Run) -> dict[str, float]:
     """Returns the features of a valid road and its drive by name; empty for an invalid road."""
     from roadgpt.campaign.behaviour import behaviour_of
-    from roadgpt.run.execution import records_of
-    from roadgpt.run.features import features_of
-    from roadgpt.run.sbft_json import PER_POINT
+    from roadgpt.run.execution import PER_POINT, features_of, records_of
 
     if not run.is_valid or run.road is None:
         return {}

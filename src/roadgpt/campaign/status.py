@@ -10,7 +10,7 @@ from typing import Any
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.model import Goal
 from roadgpt.campaign.record import Record
-from roadgpt.verdict.severity import MOSTLY, PARTLY
+from roadgpt.verdict.verdict import MOSTLY, PARTLY
 
 FRESH = 15.0  # s since the store was last written; a working process writes it every second
 LATELY = 60.0  # s over which the current rate is averaged
@@ -33,8 +33,7 @@ class CellStatus:
     """Smallest margin of the passed tests, metres. Failed tests are left out; their margins are near 0."""
     partly_outside: int
     """Number of passed tests in which more than 10 % of the car, up to half, was outside its lane."""
-    mostly_outside: int
-    """Number of passed tests in which more than half of the car was outside its lane."""
+    mostly_outside: int  # number of passed tests in which more than half of the car was outside its lane
     max_oob: float | None
     """Largest share of the car that was outside its lane at one time in any passed test, 0 to 1."""
     beyond: float | None
@@ -45,12 +44,10 @@ class CellStatus:
     goal: Goal | None
     closed: str | None
     """Why the cell was closed before all its tests had been requested; None if it was not closed."""
-    oracle: str = ""
-    """Name of the test oracle: see ``roadgpt.road.ORACLES``."""
+    oracle: str = ""  # name of the test oracle: see ``roadgpt.road.ORACLES``
     handed_over: int = 0
     """Number of failed tests that are no failures of the driver: see ``Verdict.handed_to``."""
-    friction: float = 1.0
-    """Friction coefficient of the road."""
+    friction: float = 1.0  # friction coefficient of the road
 
     @property
     def done(self) -> int:
@@ -59,9 +56,8 @@ class CellStatus:
 
     @property
     def remark(self) -> str:
-        """A warning about a search for the boundary of failure that drove no road, or in which less than 5 %
-        of the driven roads passed or less than 5 % failed; otherwise empty.
-        """
+        """A warning about a search for the boundary that drove no road, or of whose drives hardly any passed
+        or hardly any failed; otherwise empty."""
         kept, failed = self.outcomes.get("PASS", 0), self.outcomes.get("FAIL", 0)
         driven = kept + failed
         if self.goal != "boundary" or not self.done or (driven and min(kept, failed) >= ONE_SIDED * driven):
@@ -91,13 +87,10 @@ class Status:
     folder: str
     is_finished: bool
     is_running: bool
-    total: int | None
-    """Number of tests; None if the campaign has a time limit but no limit on tests."""
+    total: int | None  # number of tests; None if the campaign has a time limit but no limit on tests
     outcomes: Mapping[str, int]
-    seconds: float
-    """Total working time of the campaign, in seconds, summed over all sessions."""
-    rate: float
-    """Tests per second: over the last minute while the campaign is running, else the average."""
+    seconds: float  # total working time of the campaign, in seconds, summed over all sessions
+    rate: float  # tests per second: over the last minute while the campaign is running, else the average
     tokens: int
     cost_usd: float
     cells: tuple[CellStatus, ...]
@@ -165,11 +158,7 @@ def cell_statuses(record: Record) -> tuple[CellStatus, ...]:
 
 
 def status_of(folder: Path) -> Status:
-    """Returns the state of a campaign or of a folder of runs.
-
-    Raises:
-        UsageError: the folder holds neither, or a file cannot be read.
-    """
+    """Returns the state of a campaign or of a folder of runs."""
     with open_record(folder) as record:
         cells = cell_statuses(record)
         outcomes: Counter[str] = Counter()
@@ -206,12 +195,8 @@ def _rate(record: Record, done: int, seconds: float, is_running: bool) -> float:
 
 
 def _ended_since(record: Record, since: float) -> int:
-    """Counts the tests that ended since a time.
-
-    The column ``ended`` has no index, because an index would slow down the writing of every result. Cells are
-    begun in order, and the latest tests of a cell have the highest numbers; so this function looks at the
-    cells backwards until it comes to a finished cell without such a test.
-    """
+    """Counts the tests that ended since a time. ``ended`` has no index, which would slow down the writing of
+    results; cells are begun in order, so the search ends at a finished cell without such a test."""
     last = "SELECT ended FROM tests WHERE cell = ? AND ended IS NOT NULL ORDER BY number DESC LIMIT 20000"
     count = 0
     for cell, left in record.stream("SELECT cell, sum(left) FROM batches GROUP BY cell ORDER BY cell DESC"):

@@ -6,9 +6,6 @@ and the tests whose ``drives`` the file holds. The drive of test 17 of cell c02 
 integers ``(columns, n)``: the second differences of each column, counted in steps. For a car's motion, these
 differences are near 0 and compress well (12 kB for a drive of 28 s). Two cumulative sums of a row, times the
 column's step, give the column of ``roadgpt.drive.COLUMNS`` in its unit.
-
-Stores of earlier versions hold Apache Parquet files instead. In these, a row is one time step of a drive; the
-columns ``cell`` and ``number`` identify the test, and the metadata under ``roadgpt`` holds the headers.
 """
 
 import io
@@ -27,8 +24,8 @@ from roadgpt.errors import UsageError
 from roadgpt.reading import check_unpacked, json_of, opened, strictly
 from roadgpt.run.atomic import write_whole
 
-TRACES, SUFFIX, OLD_SUFFIX = "traces", ".npz", ".parquet"
-FORMAT = 2  # of a file; 1 was Parquet
+TRACES, SUFFIX = "traces", ".npz"
+FORMAT = 2  # of a file
 LARGEST, UNPACKED = 500_000_000, 200_000_000  # bytes of a file, and of one drive in it: as drive.npz
 LEVEL = 4  # of zlib: 1 ms and 12 kB for a drive of 28 s; level 9 takes 40 ms for 10 kB
 FINE, COARSE = 1e-4, 1e-2
@@ -64,10 +61,7 @@ def trace_of(drive: Drive) -> Trace:
 
 
 def drive_of(trace: Trace) -> Drive:
-    """Returns the Drive of a Trace.
-
-    A value differs from that of the original drive by at most half the rounding step of its column.
-    """
+    """Returns the Drive of a Trace; its values differ by at most half a step from those of the original."""
     header = dict(trace.header)
     header["handovers"] = strictly(tuple[Handover, ...], header.get("handovers", ()))
     columns = Columns({name: _number(trace.columns[name], STEPS[name]) for name in COLUMNS})
@@ -86,11 +80,8 @@ def _number(steps: Whole, step: float) -> NDArray[np.float64]:
 
 
 def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Trace]]) -> str:
-    """Writes a group of drives (cell, number of the test, drive) as one file of a campaign's folder, and
-    returns the file's name. The same drives give the same bytes.
-
-    When this returns, the complete file is on the disk and not only in a buffer.
-    """
+    """Writes a group of drives (cell, number of the test, drive) as one file, and returns its name once it is
+    on the disk and not only in a buffer. The same drives give the same bytes."""
     header = {
         "format": FORMAT,
         "columns": [*COLUMNS],
@@ -133,17 +124,12 @@ def _to_disk(path: Path) -> None:
 
 
 def read_traces(path: Path, cell: str, number: int) -> Drive:
-    """Reads one drive out of a file of traces.
-
-    Raises:
-        UsageError: the file is damaged or missing, or does not hold the drive; or the file is a Parquet file
-            and pyarrow is not installed.
-    """
+    """Reads one drive out of a file of traces."""
     try:
-        return drive_of((_parquet_trace if path.suffix == OLD_SUFFIX else _trace_in)(path, cell, number))
+        return drive_of(_trace_in(path, cell, number))
     except UsageError:
         raise
-    except Exception as error:  # zipfile, its decoders, numpy, json and pyarrow raise anything
+    except Exception as error:  # zipfile, its decoders, numpy and json raise anything
         raise UsageError(
             f"{path} holds no drive of test {number} of {cell} ({error}); drive it again"
         ) from error
@@ -169,17 +155,3 @@ def _header_of(contents: Any, cell: str, number: int) -> dict[str, Any]:
     ]
     del header["cell"], header["number"]
     return header
-
-
-def _parquet_trace(path: Path, cell: str, number: int) -> Trace:
-    try:
-        import pyarrow.parquet as pq
-    except ImportError as error:
-        raise UsageError(
-            f"{path} was written by an earlier version of roadgpt, and reading its drives needs pyarrow; "
-            "say: pip install pyarrow"
-        ) from error
-    contents = json.loads(pq.read_metadata(path).metadata[b"roadgpt"])
-    table = pq.read_table(path, filters=[("cell", "=", cell), ("number", "=", number)])
-    header = _header_of(contents, cell, number)
-    return Trace(header, {name: table[name].to_numpy().astype(np.int32) for name in COLUMNS})

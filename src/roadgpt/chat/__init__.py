@@ -7,8 +7,7 @@
 A provider is a plug-in registered under the entry point ``roadgpt.providers``: a class that is created with
 ChatSettings and has a method ``ask``. The answers of a model are validated against the schema. They are never
 executed or used as part of a path. API keys come from the environment, a .env file or the user's settings,
-and are sent to the server only.
-"""
+and are sent to the server only."""
 
 import inspect
 from collections.abc import Sequence
@@ -60,8 +59,7 @@ class Chat(Protocol):
             BudgetError: the question could exceed the limit of tokens or money; it was not asked.
             RefusedError: the model declined to answer.
             UnparsableError: no reply fits the schema.
-            ChatError: the server cannot be reached, rejects the key, or fails.
-        """
+            ChatError: the server cannot be reached, rejects the key, or fails."""
         ...
 
 
@@ -76,8 +74,7 @@ def open_chat(settings: ChatSettings) -> Chat:
         ChatError: the API key that the server needs is missing; no model is named, and the server has none
             or several; or the library of the provider is not installed.
         UsageError: both recording and replay are set, or there is no recording to replay.
-        PartError: no provider of that name is installed.
-    """
+        PartError: no provider of that name is installed."""
     if settings.record is not None and settings.replay is not None:
         raise UsageError("exchanges are either recorded or replayed; give --record or --replay, not both")
     if settings.replay is not None:
@@ -96,8 +93,7 @@ def open_chat(settings: ChatSettings) -> Chat:
 
 def asks_a_model(part: Any) -> bool:
     """Returns whether a plug-in asks a language model: whether it is a class whose constructor has a
-    parameter ``settings``.
-    """
+    parameter ``settings``."""
     return isinstance(part, type) and "settings" in inspect.signature(part).parameters
 
 
@@ -105,8 +101,7 @@ def plugin_of(kind: str, name: str, settings: ChatSettings | None = None) -> Any
     """Returns the plug-in of a kind and name, ready for use; it is created once and then reused.
 
     A class that takes ChatSettings gets ``settings``; if ``settings`` is None, the class gets the settings
-    that the user has configured. A plug-in that cannot be called is returned unchanged.
-    """
+    that the user has configured. A plug-in that cannot be called is returned unchanged."""
     return _made(kind, name, (settings or configured()) if asks_a_model(plugins.find(kind, name)) else None)
 
 

@@ -1,12 +1,171 @@
-"""What a server sends back: an error, or JSON from which the answer is extracted. Any field of this JSON may
-be missing or have the wrong type.
-"""
+"""Asks for JSON and reads it: the schema that a server gets, the answer in what it sends back, and the JSON
+in the text that the model wrote.
 
+The schema has only the keywords that all servers accept: every field is required, no other fields are
+allowed, and patterns, lengths, limits and defaults are left out. The limits still hold, because every reply
+is validated against the pydantic model. Any field of a server's response may be missing or have the wrong
+type. Text around the JSON of the model is ignored: code fences, text before and after, and a model's
+reasoning. NaN and infinities, keys that occur twice with different values, extreme nesting and extreme length
+are rejected. Nothing is evaluated."""
+
+import json
+import math
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from roadgpt.chat.model import Usage
-from roadgpt.chat.strict_json import plain
+
+MOST_CHARACTERS = 1_000_000
+MOST_DEPTH = 32  # nested brackets; our schemas need 3
+MOST_TRIES = 20  # places tried as the beginning of an object
+THOUGHTS_END = ("</think>", "</thinking>")
+FENCE = re.compile(r"```[ \t]*[\w-]*[ \t]*\r?\n(.*?)(?:```|\Z)", re.DOTALL)
+Schema = TypeVar("Schema", bound=BaseModel)
+
+
+class NotReadableError(ValueError):
+    """Raised if a model's text is not in the requested form; the message gives the reason in a few words."""
+
+
+def plain(text: str, most: int = 80) -> str:
+    """Returns text from a model or a server as one line of printable characters, at most ``most`` of them."""
+    shown = "".join(letter if letter.isprintable() else " " for letter in text[: 4 * most])
+    shown = " ".join(shown.split())
+    return shown if len(shown) <= most else f"{shown[:most].rstrip()} ..."
+
+
+def read_as(schema: type[Schema], text: str) -> Schema:
+    """Returns the first JSON object in a text as an instance of the schema; raises NotReadableError if there
+    is none, or it does not fit the schema."""
+    try:
+        return schema.model_validate(read_object(text))
+    except ValidationError as error:
+        problem = error.errors(include_url=False, include_input=False, include_context=False)[0]
+    place = plain(".".join(str(part) for part in problem["loc"])) or "the whole"
+    raise NotReadableError(f"{place}: {plain(problem['msg'], 120)}")
+
+
+def read_object(text: str) -> dict[str, Any]:
+    """Returns the first JSON object in a text; raises NotReadableError if the text is blank, too long, or has
+    no readable object."""
+    if not text.strip():
+        raise NotReadableError("it is blank")
+    if len(text) > MOST_CHARACTERS:
+        raise NotReadableError(f"it has more than {MOST_CHARACTERS:,} characters")
+    why = NotReadableError("it holds no JSON object")
+    for number, candidate in enumerate(_candidates(text.lstrip("\ufeff"))):
+        try:
+            found = _loads(candidate)
+        except NotReadableError as error:
+            why = error if number == 0 or candidate.startswith("{") else why
+            continue
+        if isinstance(found, dict):
+            return found
+        why = NotReadableError("it is JSON, but not an object")
+    raise why
+
+
+def _candidates(text: str) -> Iterator[str]:
+    """Yields the whole text if it begins with a bracket, the contents of code fences, and the parts in
+    balanced braces."""
+    said = text
+    for end_mark in THOUGHTS_END:
+        said = said.rpartition(end_mark)[2]
+    if said.lstrip()[:1] in ("{", "["):
+        yield said.strip()
+    for fence in FENCE.findall(said):
+        yield fence.strip()
+    tries, at = 0, said.find("{")
+    while at >= 0 and tries < MOST_TRIES:
+        end = next((end for end, depth in _depths(said, "{}", at) if depth == 0), None)
+        if end is not None:
+            yield said[at:end]
+        tries, at = tries + 1, said.find("{", end or at + 1)
+
+
+def _depths(text: str, brackets: str, start: int = 0) -> Iterator[tuple[int, int]]:
+    """Yields, for each opening or closing bracket outside of strings, the index behind it and how many
+    brackets are open there."""
+    depth, in_string = 0, False
+    for match in re.compile(rf'\\.|["{re.escape(brackets)}]', re.DOTALL).finditer(text, start):
+        sign = match.group()
+        if sign == '"':
+            in_string = not in_string
+        elif not in_string and sign in brackets:
+            depth += 1 if sign in "{[" else -1
+            yield match.end(), depth
+
+
+def _loads(text: str) -> Any:
+    if any(depth > MOST_DEPTH for _, depth in _depths(text, "{}[]")):
+        raise NotReadableError(f"it has brackets inside brackets, more than {MOST_DEPTH} deep")
+    try:
+        return json.loads(text, object_pairs_hook=_object, parse_constant=_number, parse_float=_number)
+    except json.JSONDecodeError as error:
+        raise NotReadableError(f"it is not JSON ({error.msg} at character {error.pos:,})") from None
+    except NotReadableError:
+        raise
+    except ValueError:
+        raise NotReadableError("it holds a number of thousands of digits") from None
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in found and found[key] != value:
+            raise NotReadableError(f"it has '{plain(key, 40)}' twice, with different values")
+        found[key] = value
+    return found
+
+
+def _number(text: str) -> float:
+    found = float(text)
+    if not math.isfinite(found):
+        raise NotReadableError(f"it holds {plain(text, 20)}, which is not a number")
+    return found
+
+
+NESTED = 10  # levels of a schema; OpenAI allows 5 levels of objects
+
+
+def fixed_description(text: str) -> ConfigDict:
+    """Returns a pydantic configuration that makes ``text``, not the docstring, the description in a model's
+    schema.
+
+    A recorded answer is found by a hash of the question, and the question includes the schema. So the
+    docstring of a model can be edited, but the description in its schema must stay the same."""
+    return ConfigDict(json_schema_extra={"description": text})
+
+
+def schema_of(model: type[BaseModel]) -> dict[str, Any]:
+    """Returns the flat JSON schema of a model. Raises TypeError if the model refers to itself or has objects
+    without named fields (a bug in the caller)."""
+    whole = model.model_json_schema()
+    return _flat(whole, whole.get("$defs", {}), NESTED)
+
+
+def _flat(schema: dict[str, Any], named: dict[str, Any], levels: int) -> dict[str, Any]:
+    if "$ref" in schema:
+        schema = named[schema["$ref"].rsplit("/", 1)[1]] | schema
+    fields = schema.get("properties", {})
+    if not levels or (schema.get("type") == "object" and not fields):
+        raise TypeError("a language model needs named fields in every object, and no object in itself")
+    flat: dict[str, Any] = {key: schema[key] for key in ("type", "enum", "description") if key in schema}
+    if "const" in schema:
+        flat["enum"] = [schema["const"]]
+    if "anyOf" in schema:
+        flat["anyOf"] = [_flat(one, named, levels - 1) for one in schema["anyOf"]]
+    if fields:
+        flat["properties"] = {name: _flat(field, named, levels - 1) for name, field in fields.items()}
+        flat |= {"required": list(fields), "additionalProperties": False}
+    if "items" in schema:
+        flat["items"] = _flat(schema["items"], named, levels - 1)
+    return flat
+
 
 NOTHING = Usage()
 MOST_TOKENS = 100_000_000  # of one exchange; a larger number is not taken for a count
@@ -20,8 +179,7 @@ class RequestError(Exception):
 
     sentence: str
     status: int | None = None
-    details: str = ""
-    """The server's own error message in lower case."""
+    details: str = ""  # the server's own error message in lower case
     parameter: str = ""
 
 
@@ -43,38 +201,18 @@ class Answer:
 
 def from_chat(body: dict[str, Any]) -> Answer:
     """Extracts the answer from a response of the Chat Completions API."""
-    choices = body.get("choices")
+    choices, usage = body.get("choices"), _fields(body.get("usage"))
     choice = _fields(choices[0]) if isinstance(choices, list) and choices else {}
     message = _fields(choice.get("message"))
     finish = _word(choice.get("finish_reason")) or "stop"
     refusal = message.get("refusal")
     refusal = refusal if isinstance(refusal, str) and refusal.strip() else None
-    usage = _usage(body, "prompt_tokens", "completion_tokens")
-    return _answer(body, _text_of(message.get("content")), finish, usage, refusal)
-
-
-def from_responses(body: dict[str, Any]) -> Answer:
-    """Extracts the answer from a response of the Responses API."""
-    said: list[str] = []
-    refusal: str | None = None
-    output = body.get("output")
-    for item in output if isinstance(output, list) else []:
-        content = item.get("content") if _fields(item).get("type") == "message" else None
-        for part in content if isinstance(content, list) else []:
-            if _fields(part).get("type") == "refusal":
-                refusal = str(part.get("refusal") or "no reason given")
-        said.append(_text_of(content))
-    finish = "stop"
-    if body.get("status") == "incomplete":
-        reason = _word(_fields(body.get("incomplete_details")).get("reason"))
-        finish = "length" if "token" in reason else reason or "length"
-    return _answer(body, "".join(said), finish, _usage(body, "input_tokens", "output_tokens"), refusal)
-
-
-def _answer(body: dict[str, Any], text: str, finish: str, usage: Usage, refusal: str | None) -> Answer:
     if finish == "content_filter" and refusal is None:
         refusal = "the server's filter stopped the answer"
-    return Answer(text, _word(body.get("model")), finish, usage, refusal)
+    counted = Usage(
+        prompt=_count(usage.get("prompt_tokens")), completion=_count(usage.get("completion_tokens"))
+    )
+    return Answer(_text_of(message.get("content")), _word(body.get("model")), finish, counted, refusal)
 
 
 def _fields(value: Any) -> dict[str, Any]:
@@ -82,7 +220,6 @@ def _fields(value: Any) -> dict[str, Any]:
 
 
 def _text_of(content: Any) -> str:
-    """Returns a text, or the joined texts of a list of parts."""
     if isinstance(content, str):
         return content
     parts = content if isinstance(content, list) else []
@@ -92,11 +229,6 @@ def _text_of(content: Any) -> str:
 
 def _word(value: Any) -> str:
     return plain(value, 100) if isinstance(value, str) else ""
-
-
-def _usage(body: dict[str, Any], prompt: str, completion: str) -> Usage:
-    told = _fields(body.get("usage"))
-    return Usage(prompt=_count(told.get(prompt)), completion=_count(told.get(completion)))
 
 
 def _count(value: Any) -> int:

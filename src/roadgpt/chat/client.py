@@ -2,24 +2,19 @@
 
 The library repeats requests that failed. RoadGPT reads the answer as bytes, with limits of time and size.
 RoadGPT also parses the answer itself, because servers that claim to be compatible omit fields and add others.
-The API key is removed from everything that a server returns.
-"""
+The API key is removed from everything that a server returns."""
 
 import json
 import logging
 from collections.abc import Callable
-from email.utils import parsedate
 from importlib.metadata import PackageNotFoundError, version
-from operator import attrgetter
 from typing import Any
 
-from roadgpt.chat.address import address_of
-from roadgpt.chat.answer import BUSY, RequestError, is_spent_up
+from roadgpt.chat.answer import BUSY, NotReadableError, RequestError, is_spent_up, plain
 from roadgpt.chat.config import DEFAULT, configured, key_for, settings_with_origin, untrusted_source
-from roadgpt.chat.model import ChatSettings
-from roadgpt.chat.prices import has_openai_prices
+from roadgpt.chat.meter import has_openai_prices
+from roadgpt.chat.model import ChatSettings, address_of
 from roadgpt.chat.secret import NO_KEY, Key, redacted
-from roadgpt.chat.strict_json import NotReadableError, plain
 from roadgpt.errors import ChatError, to_install
 
 PAGE = ("<!doctype", "<html")  # how a web page begins, in lower case
@@ -70,12 +65,11 @@ class ApiClient:
             why = plain(redacted(str(error), self._key), 200)
             raise ChatError(f"a connection to {self.place} cannot be made: {why}") from None
 
-    def send(self, api: str, body: dict[str, Any]) -> dict[str, Any]:
-        """Sends a request to one of the library's APIs, such as "chat.completions", and returns the response.
-        The library repeats a failed request if this may help. Raises RequestError if no attempt succeeds, and
-        NotReadableError if the response is too large.
-        """
-        return self._sent(attrgetter(f"{api}.with_raw_response.create")(self._client), body)
+    def send(self, body: dict[str, Any]) -> dict[str, Any]:
+        """Sends a request for a chat completion and returns the response. The library repeats a failed
+        request if this may help. Raises RequestError if no attempt succeeds, and NotReadableError if the
+        response is too large."""
+        return self._sent(self._client.chat.completions.with_raw_response.create, body)
 
     def models(self) -> list[dict[str, Any]]:
         """Returns the models of the server, each as the dictionary that the server sends."""
@@ -104,7 +98,6 @@ class ApiClient:
         return redacted(value, self._key)
 
     def _fault_of(self, error: Exception) -> Exception:
-        """Converts an error of the library to one of RoadGPT's errors, without the key in its message."""
         import openai
 
         from roadgpt.chat.response_limits import BrokenOffError
@@ -126,7 +119,6 @@ class ApiClient:
         return RequestError(f"{self.place} {said}{_tries(error)}")
 
     def _refusal(self, error: Any) -> RequestError:
-        """Converts an error response of the server to a RequestError with a plain sentence."""
         status, body = error.status_code, redacted(error.body, self._key)
         told = body if isinstance(body, dict) else {"message": body}
         message = str(told.get("message") or "")
@@ -139,8 +131,9 @@ class ApiClient:
         used_up = is_spent_up(status, said)
         sentence = self._sentence(status, plain(message, 200), used_up)
         if status in BUSY and not used_up:
-            wait = plain(redacted(error.response.headers.get("retry-after", ""), self._key), 40)
-            sentence += _tries(error) + _asked_to_wait(wait)
+            wait = error.response.headers.get("retry-after", "")
+            asked = f"; it asks to wait {wait[:9]} s, so try again later" if wait.isdecimal() else ""
+            sentence += _tries(error) + asked
         return RequestError(sentence, status, said, str(told.get("param") or ""))
 
     def _sentence(self, status: int, message: str, used_up: bool) -> str:
@@ -173,22 +166,12 @@ def _tries(error: Any) -> str:
     return f" (tried {retries + 1} times)" if retries else ""
 
 
-def _asked_to_wait(said: str) -> str:
-    """Returns how long a server asks to wait, as an addition to a sentence; empty if the header
-    ``retry-after`` is neither whole seconds nor a date.
-    """
-    if not said.isdecimal() and parsedate(said) is None:
-        return ""
-    return f"; it asks to wait {f'{said} s' if said.isdecimal() else f'until {said}'}, so try again later"
-
-
 def diagnose() -> str:
     """Returns a text that names the model, the server and the library, or says that no model is configured.
 
     Raises:
         ChatError: a model or a server is configured but cannot be asked.
-        UsageError: a setting is not valid.
-    """
+        UsageError: a setting is not valid."""
     found = settings_with_origin()
     if all(found[name].origin == DEFAULT for name in ("model", "base_url")):
         return "none is configured, and none is needed; see roadgpt config show"

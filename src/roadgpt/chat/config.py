@@ -10,8 +10,7 @@ The plan file of a campaign (its table [chat]) comes between the options and the
 not a setting: it has no option, is not part of ChatSettings, and is only shown masked. The user's key is sent
 to OpenAI, and to servers that the user names by an option, in the environment or in the user's own settings
 file. If a server is named only in some other file, the key is not sent there, because somebody else may have
-written the file. ``key_for`` has the exact rules.
-"""
+written the file. ``key_for`` has the exact rules."""
 
 import os
 import re
@@ -24,8 +23,7 @@ from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
-from roadgpt.chat.address import origin_of
-from roadgpt.chat.model import ChatSettings
+from roadgpt.chat.model import ChatSettings, origin_of
 from roadgpt.chat.secret import Key, usable
 from roadgpt.errors import ChatError, UsageError
 from roadgpt.provenance import SERVERS
@@ -42,7 +40,7 @@ LOOPBACK = ("localhost", "127.0.0.1", "::1")
 LINE = re.compile(r"\s*(?:export\s+)?([A-Za-z_]\w*)\s*=\s*(.*?)\s*")
 PREFIXES = ("ROADGPT_", "OPENAI_", "AZURE_OPENAI_")
 """The beginnings of the names of all variables that set something."""
-OF_OTHERS = "ROADGPT_NO_NUMBA"  # used in the room drive
+OF_OTHERS = "ROADGPT_NO_NUMBA"  # used in the hallway: compiled.py
 MOST_BYTES = 1_000_000  # of a settings file
 
 
@@ -69,10 +67,9 @@ class Layer(NamedTuple):
     """One source of settings, such as the environment or a file."""
 
     name: str
-    found: dict[str, Any]
-    """The values, keyed by field name or, for the environment, by name of the variable."""
+    found: dict[str, Any]  # the values, keyed by field name or, for the environment, by name of the variable
     tables: Mapping[str, Any] = MappingProxyType({})
-    """All tables of a TOML file, by name; ``roadgpt.cli.configuration`` reads those other than ``[chat]``."""
+    """All tables of a TOML file, by name; ``roadgpt.cli.options`` reads those other than ``[chat]``."""
 
 
 def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None) -> ChatSettings:
@@ -85,8 +82,7 @@ def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None
         plan: the settings in a plan file, which may have been written by somebody else.
 
     Raises:
-        UsageError: a value is not valid; the message says where it was found.
-    """
+        UsageError: a value is not valid; the message says where it was found."""
     return settings_from(settings_with_origin(flags, plan))
 
 
@@ -94,8 +90,7 @@ def settings_with_origin(
     flags: Mapping[str, Any] | None = None, plan: Layer | None = None
 ) -> dict[str, Setting]:
     """Returns the value and the origin of every setting, from the source with the highest precedence. Raises
-    UsageError if a settings file cannot be read, or has a setting that does not exist.
-    """
+    UsageError if a settings file cannot be read, or has a setting that does not exist."""
     flags = flags or {}
     if flags.get("base_url"):
         SERVERS.add_from_user(str(origin_of(str(flags["base_url"]))))
@@ -109,8 +104,7 @@ def settings_with_origin(
 
 def settings_from(found: Mapping[str, Setting]) -> ChatSettings:
     """Returns the ChatSettings with these values. Raises UsageError if a value is not valid; the message says
-    where the value was found.
-    """
+    where the value was found."""
     try:
         return ChatSettings.model_validate({name: setting.value for name, setting in found.items()})
     except ValidationError as error:
@@ -131,8 +125,7 @@ def key_for(base_url: str | None) -> Key | None:
     Raises:
         UsageError: a settings file cannot be read.
         ChatError: the key contains invalid characters, or must not be sent to this server, because only a
-            file names the server.
-    """
+            file names the server."""
     host = origin_of(base_url)[1]
     names = ["ROADGPT_API_KEY", "OPENAI_API_KEY"]
     if host.endswith(".azure.com"):
@@ -157,8 +150,7 @@ def key_for(base_url: str | None) -> Key | None:
 
 def trust_server(base_url: str, wanted: str | None, place: object) -> None:
     """Allows a server to receive the user's key if the user (``base_url``) and a file (``wanted``) name this
-    server. Raises UsageError if the two differ. ``place`` is the file, or its folder, for the message.
-    """
+    server. Raises UsageError if the two differ. ``place`` is the file, or its folder, for the message."""
     if wanted is None or origin_of(base_url) != origin_of(wanted):
         told = wanted or "no server of its own"
         raise UsageError(f"{place} names {told}, and not {base_url}; name that one, or leave out --base-url")
@@ -169,8 +161,7 @@ def untrusted_source(base_url: str | None) -> str:
     """Returns the file that names this server, if another person may have written the file: a file of the
     working folder, a plan, a campaign or a run.
 
-    Returns an empty text if the user named the server too, if no file names it, and for OpenAI's server.
-    """
+    Returns an empty text if the user named the server too, if no file names it, and for OpenAI's server."""
     if not base_url:
         return ""
     wanted = origin_of(base_url)
@@ -188,8 +179,7 @@ def untrusted_source(base_url: str | None) -> str:
 
 def layers() -> list[Layer]:
     """Returns all sources of settings except options and plan files, beginning with the highest precedence.
-    Raises UsageError if a file cannot be read, or its table ``[chat]`` has an unknown key.
-    """
+    Raises UsageError if a file cannot be read, or its table ``[chat]`` has an unknown key."""
     tables = {str(path): _toml(path) for path in (Path(PROJECT), user_file())}
     return [
         Layer("environment", {name: value for name, value in os.environ.items() if _is_ours(name, value)}),
@@ -205,7 +195,6 @@ def user_file() -> Path:
 
 
 def _looked_up(layer: Layer) -> dict[str, Setting]:
-    """Returns the fields that a layer sets, by field name."""
     found: dict[str, Setting] = {}
     for name in FIELDS:
         variables = (f"ROADGPT_{name.upper()}", *(["OPENAI_BASE_URL"] if name == "base_url" else []))
@@ -217,7 +206,6 @@ def _looked_up(layer: Layer) -> dict[str, Setting]:
 
 
 def _read(path: Path) -> str:
-    """Returns the text of a settings file; empty if there is none."""
     try:
         if not path.is_file():
             return ""
@@ -250,7 +238,6 @@ def _unquoted(text: str) -> str:
 
 
 def _toml(path: Path) -> dict[str, Any]:
-    """Returns all tables of a file; none if there is no file."""
     text = _read(path)
     try:
         return tomllib.loads(text)
@@ -279,8 +266,7 @@ def _chat_table(whole: Mapping[str, Any], path: str) -> dict[str, Any]:
 
 def unknown_key(path: str, table: str, key: str, keys: Sequence[str]) -> UsageError:
     """Returns the error for a key that a table of settings in a file cannot have; ``keys`` are the keys that
-    the table can have.
-    """
+    the table can have."""
     near = get_close_matches(key, keys, 1)
     advice = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(keys)}"
     return UsageError(f"the settings in {path} have no '{key[:40]}' under [{table}]; {advice}")
@@ -288,8 +274,7 @@ def unknown_key(path: str, table: str, key: str, keys: Sequence[str]) -> UsageEr
 
 def unknown_variables(others: Collection[str] = ()) -> list[str]:
     """Returns the variables whose names begin with ``ROADGPT_`` but are unknown, as texts such as
-    "ROADGPT_MODLE in .env"; ``others`` are known variables that do not concern language models.
-    """
+    "ROADGPT_MODLE in .env"; ``others`` are known variables that do not concern language models."""
     known = {f"ROADGPT_{name.upper()}" for name in (*FIELDS, KEY)} | {OF_OTHERS, *others}
     places = (("the environment", os.environ), (DOTENV, _dotenv(Path(DOTENV))))
     return [

@@ -2,18 +2,81 @@
 
 Each reader and each designer has its own Chat, which counts its questions with an Account; one Meter counts
 for all of them. ``counting`` makes a meter the current one inside a ``with`` block.
-"""
 
+Prices are in USD per million tokens, separately for the question and the answer. Source: OpenAI's price page
+as stored in the package genai-prices 0.2.3, standard rates for prompts below 272,000 tokens, taken on
+2026-11-20. Discounts for cached prompts are not counted, so a computed cost may be too high, but not too low.
+No price is known for models that are not in the table, nor for any model on a server other than OpenAI's. For
+these, the user gives the price with ``--price``."""
+
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from math import ceil
-from typing import NamedTuple
+from urllib.parse import urlsplit
 
-from roadgpt.chat.model import LEAST_REPLY, ChatSettings, Message, Spent, Usage
-from roadgpt.chat.prices import cost_of, price_of
+from roadgpt.chat.model import LEAST_REPLY, OPENAI, ChatSettings, Message, Spent, Usage, two_prices
 from roadgpt.errors import BudgetError
+
+PRICES: dict[str, tuple[float, float]] = {
+    "gpt-3.5-turbo": (0.5, 1.5),
+    "gpt-4": (30, 60),
+    "gpt-4-turbo": (10, 30),
+    "gpt-4.1": (2, 8),
+    "gpt-4.1-mini": (0.4, 1.6),
+    "gpt-4.1-nano": (0.1, 0.4),
+    "gpt-4o": (2.5, 10),
+    "gpt-4o-mini": (0.15, 0.6),
+    "gpt-5": (1.25, 10),
+    "gpt-5-mini": (0.25, 2),
+    "gpt-5-nano": (0.05, 0.4),
+    "gpt-5.1": (1.25, 10),
+    "gpt-5.2": (1.75, 14),
+    "gpt-5.3": (1.75, 14),
+    "gpt-5.4": (2.5, 15),
+    "gpt-5.4-mini": (0.75, 4.5),
+    "gpt-5.4-nano": (0.2, 1.25),
+    "gpt-5.5": (5, 30),
+    "gpt-5.6-luna": (0.2, 1.2),
+    "gpt-5.6-sol": (4, 20),
+    "gpt-5.6-terra": (2, 12),
+    "gpt-6-astra": (10, 50),
+    "gpt-6-luna": (0.1, 0.5),
+    "gpt-6-sol": (2, 10),
+    "gpt-6.1-sol": (2, 10),
+    "gpt-6.1-terra": (1, 5),
+    "o3": (2, 8),
+    "o4-mini": (1.1, 4.4),
+}
+DATED = re.compile(r"-\d{4}-\d{2}-\d{2}$")  # suffix of a dated snapshot of a model
+SOLD_BY = ("api.openai.com", ".openai.azure.com")
+
+
+def has_openai_prices(base_url: str | None) -> bool:
+    """Returns True if the server charges OpenAI's prices."""
+    host = urlsplit(base_url or OPENAI).hostname or ""
+    return host.endswith(SOLD_BY)
+
+
+def price_of(settings: ChatSettings, model: str = "") -> tuple[float, float] | None:
+    """Returns the prices of a model: USD per million tokens of prompt and of completion; None if unknown."""
+    if settings.price is not None:
+        return two_prices(settings.price)
+    if not has_openai_prices(settings.base_url):
+        return None
+    for name in (model, settings.model or ""):
+        found = PRICES.get(name) or PRICES.get(DATED.sub("", name))
+        if found:
+            return found
+    return None
+
+
+def cost_of(usage: Usage, price: tuple[float, float] | None) -> float | None:
+    """Returns the cost of these tokens in USD; None if the price is unknown."""
+    return None if price is None else (usage.prompt * price[0] + usage.completion * price[1]) / 1e6
+
 
 LETTERS_PER_TOKEN = 4  # bytes of English and JSON; an estimate until the server has counted
 ENDLESS = 10**15
@@ -31,8 +94,7 @@ class Meter:
     @classmethod
     def of(cls, settings: ChatSettings | None) -> "Meter":
         """Returns a Meter with the limits in the settings; if ``settings`` is None, the Meter has no
-        limits.
-        """
+        limits."""
         return cls() if settings is None else cls(settings.max_tokens, settings.max_cost)
 
     def add(self, spent: Spent) -> None:
@@ -41,8 +103,7 @@ class Meter:
 
     def reply_tokens(self, messages: Sequence[Message], settings: ChatSettings, model: str) -> int:
         """Returns the largest number of tokens that the answer to these messages may have without exceeding a
-        limit. Raises BudgetError if too few are left, or if money is limited and a price is unknown.
-        """
+        limit. Raises BudgetError if too few are left, or if money is limited and a price is unknown."""
         prompt = tokens_in(*(message.text for message in messages))
         affordable = self._affordable(prompt, price_of(settings, model), model)
         reply_tokens = min(settings.max_completion, self._tokens_left(prompt), affordable)
@@ -67,7 +128,7 @@ class Meter:
         if self.max_cost is None:
             return ENDLESS
         if price is None or self.spent.cost is None:
-            from roadgpt.chat.strict_json import plain  # only for the message
+            from roadgpt.chat.answer import plain  # only for the message
 
             raise BudgetError(
                 f"the price of '{plain(model)}' is not known, so --max-cost cannot be checked; "
@@ -79,13 +140,9 @@ class Meter:
         return ENDLESS if left >= 0 else 0
 
 
-class _Now(NamedTuple):
-    meter: Meter | None = None
-    occasion: str = ""
-
-
-NOBODY = _Now()
-_now: ContextVar[_Now] = ContextVar("roadgpt_meter", default=NOBODY)
+NOBODY: tuple["Meter | None", str] = (None, "")
+"""The meter that counts now, and the occasion."""
+_now: ContextVar[tuple["Meter | None", str]] = ContextVar("roadgpt_meter", default=NOBODY)
 
 
 @contextmanager
@@ -95,9 +152,8 @@ def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
     Args:
         meter: the meter.
         occasion: a label for what the questions are about, such as "road 3"; recordings use it to
-            distinguish a question about one road from the same question about another.
-    """
-    before = _now.set(_Now(meter, occasion))
+            distinguish a question about one road from the same question about another."""
+    before = _now.set((meter, occasion))
     try:
         yield meter
     finally:
@@ -106,13 +162,12 @@ def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
 
 def occasion() -> str:
     """Returns the label of the current questions, as given to ``counting``; empty if there is none."""
-    return _now.get().occasion
+    return _now.get()[1]
 
 
 class Account:
     """Counts what one Chat spends, and adds the same amounts to the campaign's Meter. Without a campaign,
-    they are added to the Chat's own Meter.
-    """
+    they are added to the Chat's own Meter."""
 
     def __init__(self, settings: ChatSettings) -> None:
         self.settings = settings
@@ -122,7 +177,7 @@ class Account:
     @property
     def meter(self) -> Meter:
         """The meter of the current campaign; the Chat's own meter if there is no campaign."""
-        return _now.get().meter or self._own
+        return _now.get()[0] or self._own
 
     def count(self, model: str, usage: Usage, seconds: float) -> None:
         """Counts one answered request."""

@@ -1,14 +1,44 @@
-"""The data types of a conversation with a language model: Message, Usage, Reply, Spent, ChatSettings."""
+"""The data types of a conversation with a language model, and the addresses of servers."""
 
 from typing import Annotated, Any, Literal, Self
 from urllib.parse import urlsplit
 
 from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, field_validator
 
-from roadgpt.chat.address import origin_of
 from roadgpt.provenance import SERVERS
 
-Api = Literal["chat", "responses"]
+OPENAI = "https://api.openai.com/v1"
+DOORS = ("/chat/completions", "/models")  # endpoints that a copied base URL may end with
+PORTS = {"http": 80, "https": 443}
+
+Origin = tuple[str, str, int | None]
+
+
+def address_of(base_url: str | None) -> str:
+    """Returns the URL of a server without an endpoint such as ``/models``; None stands for OpenAI's server.
+
+    If ``base_url`` has no path, ``/v1`` is appended, or ``/openai/v1`` for Azure."""
+    place = (base_url or OPENAI).rstrip("/")
+    for door in DOORS:
+        place = place.removesuffix(door)
+    parts = urlsplit(place)
+    if parts.path:
+        return place
+    return place + ("/openai/v1" if (parts.hostname or "").endswith(".azure.com") else "/v1")
+
+
+def origin_of(base_url: str | None) -> Origin:
+    """Returns the scheme, host and port of a URL, in normal form; None stands for OpenAI's server. The port
+    is None if the URL has no valid port and the scheme is neither http nor https."""
+    parts = urlsplit((base_url or OPENAI).strip())
+    scheme = parts.scheme.lower()
+    try:
+        port = parts.port
+    except ValueError:
+        port = None
+    return scheme, (parts.hostname or "").lower().rstrip("."), port or PORTS.get(scheme)
+
+
 LEAST_REPLY = 64  # tokens; a shorter answer is of no use
 DECIMALS = 9  # of seconds and USD, so that a difference of sums does not depend on earlier costs
 Role = Literal["system", "user", "assistant"]
@@ -56,8 +86,6 @@ class Reply(ChatValue):
     cost: float | None = None
     """The cost in USD; None if the price of the model is unknown."""
     finish: str = "stop"
-    conversation: str | None = None
-    """The id of the conversation on the server; only set with ``api="responses"``."""
 
 
 class Spent(ChatValue):
@@ -95,21 +123,15 @@ class Spent(ChatValue):
 
 class ChatSettings(ChatValue):
     """Which language model to ask, and how. The settings are stored in run folders and never contain an
-    API key.
-    """
+    API key."""
 
     provider: str = "openai"
     """Name of an installed provider."""
     model: str | None = None
     """The name by which the server knows the model; with None, the server must have only one model, which
-    is used.
-    """
+    is used."""
     base_url: str | None = None
     """Address of the server, up to and including ``/v1``; None means OpenAI's server."""
-    api: Api = "chat"
-    """'chat' selects the Chat Completions API; 'responses' selects the Responses API, with which the
-    server stores the conversation.
-    """
     temperature: Annotated[float, Field(ge=0, le=2)] | None = None
     """The sampling temperature, from 0 to 2; None uses the server's default."""
     timeout: Annotated[float, Field(gt=0, le=86_400)] = 60.0
@@ -126,8 +148,7 @@ class ChatSettings(ChatValue):
     """USD per million tokens of prompt and completion, as "0.15/0.60"; None uses the built-in table."""
     record: str | None = Field(default=None, exclude=True)
     """Folder in which every exchange is stored. This setting is left out of saved files, so that a replay
-    writes the same files as the recorded run.
-    """
+    writes the same files as the recorded run."""
     replay: str | None = Field(default=None, exclude=True)
     """Folder of recorded exchanges, from which every answer is taken instead of asking a server."""
     rounds: Annotated[int, Field(ge=1, le=20)] = 3
@@ -162,8 +183,7 @@ class ChatSettings(ChatValue):
     def essence(self) -> Self:
         """Returns a copy of the settings with defaults for all fields that may change when a campaign is
         resumed: the limits of tokens and money, the price, the time-out, the retries and the folders of
-        recordings.
-        """
+        recordings."""
         usual = type(self)()
         spare = ("timeout", "retries", "max_tokens", "max_cost", "price", "record", "replay")
         return self.model_copy(update={name: getattr(usual, name) for name in spare})
@@ -171,8 +191,7 @@ class ChatSettings(ChatValue):
     def came_with(self, file: object) -> Self:
         """Returns the settings without the folders of recordings, and remembers that ``file``, not the user,
         chose the server. Use it for settings from a file that somebody else may have written, so that the
-        user's API key is not sent to that server.
-        """
+        user's API key is not sent to that server."""
         if self.base_url:
             SERVERS.add_from_file(str(origin_of(self.base_url)), file)
         return self.model_copy(update={"record": None, "replay": None})
@@ -180,8 +199,7 @@ class ChatSettings(ChatValue):
 
 def two_prices(text: str) -> tuple[float, float]:
     """Parses a text such as "0.15/0.60" into USD per million tokens of prompt and of completion; raises
-    ValueError if the text is not two numbers, from 0 to less than a million.
-    """
+    ValueError if the text is not two numbers, from 0 to less than a million."""
     try:
         prompt, completion = (float(part) for part in text.split("/"))
     except ValueError:

@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from roadgpt.chat.json_schema import schema_of
+from roadgpt.chat.answer import schema_of
 from roadgpt.chat.meter import Account, occasion
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent
 from roadgpt.errors import ChatError, ReplyError, UsageError, explained
@@ -30,8 +30,7 @@ class ExchangeStore:
     def keep(self, question: dict[str, Any], occasion: str, answer: dict[str, Any], turns: Turns) -> None:
         """Stores an answer to a question under its occasion. The first answer that a campaign stores for this
         question and occasion replaces all answers from earlier campaigns. Raises ChatError if the folder
-        cannot be written to.
-        """
+        cannot be written to."""
         name = name_of(question)
         there = self._answers(name)
         mine = there.get(occasion, []) if turns["kept", name, occasion] else []
@@ -49,8 +48,7 @@ class ExchangeStore:
 
         If no answers were recorded for the occasion, those recorded without an occasion are used. If
         ``occasion`` is empty and no answers were recorded without an occasion, the answers of all occasions
-        are used, one after another.
-        """
+        are used, one after another."""
         name = name_of(question)
         answers = self._answers(name)
         listed = answers.get(occasion) or answers.get("")
@@ -103,7 +101,7 @@ def question_of(
         "model": settings.model,
         "messages": [message.model_dump() for message in messages],
         "schema": None if schema is None else schema_of(schema),
-        "parameters": settings.model_dump(include={"api", "temperature", "max_completion"}),
+        "parameters": {"api": "chat", **settings.model_dump(include={"temperature", "max_completion"})},
     }
 
 

@@ -3,8 +3,7 @@
 Any response, even an error message, may be a gigabyte long, and a compressed response of a megabyte may
 unpack to a gigabyte. So every response is decompressed piece by piece, and only up to the limit. The library
 ``openai`` uses this client and repeats requests that failed; a response header, added by this client, tells
-the library which failures may be temporary.
-"""
+the library which failures may be temporary."""
 
 import contextvars
 import json
@@ -18,9 +17,8 @@ from urllib.parse import urljoin, urlsplit
 import httpx2
 from openai import DefaultHttpxClient
 
-from roadgpt.chat.address import origin_of
-from roadgpt.chat.answer import BUSY, RequestError, is_spent_up
-from roadgpt.chat.strict_json import NotReadableError, plain
+from roadgpt.chat.answer import BUSY, NotReadableError, RequestError, is_spent_up, plain
+from roadgpt.chat.model import origin_of
 
 PACKED = {"gzip", "x-gzip"}
 ASK_FOR = "gzip"
@@ -39,8 +37,7 @@ class LimitedClient(DefaultHttpxClient):
 
     def __init__(self, most: int, seconds: float) -> None:
         """Takes the size limit of a decompressed response in bytes, and the time limit of one attempt in
-        seconds.
-        """
+        seconds."""
         self.most, self.seconds = most, seconds
         super().__init__(event_hooks={"response": [self._limited]})
 
@@ -53,8 +50,7 @@ class LimitedClient(DefaultHttpxClient):
                 request again.
             RequestError: the server redirects to another server, or compresses its answer by a method that
                 was not requested.
-            NotReadableError: the response is larger than the size limit.
-        """
+            NotReadableError: the response is larger than the size limit."""
         box: list[Any] = []
         context, send = contextvars.copy_context(), super().send
 
@@ -74,7 +70,6 @@ class LimitedClient(DefaultHttpxClient):
         return _graded(box[0])
 
     def _limited(self, response: Any) -> None:
-        """Limits a response before it is read."""
         here = str(response.request.url)
         if "location" in response.headers and 300 <= response.status_code < FIRST_ERROR:
             _stay(here, response.headers["location"])
@@ -134,8 +129,7 @@ class _Within(httpx2.SyncByteStream):
 
 def _graded(response: httpx2.Response) -> httpx2.Response:
     """Corrects the status of an error that was sent with a status of success, and sets the header that tells
-    the library whether to try again.
-    """
+    the library whether to try again."""
     if response.status_code < FIRST_ERROR:
         try:
             body = json.loads(response.content)

@@ -35,8 +35,7 @@ def masked(value: str) -> str:
 
 def usable(key: Key) -> Key:
     """Returns the key without surrounding blanks. Raises ChatError, without showing the key, if the key is
-    empty or has characters that an HTTP header cannot contain.
-    """
+    empty or has characters that an HTTP header cannot contain."""
     value = key.value.strip()
     if not value or not re.fullmatch(r"[!-~]+", value):
         raise ChatError(
@@ -48,8 +47,7 @@ def usable(key: Key) -> Key:
 
 def redacted(value: Any, key: Key) -> Any:
     """Removes the key, and everything that looks like a key, from a text or from all texts in lists and
-    dictionaries.
-    """
+    dictionaries."""
     if isinstance(value, str):
         if len(key.value) >= SHORTEST and key.value in value:
             value = value.replace(key.value, GONE)

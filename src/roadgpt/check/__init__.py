@@ -11,12 +11,11 @@ the group ``roadgpt.rules``) are appended to ``strict``.
 A road that leads through junctions is a Route, and its whole network is checked against other rules, which
 are under ``network_rules/`` (entry points of the group ``roadgpt.network_rules``):
 
-    def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]
-"""
+    def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]"""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
@@ -64,28 +63,13 @@ NETWORK_RULES = (
     "unreachable",
 )
 """The names of the rules of networks, in the order in which they are applied. Rules that other packages
-register are applied after these.
-"""
+register are applied after these."""
 
 
-class Rule(Protocol):
-    """A function that checks one property of a road."""
-
-    def __call__(self, road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-        """Returns one Finding for each violation, in driving order; an empty tuple if there is none."""
-        ...
-
-
-class NetworkRule(Protocol):
-    """A function that checks one property of a network."""
-
-    def __call__(self, network: "Network", route: "Route | None", world: World) -> tuple[Finding, ...]:
-        """Returns one Finding for each violation; an empty tuple if there is none.
-
-        ``route`` leads through this network; None if there is no route. The stations of the findings are
-        stations of the route.
-        """
-        ...
+Rule = Callable[[Road, Brief | None, World], tuple[Finding, ...]]
+"""A function that checks one property of a road; the findings are in driving order."""
+NetworkRule: TypeAlias = "Callable[[Network, Route | None, World], tuple[Finding, ...]]"
+"""A function that checks one property of a network; stations of the findings are those of the route."""
 
 
 def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict") -> tuple[Finding, ...]:
@@ -95,52 +79,29 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
     is invalid. After a finding with ``stops``, no further rules of the set are applied. With "strict", the
     network of a Route is checked by the rules of networks, and the Route is compared with the brief.
 
-    Args:
-        road: The road to check.
-        brief: The requirements that the road should meet; None if there are none.
-        world: The map and the limits, such as the minimum radius and the maximum grade.
-        rules: Name of the rule set, "strict" or "sbft".
-
-    Raises:
-        UsageError: There is no rule set of this name.
-        PartError: No rules are installed, or a rule of the set is missing. This ensures
-            that no road passes because rules are missing.
-    """
+    Raises UsageError if there is no rule set of this name, and PartError if no rules are installed or one of
+    the set is missing, so that no road passes because rules are missing."""
     rules_of(rules)
     if is_route(road) and rules == "strict":
         found_there = inspect_network(road.network, None if has_no_route(road) else road, world)
         if brief is None:
             return found_there
-        # a single road does not need these
+        from roadgpt.check.network_promises import broken_map, broken_promises  # not for single roads
+
         if brief.map is not None:
-            from roadgpt.check.map_promises import broken_map
-
             return (*found_there, *broken_map(road, brief.map, brief.length))
-        from roadgpt.check.route_promises import broken_promises
-
         return (*found_there, *broken_promises(road, brief, world.site.map_size))
     laid = world.lay(road)
     return _until_one_stops(rule(laid, brief, world) for _, rule in rules_of(rules))
 
 
 def inspect_network(network: "Network", route: "Route | None", world: World) -> tuple[Finding, ...]:
-    """Returns the findings of all rules of networks, in the order of the rules.
-
-    After a finding with ``stops``, no further rules are applied.
-
-    Args:
-        network: The network to check.
-        route: A route through this network; None if there is none.
-        world: The map and the limits.
-
-    Raises:
-        PartError: No rules of networks are installed, or a rule of ``NETWORK_RULES`` is missing.
-    """
+    """Returns the findings of all rules of networks, in the order of the rules, up to one with ``stops``.
+    ``route`` leads through this network."""
     return _until_one_stops(rule(network, route, world) for _, rule in network_rules_of())
 
 
 def _until_one_stops(inspected: Iterator[tuple[Finding, ...]]) -> tuple[Finding, ...]:
-    """Returns the findings of all rules up to one that leaves the other rules nothing to measure."""
     found = list[Finding]()
     for findings in inspected:
         found += findings
@@ -151,11 +112,7 @@ def _until_one_stops(inspected: Iterator[tuple[Finding, ...]]) -> tuple[Finding,
 
 @cache
 def network_rules_of() -> tuple[tuple[str, NetworkRule], ...]:
-    """Returns the name and the function of each rule of networks, in the order in which they are applied.
-
-    Raises:
-        PartError: No rules of networks are installed, or a rule of ``NETWORK_RULES`` is missing.
-    """
+    """Returns the name and the function of each rule of networks, in the order in which they are applied."""
     others = tuple(name for name in plugins.names("network_rules") if name not in NETWORK_RULES)
     names = (*NETWORK_RULES, *others)
     return tuple((name, cast(NetworkRule, plugins.find("network_rules", name))) for name in names)
@@ -163,12 +120,7 @@ def network_rules_of() -> tuple[tuple[str, NetworkRule], ...]:
 
 @cache
 def rules_of(rules: str) -> tuple[tuple[str, Rule], ...]:
-    """Returns the name and the function of each rule of a set, in the order in which they are applied.
-
-    Raises:
-        UsageError: There is no rule set of this name.
-        PartError: No rules are installed, or a rule of the set is missing.
-    """
+    """Returns the name and the function of each rule of a set, in the order in which they are applied."""
     if rules not in RULE_SETS:
         raise UsageError(f"no rule set called '{rules}'; there are: {', '.join(RULE_SETS)}")
     ours = RULE_SETS[rules]

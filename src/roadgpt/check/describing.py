@@ -15,11 +15,7 @@ def describe(road: Road) -> Brief:
     a clause with its length. A clause also states the mean grade, unless it is level. A turn, or a straight
     with very short waves, that goes both up and down states none; the Brief then has the number of changes of
     slope. It includes the length of the whole road, and its steepest place if the clauses do not show it. A
-    climb that rounds to 0 m is left out.
-
-    Raises:
-        UsageError: The road has no two different points.
-    """
+    climb that rounds to 0 m is left out."""
     found = measure(road.centreline())
     clauses = tuple(clause for feature in found.features for clause in _clauses(feature, found))
     has_bumps = any(clause.slope is None for clause in clauses)

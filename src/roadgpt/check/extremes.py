@@ -1,10 +1,8 @@
-"""Finds where a road is tightest, steepest and lowest.
-
-The result is exact for lines, arcs, clothoids and parabolas; splines are sampled.
+"""Finds where a road is tightest, steepest and lowest; exact for lines, arcs, clothoids and parabolas, while
+splines are sampled.
 
 The curvature of a line, arc or clothoid and the grade of a parabola change linearly, so their extremes are at
-the ends. A parabola is lowest at one of its ends or where its grade is 0.
-"""
+the ends. A parabola is lowest at one of its ends or where its grade is 0."""
 
 import numpy as np
 
@@ -16,9 +14,7 @@ KINK = 2.0  # m: shorter than a car's wheelbase
 
 
 def tightest(road: Road) -> tuple[float, float]:
-    """Returns the station (m) and the curvature (1/m, positive to the left) where the road is tightest.
-
-    Of several equally tight places, the first is returned."""
+    """Returns the station (m) and the curvature (1/m, positive to the left) of the first tightest place."""
     if isinstance(road.plan, PieceCurve):
         pieces = road.plan.pieces
         ends = np.cumsum([piece.length for piece in pieces])
@@ -30,9 +26,7 @@ def tightest(road: Road) -> tuple[float, float]:
 
 
 def steepest(road: Road) -> tuple[float, float]:
-    """Returns the station (m) and the grade (ratio, uphill positive) where the road is steepest.
-
-    Of several equally steep places, the first is returned."""
+    """Returns the station (m) and the grade (ratio, uphill positive) of the first steepest place."""
     if isinstance(road.elevation, GradeProfile):
         s = _stations(road.elevation, road.length)
         return _greatest(s, road.elevation.grade(s))
@@ -40,11 +34,9 @@ def steepest(road: Road) -> tuple[float, float]:
 
 
 def vertical_bends(road: Road) -> tuple[Array, Array, Array]:
-    """Returns the start and end stations (m) of each part where the grade changes, and the change per metre.
-
-    The change of grade is negative on a crest. In a GradeProfile, each parabola is one part. Other profiles
-    are divided into parts of about 2 m, and the change of grade at a kink is distributed over its part.
-    """
+    """Returns the start and end stations (m) of each part where the grade changes, and the change per metre,
+    negative on a crest. In a GradeProfile, each parabola is one part. Other profiles are divided into parts
+    of about 2 m, over which the change of grade at a kink is distributed."""
     if isinstance(road.elevation, GradeProfile):
         s = _stations(road.elevation, road.length)
     else:

@@ -7,11 +7,9 @@ from roadgpt.road import Road
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One violation of a rule: the name of the rule and a sentence that describes the violation.
-
-    ``s`` is the station and (x, y) the point of the violation, in metres. All three are None for a violation
-    that concerns the whole road. If only the point is known, only ``s`` is None.
-    """
+    """One violation of a rule: the name of the rule and a sentence that describes the violation. ``s`` is the
+    station and (x, y) the point of the violation, in metres. All three are None for a violation that concerns
+    the whole road. If only the point is known, only ``s`` is None."""
 
     rule: str
     sentence: str

@@ -1,7 +1,6 @@
 """Computes where the roads of a network lie: their ends, their carriageways, and which of these overlap.
 
-All roads are computed together. The result for a network is cached, so that all rules share it.
-"""
+All roads are computed together. The result for a network is cached, so that all rules share it."""
 
 import math
 from dataclasses import dataclass
@@ -29,11 +28,8 @@ Indices = NDArray[np.intp]
 
 
 class EndPose(NamedTuple):
-    """The centre line at one end of a road: the point in metres, the heading in radians, and the grade as a
-    ratio.
-
-    Heading and grade are those in the direction of increasing stations, at both ends.
-    """
+    """The centre line at one end of a road: the point in metres, and the heading in radians and the grade as
+    a ratio in the direction of increasing stations."""
 
     x: float
     y: float
@@ -44,33 +40,6 @@ class EndPose(NamedTuple):
     def beside(self, t: float) -> tuple[float, float]:
         """Returns the point (x, y), in metres, that lies ``t`` metres to the left of the centre line."""
         return self.x - t * math.sin(self.heading), self.y + t * math.cos(self.heading)
-
-
-class Overlap(NamedTuple):
-    """Two roads of a network whose carriageways overlap in plan view."""
-
-    one: NetworkRoad
-    other: NetworkRoad
-    area: float
-    """The area in square metres that both roads cover."""
-    x: float
-    """x of the centroid of this area, in metres."""
-    y: float
-    """y of the centroid of this area, in metres."""
-
-
-class _Pieces(NamedTuple):
-    """All lines, arcs and clothoids of a network, one after another; arrays ``(m,)``."""
-
-    owner: Indices
-    """The index of the road that the piece belongs to."""
-    length: Array
-    k0: Array
-    dk: Array
-    heading: Array
-    """The heading at the start of the piece in radians; ``x`` and ``y`` are the start in metres."""
-    x: Array
-    y: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +55,9 @@ class Footprint:
         return plans  # type: ignore[return-value]
 
     @cached_property
-    def _pieces(self) -> _Pieces:
+    def _pieces(self) -> tuple[Indices, Array, Array, Array, Array, Array, Array]:
+        """All lines, arcs and clothoids, one after another, ``(m,)`` each: the index of the road, the length,
+        the curvature at the start and its change per metre, and heading, x and y at the start."""
         rows = [(n, p.length, p.k0, p.k1) for n, plan in enumerate(self._plans) for p in plan.pieces]
         table = np.array(rows)
         owner, length, k0, k1 = table[:, 0].astype(np.intp), *table[:, 1:].T
@@ -95,15 +66,8 @@ class Footprint:
         heading = starts[:, 2] + _before(length * (k0 + k1) / 2, first)
         dk = (k1 - k0) / length
         dx, dy = advance(length, heading, k0, dk, length)
-        return _Pieces(
-            owner,
-            length,
-            k0,
-            dk,
-            heading,
-            starts[:, 0] + _before(dx, first),
-            starts[:, 1] + _before(dy, first),
-        )
+        x, y = starts[:, 0] + _before(dx, first), starts[:, 1] + _before(dy, first)
+        return owner, length, k0, dk, heading, x, y
 
     def _places(self, index: Indices, u: Array) -> tuple[Array, Array, Array]:
         """Returns x, y and heading ``u`` metres behind the starts of pieces; arrays of the shape of ``u``."""
@@ -114,7 +78,7 @@ class Footprint:
     @cached_property
     def ends(self) -> dict[RoadEnd, EndPose]:
         """The EndPose of both ends of every road of the network."""
-        owner, length = self._pieces.owner, self._pieces.length
+        owner, length, *_ = self._pieces
         last = np.flatnonzero(np.diff(owner, append=-1))
         x, y, heading = (column.tolist() for column in self._places(last, length[last]))
         found = {}
@@ -127,13 +91,13 @@ class Footprint:
     @cached_property
     def _edges(self) -> tuple[Array, Array, Array, Indices]:
         """Returns the points ``(n, 2)`` of all right edges in metres, those of all left edges, the stations
-        of the points on their roads, and the index of the first point of each road, followed by ``n``.
-        """
+        of the points on their roads, and the index of the first point of each road, followed by ``n``."""
         index, u = self._stations()
-        owner = self._pieces.owner[index]
+        pieces, length, *_ = self._pieces
+        owner = pieces[index]
         x, y, heading = self._places(index, u)
         first = np.searchsorted(owner, np.arange(len(self._plans) + 1))
-        s = _before(self._pieces.length, np.searchsorted(self._pieces.owner, self._pieces.owner))[index] + u
+        s = _before(length, np.searchsorted(pieces, pieces))[index] + u
         usual = np.array([edges_at(each.profile, 0.0) for each in self.network.roads])
         left, right = np.repeat(usual, np.diff(first), axis=0).T.copy()
         for n in np.flatnonzero(self._varies).tolist():
@@ -175,8 +139,7 @@ class Footprint:
     @cached_property
     def bounds(self) -> Array:
         """The smallest x and y and the largest x and y in metres of each polygon, ``(n, 4)``. The true
-        carriageway may extend beyond its polygon by up to ``SLACK`` metres.
-        """
+        carriageway may extend beyond its polygon by up to ``SLACK`` metres."""
         right, left, _, first = self._edges
         low = np.minimum.reduceat(np.minimum(right, left), first[:-1])
         high = np.maximum.reduceat(np.maximum(right, left), first[:-1])
@@ -185,8 +148,7 @@ class Footprint:
     def outermost(self, n: int, side: int) -> tuple[float, float, float]:
         """Returns the point (x, y) where the carriageway of ``network.roads[n]`` extends farthest to one
         side, and the station of the road there, in metres. Sides: 0 smallest x, 1 smallest y, 2 largest x, 3
-        largest y.
-        """
+        largest y."""
         right, left, s, first = self._edges
         here = slice(first[n], first[n + 1])
         points = np.concatenate((right[here], left[here]))
@@ -205,8 +167,10 @@ class Footprint:
         return np.array([shapely.Polygon(each) for each in corners], object)
 
     @cached_property
-    def overlaps(self) -> tuple[Overlap, ...]:
-        """The pairs of roads that overlap. Connecting roads of the same junction are not compared."""
+    def overlaps(self) -> tuple[tuple[NetworkRoad, NetworkRoad, float, float, float], ...]:
+        """The pairs of roads whose carriageways overlap in plan view, with the area in square metres that
+        both cover, and x and y of the centroid of this area. Connecting roads of the same junction are not
+        compared."""
         import shapely
 
         i, j = _near(self.bounds)
@@ -222,7 +186,7 @@ class Footprint:
             if area.area > 0:
                 middle = area.centroid
                 members = self.network.roads[one], self.network.roads[other]
-                found.append(Overlap(*members, area.area, middle.x, middle.y))
+                found.append((*members, area.area, middle.x, middle.y))
         return tuple(found)
 
     @cached_property

@@ -4,19 +4,27 @@ Turns are matched one to one and in order. A requested straight matches either t
 turns of the road, or a piece of it that goes up, is flat or goes down throughout. If several straights are
 requested between two turns, they are matched with such pieces in order, each piece at most once. Requested
 straights in a row that all go up, or all go down, with different grades may also be parts of one piece.
-"""
+Finally, turns and straights that a description wants to be alike are compared with each other."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import chain, pairwise
 from math import inf, isfinite
 from typing import Generic, NamedTuple, TypeVar
 
 from roadgpt.brief.model import OTHER_SIDE, Side
-from roadgpt.brief.outline import Feature, Group, Outline
-from roadgpt.brief.ranges import Range
+from roadgpt.brief.outline import Feature, Group, Outline, both
+from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import FEATURE
 from roadgpt.check.measures import LEVEL, GradeChange, MeasuredFeature, Measures
+
+T = TypeVar("T")
+ANGLES = 6.0  # degrees by which the angles of like turns may differ
+RATIO = 1.2  # of the largest radius or length of like parts to the smallest
+METRES = 5.0  # by which the lengths of like straights may differ in any case
+OPEN_TURN = Feature("turn", "turn")
+Wanted = Sequence[Feature | None]
 
 
 class Complaint(NamedTuple):
@@ -26,11 +34,7 @@ class Complaint(NamedTuple):
 
     sentence: str
     s: float | None = None
-    on_heights: bool = False
-    """Whether the requirement could be met by changing only the heights of the road."""
-
-
-T = TypeVar("T")
+    on_heights: bool = False  # whether the requirement could be met by changing only the heights of the road
 
 
 class Match(NamedTuple, Generic[T]):
@@ -73,8 +77,7 @@ def turn_complaints(
     number: int, turn: MeasuredFeature, feature: Feature, side: str | None = None
 ) -> tuple[Complaint, ...]:
     """Returns one complaint for each requirement that a turn, counted from 1, does not meet. ``side`` is the
-    required side if turns must alternate; None for the side that ``feature`` states.
-    """
+    required side if turns must alternate; None for the side that ``feature`` states."""
     side, out = side or feature.side, list[Complaint]()
     if side and turn.side != side:
         out.append(Complaint(f"turn {number} goes {turn.side}, asked for {side}", turn.start))
@@ -97,8 +100,7 @@ def best_match(
 
     ``of_turns`` matches a group with turns of the road; its arguments are the group, the index of the first
     turn and the number of turns. ``of_gap`` matches requested straights with the gap before a turn; its
-    arguments are the index of the turn (``count`` for the last gap) and the straights.
-    """
+    arguments are the index of the turn (``count`` for the last gap) and the straights."""
     groups, turns_are_free = asked.groups, not asked.names_all_turns
 
     @cache
@@ -124,9 +126,8 @@ def best_match(
 
 
 def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
-    """Returns the Complaints about the turns and straights of an Outline, in driving order. If no match is
-    possible, the only Complaint is about the number of turns.
-    """
+    """Returns the Complaints about the turns and straights of an Outline, in driving order; the only one is
+    about the number of turns if no match is possible."""
     turns, gaps = found.turns, found.gaps
 
     def of_turns(group: Group, first: int, number: int) -> Match[Complaint]:
@@ -148,11 +149,9 @@ def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...
 
 
 def sides_of(group: Group, sides: Sequence[Side | None]) -> list[Side | None]:
-    """Returns the side that is required of each turn of a group; None if either side is allowed.
-
-    ``sides`` are the measured sides of the turns. If the turns must alternate and the group does not state
-    the side of the first turn, its measured side is taken as required.
-    """
+    """Returns the side that is required of each turn of a group; None if either side is allowed. ``sides``
+    are the measured ones. If the turns must alternate and the group does not state the side of the first
+    turn, its measured side is required."""
     first = group.feature.side or (sides[0] if sides and group.alternating else None)
     other = OTHER_SIDE[first] if first and group.alternating else first
     return [(first, other)[index % 2] for index in range(len(sides))]
@@ -179,7 +178,8 @@ def _of_gap(
                 at = place + 1
     where = f"after turn {turn}" if turn else "at the start"
     s = gap[0].start if gap else None
-    has = _said(gap[0].pieces) if gap else "none"
+    pieces_told = (f"{each.length:.0f} m at {each.grade:.1f} %" for each in (gap[0].pieces if gap else ()))
+    has = ", then ".join(pieces_told) if gap else "none"
     says = (
         Complaint(f"asked for a straight {where}{wish.limits()}, has {has}", s, wish.grade is not None)
         for wish in missing
@@ -208,8 +208,7 @@ def _fit(found: Measures, piece: MeasuredFeature, ramp: Sequence[Feature]) -> bo
 
 def change_of_grade(one: Range | None, other: Range | None) -> GradeChange | None:
     """Returns the change of grade between two straights in a row that both go up, or both go down, with
-    different grades; None for all other straights.
-    """
+    different grades; None for all other straights."""
     if one is None or other is None:
         return None
     if min(one.lo, other.lo) < LEVEL and max(one.hi, other.hi) > -LEVEL:
@@ -220,5 +219,103 @@ def change_of_grade(one: Range | None, other: Range | None) -> GradeChange | Non
     )
 
 
-def _said(pieces: tuple[MeasuredFeature, ...]) -> str:
-    return ", then ".join(f"{piece.length:.0f} m at {piece.grade:.1f} %" for piece in pieces)
+class LikeGroup(list[int]):
+    """The indices of features that must be alike; all features must meet the ranges in ``common``."""
+
+    def __init__(self, common: Feature, place: int) -> None:
+        super().__init__([place])
+        self.common = common
+
+
+def like_groups(features: Wanted) -> list[LikeGroup]:
+    """Returns the groups of two or more features that must be alike: those that have the same name and whose
+    ranges overlap. A None in ``features`` belongs to no group."""
+    groups: list[LikeGroup] = []
+    for place, feature in enumerate(features):
+        if feature is None:
+            continue
+        for group in groups:
+            common = _common(group.common, feature)
+            if common is not None:
+                group.append(place)
+                group.common = common
+                break
+        else:
+            groups.append(LikeGroup(feature, place))
+    return [group for group in groups if len(group) > 1]
+
+
+def _common(one: Feature, other: Feature) -> Feature | None:
+    if (one.kind, one.name) != (other.kind, other.name):
+        return None
+    degrees, radius, length = (
+        overlap(getattr(one, name), getattr(other, name)) for name in ("degrees", "radius", "length")
+    )
+    if any(span is not None and span.lo >= span.hi for span in (degrees, radius, length)):
+        return None
+    return replace(one, degrees=degrees, radius=radius, length=length)
+
+
+def like_straights(gaps: Sequence[Sequence[Feature]]) -> list[LikeGroup]:
+    """Groups the gaps before, between and after the turns whose straights must be equally long. Gaps with
+    exactly one required straight are grouped by ``like_groups``. If no straight is required between the
+    turns, all gaps between turns are one group, whose ``common`` has no length."""
+    groups = like_groups([gap[0] if len(gap) == 1 else None for gap in gaps])
+    inner = range(1, len(gaps) - 1)
+    if len(inner) < 2 or any(gaps[place] for place in inner):
+        return groups
+    even = LikeGroup(Feature("straight", "straight"), inner[0])
+    even.extend(inner[1:])
+    return [*groups, even]
+
+
+def likeness_complaints(found: Measures, asked: Outline) -> Iterator[Complaint]:
+    """Yields a complaint for each group of turns or straights that should be alike and is not. If the number
+    of turns is open, a road is compared only if all required turns have one name and no straight is required.
+    """
+    wanted = _wanted(asked, len(found.turns))
+    if wanted is None:
+        return
+    turns, gaps = wanted
+    for group in like_groups(turns):
+        alike = [found.turns[place] for place in group]
+        angles, radii = [turn.degrees for turn in alike], [turn.radius for turn in alike]
+        if max(angles) - min(angles) > ANGLES:
+            text = f"asked for turns alike, they turn {min(angles):.0f} to {max(angles):.0f} degrees"
+            yield Complaint(text, alike[0].start)
+        if max(radii) > RATIO * min(radii):
+            text = f"asked for turns alike, their radii are {min(radii):.0f} to {max(radii):.0f} m"
+            yield Complaint(text, alike[0].start)
+    for group in like_straights(gaps):
+        lengths = [max((straight.length for straight in found.gaps[place]), default=0.0) for place in group]
+        if max(lengths) - min(lengths) > max(METRES, (RATIO - 1) * min(lengths)):
+            yield Complaint(
+                f"asked for straights alike, they have {min(lengths):.0f} to {max(lengths):.0f} m"
+            )
+
+
+def _wanted(asked: Outline, count: int) -> tuple[list[Feature], list[list[Feature]]] | None:
+    """Returns the required turns, and the straights required in each gap; None if it is not known which turn
+    is which."""
+    turns: list[Feature] = []
+    gaps: list[list[Feature]] = [[]]
+    for group in asked.groups:
+        for _ in range(group.lo):
+            if group.feature.kind == "straight":
+                gaps[-1].append(group.feature)
+            else:
+                turns.append(group.feature)
+                gaps.append([])
+    if not turns and not gaps[0]:
+        turns, gaps = [OPEN_TURN] * count, [[] for _ in range(count + 1)]
+    if len(turns) != count:
+        kinds = {turn.name for turn in turns}
+        if len(kinds) != 1 or any(gaps) or len(like_groups(turns)) > 1:
+            return None
+        turns, gaps = turns[:1] * count, [[] for _ in range(count + 1)]
+    for end, place in ((asked.starts, 0), (asked.ends, -1)):
+        if end is not None and end.kind == "turn" and turns:
+            turns[place] = both(turns[place], end)
+        elif end is not None and end.kind == "straight":
+            gaps[place] = [both(gaps[place][0], end)] if len(gaps[place]) == 1 else [*gaps[place], end]
+    return turns, gaps

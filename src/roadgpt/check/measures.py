@@ -14,8 +14,7 @@ and grades in percent, uphill positive. The centre line is resampled about every
   less). Pieces shorter than 6 m are ignored.
 
 Source: the definitions of an independent road checker. ``tests/authorities`` compares its measurements with
-those of this module.
-"""
+those of this module."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -49,24 +48,17 @@ class MeasuredFeature:
     """A turn, a straight, or a piece of a straight, as measured on a finished road."""
 
     kind: Literal["turn", "straight"]
-    start: float
-    """Station in metres where the feature starts, measured in plan."""
+    start: float  # station in metres where the feature starts, measured in plan
     end: float
     side: Literal["left", "right"] | None
     degrees: float
-    """Absolute change of heading in degrees.
-
-    A turn includes its ends, where the curvature fades out; a straight excludes the 5 m at either end.
-    """
-    radius: float
-    """Radius in metres at the tightest place."""
-    grade: float
-    """Mean grade in percent, from end to end."""
+    """Absolute change of heading in degrees. A turn includes its ends, where the curvature fades out; a
+    straight excludes the 5 m at either end."""
+    radius: float  # radius in metres at the tightest place
+    grade: float  # mean grade in percent, from end to end
     inner_grade: float
-    """Mean grade in percent over the middle half.
-
-    It is close to the design grade even where vertical curves take up the ends of a short slope.
-    """
+    """Mean grade in percent over the middle half. It is close to the design grade even where vertical curves
+    take up the ends of a short slope."""
     pieces: tuple["MeasuredFeature", ...] = ()
     """The pieces of a straight, each with one class of grade (up, flat or down); empty for a turn."""
 
@@ -84,10 +76,8 @@ class MeasuredFeature:
 class GradeChange(NamedTuple):
     """A change of grade between two parts of a straight that both go up, or both go down."""
 
-    grade: float
-    """A grade in percent: the mean of the grades that are requested of the two parts."""
-    rises: bool
-    """Whether the grade of the second part is the larger one; -4 percent is larger than -8."""
+    grade: float  # a grade in percent: the mean of the grades that are requested of the two parts
+    rises: bool  # whether the grade of the second part is the larger one; -4 percent is larger than -8
 
 
 class CentreLine(NamedTuple):
@@ -103,28 +93,17 @@ class CentreLine(NamedTuple):
 class Measures:
     """The measured turns, straights, grades and lengths of a road."""
 
-    features: tuple[MeasuredFeature, ...]
-    """Turns and straights in driving order."""
-    length: float
-    """Length in plan in metres."""
-    climb: float
-    """Height difference in metres from start to end."""
-    grade: float
-    """Mean grade in percent, from start to end."""
-    lowest_grade: float
-    """Lowest grade over any 20 m in percent; negative if the road falls there."""
-    highest_grade: float
-    """Highest grade over any 20 m in percent; negative if the road falls everywhere."""
-    steepest: float
-    """Greatest absolute grade over any 10 m in percent."""
-    hills: int
-    """Number of changes between climbing and falling; grades are averaged over 20 m."""
-    radius: float
-    """Radius in metres at the tightest place of the road."""
-    turning: float
-    """Sum of the absolute changes of heading along the road in degrees."""
-    line: CentreLine = field(repr=False, compare=False)
-    """The points that were measured."""
+    features: tuple[MeasuredFeature, ...]  # turns and straights in driving order
+    length: float  # length in plan in metres
+    climb: float  # height difference in metres from start to end
+    grade: float  # mean grade in percent, from start to end
+    lowest_grade: float  # lowest grade over any 20 m in percent; negative if the road falls there
+    highest_grade: float  # highest grade over any 20 m in percent; negative if the road falls everywhere
+    steepest: float  # greatest absolute grade over any 10 m in percent
+    hills: int  # number of changes between climbing and falling; grades are averaged over 20 m
+    radius: float  # radius in metres at the tightest place of the road
+    turning: float  # sum of the absolute changes of heading along the road in degrees
+    line: CentreLine = field(repr=False, compare=False)  # the points that were measured
 
     @property
     def turns(self) -> tuple[MeasuredFeature, ...]:
@@ -138,9 +117,8 @@ class Measures:
 
     @property
     def gaps(self) -> tuple[tuple[MeasuredFeature, ...], ...]:
-        """The straights before the first turn, between consecutive turns, and after the last turn.
-
-        With n turns there are n + 1 entries; an entry is empty where there is no straight."""
+        """The straights before the first turn, between consecutive turns, and after the last turn: with n
+        turns n + 1 entries, each empty where there is no straight."""
         out: list[tuple[MeasuredFeature, ...]] = [()]
         for feature in self.features:
             if feature.kind == "turn":
@@ -160,10 +138,8 @@ class Measures:
 
     def cut(self, piece: MeasuredFeature, changes: Sequence[GradeChange]) -> tuple[MeasuredFeature, ...]:
         """Cuts a piece of a straight at the given changes of its grade, over 10 m, and returns the parts.
-
-        With n changes there are n + 1 parts, or fewer if the piece does not have all the changes in order.
-        A part may be as short as one station.
-        """
+        With n changes there are n + 1 parts, or fewer if the piece does not have all the changes in order. A
+        part may be as short as one station."""
         first, last = (int(at) for at in np.searchsorted(self.line.s, (piece.start - 1e-6, piece.end - 1e-6)))
         local = _local_grades(self.line, first, last)
         cuts = [0]
@@ -183,15 +159,9 @@ class _Bend(NamedTuple):
 
 
 def measure(points: ArrayLike, widest: float = USUALLY_WIDEST) -> Measures:
-    """Measures a road that is given by points of its centre line.
-
-    Args:
-        points: Points ``(n, 2)`` or ``(n, 3)`` in metres, about 1 m apart.
-        widest: Greatest radius of a turn in metres; wider bends are not turns.
-
-    Raises:
-        UsageError: There are fewer than two different points, or a number is not finite.
-    """
+    """Measures a road given by points ``(n, 2)`` or ``(n, 3)`` in metres of its centre line, about 1 m apart.
+    Bends wider than ``widest`` metres are not turns. Raises UsageError if there are fewer than two different
+    points, or a number is not finite."""
     line = _resampled(points)
     s, z = line.s, line.z
     features = _features(line, _turns(line, widest))
@@ -245,19 +215,12 @@ def _resampled(points: ArrayLike) -> CentreLine:
     s = np.linspace(0.0, along[-1], max(round(float(along[-1]) / STEP), 3) + 1)
     x, y = np.interp(s, along, p[:, 0]), np.interp(s, along, p[:, 1])
     z = np.interp(s, along, p[:, 2]) if p.shape[1] > 2 else np.zeros_like(s)
-    heading = _heading(np.gradient(x), np.gradient(y))
+    heading = np.arctan2(np.gradient(y), np.gradient(x))
+    heading[1:] -= np.cumsum(np.round(np.diff(heading) / (2 * np.pi))) * (2 * np.pi)
     bend = np.gradient(heading) / (s[1] - s[0])
     reach = SMOOTHED // 2
     padded = np.concatenate([np.full(reach, bend[0]), bend, np.full(reach, bend[-1])])
     return CentreLine(s, z, heading, np.convolve(padded, np.full(SMOOTHED, 1 / SMOOTHED), "valid"))
-
-
-def _heading(dx: Array, dy: Array) -> Array:
-    """Returns headings in radians, without jumps."""
-    heading = np.arctan2(dy, dx)
-    jumps = np.diff(heading)
-    heading[1:] -= np.cumsum(np.round(jumps / (2 * np.pi))) * (2 * np.pi)
-    return heading
 
 
 def _radius(curvature: Array) -> float:

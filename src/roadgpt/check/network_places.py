@@ -1,6 +1,7 @@
 """Makes the Findings of the network rules; each names the road or junction, and its station on the route."""
 
 import math
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -8,11 +9,12 @@ from roadgpt.brief.junctions import NAMES
 from roadgpt.check.finding import Finding
 from roadgpt.network import Junction, Network, NetworkRoad, Route
 
+ROUNDING = 1e-9  # m
+
 
 def junction_finding(rule: str, route: Route | None, junction: Junction, what: str) -> Finding:
-    """Returns the Finding that something is wrong at a junction; ``what`` describes it without the place. The
-    station of the Finding is where the route enters the junction; None if no route passes the junction.
-    """
+    """Returns the Finding that something, ``what``, is wrong at a junction. Its station is where the route
+    enters the junction; None if no route passes it."""
     x, y, _ = junction.node
     s = None
     if route is not None:
@@ -23,10 +25,8 @@ def junction_finding(rule: str, route: Route | None, junction: Junction, what: s
 def road_finding(
     rule: str, route: Route | None, member: NetworkRoad, s: float, what: str, stops: bool = False
 ) -> Finding:
-    """Returns the Finding that something is wrong at station ``s`` (m) of a road; ``what`` describes it
-    without the place. The station of the Finding is measured along the route; None if the road is not on the
-    route.
-    """
+    """Returns the Finding that something, ``what``, is wrong at station ``s`` (m) of a road. Its station is
+    measured along the route; None if the road is not on the route."""
     with np.errstate(invalid="ignore", over="ignore"):  # a number of the road may not be finite
         x, y, _ = member.road.at(s).tolist()
     along = station_on(route, member, s)
@@ -35,10 +35,33 @@ def road_finding(
     return Finding(rule, f"{where}{near}: {what}", along, x, y, stops)
 
 
+def bends_below(
+    rule: str,
+    network: Network,
+    route: Route | None,
+    least: float,
+    what: str,
+    radii_at: Callable[[Network, Junction], Iterable[float]],
+) -> tuple[Finding, ...]:
+    """Returns a Finding for each junction or roundabout with a bend below ``least`` metres. ``what`` names
+    the line and has a ``{}`` for its radius. ``radii_at`` gives the radii at a junction, with traffic on the
+    right."""
+    found = []
+    seen = network.right_hand
+    for _, junctions in network.nodes:
+        radii = (radius for each in junctions for radius in radii_at(seen, seen.junction(each.id)))
+        radius = min(radii, default=least)
+        if radius < least - ROUNDING:
+            wanted = "give the island" if junctions[0].kind == "roundabout" else "ask for a kerb with"
+            advice = f"{wanted} a larger radius or turn the arms apart"
+            told = f"{what.format(radius)}, tighter than {least:g} m; {advice}"
+            found.append(junction_finding(rule, route, junctions[0], told))
+    return tuple(found)
+
+
 def station_on(route: Route | None, member: NetworkRoad, s: float) -> float | None:
-    """Returns the distance in metres along a route to station ``s`` of a road. If the route uses the road
-    more than once, the first time counts. None: there is no route, or the road is not on the route.
-    """
+    """Returns the distance in metres along a route to station ``s`` of a road, where the route first uses it;
+    None if the road is not on the route."""
     if route is None:
         return None
     for start, leg in zip(route.starts, route.legs, strict=False):
@@ -61,7 +84,7 @@ def name_of(junction: Junction) -> str:
 
 
 def owner_of(network: Network, member: NetworkRoad) -> str:
-    """Returns the name of the junction or roundabout that contains a road; otherwise the name of the road."""
+    """Returns the name of the junction or roundabout that contains a road; otherwise that of the road."""
     if member.junction is not None:
         return name_of(network.junction(member.junction))
     ring = network.roundabout_of.get(member.id)

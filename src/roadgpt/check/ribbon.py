@@ -2,8 +2,7 @@
 
 left[0] ---- left[1] ---- left[2]        quad i is (left i, left i+1, right i+1, right i),
    |   quad 0   |   quad 1   |           clockwise where the road does not fold
-right[0] --- right[1] --- right[2]
-"""
+right[0] --- right[1] --- right[2]"""
 
 from collections.abc import Iterator
 from typing import Any
@@ -32,11 +31,8 @@ def sides(samples: Samples, edges: Edges) -> tuple[Array, Array]:
 
 
 def bulge(samples: Samples, edges: Edges) -> float:
-    """Returns the largest distance in metres between an edge of a road and the chords between its samples.
-
-    The distance is the rise of an arc over its chord, chord^2 * curvature / 8, on the outer edge of the
-    tightest bend.
-    """
+    """Returns the largest distance in metres between an edge of a road and the chords between its samples:
+    the rise of an arc over its chord, chord^2 * curvature / 8, on the outer edge of the tightest bend."""
     step, bend = samples.s[1] - samples.s[0], float(np.abs(samples.curvature).max())
     reach = float(max(np.abs(edges.left).max(), np.abs(edges.right).max()))
     return float(step**2 * bend * (1 + bend * reach) / 8)
@@ -54,10 +50,8 @@ def quads_of(left: Array, right: Array) -> Array:
 
 
 def is_convex(quads: Array) -> NDArray[np.bool_]:
-    """Returns for each quad whether it is convex, clockwise and not degenerate, ``(n,)``.
-
-    The result is False for a quad with a coordinate that is not finite.
-    """
+    """Returns for each quad whether it is convex, clockwise and not degenerate, ``(n,)``; False for a
+    coordinate that is not finite."""
     sides = np.roll(quads, -1, axis=1) - quads
     ahead = np.roll(sides, -1, axis=1)
     corner = sides[..., 0] * ahead[..., 1] - sides[..., 1] * ahead[..., 0]
@@ -65,12 +59,12 @@ def is_convex(quads: Array) -> NDArray[np.bool_]:
 
 
 def near_pairs(quads: Array, reach: float, apart: int = 2) -> Iterator[tuple[Indices, Indices]]:
-    """Yields index pairs of quads whose bounding boxes are at most ``reach`` metres apart.
+    """Yields index pairs of quads, j - i >= ``apart``, whose bounding boxes are at most ``reach`` metres
+    apart.
 
-    The indices satisfy j - i >= ``apart``. Each item contains all such pairs for ``PORTION`` consecutive
-    values of j, in driving order, so a caller that needs only the first contact can stop early. To avoid
-    comparing all quads of a long road, bounding boxes of many quads are compared first.
-    """
+    Each item contains all such pairs for ``PORTION`` consecutive values of j, in driving order, so a caller
+    that needs only the first contact can stop early. To avoid comparing all quads of a long road, bounding
+    boxes of many quads are compared first."""
     low, high = quads.min(axis=1) - reach, quads.max(axis=1)
     blocks, portions = _boxes(low, high, BLOCK), _boxes(low, high, PORTION)
     for portion in range(len(portions[0])):
@@ -122,11 +116,7 @@ def _touch(low: Array, high: Array, other_low: Array, other_high: Array) -> Any:
 
 def gaps(quads: Array, i: Indices, j: Indices) -> Array:
     """Returns the signed distances in metres ``(m,)`` between convex quads i and j, by the separating axis
-    theorem.
-
-    A positive value means that the two quads are at least this far apart. A negative value means that they
-    overlap; its absolute value is the distance by which one must move to separate them. Zero means that they
-    touch.
+    theorem: at least this far apart, or, if negative, the distance by which one must move to separate them.
     """
     used, index = np.unique(np.concatenate((i, j)), return_inverse=True)
     quads, i, j = quads[used], index[: len(i)], index[len(i) :]

@@ -10,8 +10,7 @@ reproduced on purpose:
 * the radius is that of the circle through nodes i, i+2, i+4, and the last such triple of nodes is left out.
 
 The competition's validator compares every pair of quads with the library shapely. Here numpy decides all
-pairs for which rounding errors cannot matter. Shapely, imported only if needed, decides the rest.
-"""
+pairs for which rounding errors cannot matter. Shapely, imported only if needed, decides the rest."""
 
 import math
 
@@ -41,16 +40,10 @@ TOO_SHARP = "The road is too sharp"
 
 
 def sbft_verdict(points: ArrayLike, map_size: float) -> tuple[bool, str]:
-    """Returns the competition validator's result for a road: ``(is_valid, validation_message)``.
-
-    Args:
-        points: Control points ``(n, 2)`` in metres; further columns are ignored.
-        map_size: Side length of the square map in metres.
-
-    Raises:
-        UsageError: Two neighbouring points are the same or a number is not finite. The competition's code
-            fails on such input too.
-    """
+    """Returns the competition validator's result ``(is_valid, validation_message)`` for control points ``(n,
+    2)`` in metres and the side of the square map; further columns are ignored. Raises UsageError if two
+    neighbouring points are the same or a number is not finite; the competition's code fails on such input
+    too."""
     points = np.asarray(points, float)
     if len(points) < 2:
         return False, TOO_FEW
@@ -77,19 +70,14 @@ def _complaint(nodes: Array, map_size: float) -> str:
 
 def splines(points: Array) -> tuple[Array, Array]:
     """Returns the nodes of the spline through control points ``(n, 2)``, for driving forwards and backwards.
-
     The two arrays ``(m, 2)`` contain different points, because nodes are spaced from the first control point
-    in the direction of driving, and one extra node may lie beyond the last control point.
-    """
+    in the direction of driving, and one extra node may lie beyond the last control point."""
     return interpolate(points), interpolate(points[::-1])
 
 
 def edges(nodes: Array, road_width: float = ROAD_WIDTH) -> tuple[Array, Array]:
-    """Returns the left and the right edge points ``(n, 2)`` of a road with nodes ``(n, 2)``.
-
-    Each edge point is offset from its node at a right angle to the direction to the next node. At the last
-    node, the direction from the previous node is used.
-    """
+    """Returns the left and the right edge points ``(n, 2)`` of a road with nodes ``(n, 2)``, each at a right
+    angle to the direction to the next node, and at the last node to that from the previous one."""
     ahead = np.diff(nodes, axis=0, append=nodes[-2:-1])
     with np.errstate(
         invalid="ignore"
@@ -129,8 +117,7 @@ def _doubt(points: Array) -> float:
 
 def keeps_clear(quads: Array) -> bool:
     """Returns whether all quads are valid, neighbouring quads share exactly one edge, and all other pairs
-    of quads are disjoint.
-    """
+    of quads are disjoint."""
     plain = is_convex(quads)
     odd = np.flatnonzero(~plain)
     if odd.size and not _are_valid(quads[odd]):
@@ -188,12 +175,8 @@ def measured_length(nodes: Array) -> float:
 
 
 def smallest_radius(nodes: Array) -> tuple[float, int]:
-    """Returns the smallest radius in metres of the circles in ``radii(nodes)``, and the index of the middle
-    one of the three nodes on the smallest circle.
-
-    The radius is infinite on a straight road, and with fewer than six nodes: a circle goes through nodes i,
-    i+2, i+4, and the last such triple of nodes is left out.
-    """
+    """Returns the smallest radius in metres of the circles in ``radii(nodes)``, infinite if there is none,
+    and the index of the middle one of the three nodes on the smallest circle."""
     found = radii(nodes)
     if not found.size:
         return math.inf, 0
@@ -203,8 +186,7 @@ def smallest_radius(nodes: Array) -> tuple[float, int]:
 
 def radii(nodes: Array) -> Array:
     """Returns radii ``(n - 5,)`` in metres of the circles through nodes i, i+2, i+4 of ``(n, 2)``; infinite
-    where the three nodes are collinear.
-    """
+    where the three nodes are collinear."""
     a, b, c = nodes[:-5], nodes[2:-3], nodes[4:-1]
     (ax, ay), (bx, by), (cx, cy) = a.T, b.T, c.T
     square = bx * bx + by * by

@@ -1,8 +1,7 @@
 """The command line: reads options, calls the other packages, and prints what they return.
 
 ``main`` is the entry point. Commands are imported when they are called, and import other packages inside
-their functions, so that ``roadgpt --help`` answers at once.
-"""
+their functions, so that ``roadgpt --help`` answers at once."""
 
 from roadgpt import stopping
 from roadgpt.cli.app import app

@@ -1,6 +1,5 @@
 """The top-level command group ``roadgpt``: imports commands when they are called, and reports errors as
-one sentence.
-"""
+one sentence."""
 
 import errno
 import sys
@@ -12,14 +11,48 @@ from typing import Any
 
 import click
 
-from roadgpt import __version__, stopping
-from roadgpt.cli.command_table import COMMANDS, EARLIER, HEADINGS, renamed
-from roadgpt.cli.crash import report_crash
+from roadgpt import __version__, plugins, stopping
 from roadgpt.cli.option_groups import dash_advice
-from roadgpt.cli.streams import OutputError, drop_output, is_coloured, warn
-from roadgpt.errors import RoadGPTError, command_line
+from roadgpt.cli.streams import OutputError, drop_output, is_coloured, report_crash, warn
+from roadgpt.errors import PartError, RoadGPTError, command_line
 from roadgpt.provenance import USER
 
+# The help line of each command is here, so that `roadgpt --help` need not import the commands. Those under
+# one heading are in one module, roadgpt.cli.commands.make and so on.
+HEADINGS = {
+    "Make": {
+        "run": "Make roads from a description: design, check, drive and judge them.",
+        "read": "Show how RoadGPT interprets a description, and how confident it is.",
+        "edit": "Change a road with a request in plain words.",
+        "drive": "Drive roads from files, or repeat tests of a campaign.",
+    },
+    "Look": {
+        "show": "Summarise a run, a folder of runs or a campaign; watch a campaign.",
+        "view": "View a road in 3-D with a replay of its drive, or draw pictures.",
+        "film": "Film drives: from behind the car, from its hood, or two side by side.",
+        "compare": "Measure how similar two roads are, and draw both.",
+    },
+    "Search": {
+        "campaign": "Search for failures, or make thousands of roads, with parallel workers.",
+        "resume": "Continue a campaign or a run that was interrupted.",
+        "faults": "Group failures into distinct faults, and find why each occurs.",
+    },
+    "Evaluate": {
+        "check": "Check roads against the rules.",
+        "report": "Write a report on a folder of runs, a campaign or a study.",
+    },
+    "Exchange": {
+        "export": "Write roads for other tools: OpenDRIVE, OpenSCENARIO and others.",
+        "import": "Read a road from an OpenDRIVE file.",
+    },
+    "Set up": {
+        "config": "Show all settings and where each comes from; list plug-ins.",
+        "doctor": "Check this installation, or an installed BeamNG.tech.",
+    },
+}
+
+OURS = [name for commands in HEADINGS.values() for name in commands]
+OTHERS = "Of other packages"
 INTERRUPTED = 130  # exit status if the user broke off the input; after a signal, that of ``stopping.status``
 NO_READER = 141  # exit status if the reader of the output has gone; as in shells: 128 + SIGPIPE
 REFUSED = 1  # exit status if the output or a file cannot be written
@@ -28,53 +61,68 @@ OF_FILES = {
     errno.EROFS, errno.EDQUOT if hasattr(errno, "EDQUOT") else errno.ENOSPC,
 }  # fmt: skip
 """``errno`` values of file system errors that the user can fix, such as a full disk; other errors are
-reported as crashes.
-"""
+reported as crashes."""
 INTERNAL = 70  # EX_SOFTWARE of sysexits.h
 
 
+def commands() -> list[str]:
+    """Returns the names of all commands; those of other packages are last."""
+    return [*OURS, *(name for name in plugins.names("commands") if name not in OURS)]
+
+
+def headings() -> dict[str, dict[str, str]]:
+    """Returns the names and help lines of all commands under their headings, with those of other packages.
+
+    The ``short_help`` of their click command is the help line, and its ``heading``, if it has one, the
+    heading. Such a module should import nothing but click and ``roadgpt.cli`` at first."""
+    every = {heading: {**commands} for heading, commands in HEADINGS.items()}
+    for name in commands()[len(OURS) :]:
+        try:
+            command = plugins.find("commands", name)
+        except PartError as error:
+            every.setdefault(OTHERS, {})[name] = str(error)
+        else:
+            heading = getattr(command, "heading", "") or OTHERS
+            every.setdefault(heading, {})[name] = command.short_help or command.get_short_help_str(100)
+    return every
+
+
 class Commands(click.Group):
-    """A command group that imports its commands lazily and reports errors as sentences instead of
-    tracebacks.
-    """
+    """Imports a command when it is called, and reports errors as sentences instead of tracebacks."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Returns the names of all commands, in the order of the help."""
-        return list(COMMANDS)
+        return commands()
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """Imports the command ``name`` and returns the command; returns None if ``name`` is unknown."""
-        if name not in COMMANDS:
-            return None
-        module = f"{name}_" if iskeyword(name) else name
-        command: click.Command = import_module(f"roadgpt.cli.commands.{module}").command
-        return command
+        """Imports the command ``name``; returns None if there is none of that name."""
+        found: click.Command | None = None
+        heading = next((heading for heading, under in HEADINGS.items() if name in under), "")
+        if heading:
+            module = import_module(f"roadgpt.cli.commands.{heading.lower().replace(' ', '_')}")
+            found = getattr(module, f"{name}_" if iskeyword(name) else name)
+        elif name in commands():
+            found = plugins.find("commands", name)
+        return found
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Writes all commands with their one-line descriptions under headings, without importing a
-        command.
-        """
-        wide = max(map(len, COMMANDS))
-        for heading, commands in HEADINGS.items():
+        """Writes all commands and their help lines under headings, without importing ours."""
+        every = headings()
+        wide = max(len(name) for under in every.values() for name in under)
+        for heading, under in every.items():
             with formatter.section(heading):
-                formatter.write_dl([(f"{name:<{wide}}", line) for name, line in commands.items()])
+                formatter.write_dl([(f"{name:<{wide}}", line) for name, line in under.items()])
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Returns the name of the command, the command and its arguments; earlier names of commands work too.
-
-        Raises:
-            click.UsageError: There is no such command; the message says what to type instead.
-        """
-        args, told = renamed(args)
-        if told and not ctx.resilient_parsing:
-            warn(told)
+        """Returns the name of the command, the command and its arguments."""
         name = args[0]
-        if name in COMMANDS or (name.startswith("-") and " " not in name.strip()):
+        known = commands()
+        if name in known or (name.startswith("-") and " " not in name.strip()):
             return super().resolve_command(ctx, args)
-        near = get_close_matches(name.lower(), [*COMMANDS, *(words[0] for words in EARLIER)], 1)
-        advice = f"No such command '{name}'; there are: {', '.join(COMMANDS)}. Is it a description? Say:"
+        near = get_close_matches(name.lower(), known, 1)
+        advice = f"No such command '{name}'; there are: {', '.join(known)}. Is it a description? Say:"
         if " " in name.strip():
             advice = "to make roads from a description, say:"
         elif near:
@@ -82,11 +130,7 @@ class Commands(click.Group):
         raise click.UsageError(f"{advice} {command_line('run', *args)}", ctx)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parses the arguments after ``roadgpt``.
-
-        Raises:
-            click.UsageError: An option is unknown or misplaced; the message says what to type.
-        """
+        """Parses the arguments after ``roadgpt``."""
         try:
             with dash_advice(ctx, args):
                 return super().parse_args(ctx, args)
@@ -98,21 +142,16 @@ class Commands(click.Group):
             ) from error
 
     def main(
-        self,
-        args: Sequence[str] | None = None,
-        prog_name: str | None = None,
-        complete_var: str | None = None,
-        standalone_mode: bool = True,
-        **extra: Any,
-    ) -> Any:
+        self, args: Sequence[str] | None = None, prog_name: str | None = None,
+        complete_var: str | None = None, standalone_mode: bool = True, **extra: Any,
+    ) -> Any:  # fmt: skip
         """Runs a command; in standalone mode, reports errors as sentences and ends the process with an
-        exit status.
-        """
+        exit status."""
         USER.ask = _confirm
         if not standalone_mode:
-            return super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
+            return super().main(args, prog_name, complete_var, False, **extra)
         try:
-            status = super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
+            status = super().main(args, prog_name, complete_var, False, **extra)
             sys.stdout.flush()
         except OutputError as error:
             drop_output()
@@ -139,7 +178,6 @@ class Commands(click.Group):
 
 
 def _refused(error: OSError) -> int:
-    """Says that a file cannot be used, and returns the exit status; reports any other error as a crash."""
     if error.errno not in OF_FILES or not error.filename:
         warn(report_crash(error))
         return INTERNAL
@@ -157,7 +195,6 @@ def _confirm(question: str) -> bool:
 
 
 def _with_advice(error: click.ClickException) -> click.ClickException:
-    """Extends the message about a missing argument by advice on what to type."""
     if not isinstance(error, click.MissingParameter):
         return error
     advice = getattr(error.param, "advice", "")
@@ -176,8 +213,7 @@ def app(ctx: click.Context) -> None:
     """Turn words into tested roads.
 
     RoadGPT designs 3-D roads that match a description, drives a simulated car along them, and says whether
-    the car kept its lane. Without a command it asks for descriptions, one after another.
-    """
+    the car kept its lane. Without a command it asks for descriptions, one after another."""
     if not is_coloured():
         ctx.color = False
     if ctx.invoked_subcommand is None:

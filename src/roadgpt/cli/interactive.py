@@ -1,16 +1,15 @@
-"""``roadgpt`` without a command: asks for a description and a number of roads, makes the roads, and asks
-again.
-"""
+"""``roadgpt`` without a command: asks for a description and a number of roads, makes the roads, asks for
+changes, and asks again."""
 
 import re
 import sys
+from contextlib import suppress
 
 import click
 
 from roadgpt import stopping
-from roadgpt.cli.commands import run
-from roadgpt.cli.commands.edit import edit_road
-from roadgpt.cli.option_types import ROADS
+from roadgpt.cli.commands import make
+from roadgpt.cli.option import ROADS
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError
@@ -47,14 +46,12 @@ Here all options have their defaults, or what your settings say. 'roadgpt run' t
 
 
 def converse() -> None:
-    """Asks the user for descriptions, makes roads from them and changes roads on request, until the user
-    quits.
-    """
-    _enable_editing()
+    """Asks for descriptions, makes roads from them and changes roads on request, until the user quits."""
+    if sys.stdin.isatty():
+        with suppress(ImportError):
+            import readline  # noqa: F401  importing it switches on arrow keys and history
     click.echo(f"{HELLO}\n")
-    while (words := _asked("description> ")) and words.lower() not in ENOUGH:
-        if _wants_help(words):
-            continue
+    while (words := _asked("description> ", EXPLAINED)) and words.lower() not in ENOUGH:
         try:
             meant = _understood(words)  # reports what cannot be read, before it asks for a number
             if meant is None:
@@ -63,8 +60,8 @@ def converse() -> None:
             if roads is None:
                 break
             screen = Screen(roads)
-            given = run.usual_values(meant or words, roads, is_plan=bool(meant))
-            run.carry_out(screen, meant or words, **given)
+            given = make.usual_values(meant or words, roads, is_plan=bool(meant))
+            make.carry_out(screen, meant or words, **given)
             if not _changed(screen):
                 break
         except RoadGPTError as error:
@@ -74,25 +71,50 @@ def converse() -> None:
         click.echo()
 
 
+def _asked(question: str, explained: str) -> str:
+    """Returns the answer without blanks around it; empty at the end of the input. To an answer that asks
+    for help, explains, and asks again."""
+    while True:
+        try:
+            answer = input(question).strip()
+        except EOFError:
+            click.echo()
+            return ""
+        if answer.lower() not in HELP or not explained:
+            return answer
+        click.echo(f"{explained}\n")
+
+
 def _understood(words: str) -> str | None:
-    """Returns the plan to build instead of the words, "" if the words can be built as they are, and None if
-    the user wants to say it in other words. If the reader is not sure, asks which of two readings is meant.
-    """
+    """Returns the plan to build instead of the words, "" to build the words, and None if the user wants to
+    say it in other words. If the reader is not sure, asks which of two readings is meant."""
     from roadgpt.brief import AnotherRoadError, read
     from roadgpt.brief.plan import read_plan
 
     try:
         brief = read(words, is_map_fixed=False)
     except AnotherRoadError as error:
-        click.echo(f"{error.offer}: {run.reading(error.brief)}")
-        answer = _asked("1 to build that, or an empty line to say it in other words> ")
+        click.echo(f"{error.offer}: {make.reading(error.brief)}")
+        answer = _asked("1 to build that, or an empty line to say it in other words> ", "")
         return error.plan if answer == "1" else None
     if not brief.other:
         return ""
-    other = run.reading(read_plan(brief.other))
-    click.echo(f"I am not sure what is meant:\n  1  {run.reading(brief)}\n  2  {other}")
-    answer = _asked("1, 2, or an empty line to say it in other words> ")
+    other = make.reading(read_plan(brief.other))
+    click.echo(f"I am not sure what is meant:\n  1  {make.reading(brief)}\n  2  {other}")
+    answer = _asked("1, 2, or an empty line to say it in other words> ", "")
     return {"1": "", "2": brief.other}.get(answer)
+
+
+def _how_many() -> int | None:
+    """Asks for the number of roads; returns None if the user wants to leave."""
+    while True:
+        answer = _asked(f"how many roads [{USUAL_ROADS}]> ", EXPLAINED)
+        if answer.lower() in ENOUGH:
+            return None
+        try:
+            return ROADS(answer) if answer else USUAL_ROADS
+        except click.BadParameter as error:
+            warn(error.message)
 
 
 def _changed(screen: Screen) -> bool:
@@ -100,68 +122,15 @@ def _changed(screen: Screen) -> bool:
     from roadgpt.road import World
 
     roads = [row.file for row in screen.rows]
-    while roads:
-        answer = _asked(CHANGE if len(roads) == 1 else CHANGE_ONE)
-        if not answer:
-            return True
+    while roads and (answer := _asked(CHANGE if len(roads) == 1 else CHANGE_ONE, CHANGES)):
         if answer.lower() in ENOUGH:
             return False
-        if answer.lower() in HELP:
-            click.echo(f"{CHANGES}\n")
-            continue
-        number, words = _numbered(answer, len(roads))
+        # "2: make the last turn sharper"
+        match = re.match(r"(?:road\s+)?(\d+)\s*[:,]?\s+(.*)", answer, re.IGNORECASE | re.DOTALL)
+        is_numbered = match is not None and 1 <= int(match[1]) <= len(roads)
+        number, words = (int(match[1]) - 1, match[2]) if match and is_numbered else (0, answer)
         try:
-            roads[number] = str(edit_road(Screen(1), roads[number], words, World()))
+            roads[number] = str(make.edit_road(Screen(1), roads[number], words, World()))
         except RoadGPTError as error:
             warn(error)
     return True
-
-
-def _numbered(answer: str, roads: int) -> tuple[int, str]:
-    """Splits '2: make the last turn sharper' into the index of the road, from 0, and the change."""
-    match = re.match(r"(?:road\s+)?(\d+)\s*[:,]?\s+(.*)", answer, re.IGNORECASE | re.DOTALL)
-    if match and 1 <= int(match[1]) <= roads:
-        return int(match[1]) - 1, match[2]
-    return 0, answer
-
-
-def _asked(question: str) -> str:
-    """Returns the answer without blanks around it; empty at the end of the input."""
-    try:
-        return input(question).strip()
-    except EOFError:
-        click.echo()
-        return ""
-
-
-def _wants_help(answer: str) -> bool:
-    """Prints help if the answer asks for it; returns whether it did."""
-    if answer.lower() not in HELP:
-        return False
-    click.echo(f"{EXPLAINED}\n")
-    return True
-
-
-def _how_many() -> int | None:
-    """Asks for the number of roads; returns None if the user wants to leave."""
-    while True:
-        answer = _asked(f"how many roads [{USUAL_ROADS}]> ")
-        if answer.lower() in ENOUGH:
-            return None
-        if not answer:
-            return USUAL_ROADS
-        if _wants_help(answer):
-            continue
-        try:
-            return ROADS(answer)
-        except click.BadParameter as error:
-            warn(error.message)
-
-
-def _enable_editing() -> None:
-    """Enables arrow keys and history, if the platform has them."""
-    if sys.stdin.isatty():
-        try:
-            import readline  # noqa: F401  importing it is what switches it on
-        except ImportError:
-            return

@@ -1,71 +1,68 @@
-"""``--junit``: writes tests as JUnit XML, for continuous integration."""
+"""``--junit``: writes tests as JUnit XML, which continuous integration systems read.
 
-from collections.abc import Iterator, Mapping, Sequence
+    PASS, VALID    a test that passed
+    FAIL           <failure>: the car failed on a road that the rules allow
+    INVALID        <skipped>: the road breaks a rule, so it was not driven
+    ERROR          <error>: a driver or simulator failed, or no road could be designed
+
+JUnit XML has no standard; the file has the elements that Jenkins, GitLab, GitHub, Azure and CircleCI read:
+suites with counts, cases with ``name``, ``classname``, ``time`` and ``file``, and properties of suites and
+cases. Source: the documentation of the common format, https://github.com/testmoapp/junitxml."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from roadgpt.campaign.folder_record import has_tests, open_record
+from roadgpt.campaign.model import Cell, NumberedTest
 from roadgpt.cli.result_row import Row, row_of_result
+from roadgpt.errors import RoadGPTError, explained
+from roadgpt.export.markup import DECLARATION, escaped
+from roadgpt.run.atomic import write_lines
+from roadgpt.run.folder import is_run
+from roadgpt.run.model import Request
 
-if TYPE_CHECKING:
-    from roadgpt.campaign.model import Cell
-    from roadgpt.report.junit import Case, Properties, Suite
-    from roadgpt.run.model import Request
+Properties = Mapping[str, str | float | int | None]
+Suite = tuple[str, Properties, Callable[[], Iterable[Row]]]
+"""Tests with the same description and settings: a name, the settings, and a function that returns the rows of
+all tests. It is called twice: to count the tests, and to write them."""
 
+MARKS = {"FAIL": "failure", "INVALID": "skipped", "ERROR": "error"}
+COUNTED = {"FAIL": "failures", "ERROR": "errors", "INVALID": "skipped"}
 LONGEST = 120  # letters of a suite's name
-IN_CASE = ("seed", "max_oob", "beyond_m", "margin_m", "length_m", "at_s_m", "side", "own_share", "handed_to")
+IN_CASE = (
+    "words", "origin", "seed", "max_oob", "beyond_m", "margin_m", "length_m", "at_s_m", "side", "own_share",
+    "handed_to",
+)  # fmt: skip
 UNKNOWN = "roads that were given"
 
 
-def write_rows(path: Path, request: "Request", rows: Sequence[Row]) -> None:
+def write_rows(path: Path, request: Request, rows: Sequence[Row]) -> None:
     """Writes result rows of a request as a JUnit file; raises RoadGPTError if it cannot be written."""
-    from roadgpt.report.junit import Suite, write_junit
-
-    write_junit(path, [Suite(_named(request.words), common(request), lambda: map(_case, rows))])
+    write_junit(path, [(request.words[:LONGEST] or UNKNOWN, _common(request), lambda: rows)])
 
 
 def write_folder(path: Path, folder: Path, worse: Mapping[str, str]) -> None:
     """Writes the tests of a folder of runs, a campaign or a study as a JUnit file; ``worse`` says of some, by
-    names such as DIR/c01/17, in what they are worse than in a baseline.
-
-    Raises:
-        UsageError: The folder is none of these, or one of its files cannot be read.
-        RoadGPTError: The file cannot be written.
-    """
-    from roadgpt.report.junit import write_junit
-
-    write_junit(path, _suites(folder, worse))
+    names such as DIR/c01/17, in what they are worse than in a baseline."""
+    is_one = has_tests(folder) or is_run(folder)
+    inside = [] if is_one else [place for place in sorted(folder.glob("*/*")) if has_tests(place)]
+    write_junit(path, (suite for place in inside or [folder] for suite in _of_folder(place, worse)))
 
 
-def _suites(folder: Path, worse: Mapping[str, str]) -> Iterator["Suite"]:
-    from roadgpt.study import plan
-
-    if not (folder / plan.CARD).is_file():
-        yield from _of_folder(folder, worse)
-        return
-    for part in plan.read_plan(folder).parts():
-        if (folder / part.name).is_dir():
-            yield from _of_folder(folder / part.name, worse)
-
-
-def _of_folder(folder: Path, worse: Mapping[str, str]) -> Iterator["Suite"]:
-    from roadgpt.campaign.folder_record import open_record
-    from roadgpt.report.junit import Suite
-
+def _of_folder(folder: Path, worse: Mapping[str, str]) -> Iterator[Suite]:
     with open_record(folder) as record:
         cells = record.cells()
         for cell in cells:
-            name = _named(cell.request.words)
+            name = cell.request.words[:LONGEST] or UNKNOWN
             shown = name if len(cells) == 1 else f"{cell.name}: {name}"
             of_cell = {"cell": cell.name, "generator": cell.generator, "goal": cell.goal} if cell.name else {}
-            yield Suite(shown, {**common(cell.request), **of_cell}, partial(_of_cell, folder, cell, worse))
+            yield shown, {**_common(cell.request), **of_cell}, partial(_of_cell, folder, cell, worse)
 
 
-def _of_cell(folder: Path, cell: "Cell", worse: Mapping[str, str]) -> Iterator["Case"]:
-    from roadgpt.campaign.folder_record import open_record
-    from roadgpt.campaign.model import NumberedTest
-
+def _of_cell(folder: Path, cell: Cell, worse: Mapping[str, str]) -> Iterator[Row]:
     times = (
         "SELECT number, coalesce(design_s, 0) + coalesce(drive_s, 0) FROM tests "
         "WHERE cell = ? AND outcome IS NOT NULL"
@@ -79,16 +76,11 @@ def _of_cell(folder: Path, cell: "Cell", worse: Mapping[str, str]) -> Iterator["
             test = str(NumberedTest(cell.name, number))
             row = row_of_result(result, cell.request.words, record.seed(result), Path(file).name or test)
             row = replace(row, seconds=took.get(number, 0.0), file=file, trace=str(said.get(number, "")))
-            row = replace(row, worse=worse.get(f"{folder}/{test}", ""))
-            yield _case(row, result.proposal.origin if cell.name else None)
+            origin = result.proposal.origin if cell.name else None
+            yield replace(row, worse=worse.get(f"{folder}/{test}", ""), origin=origin)
 
 
-def _named(words: str) -> str:
-    return words[:LONGEST] or UNKNOWN
-
-
-def common(request: "Request") -> "Properties":
-    """Returns the settings that all tests of a request share, as JUnit properties."""
+def _common(request: Request) -> Properties:
     setup, world = request.setup, request.world
     return {
         "words": request.words or None,
@@ -104,15 +96,65 @@ def common(request: "Request") -> "Properties":
     }
 
 
-def _case(row: Row, origin: str | None = None) -> "Case":
-    from roadgpt.report.junit import Case
+def write_junit(path: Path, suites: Iterable[Suite]) -> None:
+    """Writes the suites into one file, which appears only when it is complete."""
+    with explained(RoadGPTError, f"cannot write {path}", "name another file with --junit"):
+        write_lines(path, _document([*suites]))
 
-    numbers = {name: getattr(row, name) for name in IN_CASE}
-    properties = {"words": row.words or None, "origin": origin, **numbers}
-    outcome, says = row.test_outcome, row.description
+
+def _document(suites: Sequence[Suite]) -> Iterator[str]:
+    counts = [_counted(rows()) for _, _, rows in suites]
+    yield f'{DECLARATION}\n<testsuites name="roadgpt"{_attributes(sum(counts, Counter[str]()))}>\n'
+    for (name, properties, rows), counted in zip(suites, counts, strict=True):
+        yield f'  <testsuite name="{escaped(name)}"{_attributes(counted)}>\n'
+        yield from _properties(properties, "    ")
+        for row in rows():
+            yield from _case(row, name)
+        yield "  </testsuite>\n"
+    yield "</testsuites>\n"
+
+
+def _outcome(row: Row) -> str:
+    return "FAIL" if row.worse and row.test_outcome != "ERROR" else row.test_outcome
+
+
+def _counted(rows: Iterable[Row]) -> Counter[str]:
+    """Returns the number of tests by the names of attributes, and the milliseconds that they took."""
+    counts: Counter[str] = Counter()
+    for row in rows:
+        counts.update({"tests": 1, COUNTED.get(_outcome(row), ""): 1, "ms": round(1000 * row.seconds)})
+    return counts
+
+
+def _attributes(counts: Counter[str]) -> str:
+    numbers = "".join(f' {name}="{counts[name]}"' for name in ("tests", *COUNTED.values()))
+    return f'{numbers} time="{counts["ms"] / 1000:.3f}"'
+
+
+def _case(row: Row, suite: str) -> Iterator[str]:
+    outcome, says = _outcome(row), row.description
     if row.worse:
-        outcome = "ERROR" if outcome == "ERROR" else "FAIL"
         says = f"worse than in the baseline: {row.worse}; {says}"
-    return Case(
-        row.name or row.file, outcome, says, row.cause or "", row.seconds, row.file, row.trace, properties
-    )
+    file = f' file="{escaped(row.file)}"' if row.file else ""
+    name = escaped(row.name or row.file)
+    yield f'    <testcase name="{name}" classname="{escaped(suite)}" time="{row.seconds:.3f}"{file}>\n'
+    yield from _properties({name: getattr(row, name) for name in IN_CASE}, "      ")
+    mark = MARKS.get(outcome)
+    if mark == "skipped":
+        yield f'      <skipped message="{escaped(says)}"/>\n'
+    elif mark is not None:
+        text = "\n".join(filter(None, (says, row.file, row.trace)))
+        kind = escaped(row.cause or outcome)
+        yield f'      <{mark} message="{escaped(says)}" type="{kind}">{escaped(text)}</{mark}>\n'
+    yield "    </testcase>\n"
+
+
+def _properties(properties: Properties, indent: str) -> Iterator[str]:
+    known = {name: value for name, value in properties.items() if value not in (None, "")}
+    if not known:
+        return
+    yield f"{indent}<properties>\n"
+    for name, value in known.items():
+        text = f"{value:.6g}" if isinstance(value, float) else str(value)
+        yield f'{indent}  <property name="{escaped(name)}" value="{escaped(text)}"/>\n'
+    yield f"{indent}</properties>\n"

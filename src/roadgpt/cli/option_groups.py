@@ -10,7 +10,6 @@ from typing import Any
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.command_table import renamed_options
 from roadgpt.cli.option import FROM_FILES, LAYERS, Heading, Option
 from roadgpt.cli.streams import warn
 from roadgpt.errors import command_line
@@ -18,9 +17,7 @@ from roadgpt.errors import command_line
 
 @contextmanager
 def dash_advice(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
-    """Replaces click's error message within a ``with`` block if an argument looks like a description that
-    begins with a dash; the new message says where to put the description.
-    """
+    """Says where to put it, if an argument that click refuses looks like a description after a dash."""
     given = list(args)  # click takes them out of its list
     try:
         yield
@@ -41,7 +38,6 @@ ALL = "roadgpt.help_all"  # key of click's Context.meta while --help-all is answ
 
 
 def _help_all(ctx: click.Context, parameter: click.Parameter, is_asked: bool) -> None:
-    """Prints the whole help and ends the command."""
     del parameter
     if is_asked and not ctx.resilient_parsing:
         ctx.meta[ALL] = True
@@ -56,28 +52,28 @@ HELP_ALL = Option(
 
 
 class GroupedCommand(click.Command):
-    """A command whose help lists options in groups. It also prints which settings come from files."""
+    """A command whose help lists options in groups. It also prints which settings come from files.
 
-    def __init__(self, *args: Any, **rest: Any) -> None:
+    ``heading`` is the heading of ``roadgpt --help`` under which a command of another package stands;
+    ``has_simulators`` adds the options of simulators."""
+
+    def __init__(self, *args: Any, heading: str = "", has_simulators: bool = False, **rest: Any) -> None:
         super().__init__(*args, **rest)
+        self.heading, self.has_simulators = heading, has_simulators
         self.params.append(HELP_ALL)
 
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parses the arguments; an earlier name of an option is accepted, and the present name is printed.
+    def get_params(self, ctx: click.Context) -> list[click.Parameter]:
+        """Returns the parameters; those of simulators come last, and are made when they are first used."""
+        found = super().get_params(ctx)
+        return [*found, *options.simulator_options()] if self.has_simulators else found
 
-        Raises:
-            click.UsageError: An argument is wrong; for a description that begins with a dash, the message
-                says where to put it.
-        """
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parses the arguments; says what to do with a description that begins with a dash."""
         ctx.meta.setdefault(LAYERS, cache(options.layers))
-        known = [name for parameter in self.params for name in parameter.opts]
-        words, told = renamed_options(args, known)
-        for sentence in () if ctx.resilient_parsing else told:
-            warn(sentence)
-        if "words" not in known:
-            return super().parse_args(ctx, words)
+        if not any(parameter.name == "words" for parameter in self.params):
+            return super().parse_args(ctx, args)
         with dash_advice(ctx, args):
-            return super().parse_args(ctx, words)
+            return super().parse_args(ctx, args)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Writes the options that this help lists under their headings."""
@@ -114,6 +110,10 @@ class CommandGroup(click.Group):
     """A command with sub-commands; the help of each sub-command lists its options in groups."""
 
     command_class = GroupedCommand
+
+    def __init__(self, *args: Any, heading: str = "", **rest: Any) -> None:
+        super().__init__(*args, **rest)
+        self.heading = heading
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Writes the sub-commands with the whole first sentence of their help."""

@@ -5,47 +5,48 @@ others, a key in configuration files, a line of ``roadgpt config show``, and an 
 """
 
 import os
-from functools import partial
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Sequence
+from functools import cache, partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 import click
 from click.core import ParameterSource
 
-from roadgpt.cli.configuration import (
-    TABLES,
-    designer_guard,
-    driver_guard,
-    path_guard,
-    place_guard,
-    read_layers,
-    reader_guard,
-)
-from roadgpt.cli.option import Argument, Heading, Option, named
-from roadgpt.cli.option_types import (
+from roadgpt import plugins
+from roadgpt.cli.option import (
     SEED,
+    Argument,
+    Heading,
+    Option,
     bank,
+    designer_guard,
     driver,
+    driver_guard,
     file,
     folder,
     formats,
     gate_rules,
     lanes,
     measure,
+    named,
+    path_guard,
     picture_formats,
+    place_guard,
+    reader_guard,
     whole,
-)  # fmt: skip
+)
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
+    from roadgpt.campaign.gate import Gate
     from roadgpt.campaign.selection import Choice
     from roadgpt.chat import ChatSettings
     from roadgpt.chat.config import Layer
     from roadgpt.report import Drawing
     from roadgpt.road import World
 
+CHAT_TABLE = "chat"
 _world = partial(Option, heading=Heading.SITE, table="world")
 _judged = partial(_world, heading=Heading.DRIVE)
 _run = partial(Option, heading=Heading.DESIGN, table="run")
@@ -99,9 +100,6 @@ CHAT = (
     _chat("--model", "Name of the model on its server."),
     _chat("--base-url", "Address of the server, including /v1. [default: OpenAI's]"),
     _rare("--provider", "Protocol of the server. [default: openai]"),
-    _rare("--api",
-          "Chat Completions, or Responses, where the server keeps the conversation. [default: chat]",
-          click.Choice(["chat", "responses"])),
     _rare("--temperature", "Sampling temperature. [default: the server's]", measure(0, 2)),
     _rare("--timeout", "Seconds to wait for an answer. [default: 60]", measure(0, 86_400, "s", above=True)),
     _rare("--retries", "Further attempts when the server fails. [default: 3]", whole(0, 20, "retries")),
@@ -122,44 +120,7 @@ CHAT = (
 # fmt: on
 
 
-def _keep(ctx: click.Context, option: click.Parameter, value: Any) -> None:
-    """Puts the value of a BeamNG option into the environment, where the simulator and its workers read it."""
-    assert isinstance(option, Option)
-    if value not in (None, False):
-        os.environ[option.variable] = "1" if value is True else str(value)
-    elif ctx.get_parameter_source(option.field) is ParameterSource.COMMANDLINE:
-        os.environ.pop(option.variable, None)  # --no-headless
-
-
-def _whole_folder(value: str) -> "Path":
-    return folder(value).expanduser().absolute()  # workers may run in another folder
-
-
-_whole_folder.__name__ = "folder"  # click shows it in the help
-_beamng = partial(
-    Option, heading=Heading.BEAMNG, table="beamng", is_rare=True, expose_value=False, callback=_keep
-)
-_place = partial(_beamng, guard=place_guard)
-
 # fmt: off
-BEAMNG = (
-    _beamng("--beamng-home", "Folder of the BeamNG.tech to start (for --simulator beamng).", _whole_folder,
-            key="home", guard=path_guard),
-    _beamng("--beamng-user", "BeamNG's user folder; each further worker gets one next to it.", _whole_folder,
-            key="user", guard=path_guard),
-    _place("--beamng-host", "Host of a BeamNG that is already running.", key="host"),
-    _place("--beamng-port", "Port of BeamNG. [default: 25252]", whole(1, 65535, "a port"), key="port"),
-    _beamng("--beamng-level", "BeamNG level for the roads. [default: SBFT's level tig if installed, else a "
-            "flat one]", key="level"),
-    _beamng("--beamng-aggression", "Aggression of BeamNG's AI, 0.3 to 1. [default: 0.7]", measure(0.3, 1),
-            key="aggression"),
-    _beamng("--beamng-recycle", "Restart BeamNG after this many roads. [default: 100]",
-            whole(1, 1_000_000, "a number of roads"), key="recycle"),
-    _beamng("--headless", "Run BeamNG without a window.", bool),
-    _beamng("--nogpu", "Run BeamNG without rendering.", bool),
-    _beamng("--gfx", "Graphics API that BeamNG uses.", click.Choice(["dx11", "vk"])),
-)
-
 AXES = _files(
     "--axes", "Axes of pictures: equal (to scale), or thesis (fixed ranges, as in RoadGPT's thesis: top "
     "view 220 m x 220 m; height profile 200 m long and 20 m high).", click.Choice(["equal", "thesis"]),
@@ -258,17 +219,90 @@ MAKING = (
 )
 """The options of ``roadgpt run`` that say how roads are made, driven, drawn and exported."""
 
-SETTABLE = tuple(each for each in (*MAKING, *BEAMNG) if each.table)
-"""The options that configuration files can set, in the order of ``roadgpt run``."""
+
+@cache
+def simulator_options() -> tuple[Option, ...]:
+    """Returns the options of all simulators that bring a model of their settings, a plug-in ``settings``.
+
+    A field that has a ``description`` becomes an option, a key in the simulator's table of configuration
+    files, and a line of ``roadgpt config show``; every field can be set in the environment, such as
+    ROADGPT_BEAMNG_PORT for ``port`` of ``beamng``. The option is called ``--beamng-port``, or as the field's
+    ``flag`` says. Folders, and fields with ``of_user``, are not taken from files of the working folder."""
+    names = plugins.names("settings")
+    return tuple(each for name in names for each in _options(name, plugins.find("settings", name)))
+
+
+def _options(simulator: str, model: Any) -> Iterator[Option]:
+    for name, field in model.model_fields.items():
+        if field.description is None:
+            continue
+        kinds, more = get_args(field.annotation) or (field.annotation,), field.json_schema_extra or {}
+        low = next((each.ge for each in field.metadata if hasattr(each, "ge")), 0)
+        high = next((each.le for each in field.metadata if hasattr(each, "le")), 1_000_000)
+        kind: Any = None
+        guard = place_guard if more.get("of_user") else None
+        if get_origin(kinds[0]) is Literal or isinstance(kinds[0], str):
+            kind = click.Choice([*(kinds if isinstance(kinds[0], str) else get_args(kinds[0]))])
+        elif kinds[0] is Path:
+            kind, guard = _whole_folder, path_guard
+        elif kinds[0] is bool:
+            kind = bool
+        elif kinds[0] is int:
+            kind = whole(low, high, "a number")
+        elif kinds[0] is float:
+            kind = measure(low, high)
+        yield Option(
+            more.get("flag", f"--{simulator}-{name.replace('_', '-')}"), field.description, kind, key=name,
+            heading=Heading.SIMULATOR, table=simulator, is_rare=True, guard=guard, expose_value=False,
+            callback=_keep,
+        )  # fmt: skip
+
+
+def _whole_folder(value: str) -> Path:
+    return folder(value).expanduser().absolute()  # workers may run in another folder
+
+
+_whole_folder.__name__ = "folder"  # click shows it in the help
+
+
+def _keep(ctx: click.Context, option: click.Parameter, value: Any) -> None:
+    # the simulator and its workers read it in the environment
+    assert isinstance(option, Option)
+    if value not in (None, False):
+        os.environ[option.variable] = "1" if value is True else str(value)
+    elif ctx.get_parameter_source(option.field) is ParameterSource.COMMANDLINE:
+        os.environ.pop(option.variable, None)  # --no-headless
+
+
+def settable() -> list[Option]:
+    """Returns the options that configuration files can set, in the order of ``roadgpt run``."""
+    return [each for each in (*MAKING, *simulator_options()) if each.table]
 
 
 def layers() -> "Sequence[Layer]":
-    """Reads all sources of settings, and returns them, highest precedence first.
+    """Reads all sources of settings, and returns them, highest precedence first; refuses unknown keys."""
+    from roadgpt.chat.config import layers as all_layers
+    from roadgpt.chat.config import unknown_key
 
-    Raises:
-        UsageError: A file cannot be read, or has an unknown table or key.
-    """
-    return read_layers({table: [each.key for each in SETTABLE if each.table == table] for table in TABLES})
+    keys: dict[str, list[str]] = {}
+    for each in settable():
+        keys.setdefault(each.table, []).append(each.key)
+    found = all_layers()
+    for layer in found:
+        for name, table in layer.tables.items():
+            if name == CHAT_TABLE:
+                continue  # roadgpt.chat.config checks it
+            if name not in keys:
+                there = ", ".join(f"[{each}]" for each in (*keys, CHAT_TABLE))
+                raise UsageError(
+                    f"the settings in {layer.name} have no table [{name[:40]}]; there are: {there}"
+                )
+            if not isinstance(table, dict):
+                raise UsageError(f"the settings in {layer.name} need a table [{name}]")
+            for key in table:
+                if key not in keys[name]:
+                    raise unknown_key(layer.name, name, key, keys[name])
+    return found
 
 
 def typed(ctx: click.Context) -> set[str]:
@@ -277,15 +311,12 @@ def typed(ctx: click.Context) -> set[str]:
 
 
 def world_of(values: dict[str, Any]) -> "World":
-    """Returns the World that option values describe, and removes these options from ``values``.
-
-    The value None means that an option was not given; the World then counts the field as not set.
-    """
+    """Returns the World that option values describe, and removes them from ``values``; None is not set."""
     from roadgpt.road import World
 
     given = {each.field: each.read(values.pop(each.field)) for each in WORLD if each.field in values}
     if "oracle" in given:  # what is typed precedes what files set, and this the default oracle
-        from roadgpt.road.oracles import oracle_limits
+        from roadgpt.road.world import oracle_limits
 
         limits, source_of = oracle_limits(), click.get_current_context().get_parameter_source
         found = {name: given.pop(name) for name in ("oracle", *limits)}
@@ -298,11 +329,7 @@ def world_of(values: dict[str, Any]) -> "World":
 
 
 def reader_of(values: dict[str, Any]) -> str:
-    """Returns the name of the reader, which is "plan" with --plan; removes --plan from ``values``.
-
-    Raises:
-        UsageError: --plan is given, and --reader names another reader.
-    """
+    """Returns the name of the reader, which is "plan" with --plan; removes --plan from ``values``."""
     if not values.pop("is_plan"):
         return str(values["reader"])
     if "reader" in typed(click.get_current_context()) and values["reader"] != "plan":
@@ -317,18 +344,11 @@ def chat_values(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "ChatSettings | None":
-    """Returns the settings of the language model, and removes their options from ``values``.
-
-    Returns None if neither the reader nor the designer uses a language model.
-
-    Raises:
-        UsageError: An option of language models is given but no language model is used, or a setting is
-            invalid.
-    """
+    """Returns the settings of the language model, or None if neither reader nor designer uses one; removes
+    their options from ``values``."""
     told = chat_values(values)
     for each in CHAT:
         values.pop(each.field, None)
-    from roadgpt import plugins
     from roadgpt.chat import asks_a_model, configured
 
     shelves = (("readers", reader), ("designers", designer))
@@ -341,12 +361,7 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
 
 
 def choice_of(values: dict[str, Any]) -> "Choice | None":
-    """Returns which option the user gave: --failures, --faults or --worst; None if the user gave none
-    of the three. Removes all three from ``values``.
-
-    Raises:
-        UsageError: More than one choice is given.
-    """
+    """Returns which of --failures, --faults and --worst is given, if any; removes them from ``values``."""
     choices: tuple[Choice, ...] = ("failures", "faults", "worst")
     said = [name for name in choices if values.pop(name)]
     if len(said) > 1:
@@ -354,18 +369,23 @@ def choice_of(values: dict[str, Any]) -> "Choice | None":
     return said[0] if said else None
 
 
+def gate_of(values: dict[str, Any], folder: Path | None) -> "Gate":
+    """Returns the gate that the options of ``GATE`` describe, and removes them from ``values``."""
+    from roadgpt.campaign.gate import Gate
+
+    return Gate(folder, *(values.pop(each.field) for each in GATE))
+
+
 def drawing_of(formats: Any, axes: Any = "equal") -> "Drawing | None":
     """Returns a function that draws pictures of runs in these formats; None if there are no formats."""
     if not formats:
         return None
-    from roadgpt.report import drawing
+    from roadgpt.report import Drawing
 
-    return drawing(axes, formats)
+    return Drawing(axes, formats)
 
 
 def pictures_of(values: dict[str, Any]) -> Any:
-    """Returns the formats of the pictures to draw (none with --no-plot), and removes their options from
-    ``values``.
-    """
+    """Returns the formats of the pictures to draw, none with --no-plot; removes both from ``values``."""
     given = values.pop("picture_formats")
     return () if values.pop("no_plot") else given

@@ -46,42 +46,31 @@ class Row:
 
     file: str
     test_outcome: "Outcome"
-    description: str
-    """One sentence on the result: the verdict, the broken rule or the error."""
+    description: str  # one sentence on the result: the verdict, the broken rule or the error
     is_valid: bool = True
     validation_message: str = ""
     findings: tuple[str, ...] = ()
     """One sentence for each broken rule; the first is also ``validation_message``."""
     cause: str | None = None
     """Cause of a FAIL: out of lane, fell, stuck or timeout. For an ERROR: unreadable, if the file cannot
-    be read.
-    """
-    max_oob: float | None = None
-    """Largest share of the car that was outside its lane, 0 to 1."""
-    beyond_m: float | None = None
-    """Largest distance of the car's body beyond the lane marking, m."""
+    be read."""
+    max_oob: float | None = None  # largest share of the car that was outside its lane, 0 to 1
+    beyond_m: float | None = None  # largest distance of the car's body beyond the lane marking, m
     margin_m: float | None = None
     length_m: float | None = None
-    at_s_m: float | None = None
-    """Station of the failure, metres along the road; None if the car did not fail."""
-    side: str | None = None
-    """The side on which the car left its lane."""
+    at_s_m: float | None = None  # station of the failure, metres along the road; None if the car did not fail
+    side: str | None = None  # the side on which the car left its lane
     own_share: float | None = None
     """Share of the way, 0 to 1, that the driver drove itself; None if it never handed over."""
-    handed_to: str | None = None
-    """Who drove where the car failed, if the driver had handed over."""
+    handed_to: str | None = None  # who drove where the car failed, if the driver had handed over
     seconds: float = 0.0
-    name: str = ""
-    """A shorter name, which is printed instead of ``file``; if empty, ``file`` is printed."""
-    spent: "Spent | None" = None
-    """Tokens, seconds and cost of the language models used for the road."""
+    name: str = ""  # a shorter name, which is printed instead of ``file``; if empty, ``file`` is printed
+    spent: "Spent | None" = None  # tokens, seconds and cost of the language models used for the road
     words: str = ""
-    seed: int | None = None
-    """The seed of this road."""
-    trace: str = ""
-    """The traceback, if a driver or a simulator failed."""
-    worse: str = ""
-    """In what the result is worse than in the baseline."""
+    seed: int | None = None  # the seed of this road
+    trace: str = ""  # the traceback, if a driver or a simulator failed
+    worse: str = ""  # in what the result is worse than in the baseline
+    origin: str | None = None  # how a search came to the road
 
     @property
     def outcome(self) -> str:
@@ -95,9 +84,7 @@ class Row:
 
     @property
     def told(self) -> str:
-        """The outcome as commands print it. If any part of the car was outside its lane in a passed drive,
-        the outcome says how far, such as 'PASS (62 % out, 1.13 m)'.
-        """
+        """The outcome as commands print it; of a passed drive with how far the car was outside."""
         if self.test_outcome != "PASS" or not self.max_oob:
             return self.outcome
         return f"PASS ({outside(self.max_oob, self.beyond_m)})"
@@ -113,9 +100,7 @@ class Row:
         return json.dumps(told)
 
     def to_line(self) -> str:
-        """Returns a line with outcome, length, margin and file, and the sentence on a broken rule or an
-        error.
-        """
+        """Returns a line with outcome, length, margin, file, and the sentence on a rule or an error."""
         length = "" if self.length_m is None else f"{self.length_m:6.1f} m"
         margin = "" if self.margin_m is None else f"margin {metres(self.margin_m)}"
         line = f"{self.told:<{MOST_TOLD}} {length:>9}  {margin:<15}  {self.name or self.file}"
@@ -134,15 +119,13 @@ class Row:
 
 def driver_and_oracle(drivers: Sequence[str], oracle: str) -> str:
     """Returns the line of text that says who drove, and when a test fails."""
-    from roadgpt.road.oracles import oracle_in_words
+    from roadgpt.road.world import oracle_in_words
 
     return f"driver {' and '.join(dict.fromkeys(drivers))}, oracle {oracle_in_words(oracle)}"
 
 
 def outside(share: float | None, beyond: float | None) -> str:
-    """Returns how far a car was outside its lane as text, such as '62 % out, 1.13 m' or 'inside'; empty if
-    the road was not driven.
-    """
+    """Returns how far a car was outside, such as '62 % out, 1.13 m' or 'inside'; empty without a drive."""
     if share is None:
         return ""
     if not share:
@@ -166,16 +149,14 @@ def spending(spent: "Spent") -> str:
 
 
 def _rounded(value: Any) -> Any:
-    """Rounds a number to four decimals; an infinite number becomes None, because JSON has no such number."""
+    # JSON has no infinite numbers
     if not isinstance(value, float):
         return value
     return round(value, 4) if math.isfinite(value) else None
 
 
 def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
-    """Returns a tuple for each outcome: its name, the number and percentage of roads, the smallest margin,
-    and, as text, the largest share and distance by which the car was outside its lane.
-    """
+    """Returns for each outcome its name, number and share of roads, least margin, and how far outside."""
     counted = Counter(row.outcome for row in rows)
     table = []
     ranks = [*COLOURS]
@@ -210,8 +191,7 @@ def row_of(run: "Run", file: str, name: str = "") -> Row:
 
 
 def row_of_result(result: "Result", words: str, seed: int, name: str) -> Row:
-    """Returns the row of a test from its stored result, the description of the road (``words``), the driver's
-    seed and the test's name."""
+    """Returns the row of a test from its stored result."""
     return Row(
         "",
         result.outcome,

@@ -41,12 +41,9 @@ NONE = {"failures": "no road failed in {}", "faults": "no road failed in {}", "w
 class NamedRoad:
     """A road that the user named."""
 
-    said: str
-    """The road's name as a user can type it as an argument of a command."""
-    stem: str
-    """The first part of the names of files that are made from the road."""
-    key: object
-    """A value that identifies the road; two names of the same road have equal keys."""
+    said: str  # road's name as a user can type it as an argument of a command
+    stem: str  # first part of the names of files that are made from the road
+    key: object  # a value that identifies the road; two names of the same road have equal keys
     run: "Callable[[], Run] | None"
     """A function that reads the road's Run; None for a road file, which each command reads in its own way."""
 
@@ -57,12 +54,7 @@ def roads_named(
     """Yields the roads that the names refer to, each road once, and none whose key is in ``seen``.
 
     From a folder, it yields the roads that the choice selects. Without a choice, it yields all roads if
-    ``takes_all`` is true; otherwise the folder must hold exactly one road.
-
-    Raises:
-        UsageError: A name is wrong, no road of a folder matches the choice, or a folder that must hold
-            exactly one road holds none or several.
-    """
+    ``takes_all`` is true; otherwise the folder must hold exactly one road."""
     seen = set() if seen is None else seen
     for file in files:
         for each in _named(file, choice, takes_all):
@@ -76,11 +68,7 @@ def use_each(
 ) -> int:
     """Calls ``use`` for each road that the names refer to; a name or a road that cannot be used is reported
     and skipped. Returns the exit status: 0, 1 if a format cannot hold a road, or 2 if a name or a road cannot
-    be used.
-
-    Raises:
-        PartError: a plug-in cannot be used; every further road would fail, too.
-    """
+    be used."""
     errors, seen = list[RoadGPTError](), set[object]()
     for file in files:
         with _reported(errors):
@@ -92,7 +80,7 @@ def use_each(
 
 @contextmanager
 def _reported(errors: list[RoadGPTError]) -> Iterator[None]:
-    """Context manager: prints an error about a road instead of raising it, and appends it to ``errors``."""
+    """Prints an error about a road instead of raising it, and appends it to ``errors``."""
     try:
         yield
     except PartError:
@@ -136,8 +124,7 @@ def _test(place: "Selection") -> NamedRoad:
 
 def _run(folder: Path, said: str) -> NamedRoad:
     from roadgpt.run import read_run
-    from roadgpt.run.card import CARD
-    from roadgpt.run.folder import RUNS
+    from roadgpt.run.folder import CARD, RUNS
 
     whole = Path(os.path.realpath(folder))
     campaign = whole.parent.parent
@@ -147,7 +134,6 @@ def _run(folder: Path, said: str) -> NamedRoad:
 
 
 def _single(file: str) -> NamedRoad:
-    """Returns a run or a road file. Raises UsageError if there is nothing of that name."""
     from roadgpt.campaign.selection import near
     from roadgpt.run.folder import is_run, run_of_test
 
@@ -167,7 +153,7 @@ def _single(file: str) -> NamedRoad:
 
 
 def roads_in(files: Sequence[str]) -> list[str]:
-    """Returns names of roads, with those in a folder in place of the folder; says what else is there."""
+    """Returns the names, with those of its roads in place of a folder; says what else is in it."""
     from roadgpt.campaign.selection import chosen, selection_of
     from roadgpt.campaign.status import status_of
 
@@ -192,16 +178,11 @@ def roads_in(files: Sequence[str]) -> list[str]:
 
 
 def source_of(file: str, world: "World") -> tuple["Blueprint", "World", tuple[str, ...]]:
-    """Returns the design or the road in a file, its World, and remarks on what is taken from where.
+    """Returns the design or the road in a file, its World, and remarks on what is taken from where. ``file``
+    may be the folder of a run, or a test such as CAMPAIGN/c01/17.
 
-    ``world`` is the World that the options describe. What the file states goes before it, except for options
-    that were typed. If the file defines lanes, lane options have no effect; a remark then names those that
-    were typed, or differ from their defaults. ``file`` may be the folder of a run, or a test such as
-    CAMPAIGN/c01/17.
-
-    Raises:
-        UsageError: The file or the test holds no road, or the folder is not that of a run.
-    """
+    What the file states goes before ``world``, that of the options, except for options that were typed. If
+    the file defines lanes, a remark names the lane options that have no effect."""
     from roadgpt.campaign.selection import selection_of
     from roadgpt.network.source import OF_FILE, RoadSource, read_source
     from roadgpt.road import Road, World
@@ -239,9 +220,7 @@ def on_a_map(
     road: "Road", world: "World", keep_place: bool
 ) -> tuple["Road", float, tuple[float, float, float], tuple[str, ...]]:
     """Returns the road on a map that is as wide as the World's or wider, the map's width in metres, by how
-    many metres the road was moved, and remarks. These are whole metres, so that the file's coordinates are
-    those here less the movement, exactly but for the last digit where one is closer to 0 in the file.
-    """
+    many metres the road was moved, and remarks. Whole metres lose no digits of the file's coordinates."""
     from roadgpt.brief.words import LARGEST_MAP
     from roadgpt.check.extremes import lowest
     from roadgpt.check.ribbon import extent
@@ -273,13 +252,7 @@ def on_a_map(
 
 
 def shown_roads(files: Sequence[str], choice: "Choice | None", most: int, what: str) -> list[NamedRoad]:
-    """Returns the named roads, to show them together.
-
-    The output can show at most ``most`` roads; ``what`` names the output in messages, such as 'a page'.
-
-    Raises:
-        UsageError: A name is wrong, or there are more than ``most``.
-    """
+    """Returns the named roads, at most ``most``, to show them together in ``what``, such as 'a page'."""
     if len(files) > most:
         raise UsageError(f"{what} shows one road or two side by side; {len(files)} are given")
     named = [*roads_named(files, choice)]
@@ -294,12 +267,7 @@ def shown_roads(files: Sequence[str], choice: "Choice | None", most: int, what: 
 
 
 def run_of(named: NamedRoad, world: "World", geometry: "Geometry", quiet: bool = False) -> "Run":
-    """Returns the Run of a road, or a new Run without a drive for a road file; prints the remarks of
-    ``source_of`` unless ``quiet``.
-
-    Raises:
-        UsageError: The road cannot be read.
-    """
+    """Returns the Run of a road, or a new Run without a drive for a road file; prints remarks on it."""
     from roadgpt.run import Setup, prove
 
     if named.run is not None:
@@ -314,11 +282,7 @@ def run_of(named: NamedRoad, world: "World", geometry: "Geometry", quiet: bool =
 
 @contextmanager
 def named_in_errors(file: str) -> Iterator[None]:
-    """Context manager: puts the name of a file before an error message that does not contain the name.
-
-    Raises:
-        UsageError, ExportError: The error that was raised in the ``with`` block, with the file's name.
-    """
+    """Puts the name of a file before an error message that does not contain the name."""
     try:
         yield
     except PartError:
@@ -331,14 +295,8 @@ def named_in_errors(file: str) -> Iterator[None]:
 
 
 def each_road(files: Sequence[str], screen: Screen, look: "Callable[[str], tuple[Row, Run | None]]") -> None:
-    """Calls ``look`` for every file, and prints the resulting rows and a table of their outcomes.
-
-    A file that cannot be used gets a row with an error.
-
-    Raises:
-        UsageError: The only file that was given cannot be used, and the output is not JSON.
-        PartError: A plug-in is not installed.
-    """
+    """Calls ``look`` for every file, and prints the rows and a table of their outcomes. A file that cannot be
+    used gets a row with an error, but for a single one."""
     with screen:
         for file in files:
             try:
@@ -355,14 +313,8 @@ def each_road(files: Sequence[str], screen: Screen, look: "Callable[[str], tuple
 
 
 def check_file(path: Path, kind: str, usual: Path, endings: Sequence[str] = ()) -> None:
-    """Checks that a path is suitable for a file to write, such as a page, a film or a picture (``kind``).
-
-    ``usual`` is an example of a name, for the message. ``endings`` are the permitted extensions, the usual
-    extension first; if empty, every extension is permitted.
-
-    Raises:
-        UsageError: The path is a folder, or has another extension.
-    """
+    """Refuses a folder, or a path without one of the ``endings``, for a page, a film or a picture (``kind``).
+    ``usual`` is an example of a name, for the message."""
     if path.is_dir():
         raise UsageError(f"{path} is a folder; give the name of a {kind}, such as {path / usual}")
     if endings and path.suffix.lower() not in endings:
@@ -382,11 +334,7 @@ def numbered(name: str, ending: str = "") -> Iterator[str]:
 
 
 def made(folder: Path) -> Path:
-    """Makes a folder, if it does not exist, and returns it.
-
-    Raises:
-        UsageError: The folder cannot be made.
-    """
+    """Makes a folder, if it does not exist, and returns it."""
     with explained(UsageError, f"cannot make {folder}", "name another folder with --out"):
         folder.mkdir(parents=True, exist_ok=True)
     return folder

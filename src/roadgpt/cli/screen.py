@@ -1,6 +1,5 @@
-"""Prints the output of a command while it works: lines with a progress bar on a terminal, plain lines in a
-pipe, JSON, or nothing.
-"""
+"""Prints the output of a command while it works: lines with a progress bar on a terminal, plain lines, JSON,
+or nothing."""
 
 import logging
 import sys
@@ -13,9 +12,8 @@ from typing import TYPE_CHECKING, Self
 import click
 
 from roadgpt import stopping
-from roadgpt.cli.progress import progress
 from roadgpt.cli.result_row import WIDEST, Row, colour_of, driver_and_oracle, row_of, summary
-from roadgpt.cli.streams import apart, is_coloured
+from roadgpt.cli.streams import apart, is_coloured, progress
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -25,17 +23,13 @@ if TYPE_CHECKING:
 
 
 class Screen:
-    """Prints the result of each road when it is finished, and at the end a table of outcomes.
-
-    Rows of roads and other text go to standard output; if the rows are JSON, other text goes to standard
-    error. The progress bar goes to standard error if that is a terminal. A total of 0 means that the number
-    of roads is unknown.
-    """
+    """Prints the result of each road when it is finished, and at the end a table of outcomes. If the rows are
+    JSON, other text goes to standard error. A total of 0 means that the number of roads is unknown."""
 
     def __init__(self, total: int, as_json: bool = False, quiet: bool = False, verbose: bool = False) -> None:
         self.total, self.as_json, self.quiet, self.verbose = total, as_json, quiet, verbose
         self.request: Request | None = None
-        """The request of the roads, if there is one; the table of outcomes names its driver and oracle."""
+        """That of the roads, if there is one; the table of outcomes names its driver and oracle."""
         self.junit: Path | None = None
         self.gate: Gate | None = None
         self.rows: list[Row] = []
@@ -89,11 +83,9 @@ class Screen:
         self._tell(len(self.rows), rate=f"{self._rate():.1f} roads/s")
 
     def runs(self, runs: "Iterable[Run]", folder: Path) -> None:
-        """Prints the result of each run of a folder as soon as the run is finished.
-
-        Text that is printed while a run is made, for example by a user's driver, goes to standard error.
-        """
-        from roadgpt.run.sbft_json import test_name
+        """Prints the result of each run of a folder as soon as it is finished. What is printed while it is
+        made, for example by a user's driver, goes to standard error."""
+        from roadgpt.run.execution import test_name
 
         with self:
             for run in apart(runs):

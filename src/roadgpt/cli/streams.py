@@ -1,18 +1,25 @@
-"""Handles errors of standard output, and keeps the output of users' drivers out of standard output."""
+"""Standard output and standard error: what fails there, progress, unexpected errors, and what users' drivers
+print."""
 
 import io
 import logging
 import os
+import platform
 import sys
-from collections.abc import Iterable, Iterator
+import tempfile
+import time
+import traceback
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, redirect_stdout
+from pathlib import Path
 from typing import TypeVar
 
 import click
 
+from roadgpt import __version__
 from roadgpt.errors import GivenUpError
 
-Step = TypeVar("Step")
+T = TypeVar("T")
 LETTERS = "backslashreplace"  # characters that the stream's encoding lacks are written as escapes
 
 
@@ -28,8 +35,6 @@ class OutputError(Exception):
 
 
 class _Output(io.TextIOWrapper):
-    """Standard output that raises OutputError if it cannot be written to."""
-
     def write(self, text: str) -> int:
         try:
             return super().write(text)
@@ -44,12 +49,9 @@ class _Output(io.TextIOWrapper):
 
 
 def make_ready() -> None:
-    """Makes both output streams accept every character; failed writes to standard output raise OutputError.
-
-    A stream that was closed before the program began is replaced by the null device. What matplotlib says of
-    a HOME where it cannot keep its list of fonts is not shown.
-    """
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    """Makes both output streams accept every character; failed writes to standard output raise OutputError. A
+    stream that was closed before the program began is replaced by the null device."""
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns if it cannot keep its list of fonts
     if sys.stdin is None:
         sys.stdin = os.fdopen(_nothing(0, os.O_RDONLY))
     if sys.stdout is None:
@@ -64,7 +66,6 @@ def make_ready() -> None:
 
 
 def _nothing(number: int, mode: int) -> int:
-    """Opens the null device under a file number, so that no other file gets this number."""
     opened = os.open(os.devnull, mode)
     if opened != number:
         os.dup2(opened, number)
@@ -73,9 +74,7 @@ def _nothing(number: int, mode: int) -> int:
 
 
 def drop_output() -> None:
-    """Redirects standard output to the null device after a write to it has failed. Python flushes standard
-    output once more at exit, and this would fail, too.
-    """
+    """Redirects standard output to the null device after a failed write: Python flushes it again at exit."""
     nothing = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, sys.stdout.fileno())
     os.close(nothing)
@@ -88,7 +87,7 @@ def warn(sentence: object) -> None:
 
 @contextmanager
 def resumable(advice: str) -> Iterator[None]:
-    """Context manager: after Ctrl-C, or if a simulator is given up, prints ``advice`` on how to continue."""
+    """After Ctrl-C, or if a simulator is given up, prints ``advice`` on how to continue."""
     try:
         yield
     except (KeyboardInterrupt, GivenUpError):
@@ -101,10 +100,9 @@ def is_coloured() -> bool:
     return not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
-def apart(steps: Iterable[Step]) -> Iterator[Step]:
+def apart(steps: Iterable[T]) -> Iterator[T]:
     """Yields the steps of an iterable. Text printed meanwhile, such as by a user's driver, goes to standard
-    error, so that standard output holds only result rows.
-    """
+    error, so that standard output holds only result rows."""
     made = iter(steps)
     while True:
         with redirect_stdout(sys.stderr):
@@ -113,3 +111,113 @@ def apart(steps: Iterable[Step]) -> Iterator[Step]:
             except StopIteration:
                 return
         yield step
+
+
+EVERY = 10.0  # s between two lines where there is no terminal
+
+
+@contextmanager
+def progress(
+    what: str, total: int | None, quiet: bool = False, has_lines: bool = True
+) -> Iterator[Callable[..., None]]:
+    """Shows on standard error how many steps are done and the remaining time: as a bar, or where there is no
+    terminal as lines, or nothing if ``has_lines`` is False.
+
+    Yields a function to call with the number of finished steps, and with ``total``, a new total, or ``rate``,
+    a text after the numbers. ``what`` names the steps, such as 'faults'; a ``total`` of None is unknown."""
+    if quiet or not (has_lines or sys.stderr.isatty()):
+        yield lambda *_, **__: None
+    elif not sys.stderr.isatty():
+        yield _Lines(what, total or 0)
+    else:
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+        texts = TextColumn("{task.description}"), TextColumn("{task.fields[rate]}"), TextColumn("ETA")
+        bar = Progress(
+            *(texts[0], BarColumn(), MofNCompleteColumn(), *texts[1:], TimeRemainingColumn()),
+            console=Console(stderr=True),
+            # lines on standard output pass above the bar only if both are the terminal; a file must get them
+            redirect_stdout=sys.stdout.isatty(),
+            transient=True,
+        )
+        task = bar.add_task(what, total=total, rate="")
+        with bar:
+            yield lambda done, **more: bar.update(task, completed=done, **more)
+
+
+class _Lines:
+    """Prints a line every ten seconds."""
+
+    def __init__(self, what: str, total: int) -> None:
+        self._what, self._total = what, total
+        self._first: tuple[float, int] | None = None
+        self._told = time.monotonic()
+
+    def __call__(self, done: int, total: int | None = None, **_: object) -> None:
+        now, self._total = time.monotonic(), total or self._total
+        if self._first is None:
+            self._first = now, done  # the first step includes the start of the workers: others are faster
+        elif now - self._told >= EVERY and self._first[1] < done < self._total:
+            left = (now - self._first[0]) / (done - self._first[1]) * (self._total - done)
+            steps = f"{done:,} of {self._total:,} {self._what}"
+            warn(f"{steps}, about {duration(left)} to go")
+            self._told = now
+
+
+def watched(steps: Iterable[T], total: int, what: str, quiet: bool = False) -> Iterator[T]:
+    """Yields each step when it is done, and shows how many are done and the remaining time."""
+    with progress(what, total, quiet) as tell:
+        for done, step in enumerate(steps, 1):
+            tell(done)
+            yield step
+
+
+def duration(seconds: float) -> str:
+    """Returns a duration as text: '42 s', '3 min 20 s', '2 h 05 min'."""
+    whole_seconds = round(seconds)
+    if whole_seconds < 60:
+        return f"{seconds:.1f} s" if seconds < 10 else f"{whole_seconds} s"
+    minutes, rest = divmod(whole_seconds, 60)
+    if minutes < 60:
+        return f"{minutes} min {rest:02d} s"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes:02d} min"
+
+
+# The folder that the command has made; if there is none, tracebacks go to the system's temporary folder.
+_folder: list[Path] = []
+
+
+def crashes_go_to(folder: Path) -> None:
+    """Sets the folder into which tracebacks are written."""
+    _folder[:] = [folder]
+
+
+def report_crash(error: Exception) -> str:
+    """Writes the traceback to a file; returns a sentence that says what happened and where the file is."""
+    head = f"roadgpt {__version__}, Python {platform.python_version()}, {platform.platform()}\n"
+    head += f"arguments: {sys.argv[1:]}\n\n"
+    text = head + "".join(traceback.format_exception(error))
+    what = f"{type(error).__name__}: {error}".splitlines()[0][:200]
+    try:
+        path = _write(text)
+    except OSError:
+        sys.stderr.write(text)
+        return f"an error that should not happen ({what}); please report it with the lines above"
+    return f"an error that should not happen ({what}); please report it with the file {path}"
+
+
+def _write(text: str) -> Path:
+    """Writes the text into the first folder that can be written to; returns the file."""
+    for folder in (*_folder, Path(tempfile.gettempdir())):
+        try:
+            with tempfile.NamedTemporaryFile(
+                "w", prefix="roadgpt-crash-", suffix=".txt", dir=folder, delete=False, encoding="utf-8",
+                errors="backslashreplace",
+            ) as file:  # fmt: skip
+                file.write(text)
+        except OSError:
+            continue
+        return Path(file.name)
+    raise OSError("no folder to write to")

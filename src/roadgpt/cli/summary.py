@@ -1,60 +1,239 @@
-"""Summarises a Run, a folder of runs or a campaign, as lines of text or as JSON."""
+"""Tells, as lines of text or as JSON, of a Run, a folder of runs or a campaign; shows a campaign at work."""
 
+import json
+import sys
+import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+import click
 import numpy as np
 
 from roadgpt.campaign.csv_tables import RESULTS
-from roadgpt.campaign.folder_record import is_store, open_record
+from roadgpt.campaign.faults.fault import Faults, faults_in
+from roadgpt.campaign.folder_record import is_store, open_record, setups_of
+from roadgpt.campaign.gate import Gate
 from roadgpt.campaign.model import NumberedTest
+from roadgpt.campaign.scheduler import Progress
 from roadgpt.campaign.selection import Choice, Selection, selection_of
-from roadgpt.campaign.status import status_of
+from roadgpt.campaign.status import CellStatus, Status, status_of
 from roadgpt.chat import Spent
+from roadgpt.chat.answer import plain
 from roadgpt.check.measures import ups_and_downs
-from roadgpt.cli.campaigns import as_line, cell_lines, faults_of, outcomes_line, told
-from roadgpt.cli.repeat_commands import replay_lines
-from roadgpt.cli.result_row import WIDEST, Row, driver_and_oracle, metres, row_of, row_of_result, spending
+from roadgpt.cli.repeat_commands import lines, of_status, replay_lines, to_resume
+from roadgpt.cli.result_row import (
+    COLOURS,
+    WIDEST,
+    Row,
+    driver_and_oracle,
+    metres,
+    row_of,
+    row_of_result,
+    spending,
+)  # fmt: skip
 from roadgpt.cli.roads import NamedRoad, roads_named
+from roadgpt.cli.streams import apart, duration, progress, resumable
 from roadgpt.errors import UsageError, command_line
-from roadgpt.road.oracles import oracle_in_words
+from roadgpt.road.world import oracle_in_words
 from roadgpt.run.folder import read_run, run_folder
 from roadgpt.run.model import Run, permissions
-from roadgpt.verdict.severity import percent
+from roadgpt.verdict.verdict import percent
 
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+COMPARED = 500  # largest number of failures, evenly spread, that are grouped (if untested): under a second
+MOST_CELLS = 40  # largest number of cells that are shown one by one
 MOST_TESTS = 40  # of a cell, one by one
+HEAD = ("cell", "done", "pass", "fail", "other", "least margin", "what")
+GAP = "  "  # between columns
+LEAST = 12  # letters of the last column, below which it is left out
+LONGEST, WIDEST_TEXT = 60, 300  # letters of a description, and of other texts, in a line of a table
+MOST_WATCHED, MOST_WORKERS = 12, 16  # rows of the screen
+
+
+def watch(folder: Path, steps: Iterator[Progress], as_json: bool, quiet: bool, gate: Gate) -> None:
+    """Runs a campaign, shows its progress and prints its results; after Ctrl-C, prints how to resume it."""
+    advice = f"finished tests are kept; continue with: {to_resume(folder)}"
+    with resumable(advice), progress("tests", None, quiet, has_lines=False) as tell:
+        for step in apart(steps):
+            tell(step.done, total=step.total, rate=outcomes_line(step.outcomes))
+    status = status_of(folder)
+    gate.add_folder(folder)
+    if as_json:
+        click.echo(_as_json(status, gate))
+    elif not quiet:
+        click.echo("\n".join(_told(status)))
+        tables = f"tables: {folder / 'results.csv'} and {folder / 'cells.csv'}"
+        click.echo(tables if is_store(folder) else f"tests and tables: {folder}")
+    if gate.remark and not quiet:
+        click.echo(gate.remark, err=as_json)
+
+
+def progress_lines(campaign: Path, as_json: bool = False) -> Iterator[str]:
+    """Yields the progress of a campaign as lines of text, or as one JSON object."""
+    status = status_of(campaign)
+    yield from [_as_json(status)] if as_json else _told(status)
+
+
+def _faults_of(status: Status) -> Faults | None:
+    """Returns the distinct faults of a campaign; None if no test was driven. Before ``roadgpt faults``
+    has tried small changes, returns groups of similar failures among at most ``COMPARED`` failures."""
+    driven = status.outcomes.get("PASS") or status.outcomes.get("FAIL")
+    return faults_in(Path(status.folder), COMPARED) if driven else None
+
+
+def _as_json(status: Status, gate: Gate | None = None) -> str:
+    found = _faults_of(status)
+    counts = found and {
+        "faults": found.distinct if found.is_tested else None,
+        "groups": len(found.alone) or len(found.them) - found.distinct,
+        "failures": found.failures,
+        "compared": found.compared,
+    }
+    judged = {"gate": gate.sentence, "worse": gate.worse} if gate else {}
+    return json.dumps({**status.to_json(), "distinct": counts, **judged})
+
+
+def outcomes_line(outcomes: Mapping[str, int]) -> str:
+    """Returns the number of tests with each outcome as text, such as '120 PASS, 31 FAIL'."""
+    names = [*COLOURS, *sorted(outcomes.keys() - COLOURS.keys())]
+    return ", ".join(f"{outcomes[name]:,} {name}" for name in names if outcomes.get(name)) or "nothing yet"
+
+
+def _told(status: Status) -> Iterator[str]:
+    """Yields a campaign's progress, distinct faults and outcomes, and what to do next."""
+    found = _faults_of(status)
+    yield _headline(status)
+    if found is not None and found.failures:
+        yield f"  {found.headline}"
+    yield f"  {outcomes_line(status.outcomes)}"
+    if other := sum(cell.handed_over for cell in status.cells):
+        yield f"  in {other:,} FAIL the driver had handed over: they are not its failures"
+    if {"PASS", "FAIL"} & status.outcomes.keys():
+        yield f"  {driver_and_oracle([cell.driver for cell in status.cells], status.cells[0].oracle)}"
+    if found is not None and found.them:
+        first = "" if found.is_tested else "how many faults these are, "
+        look = command_line("faults", status.folder, *permissions(setups_of(Path(status.folder))))
+        yield f"  {first}why, how often again, and pictures: {look}"
+    if status.tokens:
+        yield f"  language model: {status.tokens:,} tokens, {status.cost_usd:.4f} USD"
+    if not status.is_finished and not status.is_running:
+        yield f"  continue with: {to_resume(Path(status.folder))}"
+    yield from cell_lines(status.cells[:MOST_CELLS])
+    if len(status.cells) > MOST_CELLS:
+        yield f"and {len(status.cells) - MOST_CELLS:,} more cells; --json tells of all"
+    passed = status.outcomes.get("PASS", 0)
+    partly = sum(cell.partly_outside for cell in status.cells)
+    mostly = sum(cell.mostly_outside for cell in status.cells)
+    if partly + mostly:
+        share = max(cell.max_oob or 0.0 for cell in status.cells)
+        beyond = max(cell.beyond or 0.0 for cell in status.cells)
+        yield (
+            f"of {passed:,} PASS, {partly:,} were partly and {mostly:,} mostly outside their lane, within "
+            f"the tolerance: at most {percent(share)} of the car, {beyond:.2f} m beyond the marking"
+        )
+    yield from lines(of_status(status))
+    yield from [cell.remark for cell in status.cells[:MOST_CELLS] if cell.remark]
+
+
+def _headline(status: Status) -> str:
+    """Returns the state of a campaign as one line: its folder, number of tests, running time and time
+    left."""
+    state = "finished" if status.is_finished else "at work" if status.is_running else "interrupted"
+    of = "" if status.total is None else f" of {status.total:,}"
+    pace = f", {status.rate:.1f} tests/s" if status.rate else ""
+    left = status.seconds_left if status.rate and status.is_running else None
+    more = f", {duration(left)} to go" if left else ""
+    return f"{status.folder}: {state}, {status.done:,}{of} tests in {duration(status.seconds)}{pace}{more}"
+
+
+def cell_lines(cells: Sequence[CellStatus], width: int = 10_000) -> list[str]:
+    """Returns a table with a line for each cell; a column that ends beyond ``width`` is left out.
+
+    A cell is one combination of the campaign's descriptions, designers, drivers and other settings. The
+    last column counts as ``LEAST`` characters wide, so longer texts of this column extend beyond ``width``.
+    """
+    rows = [HEAD, *map(_columns, cells)]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    widths[-1] = LEAST
+    ends = [sum(widths[: n + 1]) + n * len(GAP) for n in range(len(HEAD))]
+    shown = sum(end <= width for end in ends)
+    return [
+        GAP.join(
+            text.rjust(wide) if name not in (HEAD[0], HEAD[-1]) else text.ljust(wide)
+            for name, text, wide in zip(HEAD[:shown], row, widths, strict=False)
+        ).rstrip()
+        for row in rows
+    ]
+
+
+def _columns(cell: CellStatus) -> tuple[str, ...]:
+    """Returns one cell's row in the table of cells, in the order of ``HEAD``."""
+    passed, failed = cell.outcomes.get("PASS", 0), cell.outcomes.get("FAIL", 0)
+    margin = "-" if cell.least_margin is None else metres(cell.least_margin)
+    words = plain(cell.words, LONGEST) or "any road"
+    what = f"{words} ({plain(cell.driver, WIDEST_TEXT)}, {cell.generator}, seed {cell.seed})"
+    why = f"; {plain(cell.closed, WIDEST_TEXT)}" if cell.closed else ""
+    counts = (cell.done, passed, failed, cell.done - passed - failed)
+    return (cell.name or "-", *(f"{count:,}" for count in counts), margin, what + why)
+
+
+def watch_campaign(campaign: Path, once: bool = False) -> None:
+    """Shows the progress of a campaign until it ends or the user presses Ctrl-C; without a terminal, shows it
+    once."""
+    from rich.console import Console
+    from rich.live import Live
+
+    console = Console(file=sys.stdout)
+    if once or not sys.stdout.isatty():
+        console.print(_picture(status_of(campaign), console.width))
+        return
+    with Live(console=console, auto_refresh=False, screen=False) as live:
+        while True:
+            status = status_of(campaign)
+            live.update(_picture(status, console.width), refresh=True)
+            if status.is_finished:
+                return
+            time.sleep(1.0)
+
+
+def _picture(status: Status, width: int) -> "RenderableType":
+    from rich.console import Group
+    from rich.padding import Padding
+    from rich.progress_bar import ProgressBar
+    from rich.text import Text
+
+    bar = ProgressBar(total=status.total or max(status.done, 1), completed=status.done)
+    workers = [
+        f"{lease.worker}  test {lease.number} of {lease.cell}" for lease in status.under_way[:MOST_WORKERS]
+    ]
+    lines = [outcomes_line(status.outcomes), "", *cell_lines(_chosen(status), width), "", *workers]
+    table = Text("\n".join(lines), no_wrap=True, overflow="ellipsis")
+    # without colours a bar does not fill its line, so that the next line would follow it
+    return Group(Text(_headline(status), style="bold"), Padding(bar), table)
+
+
+def _chosen(status: Status) -> list[CellStatus]:
+    """Returns the cells to show: first those that are being worked on, then those with most failures."""
+    busy = {lease.cell for lease in status.under_way}
+    return sorted(
+        status.cells, key=lambda cell: (cell.name not in busy, -cell.outcomes.get("FAIL", 0), cell.name)
+    )[:MOST_WATCHED]
 
 
 def show(path: Path | str, choice: Choice | None = None) -> str:
     """Returns the summary of a Run with the commands that repeat the Run, or an overview of the tests in a
     folder, a campaign or a cell. If ``choice`` selects one road of a folder, returns the summary of this
-    road. If ``choice`` selects several roads, returns a list with one line per road.
-
-    Raises:
-        UsageError: No run, folder, campaign, cell or test has that name.
-    """
+    road. If ``choice`` selects several roads, returns a list with one line per road."""
     return "\n".join(_lines(path, choice))
 
 
-def progress_lines(campaign: Path, as_json: bool = False) -> Iterator[str]:
-    """Yields the progress of a campaign as lines of text, or as one JSON object.
-
-    Raises:
-        UsageError: The folder holds no campaign.
-    """
-    status = status_of(campaign)
-    found = faults_of(status)
-    yield from [as_line(status, found)] if as_json else told(status, found)
-
-
 def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
-    """Yields one JSON object for a whole campaign, or one for each named road.
-
-    Raises:
-        UsageError: No run, folder, campaign, cell or test has that name.
-    """
+    """Yields one JSON object for a whole campaign, or one for each named road."""
     place = selection_of(str(path))
     if place is not None and is_store(place.folder) and not place.cell and choice is None:
         yield from progress_lines(place.folder, as_json=True)
@@ -69,7 +248,10 @@ def _lines(path: Path | str, choice: Choice | None) -> Iterator[str]:
     place = selection_of(str(path))
     if choice is not None or (place is not None and place.number is not None):
         named = [*roads_named([str(path)], choice)]
-        yield from _run_of(named[0]) if len(named) == 1 else map(_one_line, named)
+        if len(named) == 1:
+            yield from _run_of(named[0])
+        else:
+            yield from (_line_of(row_of(each.run(), each.said)) for each in named if each.run)
     elif place is None:
         run = read_run(path)
         folder = Path(path) if Path(path).is_dir() else run_folder(Path(path).parent, run.index)
@@ -78,7 +260,7 @@ def _lines(path: Path | str, choice: Choice | None) -> Iterator[str]:
         yield from _cell_lines(place)
     elif is_store(place.folder):
         status = status_of(place.folder)
-        yield from told(status, faults_of(status))
+        yield from _told(status)
         if "FAIL" in status.outcomes:
             yield f"all failures: {command_line('show', place.folder, '--failures')}"
         elif status.cells[0].done:
@@ -99,11 +281,6 @@ def _cell_lines(place: Selection) -> Iterator[str]:
         yield "no test has ended yet"
     elif cell.done > MOST_TESTS:
         yield f"and {cell.done - MOST_TESTS:,} more tests; all: {place.folder / RESULTS}"
-
-
-def _one_line(named: NamedRoad) -> str:
-    assert named.run is not None
-    return _line_of(row_of(named.run(), named.said))
 
 
 def _line_of(row: Row) -> str:
@@ -145,29 +322,23 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
         )
     if run.verdict is not None:
         verdict, limits = run.verdict, run.world.limits
-        beyond = "an unknown distance" if verdict.beyond is None else f"{verdict.beyond:.2f} m"
         yield (
-            f"  verdict   at most {percent(verdict.max_oob)} of the car outside its lane, {beyond} "
-            f"beyond the marking, margin {metres(verdict.margin)}"
+            f"  verdict   at most {percent(verdict.max_oob)} of the car outside its lane, "
+            f"{verdict.beyond:.2f} m beyond the marking, margin {metres(verdict.margin)}"
         )
         yield f"  oracle    {oracle_in_words(limits.oracle)}"
-    yield from _asked_lines(run)
+    designing = run.designing
+    if run.spent is not None:  # on language models
+        rounds = designing and f"{designing.rounds} round{'s' * (designing.rounds != 1)}"
+        yield f"  model     {f'{designing.model}, {rounds}: ' if designing else ''}{spending(run.spent)}"
+    for number, change in enumerate(designing.changes if designing else ()):
+        yield f"  {'changed' if number == 0 else '':<8}  {change}"
     yield f"  seed      {run.seed}" + (f" (road {run.index} of seed {run.request.seed})" if run.words else "")
     yield f"  versions  {', '.join(f'{name} {number}' for name, number in run.versions.items())}"
     if run.seconds.total:
         yield f"  took      {run.seconds.design * 1000:.1f} ms to design, {run.seconds.drive:.2f} s to drive"
     for number, line in enumerate(again):
         yield f"  {'again' if number == 0 else 'or':<8}  {line}"
-
-
-def _asked_lines(run: Run) -> Iterator[str]:
-    """Yields what the language models cost, and what was changed in their answers."""
-    told = run.designing
-    if run.spent is not None:
-        by = f"{told.model}, {told.rounds} round{'s' * (told.rounds != 1)}: " if told else ""
-        yield f"  model     {by}{spending(run.spent)}"
-    for number, change in enumerate(told.changes if told else ()):
-        yield f"  {'changed' if number == 0 else '':<8}  {change}"
 
 
 def _road_line(run: Run) -> str:

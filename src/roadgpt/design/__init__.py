@@ -16,20 +16,40 @@ report           a DesignReport of its last draft
 redrafts         False if the designer must not be called again when its draft violates a rule
 makes_junctions  True if the designer can make networks: routes with junctions, and maps of roads
 geometry         the kind of geometry that its designs require, such as "spline" for RoadGPT's original
-                 splines; it overrides the user's choice
-"""
+                 splines; it overrides the user's choice"""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
-from roadgpt.brief.model import Brief
-from roadgpt.chat import ChatSettings, plugin_of
+from roadgpt.brief.model import Brief, Frozen
+from roadgpt.chat import ChatSettings, Usage, plugin_of
 from roadgpt.design.unbuilt import check_built
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, World
 
 if TYPE_CHECKING:
     from roadgpt.network import AnyDesign
+
+__all__ = ["DesignReport", "Designer", "check_designer", "designer_of", "draft", "draft_road"]
+
+
+class DesignReport(Frozen):
+    """How a language model made one draft: its proposal, the changes to it, requests, time and cost."""
+
+    rounds: int = 0
+    """Number of requests to the model."""
+    changes: tuple[str, ...] = ()
+    """Sentences that say what was changed in the model's proposal."""
+    tokens: Usage = Usage()
+    """Tokens that the model read and wrote."""
+    seconds: float = 0.0
+    """Time in seconds that the model took."""
+    cost: float | None = None
+    """Cost in USD; None if the price is not known."""
+    model: str = ""
+    """Name of the model as reported by its server."""
+    proposed: dict[str, Any] | None = None
+    """The model's proposal before any change, in RoadGPT's segment format; None if there was none."""
 
 
 class Designer(Protocol):
@@ -38,14 +58,9 @@ class Designer(Protocol):
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> "AnyDesign":
-        """Returns a Design that meets every requirement of the Brief and is valid on this map.
-
-        If the Brief asks for a map of roads, the result is a MapDesign; if it asks for another network
-        (``is_of_network``), the result is a NetworkDesign. The arguments are those of the function ``draft``.
-
-        Raises:
-            DesignError: this designer found no such Design, or cannot make networks.
-        """
+        """Returns a Design that meets every requirement of the Brief and is valid on this map; a MapDesign if
+        the Brief asks for a map of roads, and a NetworkDesign if it asks for another network. The arguments
+        are those of the function ``draft``. Raises DesignError if this designer found no such Design."""
         ...
 
 
@@ -60,34 +75,22 @@ def draft(
 ) -> "AnyDesign":
     """Returns a Design for a Brief; for a network a NetworkDesign, and for a map of roads a MapDesign.
 
-    Args:
-        brief: the requirements for the road.
-        world: size of the map, and limits that the rules check, such as the steepest grade.
-        notes: sentences that say which rules the previous draft violated.
-        earlier: designs of the campaign so far; the new one should differ from them.
-        seed: seed of the random number generator.
-        designer: name of an installed designer.
-        chat: settings of the language model, for designers that use one; None for the user's settings.
+    ``notes`` are sentences that say which rules the previous draft violated, and ``earlier`` the designs of
+    the campaign so far, from which the new one should differ. ``designer`` is the name of an installed
+    designer, and ``chat`` the settings of the language model, for designers that use one; None for the user's
+    settings.
 
-    Raises:
-        DesignError: no road meets all requirements on this map.
-        UsageError: there is no designer of that name, a junction cannot meet its requirements, or the World
-            has lanes or banked bends that a map of roads cannot have.
-        ChatError: the language model could not be asked.
-    """
+    Raises DesignError if no road meets all requirements on this map, UsageError if there is no designer of
+    that name, a junction cannot meet its requirements, or the World has lanes or banked bends that a map of
+    roads cannot have, and ChatError if the language model could not be asked."""
     made = designer_of(designer, chat)
     check_designer(made, brief)
     return made.draft(brief, world, notes, earlier, seed)
 
 
 def draft_road(brief: Brief, world: World, earlier: Sequence[Design] = (), seed: int = 0) -> Design:
-    """Returns a Design for a Brief of a single road, made by the default designer.
-
-    The arguments are those of ``draft``.
-
-    Raises:
-        DesignError: no road meets all requirements on this map, or the Brief asks for a network.
-    """
+    """Returns a Design for a Brief of a single road, made by the default designer; see ``draft``. Raises
+    DesignError if no road meets all requirements on this map, or the Brief asks for a network."""
     found = draft(brief, world, (), earlier, seed)
     if not isinstance(found, Design):
         raise DesignError(
@@ -97,12 +100,8 @@ def draft_road(brief: Brief, world: World, earlier: Sequence[Design] = (), seed:
 
 
 def check_designer(designer: Designer, brief: Brief) -> None:
-    """Checks that a designer can make what a Brief asks for.
-
-    Raises:
-        DesignError: the Brief asks for something that cannot be built yet, or it asks for a network and the
-            designer makes single roads only.
-    """
+    """Raises DesignError if a Brief asks for something that cannot be built yet, or for a network, and the
+    designer makes single roads only."""
     check_built(brief)
     if brief.is_of_network and not getattr(designer, "makes_junctions", False):
         raise DesignError(
@@ -112,16 +111,6 @@ def check_designer(designer: Designer, brief: Brief) -> None:
 
 
 def designer_of(name: str, chat: ChatSettings | None = None) -> Designer:
-    """Returns the designer of the given name.
-
-    Args:
-        name: name of an installed designer.
-        chat: settings of the language model, for designers that use one; None for the user's settings.
-
-    Raises:
-        PartError: there is no designer of that name.
-    """
+    """Returns the designer of the given name, with settings of the language model for designers that use one;
+    None for the user's settings. Raises PartError if there is no designer of that name."""
     return cast(Designer, plugin_of("designers", name, chat))  # made once: it caches shapes of designs
-
-
-__all__ = ["Designer", "check_designer", "designer_of", "draft", "draft_road"]

@@ -1,7 +1,6 @@
 """Writes messages that say which requirement no road can meet, and what to ask for instead.
 
-A road length or a map size is suggested only after a road has been drafted with it.
-"""
+A road length or a map size is suggested only after a road has been drafted with it."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -15,7 +14,7 @@ from roadgpt.brief.model import Amount, Brief
 from roadgpt.brief.outline import Outline
 from roadgpt.brief.words import LARGEST_MAP, ROAD
 from roadgpt.check.rules.too_abrupt import MOST
-from roadgpt.design.grade_correction import TOO_ABRUPT
+from roadgpt.design.heights import TOO_ABRUPT
 from roadgpt.road import World
 
 OF_THE_PLAN = ("too large", "over itself", "longer than was asked for", "like an earlier road")
@@ -39,11 +38,9 @@ failed; None if all found one. Its ``boxes`` are the sides in metres of squares 
 def advice(
     brief: Brief, outline: Outline, world: World, failed: Counter[str], boxes: Sequence[float], trial: Trial
 ) -> str:
-    """Returns one sentence that says which requirement could not be met, and what to do.
-
-    ``failed`` counts the reasons why drafts failed. ``boxes`` are the sides in metres of the smallest squares
-    around the drafts that were too large for the map.
-    """
+    """Returns one sentence that says which requirement could not be met, and what to do. ``failed`` counts
+    the reasons why drafts failed. ``boxes`` are the sides in metres of the smallest squares around the drafts
+    that were too large for the map."""
     reason = main_reason(failed)
     wishes = _wishes_of(outline)
     if reason in FOR_ROOM:
@@ -63,8 +60,7 @@ def advice(
 
 def too_fast(world: World, slower: float | None) -> str:
     """Returns the message that crests and dips would be too abrupt for the speed limit. ``slower`` is a limit
-    in km/h at which the road is possible; None if none is known.
-    """
+    in km/h at which the road is possible; None if none is known."""
     limit = f"a speed limit of {3.6 * world.limits.speed_limit:.3g} km/h"
     less = f"use --speed-limit {slower:g}" if slower else "use a lower --speed-limit"
     return (
@@ -74,11 +70,9 @@ def too_fast(world: World, slower: float | None) -> str:
 
 
 def main_reason(failed: Counter[str]) -> str:
-    """Returns the reason why most drafts failed; "too large" if ``failed`` is empty.
-
-    ``failed`` holds the reasons, with the number of times that each occurred. Reasons in ``OF_THE_PLAN``,
-    such as "too large", do not count if at least 60 drafts failed for other reasons.
-    """
+    """Returns the reason why most drafts failed; "too large" if ``failed``, which counts them, is empty.
+    Reasons in ``OF_THE_PLAN``, such as "too large", do not count if at least 60 drafts failed for other
+    reasons."""
     broken = Counter({reason: count for reason, count in failed.items() if reason not in OF_THE_PLAN})
     fitted = broken.total() >= MANY
     return (broken if fitted else failed or Counter(["too large"])).most_common(1)[0][0]
@@ -100,33 +94,25 @@ def _wishes_of(outline: Outline) -> str:
 
 
 def roomier(world: World, boxes: Sequence[float]) -> float:
-    """Returns the side in metres of a map that may be large enough.
-
-    This map is at least 1.2 times as wide as the present one. At least a quarter of the drafts with these
-    ``boxes``, which were too large for the present map, would fit on it.
-    """
+    """Returns the side in metres of a map that may be large enough: at least 1.2 times as wide as the present
+    one, and large enough for a quarter of the drafts with these ``boxes``."""
     needed = sorted(boxes)[len(boxes) // 4] + world.section.road_width if boxes else 0.0
     return max(needed, 1.2 * world.site.map_size)
 
 
 @lru_cache(maxsize=64)
 def _offer(brief: Brief, world: World, trial: Trial, likely: float) -> str:
-    """Returns advice for a Brief that does not fit on the map, as the end of a sentence.
-
-    ``likely`` is the side in metres of a map that may be large enough.
-    """
+    """Returns advice for a Brief that does not fit on the map, as the end of a sentence. ``likely`` is the
+    side in metres of a map that may be large enough."""
     larger = larger_map(brief, world, trial, likely)
     less = f"ask for {_less(brief, world, trial) or 'less'}"
     return f"{less} or use --map-size {larger:g}" if larger else less
 
 
 def no_room(error: NoRoomError, world: World, trial: Trial) -> str:
-    """Returns the message for a road that does not fit on the map.
-
-    If the message suggests a length or a map size, a road was drafted with it. The result is the message of
-    ``error`` if no length of the road or of a straight is required, or if the road must have no turns.
-    ``trial`` is ``road_search.failed_trial``.
-    """
+    """Returns the message for a road that does not fit on the map. If it suggests a length or a map size, a
+    road was drafted with it. The result is the message of ``error`` if no length of the road or of a straight
+    is required, or if the road must have no turns. ``trial`` is ``road_search.failed_trial``."""
     brief = error.brief
     if _asked(brief) is None or (brief.turns and brief.turns.hi == 0):
         return str(error)  # of a straight road, the longest is known
@@ -139,10 +125,8 @@ def no_room(error: NoRoomError, world: World, trial: Trial) -> str:
 
 
 def _less(brief: Brief, world: World, trial: Trial) -> str | None:
-    """Returns, as text, the greatest length of the road that could be drafted; None if none could.
-
-    If the Brief requires no length of the road, the text gives the length of its longest straight instead.
-    """
+    """Returns, as text, the greatest length of the road that could be drafted or, if its length is open, that
+    of its longest straight; None if none could."""
     asked = _asked(brief)
     if asked is None:
         return None
@@ -163,10 +147,8 @@ def _less(brief: Brief, world: World, trial: Trial) -> str | None:
 
 
 def larger_map(brief: Brief, world: World, trial: Trial, likely: float) -> float | None:
-    """Returns the side in metres of a larger map on which roads can be drafted; None if none was found.
-
-    ``likely`` is the side in metres of a map that may be large enough, the first size to be tried.
-    """
+    """Returns the side in metres of a larger map on which roads can be drafted; None if none was found. The
+    first size to be tried is ``likely``."""
     largest = world.changed(map_size=LARGEST_MAP)
     size, tried = max(likely, world.site.map_size + ROUND_MAP), 0
     while world.site.map_size < LARGEST_MAP and likely <= 2 * LARGEST_MAP:
@@ -189,10 +171,8 @@ def _round(metres: float) -> float:
 
 
 def _asked(brief: Brief) -> float | None:
-    """Returns the required length of the road in metres; if it is open, that of the longest straight.
-
-    Returns None if neither is required.
-    """
+    """Returns the required length of the road in metres; if it is open, that of the longest straight, if
+    any."""
     if brief.length:
         return brief.length.lo or brief.length.hi
     lengths = [c.length.lo for c in brief.clauses if c.kind == "straight" and c.length and c.length.lo]

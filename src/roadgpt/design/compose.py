@@ -1,7 +1,6 @@
 """Composes a draft from turns, required straights, and further straights that join these elements.
 
-lead-in | turn | joining straight | turn | required straight | turn | lead-out
-"""
+lead-in | turn | joining straight | turn | required straight | turn | lead-out"""
 
 from collections.abc import Sequence
 from math import inf
@@ -77,8 +76,7 @@ def composed(order: TurnSequence, task: DraftTask) -> list[Element] | None:
 def _evened(elements: list[Element], wishes: Sequence[Feature]) -> list[Element]:
     """Returns the elements of a road none of whose turns has a place. The required straights of open length
     have equal lengths if each has a number for its grade, so that "the first half climbs at 5 percent, the
-    second falls at 5" comes out even, or if they have equal heights.
-    """
+    second falls at 5" comes out even, or if they have equal heights."""
     is_free = [element.is_elastic and element.required_length is not None for element in elements]
     free = [element.length for element, may_change in zip(elements, is_free, strict=True) if may_change]
     open_wishes = [wish for wish in wishes if not wish.length or wish.length.hi == inf]
@@ -96,8 +94,7 @@ def _evened(elements: list[Element], wishes: Sequence[Feature]) -> list[Element]
 
 def _from_corner_to_corner(elements: list[Element], task: DraftTask) -> list[Element]:
     """Returns the straights of a road without turns, shortened if they do not fit on the map's diagonal;
-    unchanged, so that the road is too large for the map, if they would be shorter than required.
-    """
+    unchanged, so that the road is too large for the map, if they would be shorter than required."""
     world, whole = task.world, sum(element.length for element in elements)
     longest = longest_straight(world.site.map_size, world.section.road_width) - ROUNDING
     keep = min(longest / whole, 1.0)
@@ -108,11 +105,8 @@ def _from_corner_to_corner(elements: list[Element], task: DraftTask) -> list[Ele
 
 
 def asked_length(outline: Outline, windows: Windows) -> Range | None:
-    """Returns the range of lengths in metres that the road may have; None if any length will do.
-
-    If a climb but no length is required, the range begins at the length that the climb needs at a moderate
-    grade.
-    """
+    """Returns the range of lengths in metres that the road may have; None if any length will do. If a climb
+    but no length is required, the range begins at the length that the climb needs at a moderate grade."""
     if outline.length or not outline.climb:
         return outline.length
     height = max(outline.climb.lo, -outline.climb.hi, 0.0)
@@ -128,11 +122,8 @@ def gap_between(
     task: DraftTask,
     is_leg: bool = False,
 ) -> list[Element]:
-    """Returns the straights between two turns, or between a turn and an end of the road.
-
-    ``before`` is None at the start, and ``after`` at the end; ``wishes`` are required here, in order. If
-    ``is_leg``, both turns are hairpins.
-    """
+    """Returns the straights between two turns, or between a turn and an end of the road, where ``before`` or
+    ``after`` is None. ``wishes`` are required here, in order. If ``is_leg``, both turns are hairpins."""
     outline, windows, rng = task.outline, task.windows, task.rng
     if is_leg and not wishes and task.haste < CRAMPED:
         return [Element(free_straight(LEG, LEG_MEAN, task))]
@@ -216,10 +207,8 @@ def _ledge(before: Range | None, after: Range | None, windows: Windows) -> Eleme
 
 
 def _change(grade: Range | None, other: Range | None, task: DraftTask) -> float:
-    """Returns the length in metres of straight to reserve for a change of grade at its end.
-
-    Without haste, a comfortable parabola between the two grades has room, unless it needs more than 100 m.
-    """
+    """Returns the length in metres of straight to reserve for a change of grade at its end. Without haste, a
+    comfortable parabola between the two grades has room, unless it needs more than 100 m."""
     comfortable = task.windows.comfort * task.windows.between(grade, other) / 100
     return max(CHANGE * (1 - 0.3 * task.haste), min(comfortable, LONGEST_CHANGE) * (1 - task.haste))
 
@@ -237,10 +226,8 @@ def _with_hills(elements: list[Element], hills: Range, rng: np.random.Generator)
 
 
 def _with_length(elements: list[Element], asked: Range, task: DraftTask) -> list[Element] | None:
-    """Returns the elements with free straights changed so that the road has the required length.
-
-    Returns None if they cannot be shortened enough.
-    """
+    """Returns the elements with free straights changed so that the road has the required length; None if they
+    cannot be shortened enough."""
     rng, now = task.rng, sum(element.length for element in elements)
     core = asked.around(NEAR_NUMBER)
     if core.lo + 1 < now < core.hi - 1:

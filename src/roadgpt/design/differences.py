@@ -1,8 +1,4 @@
-"""Describes in sentences how two designs differ.
-
-``changes_between`` compares them segment by segment. ``sentences`` compares them turn by turn, as
-measured on the road before and after an edit.
-"""
+"""Describes in sentences how two designs differ, turn by turn as measured before and after an edit."""
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby
@@ -12,11 +8,8 @@ import numpy as np
 from roadgpt.check.measures import MeasuredFeature, Measures, ups_and_downs, way
 from roadgpt.design.fit import Look
 from roadgpt.design.road_elements import RoadElement, RoadElements, features_of
-from roadgpt.network import NetworkDesign
 from roadgpt.road import Design, Geometry, Segment, build
 
-AnyRoute = Design | NetworkDesign
-"""The design of a road or of a route with junctions."""
 ALL_LISTED = 60  # changed segments; of more, only the number is given
 MOVED = 0.005  # m
 PLACES = 200  # heights that the ups and downs of a stretch are seen in
@@ -35,8 +28,7 @@ def sentences(
     ``elements`` and ``found`` are those of the road before the edit. If the Look at the road after the edit
     has no elements, the sentences give the number of turns before and after the edit, and describe each turn
     after it. ``fitted`` holds each edited design before further segments were changed to keep the road valid,
-    and after that.
-    """
+    and after that."""
     new = after.found
     things = _things(elements, after.elements, new) if after.elements else _counted(found, new)
     lengths = f"{found.length:.0f} -> {new.length:.0f}"
@@ -51,8 +43,7 @@ def grades_changed(
     before: Design, after: Design, stretches: Sequence[tuple[float, float]], geometry: Geometry
 ) -> Iterator[str]:
     """Yields a sentence on the mean grade, ups and downs of each stretch of a road before and after an edit.
-    Each stretch is a pair of stations in metres, valid for both roads. One named twice counts once.
-    """
+    Each stretch is a pair of stations in metres, valid for both roads. One named twice counts once."""
     for start, end in dict.fromkeys(stretches):
         grades, climbs = [], []
         for design in (before, after):
@@ -151,8 +142,7 @@ def _other_grades(
     element: RoadElement, now: RoadElement, was: MeasuredFeature | None, seen: MeasuredFeature | None
 ) -> str:
     """Returns the old and the new grade of an element; of a straight over a crest or a dip, those of all its
-    parts, since their mean says little.
-    """
+    parts, since their mean says little."""
     parts = [[key for key, _ in groupby(segment.incline for segment in e.segments)] for e in (element, now)]
     if not element.is_turn and any(len({*map(way, inclines)}) > 1 for inclines in parts):
         one, other = (", ".join(f"{incline:+.1f}" for incline in inclines) for inclines in parts)
@@ -161,17 +151,7 @@ def _other_grades(
     return f"grade {low:+.1f} -> {high:+.1f} %"
 
 
-def changes_between(before: AnyRoute, after: AnyRoute) -> tuple[str, ...]:
-    """Returns one sentence each for a changed start, a changed heading and each changed segment. Junctions
-    are not compared.
-
-    Both designs must have the same number of segments. If more than 60 segments changed, one sentence gives
-    their number.
-    """
-    return (*_placing(before, after), *_changed_segments(before, after))
-
-
-def _placing(before: AnyRoute, after: AnyRoute) -> Iterator[str]:
+def _placing(before: Design, after: Design) -> Iterator[str]:
     (x, y, z), (x1, y1, z1) = before.starting_point, after.starting_point
     if abs(x - x1) > MOVED or abs(y - y1) > MOVED:
         yield f"start moved from ({x:g}, {y:g}) to ({x1:g}, {y1:g})"
@@ -182,7 +162,7 @@ def _placing(before: AnyRoute, after: AnyRoute) -> Iterator[str]:
         yield f"turned by {turned:+.4g} degrees, theta {before.theta:g} -> {after.theta:g}"
 
 
-def _changed_segments(before: AnyRoute, after: AnyRoute) -> list[str]:
+def _changed_segments(before: Design, after: Design) -> list[str]:
     pairs = zip(before.segments, after.segments, strict=True)
     told = [said for number, (one, other) in enumerate(pairs, 1) if (said := _segment(number, one, other))]
     return told if len(told) <= ALL_LISTED else [f"{len(told)} segments changed"]

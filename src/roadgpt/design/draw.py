@@ -1,6 +1,5 @@
 """Chooses at random what a description leaves open: angle, radius and transitions of turns, and lengths of
-straights.
-"""
+straights. Turns that must be alike get one angle and radius, and straights one length."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,9 +11,11 @@ import numpy as np
 from roadgpt.brief.element import Element
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.ranges import Range, overlap
-from roadgpt.brief.words import KINDS, SHARPNESS
+from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, SHARPNESS
+from roadgpt.check.matching import LikeGroup, like_groups, like_straights
 from roadgpt.check.measures import LEAST_TURN
 from roadgpt.design.elements import MOST_TRANSITION, segments_of_turn, turn_element
+from roadgpt.design.sequence import TurnSequence
 from roadgpt.design.windows import Windows
 from roadgpt.errors import DesignError
 from roadgpt.road import World
@@ -42,6 +43,11 @@ OF_TOLERANCE = 0.6  # the share of angles and radii that is used in the greatest
 KEPT = 0.5  # degrees by which a turn may differ from its share of a required sum
 OFF_TOP, UP_TO = 0.6, 0.97  # share of its range to which a straight may grow: without haste, and at most
 TIGHTER = 1.35  # ratio of the widest radius of a hard road to its least
+ANGLE_SPREAD = 0.4  # degrees by which the angles of like turns may differ from the one that was drawn
+SPREAD = 0.01  # share by which radii and lengths may differ
+JOIN_MEAN = 14.0  # m by which a straight between like turns exceeds its least length on average
+FILLED = (0.5, 1.0)  # share of what the turns leave of the required length that like straights fill
+NARROW = 1.25  # ratio of the ends of a range that was given as one number, which needs no drawing
 
 
 class DraftTask(NamedTuple):
@@ -51,19 +57,14 @@ class DraftTask(NamedTuple):
     windows: Windows
     world: World
     rng: np.random.Generator
-    haste: float
-    """From 0 to 1; the larger it is, the smaller the lengths, angles and radii."""
+    haste: float  # from 0 to 1; the larger it is, the smaller the lengths, angles and radii
 
 
 def narrowed_turns(turns: Sequence[Feature], task: DraftTask) -> list[Feature]:
-    """Returns the turns with the ranges from which their angle, radius, length and grade are chosen.
-
-    The ranges lie a little inside the required ones. If a number is required, its range lies close around
-    the number; the more haste, the wider this range.
-
-    Raises:
-        DesignError: a range is empty, for example because the rules forbid a radius as too tight.
-    """
+    """Returns the turns with the ranges from which their angle, radius, length and grade are chosen. The
+    ranges lie a little inside the required ones. If a number is required, its range lies close around the
+    number; the more haste, the wider. Raises DesignError if a range is empty, for example because the rules
+    forbid a radius as too tight."""
     narrowed = [_narrowed(turn, task) for turn in turns]
     return [replace(turn, grade=task.windows.of(turn)) for turn in narrowed]
 
@@ -75,8 +76,7 @@ def with_one_at_bound(
 
     This needs three turns or more, which all have the same least radius, given as a number. The road then
     meets both "no radius below 25 m" and "25 m at the tightest". ``turns`` are the same turns with the
-    required ranges.
-    """
+    required ranges."""
     out, bounds = [*narrowed], {overlap(turn.radius, task.outline.each_turn.radius) for turn in turns}
     bound = bounds.pop()
     if bounds or len(turns) < FEWEST_TO_BOUND or bound is None or bound.hi < inf or bound in WORD_RADII:
@@ -130,10 +130,8 @@ def _angles(turn: Feature, promised: Range, haste: float) -> Range:
 
 
 def _inside(span: Range, share: float) -> Range:
-    """Returns a range narrowed at both ends by a share of its width.
-
-    If it has no upper bound, the share is that of its lower bound.
-    """
+    """Returns a range narrowed at both ends by a share of its width, or of its lower bound if it has no upper
+    one."""
     return span.drawn_in(share * (span.lo if span.hi == inf else span.hi - max(span.lo, 0.0)), 0.5)
 
 
@@ -143,9 +141,8 @@ def hand_of(turn: Feature) -> int:
 
 
 def drawn_turns(turns: Sequence[Feature], task: DraftTask) -> list[Element]:
-    """Chooses the angle, radius and transitions of each turn at random, from the ranges that
-    ``narrowed_turns`` returned.
-    """
+    """Chooses the angle, radius and transitions of each turn at random, from the ranges of
+    ``narrowed_turns``."""
     rng, turning = task.rng, task.outline.turning
     ranges = [turn.degrees or ANY_TURN for turn in turns]
     hands = [hand_of(turn) for turn in turns]
@@ -210,12 +207,9 @@ def _swing(signed: Sequence[float]) -> float:
 
 
 def drawn_turn(turn: Feature, angle: float, longest: float, task: DraftTask) -> Element:
-    """Chooses the radius and the transitions of one turn at random, within the ranges that
-    ``narrowed_turns`` returned. On a hard road, the radius is near the smallest one allowed.
-
-    ``angle``, the change of heading in degrees, may be changed within its range so that the turn is no longer
-    than ``longest`` metres.
-    """
+    """Chooses the radius and the transitions of one turn at random, within the ranges of ``narrowed_turns``.
+    On a hard road, the radius is near the smallest one allowed. ``angle``, the change of heading in degrees,
+    may be changed within its range so that the turn is no longer than ``longest`` metres."""
     rng, hard = task.rng, task.outline.hard
     asked, radii = turn.degrees or ANY_TURN, turn.radius or Range(0)
     least, most, is_tight = radii.lo, radii.hi, radii.hi < inf
@@ -256,11 +250,9 @@ def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Gene
 
 
 def drawn_straight(wish: Feature, least: float, mean: float, task: DraftTask) -> float:
-    """Chooses the length of a required straight at random, in metres.
-
-    It is at least ``least`` metres if the required range allows that. Without an upper limit, the length
-    exceeds its lower limit by about ``mean`` metres on average, and by less in haste.
-    """
+    """Chooses the length of a required straight at random, in metres. It is at least ``least`` metres if the
+    required range allows that. Without an upper limit, the length exceeds its lower limit by about ``mean``
+    metres on average, and by less in haste."""
     span = wish.length or Range(10, inf)
     low, high = span.lo, span.hi
     if high == inf:
@@ -278,8 +270,72 @@ def inside(least: float) -> float:
 
 
 def free_straight(least: float, mean: float, task: DraftTask) -> float:
-    """Returns a random length, in metres, of a straight without requirements.
-
-    The length is ``least`` plus a random part, which is about ``mean`` metres on average without haste.
-    """
+    """Returns a random length, in metres, of a straight without requirements: ``least`` plus a random part,
+    which is about ``mean`` metres on average without haste."""
     return least + min(float(task.rng.exponential(mean)), 3 * mean) * (1 - 0.95 * task.haste)
+
+
+def with_like_parts(order: TurnSequence, task: DraftTask) -> TurnSequence:
+    """Returns the sequence with narrow ranges for turns and straights that must be alike, as
+    ``check.matching`` finds them. The others are left as they are."""
+    turns = [*order.turns]
+    for group in like_groups(turns):
+        angles, radii = _like_turn(group, len(turns), task)
+        for place in group:
+            turns[place] = replace(turns[place], degrees=angles, radius=radii)
+    gaps = [[*gap] for gap in order.gaps]
+    arcs = sum(_arc(turn) for turn in turns)
+    for group in like_straights(gaps):
+        length = _like_length(group, gaps, arcs, task)
+        for place in group:
+            named = gaps[place][0] if gaps[place] else group.common
+            gaps[place] = [replace(named, length=length)]
+    return TurnSequence(tuple(turns), tuple(map(tuple, gaps)))
+
+
+def _like_turn(group: LikeGroup, turns: int, task: DraftTask) -> tuple[Range, Range]:
+    """Returns the narrow ranges of angle and radius of a group of like turns."""
+    (turn,) = narrowed_turns([group.common], task)
+    span = turn.degrees or ANY_TURN
+    if task.outline.turning and len(group) == turns:
+        share = drawn_target(task.outline.turning, task.rng) / turns
+        if share in (group.common.degrees or Range()):
+            span = Range(share, share)
+            turn = replace(turn, degrees=span)
+    angle = span.lo + float(task.rng.random()) * (1 - 0.9 * task.haste) * (span.hi - span.lo)
+    longest = longest_turn(turns, task) * (1 - 0.6 * task.haste)
+    made = drawn_turn(turn, angle, longest, task)
+    angle = abs(made.turn)
+    return (
+        Range(angle - ANGLE_SPREAD, angle + ANGLE_SPREAD),
+        Range(made.radius * (1 - SPREAD), made.radius * (1 + SPREAD)),
+    )
+
+
+def _arc(turn: Feature) -> float:
+    """Returns the length in metres that a turn is likely to have."""
+    angles, radii = turn.degrees or ANY_TURN, turn.radius or Range(2 * LEAD, 2 * LEAD)
+    radius = radii.lo if radii.hi == inf else (radii.lo + radii.hi) / 2
+    return radians((angles.lo + angles.hi) / 2) * radius
+
+
+def _like_length(group: LikeGroup, gaps: Sequence[Sequence[Feature]], arcs: float, task: DraftTask) -> Range:
+    """Returns the narrow range of lengths of a group of like straights, in metres."""
+    span = group.common.length
+    if span and span.lo > 0 and span.hi < NARROW * span.lo:
+        return span
+    is_even = span is None
+    least = SEPARATE if is_even else inside((span or Range(LEAST_STRAIGHT)).lo)
+    length = (
+        free_straight(least, JOIN_MEAN, task)
+        if is_even
+        else drawn_straight(group.common, LEAD, JOIN_MEAN, task)
+    )
+    asked = task.outline.length
+    if asked and asked.hi < inf:
+        others = [place for place in range(len(gaps)) if place not in group]
+        rest = sum(SEPARATE + sum(each.length.lo for each in gaps[at] if each.length) for at in others)
+        left = (max(asked.lo, 0.0) + asked.hi) / 2 - arcs - rest
+        length = max(left / len(group) * float(task.rng.uniform(*FILLED)), least)
+    length = min(length, (span or Range()).hi * (1 - SPREAD))
+    return Range((1 - SPREAD) * length, (1 + SPREAD) * length)

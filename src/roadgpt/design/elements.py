@@ -1,26 +1,36 @@
-"""Converts elements to RoadGPT's segments and back.
+"""Converts elements to RoadGPT's segments and back, and to a Design on the map.
 
 In RoadGPT's format, a turn of more than 70 degrees is split into several segments; an element is the whole
 turn. Elements that the planner drafted can be recovered from their segments exactly, because their numbers
-are rounded to the precision of design files.
-"""
+are rounded to the precision of design files. Grades that change too abruptly for the speed are brought closer
+together when elements are written as segments."""
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import ceil, floor, radians
 
+import numpy as np
+
 from roadgpt.brief.element import Element
 from roadgpt.brief.ranges import Range
-from roadgpt.road import Segment
-from roadgpt.road.alignment import LONGEST_TRANSITION, TRANSITION_SHARE
-from roadgpt.road.design import MAX_TURN
+from roadgpt.check.extremes import lowest
+from roadgpt.check.measures import LEVEL
+from roadgpt.design.layout import MapPose
+from roadgpt.design.vertical import SHORTEST_SLOPE, Pace, joined, made_to_fit, too_abrupt, widened
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Design, Segment, World
+from roadgpt.road.builder import LONGEST_TRANSITION, TRANSITION_SHARE, elevation_of
+from roadgpt.road.design import MAX_INCLINE, MAX_TURN
 
 MILLIMETRE = 1000.0  # per metre: distances are written to the millimetre
 TENTH = 10.0  # per unit: angles, transitions and inclines are written to the tenth
 HUNDREDTH = 100.0  # per metre: radii are written to the centimetre
-MOST_TRANSITION = 0.55  # of a segment's arc: with more it could not keep its radius (see road.alignment)
+MOST_TRANSITION = 0.55  # of a segment's arc: with more it could not keep its radius (see road.builder)
 SHORTEST = 0.5  # m, of a straight that is written
+UNCLEAR = 0.2  # percentage points around the edge of flat, where rounding would decide
 SPARE = 1.0  # m: a turn longer than its radius needs by more than this is a turn between two straights
+ABOVE_GROUND = 1.0  # m from the ground to the lowest place of a road
+CENTIMETRE = 100.0  # per metre: heights are written in centimetres
 
 
 def turn_element(
@@ -31,11 +41,9 @@ def turn_element(
     required_grade: Range | None = None,
     required_climb: Range | None = None,
 ) -> Element:
-    """Returns a turn with numbers rounded to the precision of design files.
-
-    The angle is in degrees and positive; ``hand`` is 1 for a left turn, -1 for a right turn. The transition
-    at each end is shortened to at most 0.55 of the arc length of one segment, so that it fits.
-    """
+    """Returns a turn with numbers rounded to the precision of design files. The angle is in degrees and
+    positive; ``hand`` is 1 for a left turn, -1 for a right turn. The transition at each end is shortened to
+    at most 0.55 of the arc length of one segment, so that it fits."""
     parts = segments_of_turn(angle)
     share = round(angle / parts * TENTH) / TENTH
     radius = ceil(radius * HUNDREDTH) / HUNDREDTH
@@ -51,9 +59,7 @@ def turn_element(
 
 
 def as_written(element: Element) -> Element:
-    """Returns the element with its length, angle, radius and transition rounded to the precision of design
-    files.
-    """
+    """Returns the element with its numbers rounded to the precision of design files."""
     if not element.turn:
         return element._replace(straight=max(element.straight, SHORTEST))
     hand = 1 if element.turn > 0 else -1
@@ -112,10 +118,17 @@ def turn_segments(
     return tuple(cut(turn._replace(incline=round(incline * TENTH) / TENTH)))
 
 
+def rounded(values: Array) -> Array:
+    """Returns grades in percent, rounded to a tenth so that each is clearly flat or clearly not."""
+    steep = np.abs(values)
+    near = np.abs(steep - LEVEL) < UNCLEAR
+    clear = np.where(near, LEVEL + np.where(steep < LEVEL, -UNCLEAR, UNCLEAR), steep)
+    return np.asarray(np.round(np.copysign(clear, values) * TENTH) / TENTH)
+
+
 def elements_of(segments: Sequence[Segment]) -> tuple[Element, ...]:
     """Returns the elements that these segments form, in driving order; neighbouring straights with the same
-    incline become one element.
-    """
+    incline become one element."""
     out: list[Element] = []
     for group in _groups(segments):
         for element in _of_group(group):
@@ -140,7 +153,6 @@ def _groups(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
 
 
 def _goes_on(before: Segment, segment: Segment, radius: float | None) -> bool:
-    """Returns whether a segment is part of the same turn as the segment before it."""
     same = (before.turn_degrees, before.incline) == (segment.turn_degrees, segment.incline)
     return bool(segment.turn_degrees) and same and (segment.radius is None or segment.radius == radius)
 
@@ -169,3 +181,50 @@ def required_hills(plan: Sequence[Element]) -> int:
     required = (element.required_grade for element in plan)
     climbs = [grade.lo > 0 for grade in required if grade and 0 not in grade]
     return sum(one != other for one, other in pairwise(climbs))
+
+
+def segments_of(elements: Sequence[Element], world: World) -> tuple[Segment, ...]:
+    """Returns the segments of elements, with grades rounded so that each is clearly up, down or flat. If the
+    change between two grades is too abrupt for the expected speed, the grades are brought closer together."""
+    written = [as_written(element) for element in elements]
+    pace = Pace.along(written, world)
+    inclines = [element.incline for element in elements]
+    segments = joined(_cut(written, inclines), pace)
+    if not too_abrupt(segments, pace):
+        return segments
+    most = min(100 * world.limits.max_grade, MAX_INCLINE)
+    lengths = [element.length for element in written]
+    short = {i for i, element in enumerate(written) if not element.turn and lengths[i] < SHORTEST_SLOPE}
+    grades = made_to_fit(
+        np.array(inclines), lengths, inclines, short, [Range(-most, most)] * len(written), pace
+    )
+    return widened(joined(_cut(written, grades.tolist()), pace), pace)
+
+
+def _cut(written: Sequence[Element], grades: Sequence[float]) -> list[Segment]:
+    pairs = zip(written, grades, strict=True)
+    sloped = (element._replace(incline=float(rounded(np.array(grade))) + 0.0) for element, grade in pairs)
+    return [segment for element in sloped for segment in cut(element)]
+
+
+def design_of(elements: Sequence[Element], place: MapPose, world: World) -> Design:
+    """Returns a design of these elements that starts at ``place``, with its lowest point 1 m above the ground
+    or above height 0, whichever is higher."""
+    return design_at(place, segments_of(elements, world), max(0.0, world.site.z_floor) + ABOVE_GROUND)
+
+
+def design_at(place: MapPose, segments: tuple[Segment, ...], ground: float) -> Design:
+    """Returns a design of these segments that starts at ``place``, with its lowest point at height
+    ``ground``."""
+    return Design(
+        starting_point=(place.x, place.y, start_height(segments, ground)),
+        theta=place.theta,
+        segments=segments,
+    )
+
+
+def start_height(segments: Sequence[Segment], ground: float) -> float:
+    """Returns the start height in metres for which the lowest point is at height ``ground``."""
+    profile = elevation_of(segments, 0.0)
+    _, sag = lowest(profile, profile.stations[-1])
+    return ceil((ground - sag) * CENTIMETRE) / CENTIMETRE

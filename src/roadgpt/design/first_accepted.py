@@ -36,14 +36,9 @@ def first_accepted(
 ) -> Draft | None:
     """Returns the first draft whose route can be built and breaks no rule; None if there is no such draft.
 
-    Args:
-        drafts: the drafts; None stands for a draft that did not fit on the map, and is skipped.
-        build: builds the route of a draft.
-        brief, world: the requirements, and the World with the limits that the rules check.
-        failed: number of drafts that failed for each reason; this function adds to it. Reasons that differ
-            only in places and numbers count together, under the first of them; so do findings of one rule.
-        most: greatest number of drafts that are built.
-    """
+    A draft of None did not fit on the map, and is skipped; at most ``most`` drafts are built. ``failed``
+    counts the drafts that failed for each reason; this function adds to it. Reasons that differ only in
+    places and numbers count together, under the first of them; so do findings of one rule."""
     reasons: dict[str, str] = {}
     for draft in islice((draft for draft in drafts if draft is not None), most):
         try:

@@ -66,10 +66,8 @@ class _Way(NamedTuple):
 
 
 def grown(order: TurnSequence, task: DraftTask) -> PlacedPlan | None:
-    """Returns a road of the required length, drafted turn by turn; None if it found no room on the map.
-
-    Also returns None if there are no turns, or if a sum of all turning angles is required.
-    """
+    """Returns a road of the required length, drafted turn by turn; None if it found no room on the map, if
+    there are no turns, or if a sum of all turning angles is required."""
     asked = asked_length(task.outline, task.windows) or Range(0.0)
     if not order.turns or task.outline.turning:
         return None
@@ -103,11 +101,9 @@ class _Growth:
         return PlacedPlan(way.elements, walk(way.elements), place)
 
     def _grown(self, start: _Way) -> _Way | None:
-        """Returns the whole road; None after too many dead ends without any progress.
-
-        If the road cannot be continued, the last turns are removed and others are tried; the longer without
-        progress, the more turns.
-        """
+        """Returns the whole road; None after too many dead ends without any progress. If the road cannot be
+        continued, the last turns are removed and others are tried; the longer without progress, the more
+        turns."""
         steps: list[tuple[_Way, Element | None]] = [(start, None)]
         most, stuck = 0, 0
         while stuck < DEAD_ENDS:
@@ -144,11 +140,9 @@ class _Growth:
     def _step(
         self, way: _Way, before: Element | None, asked: Feature, wishes: Sequence[Feature], at: int
     ) -> tuple[_Way, Element] | None:
-        """Returns the road with one more turn, and that turn; None if no candidate has room.
-
-        ``before`` is the last turn so far. The next one, number ``at`` from 0, has the ranges ``asked``, and
-        the straights ``wishes`` before it.
-        """
+        """Returns the road with one more turn, and that turn; None if no candidate has room. ``before`` is
+        the last turn so far. The next one, number ``at`` from 0, has the ranges ``asked``, and the straights
+        ``wishes`` before it."""
         hand, degrees = hand_of(asked), asked.degrees or ANY_TURN
         if at >= len(self.order.turns) and before:
             hand = -1 if (before.turn > 0) != self.has_open_sides else 1
@@ -174,8 +168,7 @@ class _Growth:
 
     def _extra(self, so_far: float, at: int) -> tuple[float, float]:
         """Returns by how many metres the straight before the next turn may be longer than needed, and the
-        least haste, from 0 to 1, with which the required length can still be kept.
-        """
+        least haste, from 0 to 1, with which the required length can still be kept."""
         if self.more and self.outline.turns.hi == inf and self.outline.turns.lo <= len(self.order.turns):
             return self.extra, 0.0
         turns = max(len(self.order.turns) - at, 0)
@@ -197,8 +190,7 @@ class _Growth:
 
     def _is_free(self, way: _Way, line: PlanLine, ahead: float) -> bool:
         """Returns whether a new part, and ``ahead`` metres straight on from its end, stay on the map and keep
-        clear of the road so far.
-        """
+        clear of the road so far."""
         every = max(1, round(COARSE / float(line.s[1])))
         s, z = line.s[::every], line.z[::every]
         last = line.z[-1] - line.z[-2]
@@ -225,10 +217,8 @@ def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:
 
 
 def _roomy(turn: Feature, metres: float) -> Feature:
-    """Returns a turn whose least radius suits the spacing of the spline's points.
-
-    The competition's files hold few points: on a road of 10 km, the spline has one every 20 m.
-    """
+    """Returns a turn whose least radius suits the spacing of the spline's points: the competition's files
+    hold few, on a road of 10 km one every 20 m."""
     if turn.radius is None or turn.radius.number is not None:
         return turn
     spacing = max(CONTROL_SPACING, metres / MOST_CONTROL_POINTS)
@@ -238,7 +228,6 @@ def _roomy(turn: Feature, metres: float) -> Feature:
 
 
 def _has_open_sides(outline: Outline) -> bool:
-    """Returns whether every turn may go to either side."""
     features = [*(g.feature for g in outline.groups), *(e for e in (outline.starts, outline.ends) if e)]
     is_open = outline.left == outline.right == Range() and not outline.alternating
     return is_open and not any(f.side for f in features) and not any(g.alternating for g in outline.groups)

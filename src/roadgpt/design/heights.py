@@ -1,8 +1,15 @@
-"""Chooses the heights of a draft at random: one incline per turn, and one or more per straight."""
+"""Chooses the heights of a draft at random: one incline per turn, and one or more per straight. Then corrects
+what is not measured as required.
 
-from collections.abc import Sequence
-from itertools import pairwise
-from math import copysign, inf
+The parabola that joins the grades of two straights takes up a part of both. A level straight next to a steep
+one is therefore measured shorter than designed, and the mean grade of the steep one falls. So
+``corrected_draft`` corrects joints and grades of straights by the measured errors, and measures the draft
+again. ``design.fit.grades`` corrects only inclines. Here the lengths of consecutive straights change, too,
+which moves the joints between them but not the road in plan view."""
+
+from collections.abc import Iterator, Sequence
+from itertools import accumulate, groupby, pairwise
+from math import ceil, copysign, inf
 
 import numpy as np
 
@@ -10,19 +17,26 @@ from roadgpt.brief.element import Element
 from roadgpt.brief.outline import Outline
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import STEEPEST
-from roadgpt.check.measures import LEVEL
-from roadgpt.design.climbs import asks_for_heights, with_grades_of_climbs
-from roadgpt.design.elements import TENTH, required_hills
+from roadgpt.check.matching import Complaint
+from roadgpt.check.measures import MeasuredFeature, Measures, measure, way
+from roadgpt.check.rules.promises import complaints
+from roadgpt.design.elements import cut, required_hills, rounded
+from roadgpt.design.layout import PlanLine
 from roadgpt.design.sequence import is_hairpin
-from roadgpt.design.vertical import Pace, softened
+from roadgpt.design.vertical import Pace, joined, softened, too_abrupt
 from roadgpt.design.windows import Windows
 from roadgpt.geometry.curve import Array
+from roadgpt.road import Segment
+from roadgpt.road.builder import elevation_of
+from roadgpt.road.design import MOST_OF_SLOPE
 
+ROUNDS = 12  # of estimating how much height the parabola on a crest takes away
+FEW_ROUNDS = 3  # beside a straight of fixed length, which steeper slopes would shorten by longer parabolas
+NEARLY = 0.1  # percentage points by which a grade may miss the one that gives a height
 NEAR_CLIMB = 0.1  # share of the tolerance of a climb that is used
 LEVEL_SHARE, SLOPE_SHARE = 0.22, 0.3  # of roads without required heights: level, of one slope; others roll
 GENTLE, STEEP = 1.5, 9.0  # percent, of such roads
 STEADY = 0.5  # probability that an element keeps the grade of the one before, if it may
-UNCLEAR = 0.2  # percentage points around the edge of flat, where rounding would decide
 ROLL = 60.0  # m, least distance for which a rolling road keeps its grade
 HILL = 34.0  # m: the shortest climb or fall of a hilly road
 LONG, SPREAD = 1500.0, 0.7  # m: hills of a longer road take this share of an equal part of it, or more
@@ -35,6 +49,93 @@ HARDLY_SLOPED = Range(-0.8, 0.8)  # percent, of parts of which no slope is asked
 SHORT_JOIN = 30.0  # m, of a straight between two parts with heights, which takes no slope of its own
 MOST_SHIFT = 40.0  # percentage points
 BISECTIONS = 50
+TOO_ABRUPT = "slopes that change too fast for the speed"
+CORRECTIONS = 8
+MOST_OFF = 0.1  # of its length, that a straight is measured longer or shorter
+LONG_ENOUGH = 35.0  # m of a straight that may be measured longer or shorter
+SHORTEST = 4.0  # m that a correction leaves of a straight
+TENTH = 10.0  # per percent
+
+
+def asks_for_heights(plan: Sequence[Element]) -> bool:
+    """Returns whether a height is asked of a part; parts of which no slope is asked then stay level."""
+    return any(element.required_climb for element in plan)
+
+
+def with_grades_of_climbs(
+    plan: Sequence[Element], limit: Range, pace: Pace, ease: float, bumps: bool
+) -> Sequence[Element]:
+    """Returns the elements of a plan with the grades in percent that give the heights that are asked for. For
+    ``ease`` and ``bumps``, see ``Pace.eased``."""
+    if not asks_for_heights(plan):
+        return plan
+    grades = _grades_of_climbs(plan, pace, ease, bumps)
+    return [_with_grade(element, grade, limit) for element, grade in zip(plan, grades, strict=True)]
+
+
+def has_room_for_heights(plan: Sequence[Element], limit: Range, pace: Pace, ease: float, bumps: bool) -> bool:
+    """Returns whether the grades that give the heights are allowed; with shorter parabolas, which take less
+    height from a crest, lower grades do."""
+    if not asks_for_heights(plan):
+        return True
+    grades = _grades_of_climbs(plan, pace, ease, bumps)
+    rooms = [overlap(limit, element.required_grade) or limit for element in plan]
+    return all(
+        room.lo - NEARLY <= grade <= room.hi + NEARLY
+        for element, grade, room in zip(plan, grades, rooms, strict=True)
+        if element.required_climb
+    )
+
+
+def _grades_of_climbs(plan: Sequence[Element], pace: Pace, ease: float, bumps: bool) -> list[float]:
+    """Returns the grade in percent that gives each element its height; 0 if it needs none. Where the road
+    rises and then falls, the parabola between the two slopes takes away height at its vertex, which both
+    slopes make up for."""
+    joints = list(accumulate(element.length for element in plan))[:-1]
+    radii = [pace.eased(s, ease, bumps) for s in joints]
+    grades = [_grade_of_climb(element, 0.0) for element in plan]
+    for _ in range(FEW_ROUNDS if any(element.has_fixed_length for element in plan) else ROUNDS):
+        lost = [0.0] * len(plan)
+        for at, ((one, other), radius) in enumerate(zip(pairwise(grades), radii, strict=True)):
+            if one * other < 0 and all(plan[i].required_climb for i in (at, at + 1)):
+                change = abs(one - other) / 100
+                room = 2 * MOST_OF_SLOPE * min(plan[at].length, plan[at + 1].length)  # half on each side
+                cut = min(radius * change, room) * change / 8
+                lost[at], lost[at + 1] = lost[at] + cut, lost[at + 1] + cut
+        grades = [_grade_of_climb(element, metres) for element, metres in zip(plan, lost, strict=True)]
+    return grades
+
+
+def _grade_of_climb(element: Element, lost: float) -> float:
+    """Returns the grade in percent that gives an element its height and ``lost`` metres more; 0 if it needs
+    none."""
+    if element.required_climb is None:
+        return 0.0
+    metres = _height(element.required_climb)
+    return 100 * (metres + (lost if metres > 0 else -lost)) / element.length
+
+
+def _height(asked: Range) -> float:
+    """Returns the height in metres to design: the number that was given, or one inside the range: a little
+    beyond its end nearer to 0, or half of "at most" a height."""
+    if asked.number is not None:
+        return asked.number
+    near, far = sorted((asked.lo, asked.hi), key=abs)
+    return near * 1.1 if near and abs(far) > 1.2 * abs(near) else (near + far) / 2
+
+
+def _with_grade(element: Element, grade: float, limit: Range) -> Element:
+    asked = element.required_climb
+    if asked is None:
+        return element
+    low, high = sorted(grade * end / _height(asked) for end in (asked.lo, asked.hi))
+    found = Range(low, high, number=grade)
+    for other in (limit, element.required_grade):
+        both = overlap(found, other) or found
+        room = both if both.lo <= both.hi else limit
+        near = min(max(grade, room.lo), room.hi)  # as high as it can be, if it cannot be as high as asked
+        found = Range(both.lo, both.hi, number=near) if both.lo <= both.hi else Range(near, near)
+    return element._replace(required_grade=found)
 
 
 def drawn_heights(
@@ -46,10 +147,8 @@ def drawn_heights(
     ease: float = 1.0,
     bumps: bool = False,
 ) -> list[Element]:
-    """Returns the elements of a plan with random inclines, rounded to a tenth of a percent.
-
-    A straight of several slopes becomes several elements. For ``ease`` and ``bumps``, see ``Pace.eased``.
-    """
+    """Returns the elements of a plan with random inclines, rounded to a tenth of a percent. A straight of
+    several slopes becomes several elements. For ``ease`` and ``bumps``, see ``Pace.eased``."""
     plan = with_grades_of_climbs(plan, windows.limit, pace, ease, bumps)
     is_hilly = bool(outline.hills and outline.hills.lo > required_hills(plan))
     if is_hilly:
@@ -85,14 +184,6 @@ def drawn_heights(
     return [element for own in _joining(drawn) for element in own]
 
 
-def rounded(values: Array) -> Array:
-    """Returns grades in percent, rounded to a tenth so that each is clearly flat or clearly not."""
-    steep = np.abs(values)
-    near = np.abs(steep - LEVEL) < UNCLEAR
-    clear = np.where(near, LEVEL + np.where(steep < LEVEL, -UNCLEAR, UNCLEAR), steep)
-    return np.asarray(np.round(np.copysign(clear, values) * TENTH) / TENTH)
-
-
 def _grades(
     plan: Sequence[Element], outline: Outline, windows: Windows, rng: np.random.Generator
 ) -> list[float]:
@@ -120,8 +211,7 @@ def _grades(
 
 def _are_level(plan: Sequence[Element], outline: Outline, windows: Windows) -> list[bool]:
     """Returns for each element whether it stays level, because heights are asked of others and no slope of
-    it; a short straight between two parts with heights only joins them.
-    """
+    it; a short straight between two parts with heights only joins them."""
     is_steep = outline.steepest is not None and outline.steepest.lo > 0
     if windows.base or outline.climb or outline.hills or is_steep or not asks_for_heights(plan):
         return [False] * len(plan)
@@ -185,10 +275,8 @@ def _steady_grades(
 
 
 def _hilly(plan: Sequence[Element], hills: Range, rng: np.random.Generator) -> list[list[Element]]:
-    """Returns elements that alternately climb and fall; required grades stay.
-
-    Long straights are cut into several. An element too short for a hill continues the one before.
-    """
+    """Returns elements that alternately climb and fall; required grades stay. Long straights are cut into
+    several. An element too short for a hill continues the one before."""
     out: list[list[Element]] = []
     sign, wanted, so_far = float(rng.choice((-1, 1))), 0, 0.0
     most = hills.hi if hills.hi < inf else hills.lo + 2
@@ -240,7 +328,6 @@ def _with_steepest(
 
 
 def _drawn_climb(climb: Range, rng: np.random.Generator) -> float:
-    """Chooses how many metres the road climbs at random, within the required range."""
     near = climb.around(NEAR_CLIMB)
     low = near.lo if near.lo > -inf else near.hi - max(0.3 * abs(near.hi), 2.0)
     high = near.hi if near.hi < inf else near.lo + max(0.3 * abs(near.lo), 2.0)
@@ -278,8 +365,7 @@ def _steep_kept(values: Array, lengths: Array, limits: Sequence[Range], least: f
 
 def _held(row: Sequence[Element], values: Array, limits: Sequence[Range]) -> list[Range]:
     """Returns limits close to the chosen grades for straights of required length and grade; without such a
-    straight, for parts of required height.
-    """
+    straight, for parts of required height."""
     fixed = [element.has_fixed_length for element in row]
     held = fixed if any(fixed) else [element.required_climb is not None for element in row]
     return [
@@ -319,8 +405,7 @@ def _softened(
 
 def climbing(grades: Array, lengths: Array, limits: Sequence[Range], metres: float) -> Array:
     """Returns the grades in percent, all shifted by one amount within their limits, so that the road climbs
-    ``metres``. A grade that is NaN is first set to the mean of the others.
-    """
+    ``metres``. A grade that is NaN is first set to the mean of the others."""
     grades = np.where(np.isnan(grades), np.nanmean(grades) if np.isfinite(grades).any() else 0.0, grades)
     least, most = np.array([r.lo for r in limits]), np.array([r.hi for r in limits])
     down, up = -MOST_SHIFT, MOST_SHIFT
@@ -329,3 +414,126 @@ def climbing(grades: Array, lengths: Array, limits: Sequence[Range], metres: flo
         climbed = float(np.clip(grades + middle, least, most) @ lengths) / 100
         down, up = (middle, up) if climbed < metres else (down, middle)
     return np.asarray(np.clip(grades + down, least, most))
+
+
+def corrected_draft(
+    elements: Sequence[Element],
+    line: PlanLine,
+    outline: Outline,
+    limit: Range,
+    pace: Pace,
+    ease: float,
+    share: float,
+    bumps: bool,
+) -> tuple[tuple[Segment, ...], list[Complaint]]:
+    """Returns the segments of a draft, corrected in up to eight rounds, and a Complaint for each requirement
+    that they still violate.
+
+    ``limit`` is the range of inclines that are allowed, in percent. ``ease`` and ``share`` are fractions of
+    the comfortable vertical radius. ``ease`` is used between consecutive straights if at least one of them
+    has a fixed length, and ``share`` elsewhere. For ``bumps``, see ``Pace.eased``."""
+    ends = np.cumsum([element.length for element in elements])
+    for n in range(CORRECTIONS):
+        parts = [part for one in _with_radii(elements, pace, ease, bumps) for part in cut(one)]
+        segments = joined(parts, pace, share)
+        heights = elevation_of(segments, 0.0).height(line.s)
+        found = measure(np.stack([line.z.real, line.z.imag, heights], axis=1), outline.widest)
+        if too_abrupt(segments, pace, bumps):
+            broken = [Complaint(TOO_ABRUPT, on_heights=True)]
+        else:
+            broken = complaints(found, outline)
+        ends = _shared_ends(elements, ends, found) if n == 0 else ends
+        before, elements = elements, _corrected(elements, ends, found, limit)
+        if not any(complaint.on_heights for complaint in broken) or elements == before:
+            break
+    return segments, broken
+
+
+def _with_radii(elements: Sequence[Element], pace: Pace, ease: float, bumps: bool) -> list[Element]:
+    """Returns the elements with vertical radii for consecutive straights, if one has a fixed length."""
+    out, ends = list(elements), np.cumsum([element.length for element in elements])
+    for row in _rows(elements):
+        if any(elements[i].has_fixed_length for i in row):
+            for i in row[1:]:
+                out[i] = out[i]._replace(vertical_radius=pace.eased(float(ends[i - 1]), ease, bumps))
+    return out
+
+
+def _shared_ends(elements: Sequence[Element], ends: Array, found: Measures) -> Array:
+    """Returns the stations at which straights of other grades should be measured to end.
+
+    With the joint where it is required, the climb is as the words say, but the steeper straight is measured
+    longer; with the joint moved until its length is right, the climb is less. So both err by half, as far as
+    no straight is measured ``MOST_OFF`` longer or shorter than required. Short straights keep their lengths.
+    """
+    out = ends.copy()
+    for row, pieces, runs in _pieces(elements, found):
+        spare = [
+            MOST_OFF * elements[i].length / (1 if i in (row[0], row[-1]) else 2)
+            if elements[i].length >= LONG_ENOUGH
+            else 0.0
+            for i in row
+        ]
+        for run, piece in zip(runs[:-1], pieces, strict=False):
+            last = run[-1]
+            most = min(spare[last - row.start : last - row.start + 2])
+            out[last] += np.clip((piece.end - ends[last]) / 2, -most, most)
+    return out
+
+
+def _pieces(
+    elements: Sequence[Element], found: Measures
+) -> Iterator[tuple[range, list[MeasuredFeature], list[list[int]]]]:
+    """Yields the straights between two turns, as they are measured and as the draft has them: runs of the
+    same direction of slope. They are left out if they do not correspond, or if no length is fixed."""
+    if len(found.turns) != sum(bool(element.turn) for element in elements):
+        return
+    for row, gap in zip(_rows(elements), found.gaps, strict=True):
+        pieces = [piece for straight in gap for piece in straight.pieces]
+        runs = [[*run] for _, run in groupby(row, key=lambda i: way(elements[i].incline))]
+        if len(pieces) == len(runs) and any(elements[i].has_fixed_length for i in row):
+            yield row, pieces, runs
+
+
+def _corrected(elements: Sequence[Element], ends: Array, found: Measures, limit: Range) -> list[Element]:
+    """Returns the elements with joints and grades of straights corrected by the measured errors. Each element
+    should end at its station in ``ends``."""
+    out = list(elements)
+    joints = np.cumsum([0.0, *(element.length for element in elements)])
+    for row, pieces, runs in _pieces(elements, found):
+        for run, piece in zip(runs, pieces, strict=True):
+            last = run[-1]
+            if last != row[-1] and (out[last].has_fixed_length or out[last + 1].has_fixed_length):
+                joints[last + 1] += ends[last] - piece.end
+            if len(run) == 1:
+                out[last] = _with_measured_grade(out[last], piece, limit)
+        lengths = _spread(np.diff(joints[row.start : row.stop + 1]))
+        for i, length in zip(row, lengths.tolist(), strict=True):
+            out[i] = out[i]._replace(straight=length)
+    return out
+
+
+def _rows(elements: Sequence[Element]) -> list[range]:
+    """Returns the indices of the straights before the first turn, between two turns, and after the last."""
+    marks = [-1, *(i for i, element in enumerate(elements) if element.turn), len(elements)]
+    return [range(a + 1, b) for a, b in pairwise(marks)]
+
+
+def _with_measured_grade(element: Element, seen: MeasuredFeature, limit: Range) -> Element:
+    """Returns a straight of fixed length, its incline corrected so that the measured grade is as required."""
+    asked = element.required_grade
+    if not asked or not element.has_fixed_length or 0 in asked or seen.inner_grade in asked:
+        return element
+    missing = min(max(seen.grade, asked.lo), asked.hi) - seen.grade
+    grade = element.incline + copysign(ceil(abs(missing) * TENTH) / TENTH, missing)
+    grade = min(max(grade, asked.lo, limit.lo), asked.hi, limit.hi)
+    return element._replace(incline=round(grade, 1))
+
+
+def _spread(lengths: Array) -> Array:
+    """Returns lengths of the same sum, none below ``SHORTEST`` if there is room for that."""
+    spare = np.maximum(lengths - SHORTEST, 0.0)
+    room = max(float(lengths.sum()) - SHORTEST * len(lengths), 0.0)
+    if not room or (lengths >= SHORTEST).all():
+        return lengths
+    return np.asarray(SHORTEST + spare * room / spare.sum())

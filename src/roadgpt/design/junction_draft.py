@@ -7,15 +7,12 @@ from typing import Literal, cast
 
 import numpy as np
 
-from roadgpt.brief.amount import span
-from roadgpt.brief.arm_check import ANGLES, FORK_GAPS
-from roadgpt.brief.junction_check import MOST_ARMS_OF_MINI
-from roadgpt.brief.junction_ranges import ARMS, SIDE, SIZES, bends_as, is_about, side_of
-from roadgpt.brief.junctions import JunctionClause, JunctionKind, PlainKind
+from roadgpt.brief.junction_check import ANGLES, FORK_GAPS, MOST_ARMS_OF_MINI
+from roadgpt.brief.junctions import ARMS, SIDE, SIZES, JunctionKind, PlainKind, bends_as, is_about, side_of
+from roadgpt.brief.model import JunctionClause, span
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.network import JunctionDesign
-from roadgpt.network.arm_design import ArmDesign
-from roadgpt.network.design import ASTERN
+from roadgpt.network.design import ASTERN, ArmDesign
 from roadgpt.network.growing import controls_of
 from roadgpt.network.ring import BETWEEN, MOST_LANES, MOUTH, ring_width, smallest_radius
 
@@ -46,11 +43,9 @@ ROUNDS = 200  # draws of the arms of one junction
 def drawn_junction(
     asked: JunctionClause, rng: Rng, haste: float, others: Collection[JunctionKind] = ()
 ) -> JunctionDesign | None:
-    """Returns a random junction that meets its requirements; None if 200 draws found none.
-
-    The larger ``haste``, from 0 to 1, the smaller the junction. If no kind is required, the kinds in
-    ``others`` are avoided, provided that a T-junction or crossroads remains possible.
-    """
+    """Returns a random junction that meets its requirements; None if 200 draws found none. The larger
+    ``haste``, from 0 to 1, the smaller the junction. If no kind is required, the kinds in ``others`` are
+    avoided, provided that a T-junction or crossroads remains possible."""
     for _ in range(ROUNDS):
         kind = _kind(asked, rng, others)
         clause = asked.model_copy(update={"kind": kind})
@@ -94,7 +89,6 @@ def drawn_junction(
 
 
 def _with_stops(junction: JunctionDesign) -> JunctionDesign:
-    """Returns a junction whose roads that give way have stop signs."""
     arms = tuple(
         arm.model_copy(update={"control": "stop"}) if control == "yield" else arm
         for arm, control in zip(junction.all_arms, controls_of(junction)[1:], strict=True)
@@ -144,10 +138,8 @@ def _angles(clause: JunctionClause, rng: Rng) -> list[float]:
 
 
 def _missing_arm(clause: JunctionClause, rng: Rng) -> int:
-    """Returns which of the ways to the right, straight on and to the left a T-junction does not have.
-
-    "At the T-junction turn left" usually means that the road ends there; a priority road goes on.
-    """
+    """Returns which of the ways to the right, straight on and to the left a T-junction does not have. "At the
+    T-junction turn left" usually means that the road ends there; a priority road goes on."""
     drawn = int(rng.integers(3))
     ends = clause.take in ("left", "right") and not clause.ways and clause.control != "priority"
     return 1 if ends and not (clause.only_in or clause.only_out) else drawn
@@ -155,8 +147,7 @@ def _missing_arm(clause: JunctionClause, rng: Rng) -> int:
 
 def _across(clause: JunctionClause, rng: Rng) -> float | None:
     """Returns the angle in degrees by which a road leads to the left from a T-junction or from crossroads at
-    which an angle is required; None at others.
-    """
+    which an angle is required; None at others."""
     if clause.kind not in ("t_junction", "crossroads") or (clause.degrees or clause.angle) is None:
         return None
     asked = span(clause.degrees or clause.angle)
@@ -217,10 +208,8 @@ def _clear(clause: JunctionClause) -> float:
 
 
 def _one_way(clause: JunctionClause, angles: Sequence[float]) -> list[Literal["in", "out"] | None]:
-    """Returns for each arm whether its traffic only drives to the junction, or only away from it.
-
-    Where the ways on of crossroads are required, traffic only arrives on the other arms.
-    """
+    """Returns for each arm whether its traffic only drives to the junction, or only away from it. Where the
+    ways on of crossroads are required, traffic only arrives on the other arms."""
     is_listed = clause.ways and clause.kind == "crossroads"
     into = {"left", "right", "straight"} - {*clause.ways} if is_listed else {*clause.only_in}
     sides = [side_of(angle) for angle in angles]
@@ -228,10 +217,8 @@ def _one_way(clause: JunctionClause, angles: Sequence[float]) -> list[Literal["i
 
 
 def _taken(clause: JunctionClause, angles: Sequence[float], rng: Rng) -> int | None:
-    """Returns the index of the arm on which the route goes on; None if no arm will do.
-
-    The index is that of the last arm and one more if the route turns back at a roundabout.
-    """
+    """Returns the index of the arm on which the route goes on; None if no arm will do. It is that of the last
+    arm and one more if the route turns back at a roundabout."""
     count = len(angles)
     exits = span(clause.exit)
     if clause.take == "back":
@@ -248,12 +235,10 @@ def _taken(clause: JunctionClause, angles: Sequence[float], rng: Rng) -> int | N
 
 
 def _turns(clause: JunctionClause, angle: float) -> bool:
-    """Returns whether the route turns by the required angle on an arm."""
     return clause.degrees is None or is_about(abs(angle), clause.degrees)
 
 
 def _towards(clause: JunctionClause, angles: Sequence[float]) -> int | None:
-    """Returns the index of the arm in the required direction."""
     take = clause.take
     if clause.kind == "y_junction":
         side = (take or "").removeprefix("slight_")
@@ -279,7 +264,6 @@ def _towards(clause: JunctionClause, angles: Sequence[float]) -> int | None:
 
 
 def _radius(clause: JunctionClause, angles: Sequence[float], rng: Rng, haste: float) -> float:
-    """Returns the radius of the central island in metres."""
     if clause.kind != "roundabout":
         return ISLANDS[0]
     allowed = span(clause.radius)
@@ -299,7 +283,6 @@ def _radius(clause: JunctionClause, angles: Sequence[float], rng: Rng, haste: fl
 
 
 def _ring_lanes(clause: JunctionClause) -> int:
-    """Returns the number of lanes of a ring: one, unless two are required."""
     return 1 if clause.kind != "roundabout" or span(clause.lanes).lo <= 1 else MOST_LANES
 
 

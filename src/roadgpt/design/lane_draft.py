@@ -1,4 +1,5 @@
-"""Chooses the lanes of the roads of a route, within the requirements for them."""
+"""Chooses the lanes of the roads of a route, within the requirements for them. Requirements go on to the next
+part of a route where the words leave that part open."""
 
 from collections.abc import Sequence
 from math import inf
@@ -6,23 +7,25 @@ from math import inf
 from roadgpt.brief.amount import Amount, at_least, between, span
 from roadgpt.brief.junction_check import LEAST_BESIDE_RAMP, LEAST_LANE, WIDE_IN_TAPER
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
-from roadgpt.brief.model import Brief
+from roadgpt.brief.model import Brief, exactly
 from roadgpt.brief.ranges import Range, nearest
 from roadgpt.brief.words import MOST_LANES, ROAD
-from roadgpt.design.continuing import is_one_road, leads_straight_on
-from roadgpt.network.crossing_lanes import USUALLY_FED
-from roadgpt.network.design import PlaceDesign
-from roadgpt.network.lane_design import (
+from roadgpt.network.crossing import USUALLY_FED
+from roadgpt.network.design import (
     ACCELERATION,
     RAMP_TAPER,
     TAPER,
     LanesChangeDesign,
     LanesDesign,
+    PlaceDesign,
     RampDesign,
     narrow_part,
 )
 from roadgpt.network.ring import MOST_LANES as MOST_RING_LANES
 
+LANES = ("lanes", "against", "divided", "centre", "motorway", "length")
+"""Requirements that leave the shape of a road open."""
+GRADES = ("slope", "incline")
 ON_MOTORWAY = 2  # lanes of a carriageway of a motorway, if no number is required
 LEAST_TAPER = 10.0  # m
 MOST_IN_TAPER = 0.6  # greatest share of the required length of a road that a taper takes
@@ -35,13 +38,59 @@ WITHIN = 0.97  # share of the greatest length allowed that is taken if no least 
 CLOSE = 0.5  # share of the tolerance of a required length that drafts may use
 
 
+def is_one_road(place: JunctionClause) -> bool:
+    """Returns whether the roads before and behind a place are one road, whose lanes may change there."""
+    return place.kind in LANE_KINDS or (place.kind in RAMPS and place.take == "main")
+
+
+def leads_straight_on(place: JunctionClause) -> bool:
+    """Returns whether the route is required to go straight on at a junction that is no roundabout."""
+    return place.take == "straight" and place.kind != "roundabout"
+
+
+def with_roads_continued(brief: Brief) -> Brief:
+    """Returns the requirements for a route, in which a road continues as it was before.
+
+    A motorway stays a motorway past its ramps and where only its lanes change, so that no part is drafted
+    with tight bends or steep grades. In such places, other roads keep their slope, and stay without turns, if
+    nothing else is required of the next part. Under the same condition, a road without turns also stays
+    without turns behind a junction where the route goes straight on."""
+    roads = list(brief.stretches)
+    one_road = [n for n, place in enumerate(brief.junctions) if is_one_road(place)]
+    for n in (*one_road, *reversed(one_road)):
+        if roads[n].motorway or roads[n + 1].motorway:
+            roads[n : n + 2] = [road.model_copy(update={"motorway": True}) for road in roads[n : n + 2]]
+    for n, place in enumerate(brief.junctions):
+        if is_one_road(place):
+            roads[n + 1] = _with_slope_of(roads[n], roads[n + 1])
+        if is_one_road(place) or leads_straight_on(place):
+            roads[n + 1] = _as_straight_as(roads[n], roads[n + 1])
+    return brief.model_copy(update={"stretches": tuple(roads)})
+
+
+def _with_slope_of(known: Brief, road: Brief) -> Brief:
+    is_open = _leaves_open(road, LANES) and not known.clauses
+    return road.model_copy(update={"slope": known.slope}) if is_open else road
+
+
+def _as_straight_as(known: Brief, road: Brief) -> Brief:
+    is_straight = known.turns is not None and span(known.turns).hi == 0
+    if not is_straight or not _leaves_open(road, (*LANES, *GRADES)):
+        return road
+    return road.model_copy(update={"turns": exactly(0)})
+
+
+def _leaves_open(road: Brief, apart: tuple[str, ...]) -> bool:
+    update = {name: Brief.model_fields[name].default for name in apart}
+    return road.model_copy(update=update).is_open
+
+
 def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
     """Returns a merge or an exit that meets its requirements, with traffic on the right.
 
     ``room`` is the length in metres that is available for the acceleration or deceleration lane with its
     taper. If no length is required, the lane is made to fit, but is at least 20 m long without its taper. If
-    no length of the taper is required, it is shorter than usual where the lane would otherwise not fit.
-    """
+    no length of the taper is required, it is shorter than usual where the lane would otherwise not fit."""
     assert asked.kind in RAMPS
     wide = LEAST_BESIDE_RAMP + SLACK if asked.length is None else _length(asked.length)
     taper = min(RAMP_TAPER, max((room - wide) / (1 - WIDE_IN_TAPER), LEAST_TAPER))
@@ -77,11 +126,9 @@ def with_side_of_change(places: Sequence[JunctionClause], number: int) -> Juncti
 
 
 def drawn_change(asked: JunctionClause, around: Sequence[Brief]) -> LanesChangeDesign:
-    """Returns a place where a lane ends, begins or is changed, which meets its requirements.
-
-    ``around`` are the requirements for the roads before and behind the place. If one of these roads has to be
-    short, the taper is shorter than usual.
-    """
+    """Returns a place where a lane ends, begins or is changed, which meets its requirements. ``around`` are
+    the requirements for the roads before and behind the place. If one of these roads has to be short, the
+    taper is shorter than usual."""
     side = asked.take or asked.side or "right"
     room = MOST_IN_TAPER * min(span(road.length).hi for road in around)
     length = max(min(TAPER, room), LEAST_TAPER) if asked.length is None else _length(asked.length)
@@ -101,12 +148,10 @@ def counted_from_lanes(brief: Brief, places: Sequence[PlaceDesign], width: float
     """Returns the requirements for the roads of a route, with lengths measured between the ends of the roads.
 
     The Brief measures lengths from where a lane that ends or begins is ``LEAST_WIDTH`` wide. The roads,
-    however, meet where the lane's taper ends or begins.
-
-    A car changes lanes in the middle of the road behind the place of a ``lane_change``. If only the road
-    before this place has a required length, the Brief measures this length up to the lane change, and the
-    road behind gets a length of 40 to 80 m. ``width`` is that of each lane in metres.
-    """
+    however, meet where the lane's taper ends or begins. A car changes lanes in the middle of the road behind
+    the place of a ``lane_change``. If only the road before this place has a required length, the Brief
+    measures this length up to the lane change, and the road behind gets a length of 40 to 80 m. ``width`` is
+    that of each lane in metres."""
     roads = list(brief.roads)
     for n, place in enumerate(places):
         if not isinstance(place, LanesChangeDesign):
@@ -145,8 +190,7 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
 
     If no lanes are required for a road behind a junction, it usually gets the lanes of the road before the
     junction if the route leads straight on. If the route turns, it gets these lanes only if the lanes of both
-    directions are required for the road before the junction. Each lane is ``width`` metres wide.
-    """
+    directions are required for the road before the junction. Each lane is ``width`` metres wide."""
     roads = _continued(brief)
     forward = _forward(roads, brief.junctions)
     found = []
@@ -169,10 +213,8 @@ def main_roads(places: Sequence[JunctionClause]) -> set[int]:
 
 
 def _on_ramps(places: Sequence[JunctionClause]) -> list[bool]:
-    """Returns for each road of a route whether the route passes a ramp between the crossings around it.
-
-    A crossing is any junction that is no merge and no exit: there, other roads begin.
-    """
+    """Returns for each road of a route whether the route passes a ramp between the crossings around it:
+    junctions that are no merge and no exit, where other roads begin."""
     found: list[bool] = []
     roads, has_ramp = 1, False
     for place in places:
@@ -186,10 +228,8 @@ def _on_ramps(places: Sequence[JunctionClause]) -> list[bool]:
 
 def _continued(brief: Brief) -> list[Brief]:
     """Returns the requirements for the roads, with requirements for lanes where the Brief leaves these open.
-
-    They are taken from the road before if its lanes continue across the junction. They are also taken from a
-    neighbouring road with so many lanes that some of them would otherwise lead nowhere.
-    """
+    They are taken from the road before if its lanes continue across the junction, or from a neighbouring road
+    with so many lanes that some of them would otherwise lead nowhere."""
     roads, places, on_ramps = list(brief.roads), brief.junctions, _on_ramps(brief.junctions)
     for n, place in enumerate(places):
         if is_one_road(place):
@@ -219,10 +259,8 @@ def _may_have_centre(road: Brief) -> bool:
 
 
 def _of_same_road(known: Brief, road: Brief, place: JunctionClause) -> Brief:
-    """Returns the requirements for a part of a road; what is left open is as on another part of it.
-
-    The number of lanes along the road is left open as well if ``place``, which is between the parts, changes
-    it.
+    """Returns the requirements for a part of a road; what is left open is as on another part of it. The
+    number of lanes along the road is left open as well if ``place``, which is between the parts, changes it.
     """
     says_against = road.against is not None or road.divided
     keeps_lanes = place.kind in (*RAMPS, "lane_change") and road.lanes is None
@@ -239,10 +277,8 @@ def _of_same_road(known: Brief, road: Brief, place: JunctionClause) -> Brief:
 
 def _keeps_lanes(place: JunctionClause, road: Brief) -> bool:
     """Returns whether a road behind a junction keeps the lanes of the road before if it requires none itself.
-
     It does if the route leads straight on, or if the route turns and ``road``, the road before, requires the
-    lanes of both directions. A roundabout must have a ring that may have so many lanes.
-    """
+    lanes of both directions. A roundabout must have a ring that may have so many lanes."""
     is_said = road.lanes is not None and road.against is not None and span(road.against).hi > 0
     if place.kind == "roundabout":
         return (place.take == "straight" or is_said) and _can_take(place, road)
@@ -252,8 +288,7 @@ def _keeps_lanes(place: JunctionClause, road: Brief) -> bool:
 
 def _can_take(place: JunctionClause, road: Brief) -> bool:
     """Returns whether a road with the lanes of ``road`` may lead to a junction; a ramp is a road of its own,
-    and a roundabout needs as many lanes.
-    """
+    and a roundabout needs as many lanes."""
     if place.kind != "roundabout":
         return place.kind not in RAMPS
     is_open = place.lanes is None and place.radius is None and place.outer is None and place.size != "mini"
@@ -263,8 +298,7 @@ def _can_take(place: JunctionClause, road: Brief) -> bool:
 def _with_same_lanes(known: Brief, road: Brief) -> Brief:
     """Returns the requirements for a road. If it requires no lanes, it gets the lanes and the median of
     ``known``, unless it requires a centre line and ``known`` has none. A one-way road gets the lanes of a
-    one-way road.
-    """
+    one-way road."""
     if road.against is not None and road.against == known.against and road.lanes is None:
         return road.model_copy(update={"lanes": known.lanes})
     has_lanes = road.lanes is not None or road.against is not None or road.divided or road.motorway
@@ -282,8 +316,7 @@ def _leads_on(place: JunctionClause) -> bool:
 
 def _with_lanes_of(known: Brief, road: Brief) -> Brief:
     """Returns the requirements for a road. Where these leave lanes open, the lanes of ``known`` are taken if
-    there are more than two.
-    """
+    there are more than two."""
     against = known.lanes if known.divided and known.against is None else known.against
     update = {
         name: amount
@@ -321,9 +354,7 @@ def _first(roads: Sequence[Brief], places: Sequence[JunctionClause]) -> int:
 
 def _where_ramps_are(places: Sequence[JunctionClause]) -> int:
     """Returns the usual number of lanes of a carriageway before ``places``: one if it is the ramp of a merge.
-
-    Ramps that the route passes on the main road are skipped.
-    """
+    Ramps that the route passes on the main road are skipped."""
     for place in places:
         if place.kind not in RAMPS or place.take != "main":
             return 1 if place.kind == "merge" else ON_MOTORWAY

@@ -2,8 +2,7 @@
 
 The planner lays out hundreds of drafts for one road. The curve is therefore approximated in steps of about 1
 m; points are off by a few centimetres at most. The road that is built from the chosen draft is exact, and
-every rule checks it again.
-"""
+every rule checks it again."""
 
 from collections.abc import Sequence
 from math import cos, radians, sin
@@ -39,10 +38,8 @@ STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of a draft
 class PlanLine(NamedTuple):
     """The approximate centre line of a draft; it starts at the origin and heads along +x."""
 
-    s: Array
-    """Stations in metres, about 1 m apart, ``(n,)``."""
-    z: Complex
-    """Points as x + iy in metres, ``(n,)``."""
+    s: Array  # stations in metres, about 1 m apart, ``(n,)``
+    z: Complex  # points as x + iy in metres, ``(n,)``
 
 
 class MapPose(NamedTuple):
@@ -70,10 +67,8 @@ def walk(elements: Sequence[Element], steps: int | None = None) -> PlanLine:
 
 
 def bends_of(elements: Sequence[Element]) -> tuple[Array, Array, float]:
-    """Returns stations in metres, the curvature at each in 1/m, and the length of the elements in metres.
-
-    The curvature is linear between two stations, and 0 after the last one.
-    """
+    """Returns stations in metres, the curvature at each in 1/m, and the length of the elements in metres. The
+    curvature is linear between two stations, and 0 after the last one."""
     knots, bends, at = [0.0], [0.0], 0.0
     for element in elements:
         length = element.length
@@ -96,34 +91,28 @@ def _headings(s: Array, knots: Array, bends: Array) -> Array:
 
 
 def keeps_clear(line: PlanLine, world: World, with_shoulders: bool) -> bool:
-    """Returns whether no two parts of the road overlap. If ``with_shoulders``, carriageways must also keep
-    off each other's shoulders.
-    """
+    """Returns whether no two parts of the road overlap and, if ``with_shoulders``, carriageways keep off each
+    other's shoulders."""
     apart = world.section.road_width + (world.section.shoulder if with_shoulders else SPARE) + COARSENESS
     s, z = line.s[::COARSE], line.z[::COARSE]
     return not meets(z, s, z, s, apart)
 
 
 def meets(z: Complex, s: Array, earlier: Complex, earlier_s: Array, apart: float) -> bool:
-    """Returns whether a part of a road comes closer than ``apart`` metres to an earlier part, or to itself.
-
-    The arguments are those of ``geometry.nearness.meeting``.
-    """
+    """Returns whether a part of a road comes closer than ``apart`` metres to an earlier part, or to itself;
+    for the arguments see ``geometry.nearness.meeting``."""
     return bool(len(meeting(z, s, earlier, earlier_s, apart, neighbours(apart))[0]))
 
 
 def neighbours(apart: float) -> float:
     """Returns the distance in metres along a road within which no two places can come closer to each other
-    than ``apart`` metres because the road comes back.
-    """
+    than ``apart`` metres because the road comes back."""
     return max(NEIGHBOURS, OF_WIDE * apart)
 
 
 def place(line: PlanLine, world: World, rng: np.random.Generator, reach: float = 0.0) -> MapPose | None:
-    """Returns a random start and heading at which the road lies on the map; None if none was found.
-
-    ``reach`` is the distance in metres from the line to the edge of the widest road, if wider than usual.
-    """
+    """Returns a random start and heading at which the road lies on the map; None if none was found. ``reach``
+    is the distance in metres from the line to the edge of the widest road, if wider than usual."""
     half = max(world.section.road_width / 2, reach)
     room = world.site.map_size - 2 * half - 2 * EDGE
     turns = rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
@@ -158,8 +147,7 @@ def drawn_ground(world: World, rng: np.random.Generator) -> float:
 
 def boxes(z: Complex, thetas: Array) -> tuple[Array, Array, Array, Array]:
     """Returns the left edges, lower edges, widths and heights, ``(m,)`` each, of the bounding boxes of the
-    points x + iy after each rotation about the origin, by ``thetas`` in degrees, ``(m,)``.
-    """
+    points x + iy after each rotation about the origin, by ``thetas`` in degrees, ``(m,)``."""
     turned = np.exp(1j * np.radians(thetas))[:, None] * z
     left, low = turned.real.min(axis=1), turned.imag.min(axis=1)
     return left, low, turned.real.max(axis=1) - left, turned.imag.max(axis=1) - low
@@ -169,8 +157,7 @@ def first_that_fits(
     z: Complex, thetas: Array, room: float
 ) -> tuple[float, float, float, float, float] | None:
     """Returns the first rotation in degrees at which the box of the points is no larger than ``room`` metres,
-    and the left edge, lower edge, width and height of that box; None if there is no such rotation.
-    """
+    and the left edge, lower edge, width and height of that box; None if there is no such rotation."""
     found = boxes(z, thetas)
     fits = np.flatnonzero(np.maximum(found[2], found[3]) <= room)
     if not fits.size:
@@ -187,12 +174,9 @@ def smallest_box(line: PlanLine) -> float:
 
 
 def moved_onto_map(design: Design, world: World) -> Design | None:
-    """Returns the design moved onto the map; None if its road is too large.
-
-    The road is moved no further than necessary. If moving is not enough, the road is also rotated about its
-    middle by the smallest angle, up to 45 degrees, at which it fits; its ``theta`` is then a multiple of 0.01
-    degrees.
-    """
+    """Returns the design moved onto the map; None if its road is too large. The road is moved no further than
+    necessary. If moving is not enough, the road is also rotated about its middle by the smallest angle, up to
+    45 degrees, at which it fits; its ``theta`` is then a multiple of 0.01 degrees."""
     corners = _corners(world.lay(build(design)), world)
     room = world.site.map_size - 2 * LEAST_EDGE
     written = round(design.theta * HUNDREDTH) / HUNDREDTH - design.theta

@@ -1,6 +1,5 @@
 """Drafts networks (routes through junctions, and maps of roads) and finds how large their maps have to be.
-Single roads do not need this module.
-"""
+Single roads do not need this module."""
 
 from functools import lru_cache
 from math import inf
@@ -9,15 +8,14 @@ import numpy as np
 
 from roadgpt.brief.amount import span
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS
-from roadgpt.brief.mirror import mirrored
-from roadgpt.brief.model import Brief
+from roadgpt.brief.model import Brief, mirrored
 from roadgpt.design.advice import larger_map
 from roadgpt.design.lane_draft import drawn_ramp
 from roadgpt.design.map_search import MapSearch, likely_room_of_map
 from roadgpt.design.network_search import NetworkSearch
 from roadgpt.errors import DesignError, RoadGPTError
 from roadgpt.network import MapDesign, NetworkDesign
-from roadgpt.network.lane_design import ACCELERATION
+from roadgpt.network.design import ACCELERATION
 from roadgpt.network.ramps import length_at_ramp
 from roadgpt.road import World
 
@@ -29,13 +27,9 @@ EDGES = 40.0  # m, kept free at the edges of the map
 
 
 def draft_network(brief: Brief, world: World, rng: np.random.Generator) -> NetworkDesign | MapDesign:
-    """Returns a valid route that meets the Brief, or a valid map of roads if the Brief asks for a map.
-
-    Raises:
-        DesignError: no draft was accepted; the message says which requirement failed, and what to do.
-        BriefError: a junction cannot meet its requirements.
-        UsageError: the World has lanes or banked bends that a map of roads cannot have.
-    """
+    """Returns a valid route that meets the Brief, or a valid map of roads if the Brief asks for a map. Raises
+    DesignError if no draft was accepted, BriefError if a junction cannot meet its requirements, and
+    UsageError if the World has lanes or banked bends that a map of roads cannot have."""
     if not brief.left_hand:
         return _search(brief, world, rng).run()
     # traffic on the left is the mirror image of traffic on the right
@@ -48,10 +42,8 @@ def _search(brief: Brief, world: World, rng: np.random.Generator) -> NetworkSear
 
 @lru_cache(maxsize=256)
 def room_for_network(brief: Brief, world: World) -> float | None:
-    """Returns the side in metres of a map that is large enough for a network.
-
-    Returns None if the World's map is large enough, or if no larger map would help.
-    """
+    """Returns the side in metres of a map that is large enough for a network; None if the World's map is
+    large enough, or if no larger map would help."""
     if brief.map is not None:
         likely = likely_room_of_map(brief)
     else:
@@ -84,10 +76,8 @@ def _likely_room_of_route(brief: Brief) -> float:
 
 
 def _straightest(brief: Brief) -> float:
-    """Returns the length in metres of the longest part of a route that must be nearly straight.
-
-    Such parts are straights of required length, and roads joined by ramps or by places where lanes change.
-    """
+    """Returns the length in metres of the longest part of a route that must be nearly straight: straights of
+    required length, and roads joined by ramps or by places where lanes change."""
     longest, run = 0.0, 0.0
     for place, road in zip((None, *brief.junctions), brief.roads, strict=True):
         is_beside = place is not None and place.kind in (*RAMPS, *LANE_KINDS)

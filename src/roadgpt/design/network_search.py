@@ -1,10 +1,11 @@
 """Searches for a route through junctions: tries random drafts until one fits on the map and breaks no rule.
 
-Each road between junctions is drafted like any road, and each junction is drawn within its requirements. The
-sketch of the whole is checked first: nothing may overlap, and it must fit on the map. Then the rules must
-accept the network that is built from it.
-"""
+Each road between junctions is drafted like any road, and each junction is drawn within its requirements. A
+road whose climb is required is made steeper, because its ends at junctions are level. The sketch of the whole
+is checked first: nothing may overlap, and it must fit on the map. Then the rules must accept the network that
+is built from it."""
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from itertools import accumulate, pairwise
@@ -18,9 +19,9 @@ from roadgpt.brief.junction_check import check_junction
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief, Clause
 from roadgpt.brief.words import LARGEST_MAP, ROAD_LENGTH_SLACK
-from roadgpt.check.route_promises import length_range
+from roadgpt.check.network_promises import length_range
 from roadgpt.design.advice import main_reason
-from roadgpt.design.continuing import with_roads_continued
+from roadgpt.design.elements import start_height
 from roadgpt.design.first_accepted import LANES_DIFFER, RUN_TOGETHER, first_accepted
 from roadgpt.design.junction_draft import drawn_junction
 from roadgpt.design.lane_draft import (
@@ -30,25 +31,27 @@ from roadgpt.design.lane_draft import (
     drawn_ramp,
     lanes_of_roads,
     main_roads,
+    with_roads_continued,
     with_side_of_change,
 )
 from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, drawn_ground, place, smallest_box
-from roadgpt.design.network_heights import climbing
 from roadgpt.design.network_sketch import is_clear, sketched
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.unbuilt import check_lanes_across
 from roadgpt.design.variety import Shapes
-from roadgpt.design.writing import start_height
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.network import NetworkDesign, build_route
-from roadgpt.network.design import PlaceDesign, ends_route
+from roadgpt.network.design import LanesDesign, PlaceDesign, RampDesign, ends_route
 from roadgpt.network.growing import length_inside
-from roadgpt.network.lane_design import LanesDesign, RampDesign
 from roadgpt.network.ramps import BESIDE, length_beside
-from roadgpt.network.stretch_profiles import profiles_between
+from roadgpt.network.stretch import level_ends, profiles_between
 from roadgpt.plural import plural
 from roadgpt.road import Profile, Segment, World
+from roadgpt.road.design import vertical_curves_of
 
+STEADY = 1.0  # percent; a road whose mean grade is less remains unchanged
+ROUNDS = 4  # of steepening, since each round also makes the level ends a little longer
+TENTH = 10.0  # per percentage point: grades are written to the tenth
 DRAFTS = 400  # for one route, at most
 DRAFTS_OF_LENGTH = 1200  # the same, if a length of the whole route is required
 NO_HASTE = 12  # drafts without haste
@@ -73,10 +76,56 @@ TOO_LARGE, OVERLAPS, UNDRAFTED = "too large", "its roads would overlap", "one of
 NO_LENGTH = "the length that was asked for leaves too little for the roads between the junctions"
 FOR_ROOM = (TOO_LARGE, OVERLAPS, UNDRAFTED)
 """Reasons for failure that may disappear on a larger map."""
-
 Asked = TypeVar("Asked", Brief, Clause)
 Draft = tuple[DraftSearch, PlacedPlan]
 """The search for a road between junctions, and the plan of the road that it found."""
+
+
+def climbing(
+    segments: Sequence[Segment], is_level: tuple[bool, bool], steepest: float
+) -> tuple[Segment, ...]:
+    """Returns the segments, steepened so that level ends do not change the mean grade of the road.
+
+    Up to four rounds of steepening bring the mean grade close to its original value. A road whose mean grade
+    is below 1 % is returned unchanged. Vertical radii that no longer fit are reduced. ``is_level`` says
+    whether the road is level at its start, and at its end. Steepening stops before a grade exceeds
+    ``steepest`` percent."""
+    length = sum(segment.distance for segment in segments)
+    wanted = sum(segment.distance * segment.incline for segment in segments) / length
+    found = tuple(segments)
+    if abs(wanted) < STEADY:
+        return found
+    for _ in range(ROUNDS):
+        profile = level_ends(found, 0.0, is_level)
+        mean = 100 * float(profile.height(length) - profile.height(0.0)) / length
+        if mean * wanted <= 0 or abs(mean) >= abs(wanted):
+            break
+        steeper = [_steeper(segment, wanted / mean) for segment in found]
+        if any(abs(segment.incline) > steepest for segment in steeper):
+            break
+        found = tuple(steeper)
+    return _fitted(found)
+
+
+def _steeper(segment: Segment, factor: float) -> Segment:
+    """Returns the segment with its grade multiplied by ``factor``; its vertical curve keeps its length."""
+    radius = segment.vertical_radius
+    changed = {
+        "incline": round(TENTH * segment.incline * factor) / TENTH,
+        "vertical_radius": None if radius is None else math.floor(TENTH * radius / factor) / TENTH,
+    }
+    return segment.model_copy(update=changed)
+
+
+def _fitted(segments: tuple[Segment, ...]) -> tuple[Segment, ...]:
+    """Returns the segments with vertical radii reduced where there is too little room for them."""
+    found = list(segments)
+    for curve in vertical_curves_of(segments):
+        asked = found[curve.number].vertical_radius
+        if asked is not None and curve.radius < asked:
+            fits = math.floor(TENTH * curve.radius) / TENTH
+            found[curve.number] = found[curve.number].model_copy(update={"vertical_radius": fits})
+    return tuple(found)
 
 
 class NetworkSearch:
@@ -86,12 +135,8 @@ class NetworkSearch:
     """Number of drafts in a search that tests whether the World's map is large enough."""
 
     def __init__(self, brief: Brief, world: World, rng: np.random.Generator) -> None:
-        """Prepares the search.
-
-        Raises:
-            BriefError: a junction cannot meet its requirements.
-            DesignError: lanes of a road would lead nowhere at a junction.
-        """
+        """Prepares the search. Raises BriefError if a junction cannot meet its requirements, and DesignError
+        if lanes of a road would lead nowhere at a junction."""
         for clause in brief.junctions:
             check_junction(clause)
         self.brief, self.world, self.rng = with_roads_continued(brief), world, rng
@@ -105,11 +150,8 @@ class NetworkSearch:
 
     def run(self, drafts: int | None = None) -> NetworkDesign:
         """Returns the first of up to ``drafts`` drafts that is accepted; None stands for the usual number.
-
-        Raises:
-            DesignError: no draft was accepted, or no road can have the lanes that are required. The message
-                says why; if drafts failed for several reasons, it names the most frequent one.
-        """
+        Raises DesignError if no draft was accepted, for the most frequent reason, or no road can have the
+        lanes that are required."""
         drafts = drafts or (DRAFTS if self.brief.length is None else DRAFTS_OF_LENGTH)
         least = HURRIED * max(len(self.brief.junctions) - 2, 0)
         calm = min(NO_HASTE, drafts // 3)
@@ -189,8 +231,7 @@ class NetworkSearch:
 
     def _at_end_of_ramp(self, number: int) -> JunctionClause | None:
         """Returns what is required of a T-junction at the end of a motorway's exit, where the ramp is its
-        stem; None for any other junction.
-        """
+        stem; None for any other junction."""
         clause = self.brief.junctions[number]
         before = self.brief.junctions[number - 1] if number else None
         is_exit = before is not None and before.kind == "diverge" and before.take != "main"
@@ -200,9 +241,8 @@ class NetworkSearch:
         return clause.model_copy(update={"ways": ("left", "right")})
 
     def _room_beside(self, number: int) -> float:
-        """Returns the length in metres that a lane for acceleration or deceleration can have,
-        with its taper.
-        """
+        """Returns the length in metres that a lane for acceleration or deceleration can have, with its
+        taper."""
         places = self.brief.junctions
         n = number if places[number].kind == "diverge" else number + 1
         road = self.brief.roads[n]
@@ -221,11 +261,9 @@ class NetworkSearch:
         return profiles_between(self.lanes[0], places, lengths, self.world.section.shoulder)
 
     def _stretches(self, junctions: Sequence[PlaceDesign], haste: float) -> list[Draft] | None:
-        """Returns a draft of each road between the junctions; None if one of them cannot be drafted.
-
-        The roads of which nothing is required, or else those of which no length is, are drafted last: they
-        make up the length of the whole route. If one is required, straight roads of any length do so too.
-        """
+        """Returns a draft of each road between the junctions; None if one of them cannot be drafted. The
+        roads of which nothing is required, or else those of which no length is, are drafted last: they make
+        up the length of the whole route. If one is required, straight roads of any length do so too."""
         briefs = counted_from_lanes(self.brief, junctions, self.usual.width)
         rest = self._rest(junctions)
         free = [n for n, brief in enumerate(briefs) if brief.has_free_shape]
@@ -249,11 +287,8 @@ class NetworkSearch:
         return [found[n] for n in range(len(briefs))]
 
     def _shortest(self, n: int, haste: float) -> float:
-        """Returns the least length in metres of a road of which no length is required.
-
-        The larger ``haste``, from 0 to 1, the shorter a road with several lanes on which none ends, begins or
-        is changed.
-        """
+        """Returns the least length in metres of a road of which no length is required. The larger ``haste``,
+        from 0 to 1, the shorter a road with several lanes on which none ends, begins or is changed."""
         kinds = [place.kind for place in self.brief.junctions[max(n - 1, 0) : n + 1]]
         if len(kinds) == 2 and all(kind in RAMPS for kind in kinds) and kinds != ["merge", "diverge"]:
             # beside this road lie those that the route does not take
@@ -276,11 +311,9 @@ class NetworkSearch:
         return float(self.rng.uniform(0.7 * low + 0.3 * high, 0.3 * low + 0.7 * high)) - inside
 
     def _stretch(self, brief: Brief, n: int, haste: float, length: float | None) -> Draft | None:
-        """Returns a draft of road number ``n`` between junctions; None if no draft was accepted.
-
-        If a ramp joins or leaves the road, turns that are not required are sweeping. ``length`` is what the
-        road should have in metres; None if it is open.
-        """
+        """Returns a draft of road number ``n`` between junctions; None if no draft was accepted. If a ramp
+        joins or leaves the road, turns that are not required are sweeping. ``length`` is what the road should
+        have in metres; None if it is open."""
         wanted, shortest = brief, self._shortest(n, haste)
         if length is not None:
             is_straight = brief.motorway and not brief.clauses and brief.turns is None
@@ -351,7 +384,6 @@ class NetworkSearch:
         return pose
 
     def _advice(self) -> str:
-        """Returns why most drafts failed and what to do, as one sentence."""
         why, _ = max(self.failed.items(), key=lambda item: item[1], default=("nothing could be drafted", 0))
         size = self.world.site.map_size
         if why in FOR_ROOM and size < LARGEST_MAP:

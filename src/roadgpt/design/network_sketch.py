@@ -1,8 +1,7 @@
 """Sketches a route with its junctions as lines, to see quickly whether its parts keep clear of each other.
 
 A sketch holds points about 2 m apart. The network that is built from the chosen draft is exact, and every
-rule checks it again.
-"""
+rule checks it again."""
 
 import cmath
 from collections.abc import Sequence
@@ -15,10 +14,8 @@ from numpy.typing import NDArray
 from roadgpt.design.layout import PlanLine
 from roadgpt.geometry.nearness import Complex, meeting
 from roadgpt.network import JunctionDesign
-from roadgpt.network.arm_design import STUB
-from roadgpt.network.design import PlaceDesign
+from roadgpt.network.design import STUB, PlaceDesign, RampDesign
 from roadgpt.network.growing import contact_distances, profiles_of_arms
-from roadgpt.network.lane_design import RampDesign
 from roadgpt.network.ramps import lines_at_ramp
 from roadgpt.network.ring import ring_width
 from roadgpt.road import Profile
@@ -32,10 +29,8 @@ AWAY = 12.0  # m from a contact, outwards, within which the arms of one junction
 class NetworkSketch(NamedTuple):
     """The parts of a route as points; the route starts at the origin and heads along +x."""
 
-    z: Complex
-    """The points of all parts, x + iy in metres, ``(n,)``."""
-    part: NDArray[np.intp]
-    """The number of the road or junction to which each point belongs, ``(n,)``."""
+    z: Complex  # the points of all parts, x + iy in metres, ``(n,)``
+    part: NDArray[np.intp]  # the number of the road or junction to which each point belongs, ``(n,)``
     near: NDArray[np.bool_]
     """Shape (parts, parts): whether two parts meet, so that they may be near each other where they meet."""
     joined: NDArray[np.bool_]
@@ -45,16 +40,14 @@ class NetworkSketch(NamedTuple):
     """The distance in metres from each point to the outer edge of the shoulder of its road, ``(n,)``."""
     nodes: tuple[tuple[complex, float], ...]
     """For each junction, its node as x + iy in metres, and the distance in metres from the node within which
-    the arms may be near each other.
-    """
+    the arms may be near each other."""
 
 
 def sketched(
     lines: Sequence[PlanLine], places: Sequence[PlaceDesign], profiles: Sequence[Profile]
 ) -> NetworkSketch:
     """Returns the sketch of a route. ``lines`` and ``profiles`` are the centre lines and cross-sections of
-    the roads before, between and after ``places``.
-    """
+    the roads before, between and after ``places``."""
     pen = _Pen(lines[0], profiles[0].reach)
     for number, (place, line) in enumerate(zip(places, lines[1:], strict=True)):
         around = profiles[number], profiles[number + 1]
@@ -180,9 +173,7 @@ def is_clear(sketch: NetworkSketch) -> bool:
 
 def _boxes_touch(sketch: NetworkSketch, first: NDArray[np.intp]) -> NDArray[np.bool_]:
     """Returns whether the boxes around two parts touch, each as wide as its road and half the margin.
-
-    ``first`` are the indices of the first point of each part; the shape is (parts, parts).
-    """
+    ``first`` are the indices of the first point of each part; the shape is (parts, parts)."""
     half = sketch.reach[first] + MARGIN / 2
     touch = np.ones_like(sketch.near)
     for values in (sketch.z.real, sketch.z.imag):

@@ -4,8 +4,7 @@
 
 ``elements_on_road`` uses the turns that are measured on the finished geometry (``check.measures``): segments
 that are measured as a single turn form one turn, and a bend that is too slight to be measured as a turn
-belongs to a gap.
-"""
+belongs to a gap."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -33,19 +32,14 @@ TRANSITION_SHARE = 0.3  # of the arc, of a turn that is written anew without a t
 class RoadElement:
     """The segments of one turn, or those between two turns."""
 
-    name: str
-    """The name of the element; it stays the same when other elements are added or removed."""
+    name: str  # the name of the element; it stays the same when other elements are added or removed
     segments: tuple[Segment, ...]
-    side: Side | None = None
-    """The side to which a turn goes; None for a gap."""
-    first: int = 0
-    """Index of its first segment among all segments of the road."""
+    side: Side | None = None  # the side to which a turn goes; None for a gap
+    first: int = 0  # index of its first segment among all segments of the road
     seen: MeasuredFeature | None = None
     """The measured feature of this element before a change; None if the element is new, was not measured,
-    or is too short to be measured as a straight.
-    """
-    asked: Feature | None = None
-    """The requirement that the element must meet; None if there is none."""
+    or is too short to be measured as a straight."""
+    asked: Feature | None = None  # the requirement that the element must meet; None if there is none
     is_of_arcs: bool = True
     """Whether the road is built of lines, arcs and clothoids, and not as a spline through the joints of its
     segments; then the arc of a turn can be cut in two."""
@@ -98,11 +92,9 @@ class RoadElement:
         return replace(self, side=self.side and OTHER_SIDE[self.side], segments=tuple(own))
 
     def with_grade(self, grade: float, limit: float) -> "RoadElement":
-        """Returns the element with another mean grade; no incline exceeds ``limit``, both in percent.
-
-        Its inclines are scaled if all of them already climb or fall as the new grade does; otherwise they
-        become equal.
-        """
+        """Returns the element with another mean grade; no incline exceeds ``limit``, both in percent. Its
+        inclines are scaled if all of them already climb or fall as the new grade does; otherwise they become
+        equal."""
         aim, mean = float(np.clip(grade, -limit, limit)), self.incline
         inclines = np.array([segment.incline for segment in self.segments])
         if abs(mean) >= 1 and (inclines * np.sign(mean) > 0.5).all() and aim * mean > 0:
@@ -194,10 +186,7 @@ def shows_turns(found: Measures, elements: Sequence[RoadElement]) -> bool:
 
 def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
     """Returns whether each measured turn climbs, falls or is level like its segments, or has the required
-    grade.
-
-    The measured turns must correspond to those of the elements.
-    """
+    grade. The measured turns must correspond to those of the elements."""
     turns = (one for one in elements if one.is_turn)
     return all(
         way(turn.grade) == way(one.incline)
@@ -207,11 +196,9 @@ def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
 
 
 def features_of(elements: Sequence[RoadElement], found: Measures) -> tuple[MeasuredFeature | None, ...]:
-    """Returns the measured feature of each element; None for an element without a feature of its own.
-
-    The measured turns must correspond to those of the elements. If there are several elements between two
-    turns, the straight measured there is assigned to the longest of them.
-    """
+    """Returns the measured feature of each element; None for an element without a feature of its own. The
+    measured turns must correspond to those of the elements. If there are several elements between two turns,
+    the straight measured there is assigned to the longest of them."""
     out: list[MeasuredFeature | None] = [None] * len(elements)
     turns = [i for i, element in enumerate(elements) if element.is_turn]
     for i, turn in zip(turns, found.turns, strict=True):
@@ -236,10 +223,8 @@ def with_segments(elements: RoadElements, segments: Sequence[Segment]) -> RoadEl
 
 
 def with_inclines(segments: Sequence[Segment], grades: Array) -> tuple[Segment, ...]:
-    """Returns copies of the segments with the given inclines, in percent and rounded to a tenth.
-
-    A segment whose incline would change by less than 0.05 percentage points is returned as it is.
-    """
+    """Returns copies of the segments with the given inclines, in percent and rounded to a tenth. A segment
+    whose incline would change by less than 0.05 percentage points is returned as it is."""
     pairs = zip(segments, (np.round(grades * TENTH) / TENTH).tolist(), strict=True)
     return tuple(
         segment if abs(incline - segment.incline) < 0.05 else segment.model_copy(update={"incline": incline})

@@ -3,8 +3,7 @@
 Each draft is checked, the cheapest check first. The draft must fit on the map, keep clear of itself, differ
 from earlier roads, and meet the requirements as measured on its line. The rules must then accept the road
 that is built from the draft. After the first drafts, straights and turns become a little shorter with every
-draft, so that a later draft can meet requirements that leave little room.
-"""
+draft, so that a later draft can meet requirements that leave little room."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -19,18 +18,16 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.refusal import NoRoomError
-from roadgpt.check.bumps import asks_for_bumps
-from roadgpt.design.climbs import asks_for_heights, has_room_for_heights
+from roadgpt.check.rules.too_abrupt import asks_for_bumps
 from roadgpt.design.compose import composed
 from roadgpt.design.draw import DraftTask
-from roadgpt.design.grade_correction import corrected_draft
-from roadgpt.design.heights import drawn_heights
+from roadgpt.design.elements import design_at
+from roadgpt.design.heights import asks_for_heights, corrected_draft, drawn_heights, has_room_for_heights
 from roadgpt.design.layout import MapPose, PlacedPlan, drawn_ground, keeps_clear, place, smallest_box, walk
 from roadgpt.design.sequence import TurnSequence, drawn_sequence, is_long
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
 from roadgpt.design.vertical import EASES, Pace
 from roadgpt.design.windows import Windows
-from roadgpt.design.writing import design_at
 from roadgpt.errors import DesignError, RoadGPTError
 from roadgpt.road import Design, Road, Segment, World, build
 
@@ -59,11 +56,8 @@ EASES_OF_BUMPS = (0.12, 0.08, 0.0)  # shares of comfort that are also tried wher
 @lru_cache(maxsize=64)  # the advice for a road that did not fit asks again
 def failed_trial(brief: Brief, world: World) -> "DraftSearch | None":
     """Returns the first of four searches (of a long road, of two), with different seeds and up to 110 drafts
-    each, that finds no road; None if all find one.
-
-    Raises:
-        DesignError: the requirements contradict each other.
-    """
+    each, that finds no road; None if all find one. Raises DesignError if the requirements contradict each
+    other."""
     others = Shapes().of(())
     seeds = TRIALS if metres_of(brief, world.limits.min_radius) < MANY_METRES else TRIALS[:2]
     searches = (DraftSearch(brief, world, others, np.random.default_rng(seed)) for seed in seeds)
@@ -73,9 +67,7 @@ def failed_trial(brief: Brief, world: World) -> "DraftSearch | None":
 @lru_cache(maxsize=256)
 def sufficient_map(brief: Brief, world: World) -> float | None:
     """Returns the side in metres of a map large enough for a road, if the map of the World is too small.
-
-    Returns None if the World's map is large enough, or if no larger map would help.
-    """
+    Returns None if the World's map is large enough, or if no larger map would help."""
     failed, least = None, world.limits.min_radius
     try:
         check_room(normal(brief), world.site.map_size, least, world.section.road_width)
@@ -98,11 +90,8 @@ class DraftSearch:
     """The search for one road."""
 
     def __init__(self, brief: Brief, world: World, others: PlanShape, rng: np.random.Generator) -> None:
-        """Prepares the search for a road that differs from ``others``, the shapes of earlier roads.
-
-        Raises:
-            DesignError: the requirements contradict each other.
-        """
+        """Prepares the search for a road that differs from ``others``, the shapes of earlier roads. Raises
+        DesignError if the requirements contradict each other."""
         self.brief, self.world, self.others, self.rng = brief, world, others, rng
         self.outline: Outline = outline(brief, world.site.map_size)
         if self.outline.turns.lo > self.outline.turns.hi:
@@ -117,13 +106,8 @@ class DraftSearch:
         self.boxes: list[float] = []
 
     def run(self) -> tuple[Design, Road]:
-        """Returns the first draft that is accepted, as a Design and its Road.
-
-        If all drafts are like earlier roads, one of the least similar drafts is returned.
-
-        Raises:
-            DesignError: no draft was accepted.
-        """
+        """Returns the first draft that is accepted, as a Design and its Road; one of the least similar
+        drafts, if all are like earlier roads. Raises DesignError if no draft was accepted."""
         found = self.found()
         if found is not None:
             return found
@@ -136,9 +120,7 @@ class DraftSearch:
 
     def found(self, drafts: int = DRAFTS) -> tuple[Design, Road] | None:
         """Returns the first of ``drafts`` drafts that is accepted, as in ``run``; None if none is accepted.
-
-        See ``_hastes`` for the order of the drafts.
-        """
+        See ``_hastes`` for the order of the drafts."""
         alike: list[tuple[float, int, PlacedPlan]] = []
         finished = 0
         most_alike = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS
@@ -203,12 +185,11 @@ class DraftSearch:
         task = DraftTask(self.outline, self.windows, self.world, rng, haste)
         if not self.outline.alike:
             return order, task
-        from roadgpt.design.like_parts import with_like_parts
+        from roadgpt.design.draw import with_like_parts
 
         return with_like_parts(order, task), task
 
     def _growth(self) -> PlacedPlan | None:
-        """Returns a plan that was drafted turn by turn on the map; None if it ran out of room."""
         from roadgpt.design.growth import grown
 
         found = grown(*self._sequence(plain=True, haste=0.5))
@@ -217,10 +198,8 @@ class DraftSearch:
         return found
 
     def _speed_that_would_do(self) -> float | None:
-        """Returns a lower speed limit in km/h at which the required slopes are possible.
-
-        Returns None if there is none, or if only a few drafts failed because of their slopes.
-        """
+        """Returns a lower speed limit in km/h at which the required slopes are possible; None if there is
+        none, or if only a few drafts failed because of their slopes."""
         if self.failed_on_heights < FAILED_ON_HEIGHTS:
             return None
         limits = [kmh for kmh in SLOWER if kmh / 3.6 < self.world.limits.speed_limit]
@@ -241,7 +220,6 @@ class DraftSearch:
         return PlacedPlan(elements, line, where)
 
     def _finished(self, drafted: PlacedPlan) -> tuple[Design, Road] | None:
-        """Returns the Design and the Road of a plan; None if they violate a requirement or a rule."""
         segments = self.with_heights(drafted)
         if segments is None:
             return None
@@ -254,11 +232,9 @@ class DraftSearch:
         return design, road
 
     def stretch(self, haste: float, plain: bool) -> PlacedPlan | None:
-        """Returns one draft of a road between junctions, without heights, and with its start at the origin.
-
-        Returns None if the draft cannot have the required length, or overlaps itself. The larger ``haste``,
-        from 0 to 1, the shorter the road; if ``plain``, it has as few turns as the requirements allow.
-        """
+        """Returns one draft of a road between junctions, without heights, and with its start at the origin;
+        None if the draft cannot have the required length, or overlaps itself. The larger ``haste``, from 0 to
+        1, the shorter the road; if ``plain``, it has as few turns as the requirements allow."""
         elements = composed(*self._sequence(plain, haste))
         if elements is None:
             return None

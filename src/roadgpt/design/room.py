@@ -1,6 +1,5 @@
 """Finds the World for the roads of a description: friction and lanes that the words name, and a map that is
-large enough for such roads.
-"""
+large enough for such roads."""
 
 from collections.abc import Iterator
 
@@ -16,8 +15,7 @@ def world_for(brief: Brief | None, world: World) -> World:
     The surface that the Brief names, such as a wet road, sets the friction. For a single road, the Brief also
     sets the lanes and the centre line. The map gets the size that the Brief gives; if it gives none and roads
     of this Brief do not fit on the usual map, a larger map is set. A value that was given to the World is
-    kept. Without a Brief, the World is returned unchanged.
-    """
+    kept."""
     found = world.on_surface_of(brief).with_lanes_of(brief)
     if brief is None or "map_size" in world.site.model_fields_set:
         return found
@@ -33,10 +31,8 @@ def world_for(brief: Brief | None, world: World) -> World:
 
 
 def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
-    """Returns sentences that say how a Brief affects a World: its friction, its lanes and its map.
-
-    ``usual`` is the World that was given, and ``found`` the one that ``world_for`` returned.
-    """
+    """Returns sentences that say how a Brief affects a World: its friction, its lanes and its map. ``usual``
+    is the World that was given, and ``found`` the one that ``world_for`` returned."""
     surface = surface_remark(brief.beside, found.site.friction)
     said = (surface, *lane_remarks(brief, found), map_remark(brief, usual, found))
     return tuple(remark for remark in said if remark)
@@ -44,8 +40,7 @@ def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
 
 def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
     """Yields a sentence if the description asks for lanes, and another if it asks for a centre line that the
-    road does not get. For networks, yields nothing.
-    """
+    road does not get; nothing for networks."""
     if brief.is_of_network:
         return
     lanes, centre = brief.lanes_text, brief.centre

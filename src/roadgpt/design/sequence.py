@@ -59,12 +59,9 @@ def may_repeat_last_turn(outline: Outline) -> bool:
 
 
 def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> TurnSequence:
-    """Chooses at random what the Outline leaves open: the number of turns, the side of each, and
-    where straights are. If ``plain``, the road has as few turns as the requirements allow.
-
-    Raises:
-        DesignError: the required numbers of left, right and all turns contradict each other.
-    """
+    """Chooses at random what the Outline leaves open: the number of turns, the side of each, and where
+    straights are. If ``plain``, the road has as few turns as the requirements allow. Raises DesignError if
+    the required numbers of left, right and all turns contradict each other."""
     turns, gaps = _listed(outline, rng, plain) if outline.names_all_turns else _free(outline, rng, plain)
     _with_ends(outline, turns, gaps)
     sides = _sides(turns, outline, rng)

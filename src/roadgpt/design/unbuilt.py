@@ -11,18 +11,14 @@ from roadgpt.errors import DesignError
 from roadgpt.plural import plural
 
 if TYPE_CHECKING:
-    from roadgpt.network.lane_design import LanesDesign
+    from roadgpt.network.design import LanesDesign
 
 TURNING_LANES: Mapping[JunctionKind, int] = {"t_junction": 1, "crossroads": 2}
 """For each kind of junction, how many lanes per direction can turn off there or come from the side."""
 
 
 def check_built(brief: Brief) -> None:
-    """Checks that everything that a Brief asks for can be built.
-
-    Raises:
-        DesignError: Something cannot be built yet; the message names it.
-    """
+    """Raises DesignError if a Brief asks for something that cannot be built yet; the message names it."""
     if any(_crosses_oncoming(brief, n) for n in range(len(brief.junctions))):
         side = "right" if brief.left_hand else "left"
         raise DesignError(
@@ -38,14 +34,9 @@ def check_built(brief: Brief) -> None:
 
 
 def check_lanes_across(places: Sequence[JunctionClause], lanes: "Sequence[LanesDesign]") -> None:
-    """Checks that no lane of a road leads nowhere at a junction where a route goes straight on.
-
+    """Raises DesignError if a lane of a road leads nowhere at a junction where a route goes straight on.
     Lanes that do not continue there turn off, or come from the side: one to the left and one to the right at
-    most. ``lanes`` are those of each road before, between and behind the ``places``.
-
-    Raises:
-        DesignError: The roads before and behind a junction differ by more lanes than can turn there.
-    """
+    most. ``lanes`` are those of each road before, between and behind the ``places``."""
     for place, (before, behind) in zip(places, pairwise(lanes), strict=True):
         most = TURNING_LANES.get(place.kind) if place.take == "straight" else None
         pairs = (before.forward, behind.forward), (before.backward, behind.backward)

@@ -4,8 +4,7 @@ The distance between two roads is the root mean square distance between their po
 shifted, rotated and, if that helps, mirrored to bring them as close as possible. Points are compared in two
 ways: at equal fractions of both lengths, and at equal distances from the start as far as the shorter road
 goes. With points as complex numbers, the best rotation is the phase of an inner product, so one matrix
-product compares a road with a thousand others.
-"""
+product compares a road with a thousand others."""
 
 from collections.abc import Sequence
 from math import inf
@@ -28,8 +27,7 @@ FIRST_ROOM = 64  # designs for which memory is reserved at first
 
 class PlanShape(NamedTuple):
     """The shape of one plan, or of ``m`` stacked plans: points as x + iy, and values that speed up
-    comparisons.
-    """
+    comparisons."""
 
     shares: Complex
     """Points at equal fractions of the length, relative to their mean; ``(POINTS,)`` or ``(m, POINTS)``."""
@@ -37,8 +35,7 @@ class PlanShape(NamedTuple):
     """Root mean square of the distances in metres of ``shares`` from their mean; ``()`` or ``(m,)``."""
     metres: Complex
     """Points every ``STEP`` metres from the start, 0 beyond the end; ``(MOST,)`` or ``(m, MOST)``."""
-    reach: NDArray[np.intp]
-    """Number of points of ``metres`` that lie on the road."""
+    reach: NDArray[np.intp]  # number of points of ``metres`` that lie on the road
     centres: Complex
     """Means of the first 1, 2, ... points of ``metres``; ``(MOST,)`` or ``(m, MOST)``."""
     spreads: Array
@@ -66,11 +63,9 @@ def _at(s: Array, line: Complex, stations: Array) -> Complex:
 
 
 def nearest(shape: PlanShape, others: PlanShape, by_metres: bool) -> float:
-    """Returns the distance in metres to the nearest of other shapes; infinite if it is 5.5 m or more.
-
-    Shapes are compared at equal fractions of their lengths. If none is nearer than 5.5 m and ``by_metres`` is
-    True, they are also compared at equal distances from the start, up to the end of the shorter road.
-    """
+    """Returns the distance in metres to the nearest of other shapes; infinite if it is 5.5 m or more. Shapes
+    are compared at equal fractions of their lengths. If none is nearer than 5.5 m and ``by_metres`` is True,
+    they are also compared at equal distances from the start, up to the end of the shorter road."""
     least = float(apart(shape, others).min(initial=inf))
     if by_metres and least >= ENOUGH:
         least = float(apart_by_metres(shape, others).min(initial=inf))
@@ -88,10 +83,8 @@ def apart(shape: PlanShape, others: PlanShape) -> Array:
 
 
 def apart_by_metres(shape: PlanShape, others: PlanShape) -> Array:
-    """Returns the RMS distances in metres to other roads at equal distances from the start, ``(m,)``.
-
-    Only the part up to the end of the shorter road is compared.
-    """
+    """Returns the RMS distances in metres to other roads at equal distances from the start, ``(m,)``, up to
+    the end of the shorter road."""
     n, row = np.minimum(shape.reach, others.reach), np.arange(len(others.reach))
     own, centre = shape.centres[n - 1], others.centres[row, n - 1]
     sizes = shape.spreads[n - 1] ** 2 + others.spreads[row, n - 1] ** 2
@@ -110,10 +103,8 @@ class Shapes:
         self._stack = _room_for(FIRST_ROOM)
 
     def of(self, designs: Sequence[Design]) -> PlanShape:
-        """Returns the shapes of designs, stacked in order.
-
-        If designs were only appended since the last call, only the new ones are stacked.
-        """
+        """Returns the shapes of designs, stacked in order. If designs were only appended since the last call,
+        only the new ones are stacked."""
         if len(self._known) > REMEMBERED + len(designs):
             own = {id(design) for design in designs}
             self._known = {key: known for key, known in self._known.items() if key in own}

@@ -8,8 +8,7 @@ of length L, the two parabolas at its ends need
 A comfortable radius is v^2 / (0.5 m/s^2); the smallest radius that the rule ``too_abrupt`` allows is v^2 / (3
 m/s^2). Here v is the expected speed. If comfortable parabolas do not fit, neighbouring grades are first made
 more similar, as far as the requirements allow. Then radii become smaller, but never smaller than the rule
-allows.
-"""
+allows."""
 
 from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
@@ -24,8 +23,7 @@ from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.layout import bends_of
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Segment, World, build
-from roadgpt.road.design import vertical_curves_of
-from roadgpt.road.elevation import MOST_OF_SLOPE, VerticalCurve
+from roadgpt.road.design import MOST_OF_SLOPE, VerticalCurve, vertical_curves_of
 from roadgpt.road.speed_profile import GRAVITY, expected_speed
 
 COMFORT = 0.5  # m/s^2
@@ -44,8 +42,7 @@ class Pace:
 
     def __init__(self, knots: Array, bends: Array, length: float, world: World) -> None:
         """Stores a plan: its length in metres, and the curvatures ``bends`` in 1/m at the stations ``knots``
-        in metres, ``(n,)``, which are linear in between and 0 after the last.
-        """
+        in metres, ``(n,)``, which are linear in between and 0 after the last."""
         self._plan = knots, bends, length
         self._world = world
 
@@ -75,18 +72,13 @@ class Pace:
         return float(squares[min(first, len(squares) - 1) : last + 1].max())
 
     def least(self, s: float, is_bump: bool = False) -> float:
-        """Returns the least vertical radius in metres that the rule allows at station ``s`` in metres.
-
-        If ``is_bump``, a vertical acceleration of up to 1 g is allowed, as for a requested crest or dip.
-        """
+        """Returns the least vertical radius in metres that the rule allows at station ``s`` in metres. If
+        ``is_bump``, a vertical acceleration of up to 1 g is allowed, as for a requested crest or dip."""
         return self._square(s) / (GRAVITY if is_bump else MOST)
 
     def eased(self, s: float, ease: float, is_bump: bool = False) -> float:
-        """Returns the vertical radius to design at station ``s``, in metres.
-
-        It is ``ease`` (0 to 1) times the comfortable radius, and never less than the rule allows. For
-        ``is_bump``, see ``least``.
-        """
+        """Returns the vertical radius to design at station ``s``, in metres: ``ease`` (0 to 1) times the
+        comfortable radius, and never less than the rule allows."""
         comfort = self._square(s) / COMFORT
         return max(ease * SPARE * comfort, LEAST_SPARE * self.least(s, is_bump))
 
@@ -101,11 +93,9 @@ def softened(
     """Returns the grades, changed as little as possible within their bounds so that the parabolas fit.
 
     Slopes with too little room are corrected one after another by changing their grades and those of their
-    neighbours. These are projections onto convex sets, which converge if a solution exists.
-
-    Each slope has a grade and its bounds in percent and a length in metres, ``(n,)``; each joint of two
-    slopes has a vertical radius in metres, ``(n - 1,)``.
-    """
+    neighbours. These are projections onto convex sets, which converge if a solution exists. Each slope has a
+    grade and its bounds in percent and a length in metres, ``(n,)``; each joint of two slopes has a vertical
+    radius in metres, ``(n - 1,)``."""
     out = [min(max(g, lo), hi) for g, lo, hi in zip(grades, lows, highs, strict=True)]
     halves = [0.0, *(radius / 200 for radius in radii), 0.0]
     for _ in range(ROUNDS):
@@ -129,13 +119,11 @@ def made_to_fit(
     """Returns grades, changed so that parabolas as large as the rule ``too_abrupt`` requires fit between
     them.
 
-    Neighbours with the same incline form one slope. A segment that only joins others belongs to the slope of
-    the neighbour with the nearer incline, because a short slope of its own would leave parabolas no room.
-
-    Each segment has a grade, a proposed incline and bounds of the grade in percent, and a length in metres,
-    ``(n,)``. ``joining`` are the indices of segments that only join others. ``roomier`` is a factor on the
-    required radii, to leave more room than the rule requires.
-    """
+    Neighbours with the same incline form one slope. A segment that only joins others, one of ``joining``,
+    belongs to the slope of the neighbour with the nearer incline, because a short slope of its own would
+    leave parabolas no room. Each segment has a grade, a proposed incline and bounds of the grade in percent,
+    and a length in metres, ``(n,)``. ``roomier`` is a factor on the required radii, to leave more room than
+    the rule requires."""
     runs = [*accumulate((a != b for a, b in pairwise(inclines)), initial=0)]
     for i in sorted(joining):
         beside = [j for j in (i - 1, i + 1) if 0 <= j < len(runs) and j not in joining]
@@ -163,7 +151,6 @@ def _made_room(
     lows: Sequence[float],
     highs: Sequence[float],
 ) -> bool:
-    """Returns whether a slope has room for its parabolas; if not, changes the slope and its neighbours."""
     before = grades[i] - grades[i - 1] if i else 0.0
     after = grades[i + 1] - grades[i] if i + 1 < len(grades) else 0.0
     over = halves[i] * abs(before) + halves[i + 1] * abs(after) - MOST_OF_SLOPE * lengths[i]
@@ -186,12 +173,9 @@ def _made_room(
 def joined(
     segments: Sequence[Segment], pace: Pace, ease: float = 1.0, opened: Collection[int] | None = None
 ) -> tuple[Segment, ...]:
-    """Returns the segments with a vertical radius wherever the grade changes.
-
-    Each chosen radius is the one that ``Pace.eased`` gives for ``ease``, or smaller if there is not enough
-    room. ``opened`` are the indices of the segments for which a radius is chosen; None for all segments
-    without a radius.
-    """
+    """Returns the segments with a vertical radius wherever the grade changes. Each chosen radius is the one
+    that ``Pace.eased`` gives for ``ease``, or smaller if there is not enough room. ``opened`` are the indices
+    of the segments for which a radius is chosen; None for all segments without a radius."""
     out, at, own = [], 0.0, set[int]()
     for i, segment in enumerate(segments):
         changes = i > 0 and segment.incline != segments[i - 1].incline
@@ -217,11 +201,9 @@ def joined(
 def with_new_parabolas(
     segments: tuple[Segment, ...], before: Sequence[Segment], pace: Pace, ease: float, is_widened: bool
 ) -> tuple[Segment, ...]:
-    """Returns segments with new parabolas wherever two grades meet that did not meet before a change.
-
-    ``before`` are the segments before the change. If ``is_widened``, unchanged segments get parabolas as
-    well, and all radii that are smaller than the rule allows are increased.
-    """
+    """Returns segments with new parabolas wherever two grades meet that did not meet ``before`` a change. If
+    ``is_widened``, unchanged segments get parabolas as well, and all radii that are smaller than the rule
+    allows are increased."""
     known = {(a.incline, b.incline, b.vertical_radius) for a, b in pairwise(before)}
     opened = frozenset(
         i
@@ -235,10 +217,8 @@ def with_new_parabolas(
 
 
 def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
-    """Returns the segments; each vertical radius that is smaller than the rule allows is increased.
-
-    If neighbouring parabolas leave no room, their radii are chosen anew as well.
-    """
+    """Returns the segments; each vertical radius that is smaller than the rule allows is increased. If
+    neighbouring parabolas leave no room, their radii are chosen anew as well."""
     out, opened = tuple(segments), set[int]()
     while small := {parabola.number for parabola in _too_small(out, pace)}:
         numbers = [parabola.number for parabola in vertical_curves_of(segments)]
@@ -252,10 +232,8 @@ def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
 
 
 def too_abrupt(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> bool:
-    """Returns whether the radius of any parabola is smaller than the rule allows.
-
-    If ``bumps``, a vertical acceleration of up to 1 g is allowed, as for a requested crest or dip.
-    """
+    """Returns whether the radius of any parabola is smaller than the rule allows; for ``bumps`` see
+    ``Pace.least``."""
     return any(True for _ in _too_small(segments, pace, bumps))
 
 

@@ -1,8 +1,7 @@
 """Drafts maps of roads with junctions of required kinds.
 
 Each new junction is joined by a road to a free arm: an arm of an earlier junction that leads nowhere yet.
-Then pairs of free arms are joined by roads with one or two bends. The other free arms become dead ends.
-"""
+Then pairs of free arms are joined by roads with one or two bends. The other free arms become dead ends."""
 
 import cmath
 from collections.abc import Sequence
@@ -18,13 +17,21 @@ from roadgpt.brief.amount import exactly, span
 from roadgpt.brief.junction_check import MOST_OF_KIND
 from roadgpt.brief.junctions import JunctionClause, JunctionCount, MapClause
 from roadgpt.brief.ranges import Range
-from roadgpt.design.grid_draft import drawn_count
 from roadgpt.design.junction_draft import drawn_junction
-from roadgpt.design.map_draft import STRAIGHT, DraftNode, MapDraft, Rng, drawn_bend, drawn_kerb, drawn_stub
+from roadgpt.design.map_draft import (
+    STRAIGHT,
+    DraftNode,
+    MapDraft,
+    Rng,
+    drawn_bend,
+    drawn_count,
+    drawn_kerb,
+    drawn_stub,
+)
 from roadgpt.network import JunctionDesign
 from roadgpt.network.growing import contact_distances
 from roadgpt.network.map_growing import profile_of_map
-from roadgpt.network.turning import tangent_length
+from roadgpt.network.pose import tangent_length
 from roadgpt.road import World
 
 TRIES = 30  # number of places that are tried for one junction
@@ -52,12 +59,9 @@ STUB = 24.0  # m, kept free for each free arm
 def draft_village(
     asked: MapClause, world: World, least_radius: float, rng: Rng, haste: float
 ) -> MapDraft | None:
-    """Returns the draft of a map of roads with junctions.
-
-    Returns None if there was no room for a junction, or if the number of dead ends or of blocks is not the
-    required one. ``least_radius`` is the smallest radius in metres of a bend. The larger ``haste``, from 0 to
-    1, the smaller the map.
-    """
+    """Returns the draft of a map of roads with junctions; None if there was no room for a junction, or if the
+    number of dead ends or of blocks is not the required one. ``least_radius`` is the smallest radius in
+    metres of a bend. The larger ``haste``, from 0 to 1, the smaller the map."""
     counts = [each for each in asked.junctions for _ in range(drawn_count(each.count, rng, MOST_OF_KIND))]
     sets = (_junctions(counts, asked, rng, haste, n >= DRAWN // 2) for n in range(DRAWN))
     junctions = next(filter(None, sets), None)
@@ -79,11 +83,9 @@ def _junctions(
     kinds: Sequence[JunctionCount], asked: MapClause, rng: Rng, haste: float, has_few_arms: bool
 ) -> list[JunctionDesign] | None:
     """Returns one junction for each of ``kinds``, in random order; roundabouts with three arms each if
-    ``has_few_arms`` is true. A junction alone has an arm for each dead end that is required.
-
-    Returns None if one of them was not found. Also returns None if the required number of dead ends is
-    impossible: there are too few arms, or joining arms in pairs always leaves another number.
-    """
+    ``has_few_arms`` is true. A junction alone has an arm for each dead end that is required. None if one of
+    them was not found, or if the required number of dead ends is impossible: there are too few arms, or
+    joining arms in pairs always leaves another number."""
     found = []
     for n in rng.permutation(len(kinds)):
         arms = exactly(3) if has_few_arms and kinds[n].kind == "roundabout" else None
@@ -107,15 +109,9 @@ class _Line(NamedTuple):
     """The numbers of the nodes at its ends; lines that share a node may be near each other."""
 
 
-class _Disc(NamedTuple):
-    """The circular area of a junction; only roads that lead to the junction may enter it."""
-
-    z: complex
-    """Its centre as x + iy in metres."""
-    radius: float
-    """Its radius in metres."""
-    node: int
-    """The number of the junction's node; lines that lead to this node may enter the area."""
+_Disc = tuple[_Line, float]
+"""The circular area of a junction: its centre, as a line without length, and its radius in metres. Only roads
+that lead to the junction may enter it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,12 +119,9 @@ class _FreeArm:
     """An arm that leads nowhere yet."""
 
     node: int
-    z: complex
-    """The place of the junction as x + iy in metres."""
-    way: complex
-    """The direction of the arm out of the junction, of length 1."""
-    reach: float
-    """Distance in metres from the node to the place where the arm meets the junction."""
+    z: complex  # the place of the junction as x + iy in metres
+    way: complex  # the direction of the arm out of the junction, of length 1
+    reach: float  # distance in metres from the node to the place where the arm meets the junction
 
     @property
     def line(self) -> _Line:
@@ -193,16 +186,14 @@ class _Village:
     def put(
         self, junction: JunctionDesign, z: complex, turn: float, back: int | None = None, *joined_to: int
     ) -> None:
-        """Adds a junction at ``z``, turned by an angle in radians, and its arms.
-
-        ``back`` is the index of the arm to which a road leads from an earlier node, and ``joined_to`` the
-        number of this node; both are left out for the first junction, to which no road leads yet.
-        """
+        """Adds a junction at ``z``, turned by an angle in radians, and its arms. ``back`` is the index of the
+        arm to which a road leads from an earlier node, and ``joined_to`` the number of this node; both are
+        left out for the first junction, to which no road leads yet."""
         radius = junction.radius if junction.kind == "roundabout" else None
         node = DraftNode(z, junction.kind, junction.kerb, radius, junction.control)
         number = self.draft.add(node, *joined_to)
         reaches = self._reaches(junction)
-        self.discs.append(_Disc(z, max(reaches), number))
+        self.discs.append((_Line(z, z, frozenset({number})), max(reaches)))
         for n, way in enumerate(_ways(junction, turn)):
             if n != back:
                 self.free.append(_FreeArm(number, z, way, reaches[n]))
@@ -214,9 +205,7 @@ class _Village:
 
     def _path(self, arm: _FreeArm, reach: float) -> tuple[list[DraftNode], complex] | None:
         """Returns the bends of a road from an arm to a new junction, and the place of this junction.
-
-        ``reach`` is the distance in metres from the junction to the end of the road.
-        """
+        ``reach`` is the distance in metres from the junction to the end of the road."""
         rng, (low, high) = self.rng, BETWEEN
         if self.asked.length is not None:
             allowed = span(self.asked.length)
@@ -239,8 +228,7 @@ class _Village:
         self, arm: _FreeArm, points: Sequence[complex], junction: JunctionDesign, turn: float, back: int
     ) -> bool:
         """Returns whether a new junction at the last of some points, its arms, and the road to it keep off
-        everything else.
-        """
+        everything else."""
         first = len(self.draft.nodes)
         numbers = [arm.node, *range(first, first + len(points))]
         lines = [
@@ -252,7 +240,7 @@ class _Village:
             if n != back:
                 lines.append(_FreeArm(numbers[-1], here, way, reaches[n]).line)
         there = self._lines(arm)
-        disc = _Disc(here, max(reaches), numbers[-1])
+        disc = _Line(here, here, frozenset(numbers[-1:])), max(reaches)
         return _is_clear(lines, there, self.discs, self.apart) and _is_clear(there, [], [disc], self.apart)
 
     @property
@@ -268,13 +256,9 @@ class _Village:
         return roads + [arm.line for arm in self.free if arm not in without]
 
     def join_arms(self) -> bool:
-        """Joins pairs of free arms by roads with one bend.
-
-        If a number of dead ends or of blocks is required, arms that one bend cannot join are joined by two.
-
-        Returns whether as many arms remain free as dead ends are required, by their number or by that of
-        blocks.
-        """
+        """Joins pairs of free arms by roads with one bend or, if a number of dead ends or of blocks is
+        required, where necessary with two. Returns whether as many arms remain free as dead ends are
+        required."""
         asked = self.has_asked_ends
         self.ends = self.asked.ends_of_tree(len(self.free))
         fewest, share = (self.ends.lo, 1.0) if asked else (ENDS, JOINED)
@@ -358,14 +342,11 @@ def _ways(junction: JunctionDesign, turn: float) -> list[complex]:
 
 
 def _is_clear(new: Sequence[_Line], lines: Sequence[_Line], discs: Sequence[_Disc], apart: float) -> bool:
-    """Returns whether new lines keep clear of all lines and discs with which they share no node.
-
-    Distances between the new lines are not checked. Two lines must be ``apart`` metres apart, and a line and
-    a disc half as far.
-    """
-    centres = [_Line(each.z, each.z, frozenset({each.node})) for each in discs]
-    least = np.array([apart] * len(lines) + [each.radius + apart / 2 for each in discs])
-    others = [*lines, *centres]
+    """Returns whether new lines keep clear of all lines and discs with which they share no node. Two lines
+    must be ``apart`` metres apart, and a line and a disc half as far; the new lines are not compared with
+    each other."""
+    least = np.array([apart] * len(lines) + [radius + apart / 2 for _, radius in discs])
+    others = [*lines, *(centre for centre, _ in discs)]
     if not new or not others:
         return True
     away = shapely.distance(_shapes(new)[:, None], _shapes(others)[None, :])

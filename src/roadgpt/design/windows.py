@@ -51,13 +51,9 @@ class Windows:
                 raise DesignError(f"a road of {outline.grade_range} % is steeper than {most}; ask for less")
 
     def of(self, feature: Feature) -> Range | None:
-        """Returns the range of grades for the design of a feature, a little inside its required range.
-
-        If no grade is required of the feature, returns the range for the road; None if that is open as well.
-
-        Raises:
-            DesignError: the required grade is steeper than allowed, or contradicts that of the whole road.
-        """
+        """Returns the range of grades for the design of a feature, a little inside its required range or, if
+        it has none, that for the road; None if that is open as well. Raises DesignError if the required grade
+        is steeper than allowed, or contradicts that of the whole road."""
         if feature.grade is None:
             return self.base
         own = overlap(feature.grade.drawn_in(MARGIN, MARGIN_SHARE), self.limit) or self.limit
@@ -103,8 +99,7 @@ class Windows:
 
 def _divided(pair: list[Range | None], change: GradeChange | None) -> list[Range | None]:
     """Returns the ranges of grade of two straights, clearly apart from the grade between them; unchanged if
-    there is no change, or if one of them would become empty.
-    """
+    there is no change, or if one of them would become empty."""
     one, other = pair
     if change is None or one is None or other is None:
         return pair

@@ -10,14 +10,12 @@ This package has two kinds of plug-ins. A simulator (``simulators/``) is a car a
 
     class Driver:
         def start(self, road, world, seed) -> None     # optional: called once, before time 0
-        def steer(self, view: View) -> Command         # called every 20 ms
-"""
+        def steer(self, view: View) -> Command         # called every 20 ms"""
 
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from roadgpt import plugins
-from roadgpt.drive.continuity import check_motion
-from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended, Handover
+from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended, Handover, check_motion
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, View
 from roadgpt.errors import UsageError
@@ -55,8 +53,7 @@ class Driver(Protocol):
     A driver may have an attribute ``name``. The Drive records this name; without a name, the Drive records
     the name of the driver's class. A driver that lets somebody else drive for a while, such as the person at
     the wheel, names them in an attribute ``handed_to``, which is None while it drives itself. The Drive
-    records it, and the Verdict says whose a failure is.
-    """
+    records it, and the Verdict says whose a failure is."""
 
     def steer(self, view: View) -> Command:
         """Returns the command for the next control step, which lasts ``view.dt`` seconds."""
@@ -69,8 +66,7 @@ class Simulator(Protocol):
 
     A simulator that cannot apply some field of the World, such as "friction", lists the field's name in an
     attribute ``ignores``. If a user sets one of these fields, an error is raised. A simulator that cannot
-    drive routes through junctions has an attribute ``single_roads_only`` that is True.
-    """
+    drive routes through junctions has an attribute ``single_roads_only`` that is True."""
 
     def simulate(
         self, road: "Road", world: "World", driver: Driver, seed: int, keep_driving: bool = False
@@ -87,8 +83,7 @@ class Simulator(Protocol):
             DriverError: the driver raised an exception, returned something that is not a command, or hung.
             SimulatorError: the simulator itself failed. Commands that drive many roads stop after three such
                 failures in a row.
-            SimulationError: the physics became unstable.
-        """
+            SimulationError: the physics became unstable."""
         ...
 
 
@@ -116,14 +111,9 @@ def simulate(
         keep_driving: whether to continue after the car has left the lane.
 
     Raises:
-        PartError: there is no simulator or driver of that name.
-        UsageError: the user's file does not define a driver, the road is a map without a route, or the
-            simulator cannot apply a setting of the world, or cannot build the superelevation of the road or
-            the junctions of a route.
         DriverError: the driver raised an exception, returned something that is not a command, or hung.
         SimulatorError: the simulator itself failed.
-        SimulationError: the physics became unstable, or the recorded motion is impossible for a car.
-    """
+        SimulationError: the physics became unstable, or the recorded motion is impossible for a car."""
     made: Any = driver_of(driver) if isinstance(driver, str) else driver
     if isinstance(made, type):
         made = made()
@@ -138,18 +128,8 @@ def simulate(
 
 
 def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -> None:
-    """Checks that the simulator can apply every setting of the world, and can drive on the road.
-
-    Args:
-        simulator: the simulator or its class.
-        world: the World; a field with its default value counts as not set.
-        road: the road, or None if it is not known yet. Superelevation may come from the road or from
-            ``world.section.bank``.
-
-    Raises:
-        UsageError: the simulator cannot apply one of these: a field that the world sets, the superelevation
-            of the road, or the junctions of a route. The message says which.
-    """
+    """Raises UsageError if the simulator cannot apply a setting of the world, the superelevation of the road,
+    or cannot drive through the junctions of a route. ``road`` is None if it is not known yet."""
     from roadgpt.road import World
 
     if road is not None and is_route(road) and getattr(simulator, "single_roads_only", False):

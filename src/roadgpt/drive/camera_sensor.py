@@ -17,11 +17,7 @@ POSE = ("x", "y", "z", "heading", "pitch", "roll", "steer", "speed", "brake")
 
 
 def camera_of(driver: Any) -> CameraSpec | None:
-    """Returns the camera that the driver asks for, or None if it asks for none.
-
-    Raises:
-        UsageError: the driver's attribute ``camera`` is not a CameraSpec.
-    """
+    """Returns the camera that the driver asks for, or None if it asks for none."""
     camera = getattr(driver, "camera", None)
     if camera is not None and not isinstance(camera, CameraSpec):
         raise UsageError("the driver's attribute camera must be a roadgpt.drive.CameraSpec")
@@ -33,11 +29,7 @@ class CameraSensor:
     the pose, steering and braking of the car."""
 
     def __init__(self, camera: CameraSpec, road: "Road", world: "World") -> None:
-        """Mounts a camera on a car on this road.
-
-        Raises:
-            UsageError: the camera's image size or field of view is out of range.
-        """
+        """Mounts a camera on a car on this road."""
         from roadgpt.scene import Camera as Pinhole
         from roadgpt.scene import CameraPlacement, Scene
 
@@ -49,12 +41,8 @@ class CameraSensor:
         self._image: NDArray[uint8] | None = None
 
     def see(self, row: Mapping[str, float]) -> "NDArray[uint8]":
-        """Returns the image ``(height, width, 3)`` at a control step. A new image is rendered every
-        ``camera.every`` steps; in between, the last image is returned again.
-
-        Args:
-            row: values of one step of a drive, by column name.
-        """
+        """Returns the image ``(height, width, 3)`` at a control step, ``row`` of a drive. A new image is
+        rendered every ``camera.every`` steps; in between, the last image is returned again."""
         from roadgpt.scene import Pose
 
         if self._image is None or self._step % self._every == 0:

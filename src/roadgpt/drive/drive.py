@@ -11,12 +11,11 @@ from typing import Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.errors import UsageError
+from roadgpt.errors import SimulationError, UsageError
 from roadgpt.reading import check_unpacked, opened, strictly
 
 FloatArray = NDArray[np.float64]
 Ended = Literal["goal", "out_of_lane", "fell", "stuck", "timeout"]
-
 COLUMNS = {
     "time": "s, since the start",
     "x": "m, centre of gravity",
@@ -40,19 +39,22 @@ COLUMNS = {
     "outside": "0..1, share of the car's box outside its lane",
 }
 """Names of the columns in their order, each with its unit and meaning."""
-
 LARGEST, UNPACKED = 50_000_000, 200_000_000  # bytes of the file, and of its content: seven hours of driving
-
 # Version of the file format; increased when code for the old version would misread the new one.
 FORMAT = 2
+HARDEST = 300.0  # m/s^2: 30 g, more than a car survives in one piece
+SLACK = 0.5  # m, tolerance for samples that were taken slightly before or after their time stamps
+FASTEST = 200.0  # m/s; the fastest production cars reach 135, a car that falls 100 m reaches 44
+STANDING = 20.0  # m; if the speeds amount to a longer distance than this ...
+SHARE = 1 / 3  # ... the car must have moved at least this share of that distance
+FAILED = ", so the simulation failed, which says nothing about the driver; drive the road again"
 
 
 class Box(NamedTuple):
     """The outline of the car, and the position and largest steering angle of its front wheels.
 
     The defaults describe RoadGPT's saloon. They are used for fields that are missing in a file from an older
-    version.
-    """
+    version."""
 
     length: float
     """Length in metres."""
@@ -60,8 +62,7 @@ class Box(NamedTuple):
     """Width in metres."""
     ahead: float = 0.0
     """Distance in metres from the centre of gravity forward to the middle of the box; negative if the
-    middle is behind.
-    """
+    middle is behind."""
     lock: float = 0.6
     """Angle of the front wheels at full lock in radians; 0.5 to 0.7 for saloons."""
     axle: float = 1.36
@@ -113,8 +114,7 @@ class Columns(Mapping[str, FloatArray]):
 class Drive:
     """The recorded drive of one driver on one road: poses every 20 ms, the seed, and how the drive ended.
 
-    ``drive["x"]`` is a column of shape (n,); COLUMNS lists the columns and their units.
-    """
+    ``drive["x"]`` is a column of shape (n,); COLUMNS lists the columns and their units."""
 
     driver: str
     simulator: str
@@ -145,8 +145,7 @@ class Drive:
         """Number of steps, from the first on, at which the verdict checks whether the car is in its lane.
 
         All steps count, except the last step if the car reached the goal or was stuck at that step: the SBFT
-        competition checks for the goal first, then for motion, then for the lane.
-        """
+        competition checks for the goal first, then for motion, then for the lane."""
         return max(len(self) - 1, 1) if self.ended in ("goal", "stuck") else len(self)
 
     @property
@@ -175,8 +174,7 @@ class Drive:
         """Returns the four corners of the car's box in plan at one step, shape (4, 2), counter-clockwise.
 
         The corners are for pictures and assume level ground; the column ``outside`` takes pitch and roll into
-        account.
-        """
+        account."""
         front = self.car.ahead + self.car.length / 2
         rear = front - self.car.length
         half = self.car.width / 2
@@ -209,8 +207,7 @@ class Drive:
         """Reads a Drive from an .npz file that contains the result of ``to_bytes``.
 
         Raises:
-            UsageError: there is no such file, or it does not hold a Drive.
-        """
+            UsageError: there is no such file, or it does not hold a Drive."""
         try:
             with opened(Path(path), LARGEST, "a drive") as file, np.load(file, allow_pickle=False) as archive:
                 check_unpacked(archive.zip.infolist(), UNPACKED)
@@ -228,7 +225,7 @@ class Drive:
 
 
 def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
-    """Returns the Drive in a file's content; raises an exception if the content is not a Drive."""
+    """Raises an exception if the content of a file is not a Drive."""
     if header["format"] != FORMAT:
         raise ValueError(f"its format is {header['format']}, not {FORMAT}")
     if header["ended"] not in get_args(Ended):
@@ -256,3 +253,34 @@ def _write(archive: zipfile.ZipFile, name: str, values: NDArray[Any]) -> None:
     entry.compress_type = zipfile.ZIP_DEFLATED
     with archive.open(entry, "w") as file:
         np.lib.format.write_array(file, np.asanyarray(values), version=(1, 0), allow_pickle=False)
+
+
+def check_motion(drive: Drive) -> None:
+    """Raises SimulationError if the recorded positions and speeds of a drive are impossible for a car: not
+    finite, with jumps, or not at the speed that it reports.
+
+    Between two samples, a car travels at most ``speed * dt + 1/2 HARDEST dt^2 + SLACK``, where ``speed`` is
+    the larger of the speeds at the two samples, but at most FASTEST."""
+    place = np.stack([drive[name] for name in ("x", "y", "z")], axis=-1)
+    time, speed = drive["time"], np.abs(drive["speed"])
+    if not (np.isfinite(place).all() and np.isfinite(time).all() and np.isfinite(speed).all()):
+        raise SimulationError(
+            f"{drive.simulator} reported a position, a time or a speed that is not a finite number{FAILED}"
+        )
+    way = np.linalg.norm(np.diff(place, axis=0), axis=1)
+    dt = np.maximum(np.diff(time), 0.0)
+    fast = np.minimum(np.maximum(speed[1:], speed[:-1]), FASTEST)
+    over = way - (fast * dt + HARDEST * dt**2 / 2 + SLACK)
+    if len(over) and over.max() > 0:
+        step = int(np.argmax(over > 0))
+        raise SimulationError(
+            f"{drive.simulator} moved the car by {way[step]:.1f} m within {np.diff(time)[step]:.2f} s, "
+            f"{drive['s'][step]:.0f} m along the road and at {speed[step] * 3.6:.0f} km/h: no car can do that"
+            f"{FAILED}"
+        )
+    told = float((np.minimum(speed[1:], speed[:-1]) * dt).sum())
+    if told > STANDING and way.sum() < SHARE * told:
+        raise SimulationError(
+            f"{drive.simulator} reported speeds that amount to {told:.0f} m, but positions that amount to "
+            f"{way.sum():.0f} m{FAILED}"
+        )

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roadgpt.drive.drive import COLUMNS, Box, Ended, FloatArray
-from roadgpt.drive.marking_monitor import POSE, MarkingMonitor
+from roadgpt.drive.lane_position import POSE, MarkingMonitor
 from roadgpt.errors import SimulationError
-from roadgpt.road.ends import GOAL, START
+from roadgpt.road.road import GOAL, START
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -31,8 +31,7 @@ class DriveMonitor:
 
     def __init__(self, road: "Road", world: "World", box: Box, keep_driving: bool = False) -> None:
         """Prepares the checks with the tolerances of the world. If the world sets ``lane_departure``, the
-        front tyres are checked, too. With ``keep_driving``, the car may leave its lane.
-        """
+        front tyres are checked, too. With ``keep_driving``, the car may leave its lane."""
         self.start = min(START, road.length / 2)
         """Station in metres where the car is placed."""
         self.limit = road.length / SLOWEST + SPARE
@@ -52,9 +51,6 @@ class DriveMonitor:
 
         Call this method exactly once for every control step, from the first on. ``row`` is the state of the
         car in the order of COLUMNS; its column ``time`` is not used. ``time`` is in seconds since the start.
-
-        Raises:
-            SimulationError: the physics became unstable.
         """
         x, y, z, speed, s, outside = _SEEN(row.tolist())
         if not math.isfinite(x + y + z + speed + outside):
@@ -80,15 +76,13 @@ class DriveMonitor:
         this edge is the centre line.
 
         In the first half of the road the result is always False, because a road may end near its start. All
-        arguments are in metres.
-        """
+        arguments are in metres."""
         return s > self._length / 2 and math.hypot(x - self._end[0], y - self._end[1]) < GOAL
 
     def is_stuck(self, x: float, y: float, time: float) -> bool:
         """Returns whether the car has moved less than 1 m in the last 10 s.
 
-        Call this method once for every control step. ``x`` and ``y`` are in metres, ``time`` in seconds.
-        """
+        Call this method once for every control step. ``x`` and ``y`` are in metres, ``time`` in seconds."""
         if not math.hypot(x - self._from[0], y - self._from[1]) < STUCK_WAY:
             self._since, self._from = time, (x, y)
         return time - self._since >= STUCK_TIME - ROUNDING
@@ -97,8 +91,7 @@ class DriveMonitor:
         """Returns whether the car is out of its lane; ``outside`` is the share (0 to 1) of its box outside.
 
         If lane departures count, a car with a front tyre beyond a marking is out of its lane, too. ``pose``
-        has the values of the columns POSE, shape (6,); it may be None if lane departures do not count.
-        """
+        has the values of the columns POSE, shape (6,); it may be None if lane departures do not count."""
         if outside > self._tolerance:
             return True
         return self._tyres is not None and bool(self._tyres.beyond(np.array([pose]))[0] > 0)

@@ -2,8 +2,7 @@
 
 These are the modules that it loads and the files that it opens in the folder of its file or below, and those
 that its class lists in ``uses``. Packages that are installed there, as in a virtual environment, and files
-that compiled code opens by itself are not seen.
-"""
+that compiled code opens by itself are not seen."""
 
 # ruff: noqa: PTH100, PTH118 (pathlib has nothing that leaves links as they are)
 

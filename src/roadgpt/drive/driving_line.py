@@ -2,8 +2,7 @@
 centre line of the road, shifted sideways by a given offset at every station.
 
 Drivers look up the line every 20 ms. The line is therefore computed once per road and stored as plain lists,
-so that a lookup needs no search.
-"""
+so that a lookup needs no search."""
 
 import math
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from roadgpt.drive.view import View
+from roadgpt.road.speed_profile import PathGeometry
 
 if TYPE_CHECKING:
     from roadgpt.road import Road
@@ -37,39 +37,20 @@ FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class DrivingLine:
-    """A driving line, as lists over equally spaced stations of the road.
+class DrivingLine(PathGeometry):
+    """A driving line: a path with its place. Entry ``i`` of each list belongs to station ``i * step``. The
+    lists go on for 60 m beyond the end of the road."""
 
-    Entry ``i`` belongs to station ``i * step``. The lists go on for 60 m beyond the end of the road.
-    """
-
-    step: float
-    """Distance in metres between stations along the road."""
-    offset: list[float]
-    """Offset in metres to the left of the centre line."""
-    x: list[float]
-    """Positions along x in metres."""
-    y: list[float]
-    """Positions along y in metres."""
-    heading: list[float]
-    """Heading of the line in radians, continuous (not wrapped)."""
-    curvature: list[float]
-    """Curvature of the line itself in 1/m, positive to the left."""
-    stretch: list[float]
-    """Length of the line per metre of the road's centre line; below 1 on the inside of a bend."""
-    grade: list[float]
-    """Grade of the road as a ratio."""
-    crest: list[float]
-    """Vertical curvature of the road in 1/m, negative on a crest."""
-    superelevation: list[float]
-    """Superelevation of the road in radians, positive where the surface falls to the right."""
+    offset: list[float]  # offset in metres to the left of the centre line
+    x: list[float]  # positions along x in metres
+    y: list[float]  # positions along y in metres
+    heading: list[float]  # heading of the line in radians, continuous (not wrapped)
 
     def place(self, s: float) -> tuple[int, float]:
         """Returns the index of the last entry at or before station ``s`` in metres, and the position of ``s``
         between that entry (0) and the next (1).
 
-        A station before the line counts as its start, a station beyond the line as its end.
-        """
+        A station before the line counts as its start, a station beyond the line as its end."""
         at = s / self.step
         last = len(self.x) - 2
         if at <= 0.0:
@@ -87,8 +68,7 @@ def stations(road: "Road") -> FloatArray:
 def smoothed(values: FloatArray, step: float, half_width: float) -> FloatArray:
     """Returns values, shape ``(n,)``, smoothed with a Hann window; beyond each end the end value is repeated.
 
-    The values are ``step`` metres apart, and the window reaches ``half_width`` metres to both sides.
-    """
+    The values are ``step`` metres apart, and the window reaches ``half_width`` metres to both sides."""
     half = max(1, round(half_width / step))
     window = np.hanning(2 * half + 1 + 2)[1:-1]
     held = np.pad(values, half, mode="edge")
@@ -96,15 +76,10 @@ def smoothed(values: FloatArray, step: float, half_width: float) -> FloatArray:
 
 
 def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
-    """Returns the driving line at an offset to the left of the centre line.
+    """Returns the driving line at an offset in metres to the left of the centre line, one number or one for
+    each of ``stations(road)``. On a road with superelevation, it is measured along the surface.
 
-    The line continues straight for 60 m beyond the end of the road.
-
-    Args:
-        road: the road.
-        offset: offset in metres to the left; one number, or one number per station of ``stations(road)``. On
-            a road with superelevation, it is measured along the surface.
-    """
+    The line continues straight for 60 m beyond the end of the road."""
     s = stations(road)
     step = float(s[1])
     t = np.broadcast_to(np.asarray(offset, float), s.shape)
@@ -120,16 +95,16 @@ def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
     far = step * np.arange(1, more + 1)[:, None] * [[np.cos(heading[-1]), np.sin(heading[-1])]]
     xy = np.concatenate([xy, xy[-1] + far])
     return DrivingLine(
-        step,
-        _longer(t, more, t[-1]),
-        xy[:, 0].tolist(),
-        xy[:, 1].tolist(),
-        _longer(heading, more, heading[-1]),
-        _longer(curvature, more, 0.0),
-        _longer(stretch, more, 1.0),
-        _longer(road.grade(s), more, float(road.grade(s[-1]))),
-        _longer(road.vertical_curvature(s), more, 0.0),
-        _longer(angle, more, float(angle[-1])),
+        step=step,
+        stretch=_longer(stretch, more, 1.0),
+        curvature=_longer(curvature, more, 0.0),
+        grade=_longer(road.grade(s), more, float(road.grade(s[-1]))),
+        crest=_longer(road.vertical_curvature(s), more, 0.0),
+        superelevation=_longer(angle, more, float(angle[-1])),
+        offset=_longer(t, more, t[-1]),
+        x=xy[:, 0].tolist(),
+        y=xy[:, 1].tolist(),
+        heading=_longer(heading, more, heading[-1]),
     )
 
 
@@ -139,18 +114,11 @@ def _longer(values: FloatArray, more: int, last: float) -> list[float]:
 
 
 def pursuit_curvature(line: DrivingLine, view: View, ahead: float) -> float:
-    """Returns the curvature in 1/m of the circle on which the car reaches a point of the line.
-
-    The circle begins in the direction of the car's heading. The curvature is positive to the left.
+    """Returns the curvature in 1/m, left positive, of the circle on which the car reaches the point of the
+    line ``ahead`` metres along the road, beginning in the direction of its heading.
 
     Source: R. C. Coulter, "Implementation of the pure pursuit path tracking algorithm", CMU-RI-TR-92-01
-    (1992).
-
-    Args:
-        line: the line to follow.
-        view: the current state of the car.
-        ahead: distance to the point, in metres along the road.
-    """
+    (1992)."""
     i, share = line.place(view.s + ahead)
     dx = line.x[i] + share * (line.x[i + 1] - line.x[i]) - view.x
     dy = line.y[i] + share * (line.y[i + 1] - line.y[i]) - view.y
@@ -159,15 +127,9 @@ def pursuit_curvature(line: DrivingLine, view: View, ahead: float) -> float:
 
 
 def pedals(line: DrivingLine, speed: list[float], s: float, v: float) -> tuple[float, float]:
-    """Returns throttle and brake, 0..1 each, with which the car follows the planned speed: feed-forward from
-    the plan, and feedback on the speed error.
-
-    Args:
-        line: the driving line.
-        speed: planned speed in m/s at each station of the line.
-        s: station of the car, metres.
-        v: speed of the car, m/s.
-    """
+    """Returns throttle and brake, 0..1 each, with which a car at station ``s`` and speed ``v`` follows the
+    planned speed in m/s at each station of the line: feed-forward from the plan, and feedback on the speed
+    error."""
     i, share = line.place(s + LAG * v + 0.5 * line.step)
     here, there = speed[i], speed[i + 1]
     planned = here + share * (there - here)
@@ -177,8 +139,7 @@ def pedals(line: DrivingLine, speed: list[float], s: float, v: float) -> tuple[f
 
 def pedals_for(acceleration: float, grade: float, v: float) -> tuple[float, float]:
     """Returns throttle and brake, 0..1 each, for an acceleration along the road in m/s^2 (negative to slow
-    down), on a grade (a ratio) and at the speed ``v`` in m/s.
-    """
+    down), on a grade (a ratio) and at the speed ``v`` in m/s."""
     wanted = acceleration + GRAVITY * grade + DRAG * v * v + ROLLING
     if wanted > 0.0:
         return min(wanted / min(FULL_THROTTLE, POWER / max(v, 1.0)), 1.0), 0.0

@@ -23,13 +23,7 @@ def load_driver(spec: str) -> Any:
     separate process.
 
     Args:
-        spec: the name of a driver plug-in, or PATH.py:CLASS.
-
-    Raises:
-        PartError: there is no driver plug-in of that name.
-        UsageError: the file or the class is missing, the file cannot be run, the class is not a driver, or
-            the user did not permit RoadGPT to run the file.
-    """
+        spec: the name of a driver plug-in, or PATH.py:CLASS."""
     require_permission(spec)
     path, wanted = split_spec(spec)
     if not path:
@@ -41,8 +35,7 @@ def load_driver(spec: str) -> Any:
 def absolute_spec(spec: str, folder: Path) -> str:
     """Makes the path in a driver's specification absolute, so that the driver is found from any folder.
 
-    A relative path starts from ``folder``. The name of a plug-in is returned unchanged.
-    """
+    A relative path starts from ``folder``. The name of a plug-in is returned unchanged."""
     path, wanted = split_spec(spec)
     if not path:
         return spec

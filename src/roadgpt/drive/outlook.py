@@ -21,7 +21,6 @@ class Outlook:
     """The junctions ahead and the lanes beside the driver's own lane, at each station of a road or route."""
 
     def __init__(self, road: "Road", world: "World") -> None:
-        """Prepares the junctions and the lanes of a road or a route."""
         self._route = road if is_route(road) else None
         self._junctions = [_junction(road, each) for each in passages(road)]
         self._ends = [end for _, end, _ in self._junctions]
@@ -50,15 +49,13 @@ class Outlook:
 
 
 def _junction(road: "Road", passage: "Passage") -> tuple[float, float, tuple[str, float, int, str]]:
-    """Returns the stations between which a junction lies, and what a driver sees of it from any station."""
+    """Returns between which stations a junction lies, and what a driver sees of it from anywhere."""
     turn = float(wrap_angle(road.heading(passage.end) - road.heading(passage.start)))
     return passage.start, passage.end, (passage.entered.kind, turn, passage.exit, passage.control)
 
 
 def _beside(profile: "Profile", lane: int) -> tuple[int, int]:
-    """Returns the numbers of driving lanes to the left and to the right of a lane, for those who drive on
-    it.
-    """
+    """Returns the numbers of driving lanes to the left and right of a lane, for those who drive on it."""
     own, oncoming = profile.along_ids, profile.against_ids
     if not profile.leads_along(lane):
         own, oncoming = oncoming, own

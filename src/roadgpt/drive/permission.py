@@ -1,8 +1,7 @@
 """Decides which drivers may be run. If only a stored file, such as a run's ``run.json``, names a
 driver's file, the driver's code is not run until the user names the driver or agrees.
 
-Plug-ins need no permission, because the user has installed them.
-"""
+Plug-ins need no permission, because the user has installed them."""
 
 import shlex
 from collections.abc import Iterable
@@ -25,8 +24,7 @@ def permit(spec: str) -> None:
 
     A run that was made on another machine names the driver by a path that does not exist on this machine.
     Drivers with the same file name and the same class therefore count as the same driver, and the file that
-    the user named is run.
-    """
+    the user named is run."""
     if split_spec(spec)[0]:
         CODE.add_from_user(_whole(spec))
         CODE.add_from_user(without_folder(spec), spec)
@@ -45,11 +43,7 @@ def driver_from_file(spec: str, file: object) -> str:
 
 def require_permission(spec: str) -> None:
     """Permits a driver's file to be run. If the driver is named only in a stored file, the user is first
-    asked for permission.
-
-    Raises:
-        UsageError: the driver is named only in a stored file, and the user does not agree or cannot be asked.
-    """
+    asked for permission."""
     if not split_spec(spec)[0]:
         return
     file = CODE.untrusted_file(_whole(spec))

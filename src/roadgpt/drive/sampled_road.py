@@ -3,15 +3,14 @@ surface is computed at any point.
 
 Between stations, x, y and z of the centre line are cubic polynomials, and its direction has no jumps. The
 table continues straight beyond both ends. On a road with superelevation, the surface is rotated about the
-pitched centre line, as in ``Road.at``.
-"""
+pitched centre line, as in ``Road.at``."""
 
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from roadgpt.drive.compiled import inlined
+from roadgpt.compiled import announce, inlined
 from roadgpt.drive.drive import FloatArray
 
 if TYPE_CHECKING:
@@ -23,6 +22,8 @@ BEYOND = 30.0  # m of straight road in the table before the start and after the 
 # Columns of the table. The last two exist only on roads with superelevation.
 X, Y, Z, HEADING, GRADE, CURVATURE, COS, SIN, BANK, TWIST = range(10)
 
+announce()  # every simulator needs this file, and drawing images does not
+
 
 class SampledRoad(NamedTuple):
     """Equally spaced stations of a road, as arrays and numbers that compiled code can use."""
@@ -31,12 +32,9 @@ class SampledRoad(NamedTuple):
     """Shape (n, 8): x, y, z (m), heading (rad, unwrapped), grade, curvature (1/m), cosine and sine of the
     heading. On a road with superelevation the shape is (n, 10); the two further columns are the tangent of
     the superelevation, and the change of this tangent per metre."""
-    first: float
-    """Station of row 0 in metres; negative."""
-    step: float
-    """Distance in metres between rows of the table."""
-    length: float
-    """Length of the road itself in metres."""
+    first: float  # station of row 0 in metres; negative
+    step: float  # distance in metres between rows of the table
+    length: float  # length of the road itself in metres
 
 
 def sample_road(road: "Road") -> SampledRoad:
@@ -83,8 +81,7 @@ def room_at(edges: FloatArray, first: float, step: float, s: float, t: float) ->
     """Returns the distance in metres from offset ``t`` to the nearer of two edges at station ``s``; negative
     outside the edges.
 
-    ``edges`` has the offsets of the left and the right edge for each row of the table, shape (n, 2).
-    """
+    ``edges`` has the offsets of the left and the right edge for each row of the table, shape (n, 2)."""
     at = min(max((s - first) / step, 0.0), edges.shape[0] - 1.0)
     i = min(int(at), edges.shape[0] - 2)
     u = at - i
@@ -111,8 +108,7 @@ def locate_on(
 
     The offset is measured along the surface. The slopes are those of the surface at this point, in the
     direction of the heading and to its left. The search uses Newton's method; if s is the station of the
-    previous time step, two iterations are enough.
-    """
+    previous time step, two iterations are enough."""
     last = table.shape[0] - 2
     t = height = slope = lateral = heading = 0.0
     for _ in range(6):
@@ -157,8 +153,7 @@ def _banked(
 
     Returns:
         The offset along the surface; how far the point is back from its station and above the centre line;
-        the metres of its path per metre of road; the slopes along the heading and to its left.
-    """
+        the metres of its path per metre of road; the slopes along the heading and to its left."""
     tangent = _cubic(u, step, a[BANK], b[BANK], a[TWIST], b[TWIST])
     twist = a[TWIST] + (b[TWIST] - a[TWIST]) * u
     kink = (b[GRADE] - a[GRADE]) / step

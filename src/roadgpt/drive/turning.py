@@ -20,8 +20,7 @@ SPEED, EXPONENT = 8.6164, 0.3673
 
 Source: NCHRP Report 672, Roundabouts: An Informational Guide, 2nd ed. (2010), equation 6-2 (superelevation
 -2 %), in the metric units of the first edition (FHWA-RD-00-067). The equation rests on the side friction that
-drivers accept at low speeds: 0.31 at 20 mph and less (Texas, Procedures for Establishing Speed Zones).
-"""
+drivers accept at low speeds: 0.31 at 20 mph and less (Texas, Procedures for Establishing Speed Zones)."""
 GENTLE = 200.0  # m, radius from which on nobody slows down inside a junction
 EDGE = 1.5  # m, from the middle of a car to the edge of its lane on the fastest path: NCHRP 672, 6.7.2
 BLEND = 10.0
@@ -44,8 +43,7 @@ def turning_speed(curvature: float) -> float:
 
     On a radius of 10 m the speed is 20 km/h (lateral acceleration 3.1 m/s^2), on 15 m 23 km/h (2.8 m/s^2), on
     30 m 30 km/h (2.3 m/s^2). Above a radius of 200 m the speed is infinite. ``curvature`` is the
-    curvature of the driven line in 1/m.
-    """
+    curvature of the driven line in 1/m."""
     if abs(curvature) * GENTLE < 1:
         return math.inf
     return SPEED / 3.6 / math.pow(abs(curvature), EXPONENT)
@@ -56,8 +54,7 @@ def highest_speeds(road: "Road", line: DrivingLine, braking: float = math.inf) -
 
     Where nothing limits the speed, the speed is infinite. The result is None on a road without junctions.
     ``braking`` is the largest deceleration in m/s^2 before and inside junctions. By default only stop signs
-    limit the deceleration here, and the driver's plan limits it later.
-    """
+    limit the deceleration here, and the driver's plan limits it later."""
     ways = passages(road)
     if not ways:
         return None
@@ -79,8 +76,7 @@ def highest_speeds(road: "Road", line: DrivingLine, braking: float = math.inf) -
 def share_of_junction(road: "Road", s: FloatArray) -> FloatArray:
     """Returns a weight for each station in metres, shape ``(n,)``: 1 inside a junction, 0 far from junctions.
 
-    Within ``BLEND`` metres before and behind a junction, the weight falls smoothly from 1 to 0.
-    """
+    Within ``BLEND`` metres before and behind a junction, the weight falls smoothly from 1 to 0."""
     share = np.zeros(s.shape)
     for way in passages(road):
         away = np.clip(np.maximum(way.start - s, s - way.end) / BLEND, 0.0, 1.0)
@@ -104,8 +100,7 @@ def kept_in_lane(
         s: Stations of the line in metres, ``(n,)``.
         offset: Offsets of the line in metres to the left of the centre line, ``(n,)``.
         inwards: Distance in metres between the line and the path of the car, which cuts bends; positive to
-            the left, ``(n,)``.
-    """
+            the left, ``(n,)``."""
     if not passages(road):
         return offset
     profile = world.profile_of(road)

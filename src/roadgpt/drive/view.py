@@ -31,8 +31,7 @@ class View(NamedTuple):
 
     A new View is made for every control step, so a driver may keep it.
 
-    The position is that of the car's centre of gravity.
-    """
+    The position is that of the car's centre of gravity."""
 
     time: float
     """Seconds since the start."""
@@ -53,8 +52,7 @@ class View(NamedTuple):
     t: float
     """Offset of the car in metres to the left of the centre line. The middle of its lane is at
     ``world.profile_of(road).middle(s)``. On a road with superelevation, the offset is measured along the
-    surface, to the foot of the perpendicular from the centre of gravity.
-    """
+    surface, to the foot of the perpendicular from the centre of gravity."""
     road: "Road"
     world: "World"
     steer: float

@@ -24,7 +24,7 @@ import numpy as np
 from roadgpt import plugins
 from roadgpt.errors import ExportError, UsageError
 from roadgpt.export.edges import fold
-from roadgpt.export.poses import Poses
+from roadgpt.export.ego import Poses
 from roadgpt.geometry import CubicProfile
 from roadgpt.network import has_no_route, is_route
 from roadgpt.road import Road, World
@@ -58,8 +58,7 @@ class Exporter(Protocol):
             road: The road to export.
             path: The file to write. Further files must be in the same folder, and their names must
                 begin with the stem of ``path``.
-            world: The World, which defines friction, speed limit, and the lanes of a road without its own
-                cross-section.
+            world: Defines friction, speed limit, and the lanes of a road without its own cross-section.
             poses: The motion of the car in a drive along the road; None if there is no drive. Formats that
                 cannot store a drive ignore it.
 
@@ -71,11 +70,7 @@ class Exporter(Protocol):
 
 
 def exporter_of(name: str) -> Exporter:
-    """Returns the exporter of a format.
-
-    Raises:
-        PartError: There is no exporter of this name.
-    """
+    """Returns the exporter of a format, or raises PartError."""
     found: Any = plugins.find("exporters", name)
     part: Exporter = found() if isinstance(found, type) else found
     return part
@@ -97,8 +92,7 @@ def save(
         road: The road to export.
         folder: The folder, which is created if it does not exist.
         formats: Names of exporters, such as "opendrive". All are looked up before any file is written.
-        world: The World, which defines friction, speed limit, and the lanes of a road without its own
-            cross-section.
+        world: Defines friction, speed limit, and the lanes of a road without its own cross-section.
         name: Name of the files without suffix.
         poses: The motion of the car in a drive along the road, for formats that can hold a drive.
 
@@ -165,7 +159,6 @@ def _check_holds(road: "Route", part: Exporter) -> None:
 
 
 def _moved(draft: Path, folder: Path) -> list[Path]:
-    """Moves everything from the draft into the folder, and returns the paths in order."""
     targets = []
     for made in sorted(draft.iterdir()):
         target = folder / made.name

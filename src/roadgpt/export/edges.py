@@ -1,13 +1,16 @@
-"""Converts lines parallel to the centre line to polylines with few points and a bounded chord error."""
+"""Draws lines along a road, also painted ones, as polylines with few points and a bounded chord error."""
+
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.ndimage import maximum_filter1d
 
-from roadgpt.export.finite import finite
+from roadgpt.export.markup import finite
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Profile, Road
+from roadgpt.road import Edges, Profile, Road
+from roadgpt.road.profile import LINE
 
 CHORD = 0.002  # m, most distance between a polyline and the curve it stands for
 LONGEST = 10.0  # m between stations on a straight
@@ -15,6 +18,9 @@ SHORTEST = 0.05  # m between stations; tighter bends are not followed more close
 STEP = 0.5  # m between the places where the curvature is sampled
 BESIDE = 1e-3  # m before a sudden change of a width, where a polyline gets an additional point
 PINCH = 0.95  # share of the radius; an offset line closer to the centre of its bend would fold
+SAME = 1e-9  # m
+Place = Literal["left", "right", "middle", "between"]
+ORDER: tuple[Place, ...] = ("left", "right", "middle", "between")
 
 
 def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
@@ -27,9 +33,6 @@ def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
         reach: Greatest offset of a polyline from the centre line, in metres. A greater offset needs more
             points.
         chord: Greatest allowed distance in metres between the polyline and the curve.
-
-    Raises:
-        ExportError: The road has a number that is not finite.
     """
     s = np.linspace(0.0, road.length, max(3, int(np.ceil(road.length / STEP)) + 1))
     finite(road.at(s))
@@ -108,3 +111,37 @@ def line(road: Road, s: Array, t: ArrayLike) -> Array:
     inside = k * np.asarray(t) > PINCH
     offsets = np.where(inside, PINCH / np.where(inside, k, 1.0), t)
     return road.at(s, offsets)
+
+
+class NamedLine(NamedTuple):
+    """One painted line."""
+
+    number: int
+    """Index of the line in the result of ``Profile.markings``."""
+    place: Place
+    """Position of the line: "left" or "right" edge of the carriageway, "middle" for the centre line, or
+    "between" two lanes.
+    """
+    is_broken: bool
+    edges: Edges
+    """The offsets in metres of the left and right edges of the line, at the stations passed to
+    ``named_lines``.
+    """
+
+
+def named_lines(profile: Profile, s: Array) -> list[NamedLine]:
+    """Returns the painted lines of a road at stations ``s`` along the whole road: first the edge lines, then
+    the centre line, then lines between lanes.
+    """
+    carriageway = profile.edges(s)
+    found = []
+    for number, (marking, edges) in enumerate(profile.markings(s)):
+        place: Place = "between"
+        if np.abs(edges.left - carriageway.left).max() < SAME:
+            place = "left"
+        elif np.abs(edges.right - carriageway.right).max() < SAME:
+            place = "right"
+        elif np.abs(edges.left - LINE / 2).max() < SAME:
+            place = "middle"
+        found.append(NamedLine(number, place, marking == "broken", edges))
+    return sorted(found, key=lambda line: ORDER.index(line.place))

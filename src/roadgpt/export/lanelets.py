@@ -67,11 +67,7 @@ class Lanelet:
 
 
 def lanelets_of(road: Road, world: World) -> list[Lanelet]:
-    """Returns the lanelets of a road, or of the whole network of a route, road by road.
-
-    Raises:
-        ExportError: A road has a number that is not finite.
-    """
+    """Returns the lanelets of a road, or of the whole network of a route, road by road."""
     roads = {each.id: each.road for each in road.network.roads} if isinstance(road, Route) else {ONLY: road}
     pieces = _NumberedLanelets(roads, world)
     joined = _joined(pieces, road.network) if isinstance(road, Route) else []
@@ -88,8 +84,6 @@ def leading_to(lanelets: Iterable[Lanelet], network: Network, end: RoadEnd) -> l
 
 
 class _NumberedLanelets:
-    """The sections of some roads, and the ids of all lanelets by road, section and lane."""
-
     def __init__(self, roads: Mapping[int, Road], world: World) -> None:
         self.sections = {number: lanelet_sections(road, world) for number, road in roads.items()}
         self.profiles = {number: world.profile_of(road) for number, road in roads.items()}
@@ -146,11 +140,9 @@ class _NumberedLanelets:
                     )
 
     def _beside(self, road: int, n: int, lane: int, step: int) -> tuple[int, bool] | None:
-        """Returns the id of the lanelet beside another one, and whether both lead in the same direction.
-
-        ``step`` is 1 for the neighbour on the left as seen along the road, and -1 for that on the right. None
-        is returned if no lanelet shares the bound on this side.
-        """
+        """Returns the id of the lanelet that shares a bound, and whether both lead in the same direction;
+        None if there is none. ``step`` is 1 for the left neighbour as seen along the road, and -1 for the
+        right one."""
         section, profile = self.sections[road][n], self.profiles[road]
         lanes = list(section)
         at = lanes.index(lane) + step
@@ -164,7 +156,6 @@ class _NumberedLanelets:
 
 
 def _joined(pieces: _NumberedLanelets, network: Network) -> list[tuple[int, int]]:
-    """Returns the pairs of ids of lanelets that follow each other from one road to another."""
     pairs: list[tuple[int | None, int | None]] = []
     for junction in network.junctions:
         for way in junction.connections:
@@ -181,11 +172,7 @@ def _joined(pieces: _NumberedLanelets, network: Network) -> list[tuple[int, int]
 
 
 def lanelet_sections(road: Road, world: World) -> list[LaneletSection]:
-    """Returns the consecutive sections of a road from its start to its end; there is at least one.
-
-    Raises:
-        ExportError: The road has a number that is not finite.
-    """
+    """Returns the consecutive sections of a road from its start to its end; there is at least one."""
     profile = world.profile_of(road)
     fine = stations(road, profile.paved_reach)
     count = max(1, round(road.length / LENGTH))
@@ -198,7 +185,6 @@ def lanelet_sections(road: Road, world: World) -> list[LaneletSection]:
 
 
 def _with_ends_of_lanes(cuts: Array, profile: Profile) -> Array:
-    """Adds the stations at which a lane begins or ends."""
     lanes = [lane for side in (profile.right, profile.left) for lane in side if lane.kind == "driving"]
     widths = [lane.width for lane in lanes]
     for width in (width for width in widths if isinstance(width, CubicProfile)):
@@ -234,8 +220,7 @@ def _wide(
     ids: range, lanes: tuple[Lane, ...], edges: list[Array], begin: Array
 ) -> list[tuple[int, Marking, Array]]:
     """Returns the driving lanes of one side that have a width, from the centre line outwards: the id, the
-    marking and the offsets of the outer edge.
-    """
+    marking and the offsets of the outer edge."""
     inner = [begin, *edges]
     return [
         (lane, lanes[n].marking, edges[n])

@@ -1,4 +1,5 @@
-"""Writes XML as text, with attributes in the given order and numbers that can be read back exactly."""
+"""Checks numbers that are exported, and writes XML as text, with attributes in the given order and numbers
+that can be read back exactly."""
 
 import re
 from collections.abc import Mapping
@@ -6,15 +7,25 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Self
 
-from roadgpt.errors import ExportError
-from roadgpt.export.finite import NOT_FINITE
+import numpy as np
 
+from roadgpt.errors import ExportError
+from roadgpt.geometry.curve import Array
+
+NOT_FINITE = "the road has a number that is not finite; check it before it is exported"
 DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
 _ESCAPES = str.maketrans(
     {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
 )
-
 _UNUSUAL = re.compile(r'[^ -~]|[&<>"]').search  # finds characters that may need an escape
+
+
+def finite(values: Array) -> Array:
+    """Returns the values unchanged. Raises ExportError if one is not finite, which no format can hold."""
+    if not np.isfinite(values).all():
+        raise ExportError(NOT_FINITE)
+    return values
+
 
 Value = str | float | int
 
@@ -23,9 +34,6 @@ def number(value: float) -> str:
     """Returns the shortest decimal that can be read back as the same number.
 
     Whole numbers below 1e15 are written without a decimal point.
-
-    Raises:
-        ExportError: The number is not finite.
     """
     text = repr(float(value) + 0.0)  # -0.0 becomes 0.0
     if text[-1] in "fn":  # inf, nan
@@ -77,9 +85,6 @@ class XmlElement:
         """Returns the XML document with this element as its root, indented by two spaces per level.
 
         A shared element, such as equal lanes of many roads, is converted to text only once per level.
-
-        Raises:
-            ExportError: A number in the attributes is not finite.
         """
         lines = [DECLARATION]
         _write(self, "", lines, {})
@@ -113,7 +118,6 @@ def _write(element: XmlElement, indent: str, lines: list[str], written: _Written
 
 
 def _shared(element: XmlElement, indent: str, written: _Written) -> str:
-    """Returns the text of a shared element."""
     key = (id(element), indent)
     if (text := written.get(key)) is None:
         own: list[str] = []

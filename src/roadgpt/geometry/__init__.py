@@ -7,8 +7,8 @@ length. An elevation profile has the methods ``height(s)``, ``grade(s)`` and ``v
 
 from roadgpt.geometry.curve import ElevationProfile, PlanCurve, wrap_angle
 from roadgpt.geometry.elevation import CubicProfile, GradeProfile, shifted
+from roadgpt.geometry.nearness import project
 from roadgpt.geometry.pieces import Piece, PieceCurve
-from roadgpt.geometry.projection import project
 from roadgpt.geometry.spline import SplineCurve, SplineProfile, interpolate, walked
 
 __all__ = [

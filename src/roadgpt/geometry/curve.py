@@ -22,9 +22,8 @@ class PlanCurve(Protocol):
         ...
 
     def heading(self, s: ArrayLike) -> Array:
-        """Returns headings in radians at stations ``s``, counter-clockwise from +x.
-
-        Headings are continuous along the curve, so they may exceed pi.
+        """Returns headings in radians at stations ``s``, counter-clockwise from +x. Headings are continuous
+        along the curve, so they may exceed pi.
         """
         ...
 
@@ -51,7 +50,6 @@ class ElevationProfile(Protocol):
 
 def placed(s: ArrayLike, starts: Array) -> tuple[Array, NDArray[np.intp]]:
     """Returns, for each station, the distance from the start of its interval, and that interval's index.
-
     ``starts`` are the stations at which the intervals begin. The first interval is extended backwards and the
     last one forwards.
     """

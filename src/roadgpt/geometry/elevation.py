@@ -28,10 +28,6 @@ class GradeProfile:
         z0: Height at the first station in metres.
         stations: At least two increasing stations in metres.
         grades: The grade at each station as a ratio.
-
-    Raises:
-        ValueError: There are fewer than two stations, the stations do not increase, or their number differs
-            from the number of grades.
     """
 
     z0: float
@@ -141,15 +137,8 @@ class CubicProfile:
 
     @classmethod
     def smooth(cls, knots: Sequence[tuple[float, float]]) -> "CubicProfile":
-        """Returns a profile that passes through knots (station, height) and has a grade of 0 at each knot.
-
-        The height is constant after the last knot.
-
-        Args:
-            knots: One or more knots in metres.
-
-        Raises:
-            ValueError: A station is not greater than the station before.
+        """Returns a profile that passes through one or more knots (station, height) in metres and has a grade
+        of 0 at each of them. The height is constant after the last knot.
         """
         if any(s1 <= s0 for (s0, _), (s1, _) in pairwise(knots)):
             raise ValueError("the stations of the knots must increase")
@@ -171,8 +160,8 @@ class CubicProfile:
         return np.array(self.stations), np.array(self.coefficients).T.copy()
 
     def _place(self, s: ArrayLike) -> tuple[Array, Array]:
-        """Returns, for each ``s``, the distance from the start of the cubic that applies there, and the
-        coefficients ``(4, ...)`` of that cubic.
+        """Returns the distance of each ``s`` from the start of its cubic, and the coefficients ``(4, ...)``
+        of that cubic.
         """
         starts, table = self._table
         u, index = placed(s, starts)
@@ -186,7 +175,6 @@ class CubicProfile:
 
     def cubics(self, s: ArrayLike) -> Array:
         """Returns the coefficients ``(n, 4)`` of the cubics that apply at stations ``s`` of shape ``(n,)``.
-
         Each cubic is rewritten as a function of the distance from its station in ``s``.
         """
         u, table = self._place(s)
@@ -247,14 +235,12 @@ def _roots(a: float, b: float, c: float) -> tuple[float, ...]:
 
 
 def shifted(cubics: Array, u: ArrayLike) -> Array:
-    """Returns the coefficients ``(..., 4)`` of cubics after their origin is moved forward by ``u``.
-
-    The constant coefficient comes first, in ``cubics`` and in the result.
+    """Returns the coefficients ``(..., 4)`` of cubics after their origin is moved forward by ``u``. The
+    constant coefficient comes first, in ``cubics`` and in the result.
     """
     a, b, c, d = (cubics[..., n] for n in range(4))
     return np.stack(_moved(a, b, c, d, np.asarray(u, float)), axis=-1)
 
 
 def _moved(a: Number, b: Number, c: Number, d: Number, u: Number) -> tuple[Number, Number, Number, Number]:
-    """Returns the coefficients of a cubic with its origin moved forward by ``u``."""
     return a + u * (b + u * (c + u * d)), b + u * (2 * c + 3 * u * d), c + 3 * u * d, d

@@ -22,7 +22,6 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 @dataclass(frozen=True, slots=True)
 class Piece:
     """A line, arc or clothoid of ``length`` metres, whose curvature changes linearly from ``k0`` to ``k1``.
-
     Curvatures are in 1/m, positive to the left.
     """
 
@@ -33,13 +32,9 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class PieceCurve:
-    """A plane curve of lines, arcs and clothoids joined end to end.
-
-    It starts at ``(x, y)`` in metres with heading ``heading0`` in radians. Beyond its ends, the first piece
-    is extended backwards and the last piece forwards.
-
-    Raises:
-        ValueError: There is no piece, or a piece does not have a positive length.
+    """A plane curve of lines, arcs and clothoids joined end to end. It starts at ``(x, y)`` in metres with
+    heading ``heading0`` in radians. Beyond its ends, the first piece is extended backwards and the last piece
+    forwards.
     """
 
     x: float
@@ -105,9 +100,8 @@ class PieceCurve:
         return np.asarray(heading[i] + u * (k0[i] + u * dk[i] / 2))
 
     def curvature(self, s: ArrayLike) -> Array:
-        """Returns curvatures in 1/m at stations ``s``, positive to the left.
-
-        At a station where the curvature jumps, the result is the value after the jump.
+        """Returns curvatures in 1/m at stations ``s``, positive to the left. At a station where the curvature
+        jumps, the result is the value after the jump.
         """
         u, i = placed(s, self._table[0])
         _, _, _, _, k0, dk = self._table
@@ -169,7 +163,6 @@ def _step(piece: Piece, u: float, heading: float) -> tuple[float, float]:
 
 
 def _arc(u: Number, heading: Number, k: Number) -> tuple[Number, Number]:
-    """Integrates an arc or a line."""
     turn = k * u
     chord, middle = u * np.sinc(turn / (2 * np.pi)), heading + turn / 2
     return chord * np.cos(middle), chord * np.sin(middle)
@@ -198,7 +191,6 @@ def _quadrature(u: Array, heading: Array, k: Array, dk: Array) -> tuple[Array, A
 
 def joined(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
     """Returns pieces without those of zero length, and with neighbouring pieces of equal curvature merged.
-
     Only lines and arcs are merged, never clothoids.
     """
     out: list[Piece] = []

@@ -39,9 +39,8 @@ def _spline(points: Array) -> tuple[Tck, Array]:
 
 
 def walked(points: Array) -> float:
-    """Returns the length of a polyline through points ``(n, 2)``, summed as in the competition's library.
-
-    A different order of summation could give 29.999... for a length of 30 m. Interpolation would then return
+    """Returns the length of a polyline through points ``(n, 2)``, summed as in the competition's library. A
+    different order of summation could give 29.999... for a length of 30 m. Interpolation would then return
     one node fewer than the competition's code.
     """
     return float(np.cumsum(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)))[-1])
@@ -82,19 +81,14 @@ class SplineCurve:
 
     @classmethod
     def through(cls, points: ArrayLike) -> "SplineCurve":
-        """Returns the curve through control points ``(n, 2)`` or ``(n, 3)`` in metres.
-
-        Raises:
-            UsageError: There are fewer than two points, or two successive points are the same.
-        """
+        """Returns the curve through control points ``(n, 2)`` or ``(n, 3)`` in metres."""
         tck, knots = _spline(np.asarray(points, float))
         return cls(tck, knots)
 
     @cached_property
     def _arc(self) -> tuple[Array, Array]:
-        """Returns values of the spline parameter and the arc length in metres up to each of them.
-
-        The arc length is computed by Gauss-Legendre quadrature over every span.
+        """Returns values of the spline parameter and the arc length in metres up to each, by Gauss-Legendre
+        quadrature.
         """
         u = np.unique(np.linspace(self.knots[:-1], self.knots[1:], _SPANS + 1).ravel())
         half = np.diff(u)[:, None] / 2

@@ -4,8 +4,7 @@
     env = gymnasium.make("roadgpt/LaneKeeping-v0", prompt="two hairpins")
 
 It needs RoadGPT's optional dependencies: ``roadgpt[gym]``. Importing this package registers the
-environment with Gymnasium.
-"""
+environment with Gymnasium."""
 
 from roadgpt.errors import UsageError, to_install
 

@@ -21,11 +21,7 @@ class Curriculum(gymnasium.Wrapper[Any, Any, Any, Any]):
         prompts: descriptions, the easiest first.
         share: fraction (0 to 1) of the last ``episodes`` episodes in which the agent must reach the goal
             before the curriculum advances.
-        episodes: number of most recent episodes from which the share is computed.
-
-    Raises:
-        UsageError: ``prompts`` is empty, or ``share`` or ``episodes`` is out of range.
-    """
+        episodes: number of most recent episodes from which the share is computed."""
 
     def __init__(
         self, env: gymnasium.Env[Any, Any], prompts: Sequence[str], share: float = 0.8, episodes: int = 20

@@ -64,12 +64,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
             keep their defaults. If ``world`` gives no friction, a road surface that the description names,
             such as "icy", determines the friction.
         camera: camera of the observation; by default the SBFT competition's camera, with 320 x 160 pixels.
-        reader: name of the plug-in that reads the descriptions.
-
-    Raises:
-        BriefError: a description cannot be read, or demands something that the world does not allow.
-        UsageError: an argument is invalid.
-    """
+        reader: name of the plug-in that reads the descriptions."""
 
     metadata: dict[str, Any] = {"render_modes": [*RENDER_MODES], "render_fps": round(1 / (STEPS * CONTROL))}  # noqa: RUF012
 
@@ -103,12 +98,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         return deepcopy(self)  # a copy that shared the car would move it
 
     def set_prompts(self, prompts: Sequence[str]) -> None:
-        """Replaces the descriptions, from the next ``reset`` on.
-
-        Raises:
-            BriefError: a description cannot be read, or demands something that the world does not allow.
-            UsageError: ``prompts`` is empty.
-        """
+        """Replaces the descriptions, from the next ``reset`` on."""
         if not prompts:
             raise UsageError("there is no description; give one, such as 'a winding road'")
         self._briefs = [brief_of(words, self._given, self._setup) for words in prompts]
@@ -117,14 +107,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[State, dict[str, Any]]:
         """Makes a new road and places the car at its start; ``options["prompt"]`` is a description for this
-        road only.
-
-        Raises:
-            BriefError: ``options["prompt"]`` cannot be read, or demands something that the world does not
-                allow.
-            UsageError: ``options`` has another key than "prompt".
-            DesignError: no valid road was found for the description.
-        """
+        road only."""
         unknown = sorted(set(options or ()) - {"prompt"})
         if unknown:
             raise UsageError(f"reset() has no option {', '.join(map(repr, unknown))}; it has 'prompt'")
@@ -146,7 +129,6 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         return self._seen(), {**self._info(), "understood": sentence(brief)}
 
     def _drawn(self, brief: Any) -> Road:
-        """Returns a valid road for the Brief; tries up to ``TRIES`` seeds drawn by this environment."""
         said = ""
         for _ in range(TRIES):
             seed = int(self.np_random.integers(SEEDS))
@@ -162,11 +144,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
 
     def step(self, action: NDArray[np.float32]) -> tuple[State, float, bool, bool, dict[str, Any]]:
         """Applies an action for two control steps (40 ms in total); values beyond ±1 are clipped. After the
-        end of the episode nothing moves, and the reward is 0.
-
-        Raises:
-            UsageError: there is no road yet, or the action is not two finite numbers.
-        """
+        end of the episode nothing moves, and the reward is 0."""
         if self.road is None:
             raise UsageError("the environment has no road yet; call reset() first")
         turn, pedal = _checked(action)
@@ -212,7 +190,6 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
 
 
 def _world_of(fields: Mapping[str, Any]) -> World:
-    """Returns the world with these fields."""
     try:
         return World.model_validate(fields)
     except ValidationError as error:
@@ -222,7 +199,6 @@ def _world_of(fields: Mapping[str, Any]) -> World:
 
 
 def _checked(action: Any) -> list[float]:
-    """Returns steering and pedals, -1 to 1 each."""
     try:
         numbers = np.asarray(action, float)
     except (TypeError, ValueError):

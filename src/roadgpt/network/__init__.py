@@ -6,8 +6,7 @@ Route is a Road whose centre line follows the reference lines of its roads, one 
 ``route.network`` is the Network, with all roads, connecting roads, junctions and roundabouts.
 
 Most roads lead through no junctions. The functions of ``road_or_route``, which are used for all roads, are
-loaded at once. The modules that build and describe networks are loaded when a name in them is first used.
-"""
+loaded at once. The modules that build and describe networks are loaded when a name in them is first used."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -37,8 +36,7 @@ if TYPE_CHECKING:
         RoadEnd,
         Roundabout,
     )
-    from roadgpt.network.passages import Passage
-    from roadgpt.network.route import Route
+    from roadgpt.network.route import Passage, Route
     from roadgpt.network.source import read_any_design, read_road, read_source
 
 __all__ = [
@@ -94,8 +92,7 @@ _LATER = {
         "RoadEnd",
         "Roundabout",
     ),
-    "passages": ("Passage",),
-    "route": ("Route",),
+    "route": ("Passage", "Route"),
     "source": ("read_any_design", "read_road", "read_source"),
 }
 """The names that are loaded when they are first used, by the module that defines them."""

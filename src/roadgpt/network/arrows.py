@@ -2,8 +2,7 @@
 
 An arrow shows the directions into which the connections of its lane lead. The shape is that of StVO sign 297
 (Germany). The Vienna Convention on Road Signs and Signals, Annex 2, asks for arrows before junctions where
-the road has enough lanes; they are at least 2 m long.
-"""
+the road has enough lanes; they are at least 2 m long."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,11 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.brief.junction_ranges import side_of
-from roadgpt.brief.junctions import RAMPS, Way
+from roadgpt.brief.junctions import RAMPS, Way, side_of
 from roadgpt.geometry.curve import Array, wrap_angle
+from roadgpt.network.markings import CROSSED, STOP_LINE, line_before
 from roadgpt.network.network import Arm, Connection, Junction, Network, NetworkRoad, RoadEnd
-from roadgpt.network.passages import CROSSED, STOP_LINE, line_before
 from roadgpt.network.surface import triangulated
 
 LENGTH = 5.0  # m (Germany, RMS-1, for limits up to 50 km/h)
@@ -43,20 +41,13 @@ ORDER: tuple[Way, ...] = ("left", "straight", "right")
 class PaintedArrow:
     """One arrow on a lane that leads towards a junction."""
 
-    end: RoadEnd
-    """The end of the road towards which the lane leads."""
-    lane: int
-    """The id of the lane."""
-    ways: tuple[Way, ...]
-    """The directions that the arrow shows, from left to right."""
-    s: float
-    """The station in metres of the arrow's middle."""
-    t: float
-    """The offset in metres of the arrow's middle, positive to the left of the reference line."""
-    width: float
-    """The width of the arrow in metres."""
-    points: Array
-    """The outline ``(n, 3)`` in metres, counter-clockwise, at the height of the road."""
+    end: RoadEnd  # the end of the road towards which the lane leads
+    lane: int  # the id of the lane
+    ways: tuple[Way, ...]  # the directions that the arrow shows, from left to right
+    s: float  # the station in metres of the arrow's middle
+    t: float  # the offset in metres of the arrow's middle, positive to the left of the reference line
+    width: float  # the width of the arrow in metres
+    points: Array  # the outline ``(n, 3)`` in metres, counter-clockwise, at the height of the road
     corners: NDArray[np.int64]
     """Triangles that fill the outline: indices ``(m, 3)`` into ``points``, counter-clockwise."""
 
@@ -71,8 +62,7 @@ def arrows(network: Network) -> tuple[PaintedArrow, ...]:
     - It belongs to a merge or exit and leads to one road only.
     - It is too short.
 
-    Besides, a lane has no arrow if it is too narrow or leads nowhere.
-    """
+    Besides, a lane has no arrow if it is too narrow or leads nowhere."""
     return tuple(
         arrow
         for junction in network.junctions
@@ -103,8 +93,7 @@ def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedA
 
 def _way(junction: Junction, arm: Arm, connection: Connection) -> Way:
     """Returns the side to which a connection leads from an arm; at ramps, a turn of 1 degree is one to a
-    side.
-    """
+    side."""
     out = next(each for each in junction.arms if each.end == connection.outgoing)
     turn = float(np.degrees(wrap_angle(out.direction - arm.direction - np.pi)))
     if junction.kind in RAMPS and abs(turn) > 1.0:
@@ -116,8 +105,7 @@ def _placed(
     member: NetworkRoad, end: RoadEnd, index: int, ways: tuple[Way, ...], tip: float
 ) -> PaintedArrow | None:
     """Returns an arrow on the lane with this index, counted from 0 at mid-road; None if the lane is too
-    narrow. ``tip`` is the distance in metres from the tip of the arrow to the end of the road.
-    """
+    narrow. ``tip`` is the distance in metres from the tip of the arrow to the end of the road."""
     outline, corners = _shape(ways)
     at_end = end.contact == "end"
     away = tip + LENGTH - outline[:, 0]
@@ -145,10 +133,8 @@ def _lane(member: NetworkRoad, end: RoadEnd, index: int, s: Array) -> tuple[Arra
 
 @lru_cache(maxsize=8)
 def _shape(ways: tuple[Way, ...]) -> tuple[Array, NDArray[np.int64]]:
-    """Returns the outline ``(n, 2)`` of an arrow in metres, and the triangles that fill it.
-
-    The outline is given by the distance from the foot of the arrow and the offset to the left of its middle.
-    """
+    """Returns the outline ``(n, 2)`` of an arrow in metres, and the triangles that fill it. The outline is
+    given by the distance from the foot of the arrow and the offset to the left of its middle."""
     import shapely
     from shapely.affinity import scale, translate
 
@@ -163,9 +149,7 @@ def _shape(ways: tuple[Way, ...]) -> tuple[Array, NDArray[np.int64]]:
 
 
 def _part(way: Way, is_beside: bool) -> Any:
-    """Returns the shaft and the head of one way, before it is drawn out; ``is_beside`` says whether the arrow
-    has a head straight on.
-    """
+    """Returns the shaft and the head of one way before it is drawn out; ``is_beside`` a head straight on."""
     import shapely
 
     top = LENGTH / STRETCH

@@ -27,9 +27,8 @@ class Builder:
         return self._last
 
     def add(self, road: Road, junction: int | None = None, number: int | None = None) -> int:
-        """Adds a road that has a profile; returns the road's id: ``number``; for None, the next free id.
-        ``junction`` is the id of the junction to which a connecting road belongs; None for other roads.
-        """
+        """Adds a road that has a profile; returns its id: ``number`` or, for None, the next free one.
+        ``junction`` is the id of the junction to which a connecting road belongs."""
         number = self.number() if number is None else number
         self.roads[number] = NetworkRoad(number, road, junction)
         return number
@@ -50,11 +49,9 @@ class Stub:
     """The end of a road at a junction that is not built yet. Traffic drives on the right."""
 
     end: RoadEnd
-    direction: float
-    """The heading in radians out of the junction."""
+    direction: float  # the heading in radians out of the junction
     profile: Profile
-    station: float
-    """The station in metres of this end of the road."""
+    station: float  # the station in metres of this end of the road
 
     @cached_property
     def into(self) -> "StubLanes":
@@ -81,12 +78,10 @@ class StubLanes:
     """The driving lanes of a stub in one direction, from the centre line outwards."""
 
     ids: range
-    widths: tuple[float, ...]
-    """The widths in metres at the junction."""
+    widths: tuple[float, ...]  # the widths in metres at the junction
     edge: float
     """The distance in metres from the reference line to the left edge of the first lane. Left and right are
-    those of the driver; the distance is positive to the right.
-    """
+    those of the driver; the distance is positive to the right."""
 
     def __len__(self) -> int:
         return len(self.widths)
@@ -119,11 +114,10 @@ Change = tuple[float, float]
 def one_way(
     widths: Sequence[Change], length: float, offset: Change = (0.0, 0.0), between: Marking = "none"
 ) -> Profile:
-    """Returns the cross-section of a road with lanes on the right only. ``widths`` are the lane widths from
-    left to right. ``offset`` is that of the first lane's left edge, positive to the left of the reference
-    line. Widths and offset change smoothly over ``length`` metres. ``between`` is the marking between lanes;
-    the outer edges have no marking.
-    """
+    """Returns the cross-section of a road with lanes on the right only, given by their widths from left to
+    right. ``offset`` is that of the first lane's left edge, positive to the left of the reference line.
+    Widths and offset change smoothly over ``length`` metres. ``between`` is the marking between lanes; the
+    outer edges have none."""
     return _one_way(tuple(_changing(each, length) for each in widths), _changing(offset, length), between)
 
 
@@ -150,8 +144,7 @@ def connecting_road(
     between: Marking = "none",
 ) -> Road:
     """Returns a level connecting road that begins at a point in metres with a heading in radians; for
-    ``widths``, ``offset`` and ``between`` see ``one_way``.
-    """
+    ``widths``, ``offset`` and ``between`` see ``one_way``."""
     x, y, z = start
     plan = PieceCurve(x, y, heading, tuple(pieces))
     return Road(

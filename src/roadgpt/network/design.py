@@ -2,38 +2,44 @@
 
 The design is written in RoadGPT's JSON format, with additional fields:
 
-    "lanes": {"forward": 1, "backward": 1, "width": 3.5}
+    "lanes": {"forward": 2, "backward": 0, "width": 3.5, "centre": "solid", "edge": "broken"}
     "junction1": {"after": 2, "kind": "crossroads", "take": "left", "control": "yield", "kerb": 10,
                   "arms": [{"angle": -90}, {"angle": 0, "length": 40}, {"angle": 90}]}
+    "junction2": {"after": 3, "kind": "merge", "take": "ramp", "length": 150,
+                  "lanes": {"forward": 2, "backward": 0}}
+    "junction3": {"after": 4, "kind": "lane_drop", "length": 60}
 
-``after`` is the number of segments before the junction. ``arms`` are the roads at the junction other than the
+``after`` is the number of segments before the junction; merges, exits and places where lanes change are
+numbered together with the junctions, in driving order. ``arms`` are the roads at the junction other than the
 road of arrival; ``angle`` is the direction out of the junction on this arm, in degrees from the direction in
-which the route arrives, positive to the left; ``network.arm_design`` describes arms that are not straight and
-level. ``take`` names the arm on which the route goes on: "left", "right", "straight", or the number of the
-exit, counted counter-clockwise from the road of arrival. ``lanes`` of a junction are those of the road on
-which the route goes on. ``network.lane_design`` describes merges, exits and places where lanes change. With
-``"left_hand": true``, traffic drives on the left: exits are counted clockwise, and ramps lie on the left.
-"""
+which the route arrives, positive to the left; an arm that is not straight and level has segments of its own,
+``"road_segment1": {"distance": 40, "direction": "left", "incline": 3, "turn_degrees": 30}``. ``take`` names
+the arm on which the route goes on: "left", "right", "straight", or the number of the exit, counted
+counter-clockwise from the road of arrival. ``lanes`` of a junction are those of the road on which the route
+goes on. With ``"left_hand": true``, traffic drives on the left: exits are counted clockwise, and ramps lie on
+the left."""
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import BaseModel, Field, StrictBool, ValidationError
+from pydantic import BaseModel, Field, StrictBool, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
 
-from roadgpt.brief.junction_ranges import side_of
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, PlainKind
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, LaneKind, PlainKind, Side, side_of
+from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import UsageError
-from roadgpt.network.arm_design import ArmDesign, read_segments
-from roadgpt.network.lane_design import RAMP_TAPER, RARE, LanesChangeDesign, LanesDesign, RampDesign
 from roadgpt.network.pose import mirrored_point
 from roadgpt.road import Segment, read_design
 from roadgpt.road.design import (
     MAX_SEGMENTS,
     OTHER_DIRECTION,
+    SEGMENT_KEY,
     Finite,
     FrozenFields,
+    Length,
     as_written,
     first_error,
     misnumbered,
@@ -41,8 +47,20 @@ from roadgpt.road.design import (
     written_fields,
     written_segments,
 )
+from roadgpt.road.profile import Marking
 from roadgpt.road.road import FARTHEST
 
+ACCELERATION = 130.0  # m, length of an acceleration or deceleration lane without its taper
+RAMP_TAPER = 60.0  # m, length of the taper of such a lane: RAA 2008, entries and exits
+MEDIAN = 2.0  # m, width of a median
+TAPER = 60.0  # m, length of the taper of a lane that ends or begins
+LEAST_WIDTH = 1.5  # m; where a lane is narrower than this, no car can drive in it
+
+RARE = {"divided": False, "edge": "solid"}
+"""Fields of a LanesDesign that are written only if they differ from these values."""
+After = Annotated[int, Field(ge=1, le=MAX_SEGMENTS)]
+LaneLength = Annotated[float, Field(ge=10, le=2000, allow_inf_nan=False)]
+STUB = 25.0  # m, length of an arm whose length is not given
 KEY = re.compile(r"junction(\d{1,4})")
 OWN = ("lanes", "left_hand")
 """The fields, besides the junctions, that a NetworkDesign has and the Design of a single road has not."""
@@ -52,7 +70,6 @@ ISLAND = 16.0  # m, usual radius of the central island
 ASTERN = 25.0  # degrees, least angle between two neighbouring arms, the road of arrival among them
 MOST_JUNCTIONS = 100
 MOST_ARMS = 7
-
 USUAL_ARMS: dict[PlainKind, tuple[float, ...]] = {
     "t_junction": (-90.0, 90.0),
     "y_junction": (-60.0, 60.0),
@@ -69,9 +86,128 @@ COUNTS: dict[PlainKind, tuple[int, int]] = {
     "roundabout": (2, 5),
 }
 """The smallest and the largest number of arms, without the road of arrival."""
-
 Take = Literal["left", "right", "straight"] | Annotated[int, Field(ge=1)]
 Part = TypeVar("Part", bound=BaseModel)
+
+
+class LanesDesign(FrozenFields):
+    """The lanes of a road."""
+
+    forward: Annotated[int, Field(ge=1, le=MOST_LANES)] = 1
+    """Number of lanes in the direction of the route, one or more."""
+    backward: Annotated[int, Field(ge=0, le=MOST_LANES)] = 1
+    """Number of oncoming lanes; 0 for a one-way road."""
+    width: Annotated[float, Field(ge=2, le=10, allow_inf_nan=False)] = 4.0
+    """Width of every lane in metres."""
+    centre: Marking | None = None
+    """The line between the directions; None for a broken line with one lane each way, else a solid one."""
+    divided: StrictBool = False
+    """Whether a median separates the directions."""
+    edge: Literal["solid", "broken", "none"] = "solid"
+    """The line at the outer edge of the lanes of each direction."""
+
+
+class RampDesign(FrozenFields):
+    """A merge, where a ramp joins a road, or a diverge, where a ramp leaves a road."""
+
+    after: After
+    """Number of segments of the route before this place."""
+    kind: Literal["merge", "diverge"]
+    take: Literal["ramp", "main"]
+    """The road from which the route comes (merge) or to which it goes (diverge)."""
+    length: LaneLength = ACCELERATION
+    """Length in metres of the acceleration or deceleration lane, without its taper."""
+    taper: LaneLength = RAMP_TAPER
+    """Length in metres of the taper in which this lane ends or begins."""
+    side: Side | None = None
+    """The side of the ramp; None for the side on which traffic drives."""
+    lanes: LanesDesign | None = None
+    """The lanes of the road behind this place, if the route takes the ramp; None for two one-way lanes behind
+    a merge, and for one behind a diverge. On the main road, the lanes stay the same."""
+
+    @property
+    def is_on_left(self) -> bool:
+        """Whether the ramp lies on the left of its road, where traffic drives on the right."""
+        return self.side == "left"
+
+    def mirrored(self) -> "RampDesign":
+        """Returns the ramp with left and right exchanged."""
+        side = None if self.side is None else OTHER_DIRECTION[self.side]
+        return self.model_copy(update={"side": side})
+
+
+class LanesChangeDesign(FrozenFields):
+    """A place where a lane ends or begins, or where the route changes to the next lane."""
+
+    after: After
+    """Number of segments of the route before this place."""
+    kind: LaneKind
+    side: Side = "right"
+    """Whether the leftmost or the rightmost lane ends or begins, or the side to which the route changes."""
+    length: LaneLength = TAPER
+    """Length in metres of the taper in which the lane ends or begins; not used for a lane change."""
+    lanes: LanesDesign | None = None
+    """The lanes of the road behind this place; None for the lanes of the road before it, less the lane that
+    ends or plus the lane that begins."""
+
+    def mirrored(self) -> "LanesChangeDesign":
+        """Returns the place with left and right exchanged."""
+        return self.model_copy(update={"side": OTHER_DIRECTION[self.side]})
+
+
+def narrow_part(taper: float, width: float) -> float:
+    """Returns the length in metres on which a lane that ends or begins is narrower than ``LEAST_WIDTH``. The
+    lane's width is a cubic that changes between 0 and ``width`` metres over ``taper`` metres and is level at
+    both ends."""
+    return taper * (0.5 - math.sin(math.asin(1 - 2 * LEAST_WIDTH / width) / 3))
+
+
+class ArmDesign(FrozenFields):
+    """A road at a junction, other than the road on which the route arrives."""
+
+    angle: Annotated[float, Field(gt=-180, lt=180)]
+    """Direction out of the junction in degrees, from the direction of arrival, positive to the left."""
+    length: Length | None = None
+    """Length in metres of a straight, level arm; None for ``STUB``; not for the arm that the route takes."""
+    control: Control | None = None
+    """The sign or the light on this arm; None for the one that follows from the junction's ``control``."""
+    one_way: Literal["in", "out"] | None = None
+    """One-way traffic: "in" to the junction or "out" of it; None for both ways; not for the arm taken."""
+    segments: Annotated[tuple[Segment, ...], Field(max_length=MAX_SEGMENTS)] = ()
+    """The segments of the arm out of the junction, also if its traffic drives in; empty for a straight, level
+    arm; not with ``length`` and not for the arm that the route takes."""
+
+    @model_validator(mode="after")
+    def _check_length(self) -> "ArmDesign":
+        if self.segments and self.length is not None:
+            raise PydanticCustomError("two_lengths", "has length and road segments; leave one of them out")
+        return self
+
+    @property
+    def stretch(self) -> tuple[Segment, ...]:
+        """The segments of the road of the arm, out of the junction: those given, or a straight, level one."""
+        return self.segments or (Segment(distance=self.length or STUB, direction="straight"),)
+
+    def mirrored(self) -> "ArmDesign":
+        """Returns the arm with left and right exchanged."""
+        segments = tuple(segment.mirrored() for segment in self.segments)
+        return self.model_copy(update={"angle": 0.0 - self.angle, "segments": segments})
+
+
+def read_segments(what: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """Reads the segments of an arm, as those of a road, for an ArmDesign; other fields are returned
+    unchanged. ``what`` names the arm in remarks and errors. Raises UsageError if a segment cannot be read."""
+    own = {key: each for key, each in raw.items() if SEGMENT_KEY.fullmatch(str(key))}
+    fields = {key: each for key, each in raw.items() if key not in own}
+    if "segments" in fields:
+        raise UsageError(f"{what} has a field 'segments' that is unknown; give road_segment1, ... instead")
+    if not own:
+        return fields, ()
+    try:
+        design, remarks = read_design({"starting_point": (0.0, 0.0, 0.0), "theta": 0.0, **own})
+    except UsageError as error:
+        raise UsageError(f"{what}: {error}") from error
+    return {**fields, "segments": design.segments}, tuple(f"{what}: {each}" for each in remarks)
 
 
 class JunctionDesign(FrozenFields):
@@ -103,20 +239,16 @@ class JunctionDesign(FrozenFields):
         return tuple(sorted(arms, key=lambda arm: arm.angle))
 
     def mirrored(self) -> "JunctionDesign":
-        """Returns the junction with left and right exchanged. The number of an exit stays: the mirrored
-        exits are counted the other way round.
-        """
+        """Returns the junction with left and right exchanged. The number of an exit stays, because the
+        mirrored exits are counted the other way round."""
         take = self.take if isinstance(self.take, int) else OTHER_DIRECTION[self.take]
         return self.model_copy(
             update={"take": take, "arms": tuple(arm.mirrored() for arm in reversed(self.arms))}
         )
 
     def arm_taken(self, left_hand: bool) -> ArmDesign | None:
-        """Returns the arm that the route takes; None if the route turns back at a roundabout.
-
-        Raises:
-            UsageError: No arm, or more than one, fits ``take``, or the arm has a length or segments.
-        """
+        """Returns the arm that the route takes; None if the route turns back at a roundabout. Raises
+        UsageError if no arm, or more than one, fits ``take``, or the arm has a length or segments."""
         arms, taken = self.all_arms, self.taken
         if taken is None:
             return None
@@ -132,11 +264,7 @@ class JunctionDesign(FrozenFields):
     @property
     def taken(self) -> int | None:
         """Index in ``all_arms`` of the arm that the route takes if traffic drives on the right; None if the
-        route turns back at a roundabout.
-
-        Raises:
-            UsageError: No arm, or more than one, fits ``take``.
-        """
+        route turns back at a roundabout. Raises UsageError if no arm, or more than one, fits ``take``."""
         arms = self.all_arms
         if isinstance(self.take, int):
             most = len(arms) + (self.kind == "roundabout")
@@ -163,9 +291,7 @@ PlaceDesign = JunctionDesign | RampDesign | LanesChangeDesign
 
 
 def ends_route(place: PlaceDesign) -> bool:
-    """Returns whether the route ends at a place because the car would turn back there, onto the road on which
-    the car came.
-    """
+    """Returns whether the route ends at a place because the car would turn back there."""
     return isinstance(place, JunctionDesign) and place.taken is None
 
 
@@ -195,11 +321,8 @@ class NetworkDesign(FrozenFields):
         return tuple(self.segments[a:b] for a, b in pairwise(ends))
 
     def mirrored(self, middle: float = 0.0) -> "NetworkDesign":
-        """Returns the design with left and right exchanged, and traffic on the other side.
-
-        Args:
-            middle: The y in metres of the mirror line, which is parallel to the x axis.
-        """
+        """Returns the design mirrored about the line y = ``middle`` metres, with traffic on the other
+        side."""
         return self.model_copy(
             update={
                 "starting_point": mirrored_point(self.starting_point, middle),
@@ -250,13 +373,9 @@ def is_network_design(data: Any) -> bool:
 
 
 def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[str, ...]]:
-    """Reads a dictionary in RoadGPT's JSON format as a network; returns the design and remarks.
-
-    Each remark is a sentence about a contradiction in the data or an unusual value.
-
-    Raises:
-        UsageError: A field is missing, misnamed, of the wrong type, out of range or contradicts another.
-    """
+    """Reads a dictionary in RoadGPT's JSON format as a network; returns the design, and a sentence about each
+    contradiction or unusual value in the data. Raises UsageError if a field is missing, misnamed, of the
+    wrong type, out of range or contradicts another."""
     rest = {key: each for key, each in data.items() if key not in OWN and not KEY.fullmatch(str(key))}
     design, remarks = read_design(rest)
     found = [(int(match[1]), raw) for key, raw in data.items() if (match := KEY.fullmatch(str(key)))]
@@ -284,9 +403,8 @@ def is_left_hand(data: Mapping[str, Any]) -> bool:
 
 
 def read_part(model: type[Part], what: str, raw: Any, fields: str) -> Part:
-    """Returns a part of a design, such as a junction, from parsed JSON. Raises UsageError if the part cannot
-    be read. The message names the part, ``what``, and, if ``raw`` is not an object, the ``fields``.
-    """
+    """Returns a part of a design from parsed JSON. Raises UsageError if the part, named ``what``, cannot be
+    read; the message names the ``fields`` if ``raw`` is not an object."""
     _check_object(what, raw, fields)
     try:
         return model.model_validate(raw)
@@ -330,7 +448,6 @@ OF_LANES: dict[str, type[RampDesign] | type[LanesChangeDesign]] = {
 
 
 def _place(number: int, raw: Any, left_hand: bool) -> tuple[PlaceDesign, tuple[str, ...]]:
-    """Returns a place from parsed JSON, and remarks on it."""
     what, fields = f"junction {number}", "after, kind and take"
     _check_object(what, raw, fields)
     if raw.get("lanes") is not None:

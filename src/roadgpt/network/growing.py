@@ -4,29 +4,29 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from roadgpt.brief.junction_ranges import side_of
-from roadgpt.brief.junctions import Control
+from roadgpt.brief.junctions import Control, side_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry import GradeProfile, PieceCurve
 from roadgpt.geometry.curve import wrapped
-from roadgpt.network.arm_design import ArmDesign
 from roadgpt.network.building import Builder, Stub, edges_at
-from roadgpt.network.crossing import Mouth, build_crossing, setbacks
-from roadgpt.network.crossing_lanes import USUALLY_FED
-from roadgpt.network.design import JunctionDesign, NetworkDesign, PlaceDesign
-from roadgpt.network.lane_design import LanesChangeDesign, RampDesign
-from roadgpt.network.lane_legs import legs_along
+from roadgpt.network.crossing import USUALLY_FED, build_crossing, setbacks
+from roadgpt.network.design import (
+    ArmDesign,
+    JunctionDesign,
+    LanesChangeDesign,
+    NetworkDesign,
+    PlaceDesign,
+    RampDesign,
+)
+from roadgpt.network.lane_along import legs_along
 from roadgpt.network.network import Connection, Continuation, RoadEnd, Roundabout
-from roadgpt.network.pose import NetworkPose
+from roadgpt.network.pose import NetworkPose, curve_between
 from roadgpt.network.ramps import RampBuilder, length_at_ramp
 from roadgpt.network.ring import around_length, build_roundabout, contact_distance, smallest_radius
 from roadgpt.network.route import Route
-from roadgpt.network.stretch import road_of
-from roadgpt.network.stretch_profiles import stretch_profiles
-from roadgpt.network.turning import curve_between
+from roadgpt.network.stretch import road_of, stretch_profiles
 from roadgpt.road import Profile, World
-from roadgpt.road.moving import reversed_road
-from roadgpt.road.road import check_length
+from roadgpt.road.road import check_length, reversed_road
 
 FAR = 1e6  # m, a station behind all changes of a cross-section
 LEAST = math.radians(40.0)  # largest deviation from a straight line of two arms that count as opposite
@@ -35,15 +35,10 @@ LEAST = math.radians(40.0)  # largest deviation from a straight line of two arms
 def build_route(design: NetworkDesign, world: World) -> Route:
     """Returns the route that a design describes, with the network in which it lies.
 
-    Args:
-        design: The segments and junctions of the route.
-        world: The World. It gives the width of the shoulders, and the lane width where the design has none.
-
-    Raises:
-        UsageError: The World asks for lanes or banked bends that networks do not have, the lanes of a road
-            do not fit, no arm of a junction fits ``take``, the island of a roundabout is too small for its
-            arms, a lane that the route needs cannot be reached, or a road is longer than 50 km.
-    """
+    The World gives the width of the shoulders, and the lane width where the design has none. Raises
+    UsageError if the World asks for lanes or banked bends that networks do not have, the lanes of a road do
+    not fit, no arm of a junction fits ``take``, the island of a roundabout is too small for its arms, a lane
+    that the route needs cannot be reached, or a road is longer than 50 km."""
     # traffic on the left is the mirror image of traffic on the right
     seen = design.mirrored() if design.left_hand else design
     grown = _RouteGrowth(seen, stretch_profiles(seen, world))
@@ -80,8 +75,7 @@ class _RouteGrowth:
 
     def _road(self, number: int, start: NetworkPose, is_level: tuple[bool, bool]) -> int:
         """Adds the road behind the place with this number (0: the first road), level at its start and its end
-        or not; returns its id.
-        """
+        or not; returns its id."""
         segments = self.design.stretches[number]
         check_length(sum(segment.distance for segment in segments))
         return self.builder.add(road_of(segments, *start, self.profiles[number], is_level))
@@ -102,13 +96,10 @@ class _RouteGrowth:
         elif isinstance(place, LanesChangeDesign):
             self._go_on(number, place, is_level)
         else:
-            self._pass_ramp(number, place, is_level)
-
-    def _pass_ramp(self, number: int, ramp: RampDesign, is_level: bool) -> None:
-        profiles = self.profiles[number - 1], self.profiles[number]
-        made = RampBuilder(self.builder, ramp, self.passed[-1], self._end(), *profiles)
-        road = self._road(number, made.where_it_goes_on(), (True, is_level))
-        self.passed += [*made.build(road), road]
+            around = self.profiles[number - 1], self.profiles[number]
+            made = RampBuilder(self.builder, place, self.passed[-1], self._end(), *around)
+            road = self._road(number, made.where_it_goes_on(), (True, is_level))
+            self.passed += [*made.build(road), road]
 
     def _go_on(self, number: int, place: LanesChangeDesign, is_level: bool) -> None:
         """Lets another road continue the one on which the route has arrived, with other lanes."""
@@ -161,9 +152,7 @@ class _RouteGrowth:
 
     def _arm(self, arm: ArmDesign, contact: NetworkPose, profile: Profile) -> Stub:
         """Adds the road of an arm that the route does not take; a one-way road leads as its traffic does.
-
-        ``contact`` is where it meets the junction, with the heading out of it.
-        """
+        ``contact`` is where it meets the junction, with the heading out of it."""
         check_length(sum(segment.distance for segment in arm.stretch))
         road = road_of(arm.stretch, *contact, profile, (True, False))
         if arm.one_way == "in":
@@ -195,8 +184,7 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
         after: The cross-section of the road on which the route goes on.
 
     Raises:
-        UsageError: The arm that the route takes has ``one_way``, or no arm fits ``take``.
-    """
+        UsageError: The arm that the route takes has ``one_way``, or no arm fits ``take``."""
     width, shoulder = float(after.width(0.0)), after.shoulder_width
     ring, arms, taken = (junction.ring_lanes, junction.ring_lanes), junction.all_arms, junction.taken
     counts = (ring, ring) if junction.kind == "roundabout" else ((1, 1), before.count)
@@ -228,8 +216,7 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
 
 def _continuing(junction: JunctionDesign) -> int | None:
     """Returns the index of the arm opposite the arm that the route takes; None at a roundabout, or if only
-    the road of arrival or no road lies there.
-    """
+    the road of arrival or no road lies there."""
     taken = junction.taken
     if taken is None or junction.kind == "roundabout":
         return None
@@ -266,15 +253,14 @@ def contact_distances(
     ``directions`` are the headings of the arms out of the junction in radians, counter-clockwise from the
     road of arrival; ``profiles`` are the cross-sections of the arms. The road of arrival and one-way roads
     into the junction end here, so the widths at their ends count. All other roads begin here, so the widths
-    at their starts count. Raises UsageError if the island of a roundabout is too small for its arms.
-    """
+    at their starts count. Raises UsageError if the island of a roundabout is too small for its arms."""
     if junction.kind != "roundabout":
         ends_here = {0, *(n for n, arm in enumerate(junction.all_arms, 1) if arm.one_way == "in")}
         mouths = []
         for n, (direction, profile) in enumerate(zip(directions, profiles, strict=True)):
             left, right = edges_at(profile, FAR if n in ends_here else 0.0)
             into, out = (-right, left) if n in ends_here else (left, -right)
-            mouths.append(Mouth(direction, into, out))
+            mouths.append((direction, into, out))
         return setbacks(mouths, junction.kerb)
     least = smallest_radius(directions)
     if junction.radius < least:
@@ -286,26 +272,16 @@ def contact_distances(
 
 
 def length_inside(place: PlaceDesign, before: Profile, after: Profile) -> float:
-    """Returns the length in metres of a route at a place, without the roads before and behind it; 0 at a
-    LanesChangeDesign. The arguments and errors are those of ``passing_length``.
-    """
+    """Returns the length in metres of a route at a place, without the roads before and behind it, whose
+    cross-sections are given; 0 at a LanesChangeDesign."""
     if isinstance(place, JunctionDesign):
         return passing_length(place, before, after)
     return length_at_ramp(place) if isinstance(place, RampDesign) else 0.0
 
 
 def passing_length(junction: JunctionDesign, before: Profile, after: Profile) -> float:
-    """Returns the length in metres of a route inside a junction, from contact to contact.
-
-    Args:
-        junction: The junction.
-        before: The cross-section of the road on which the route arrives.
-        after: The cross-section of the road on which the route goes on.
-
-    Raises:
-        UsageError: The island of a roundabout is too small for its arms, the arm that the route takes has
-            ``one_way``, or no arm fits ``take``.
-    """
+    """Returns the length in metres of a route inside a junction, from contact to contact, for the
+    cross-sections of the roads on which the route arrives and goes on."""
     arms, taken = junction.all_arms, junction.taken
     directions = [math.pi, *(math.radians(arm.angle) for arm in arms)]
     profiles = [before, *profiles_of_arms(junction, before, after)]
@@ -322,8 +298,7 @@ def passing_length(junction: JunctionDesign, before: Profile, after: Profile) ->
 def roads_around(builder: Builder, ring: Roundabout, start: int, to: int) -> list[int]:
     """Returns the ids of the roads from the arm of a roundabout with index ``start`` to the arm with index
     ``to``, in driving order; all the way round if both are the same arm. Raises UsageError if no lane leads
-    into or out of one of these arms.
-    """
+    into or out of one of these arms."""
     mouths = {each.id: each for each in builder.junctions if each.id in ring.junctions}
     count, entered = len(ring.ring), mouths[ring.junctions[start]]
     passed = [way_through(entered.connections, entered.arms[0].end, RoadEnd(ring.ring[start], "start"))]
@@ -348,8 +323,7 @@ def controls_of(junction: JunctionDesign) -> tuple[Control, ...]:
       straight ahead, the arm that the route takes has priority instead. The others give way.
     - Elsewhere, with "none", no arm has a sign.
 
-    The ``control`` of an arm replaces the sign or light of this arm.
-    """
+    The ``control`` of an arm replaces the sign or light of this arm."""
     arms = junction.all_arms
     nearest = min(range(len(arms)), key=lambda n: abs(arms[n].angle))
     opposite = nearest if abs(math.radians(arms[nearest].angle)) <= LEAST else None

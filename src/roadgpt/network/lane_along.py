@@ -1,20 +1,21 @@
-"""Computes where the lane of a route lies on one of its roads, and what lies beside it.
+"""Finds the lanes that a route follows on the roads of a network, with the necessary lane changes, and
+computes where its lane lies on one of its roads, and what lies beside it.
 
     left shoulder | left: all other lanes | the lane | right: outer lanes | right shoulder
                                           ^ offset
 
-A lane change is a smooth curve from one lane to the next, within part of the road.
-"""
+A lane change is a smooth curve from one lane to the next, within part of the road."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
+from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.elevation import Cubic
+from roadgpt.network.network import Leg, Network
 from roadgpt.road import Road
 from roadgpt.road.profile import Lane, Width, as_cubics
 
@@ -22,35 +23,22 @@ LONGEST = 65.0  # m, length of a lane change: 4.6 s (Toledo and Zohar 2007) at 5
 SHARE = 0.8  # largest share of the room for a lane change that the change takes
 PARTS = 8  # number of cubics that describe a lane change
 ROUNDING = 1e-9
-
-
-class LaneAlong(NamedTuple):
-    """The lane of a route on one road, and what lies beside the lane. Each field is in metres, constant or a
-    function of the station.
-    """
-
-    left_shoulder: Width
-    left: Width
-    """The width between the lane and the left shoulder: all lanes there, oncoming lanes included, and the
-    median.
-    """
-    offset: Width
-    """The offset of the left edge of the lane from the reference line, positive to the left."""
-    width: Width
-    right: Width
-    """The width of all lanes to the right of the lane."""
-    right_shoulder: Width
-
-
 Term = tuple[float, Width]
 """A factor and the width that is multiplied by it."""
+Ways = dict[int, int]
+"""Maps the id of a lane to the id of the lane that continues it on the next road."""
+
+
+LaneAlong = tuple[Width, Width, Width, Width, Width, Width]
+"""Widths in metres, constant or by the station: of the left shoulder, of all lanes between it and the lane
+(oncoming lanes and the median included), of the offset of the lane's left edge, positive to the left, of the
+lane, of all lanes to its right, and of the right shoulder."""
 
 
 def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
-    """Returns the lane that a route follows on a road. The road leads in the direction of the route, and
-    traffic drives on the right. ``lanes`` are the indices of the lanes that the route follows one after
-    another, counted from 0 at the centre line. Each index differs by 1 from the index before.
-    """
+    """Returns the lane that a route follows on a road, which leads in the direction of the route, for traffic
+    on the right. ``lanes`` are the indices of the lanes that the route follows one after another, counted
+    from 0 at the centre line; each differs by 1 from the index before."""
     profile = road.profile
     assert profile is not None
     count = profile.count
@@ -65,14 +53,8 @@ def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
     width = _through([right[k] for k in lanes], length, stations)
     left = added([(1, profile.offset), *((1, w) for w in oncoming), (-1, offset)], length)
     outer = added([(1, offset), (-1, width), (-1, profile.offset), *((1, w) for w in right)], length)
-    return LaneAlong(
-        _shoulder(profile.left[count[1] :], length),
-        left,
-        offset,
-        width,
-        outer,
-        _shoulder(profile.right[count[0] :], length),
-    )
+    shoulders = [_shoulder(side, length) for side in (profile.left[count[1] :], profile.right[count[0] :])]
+    return shoulders[0], left, offset, width, outer, shoulders[1]
 
 
 def _shoulder(lanes: Sequence[Lane], length: float) -> Width:
@@ -80,18 +62,16 @@ def _shoulder(lanes: Sequence[Lane], length: float) -> Width:
 
 
 def change_windows(length: float, count: int) -> list[tuple[float, float]]:
-    """Returns the stations in metres at which each lane change begins and ends: each in the middle of one of
-    ``count`` equal parts of a road that is ``length`` metres long.
-    """
+    """Returns the stations in metres at which each of ``count`` lane changes on a road of this length begins
+    and ends: in the middle of equal parts of the road."""
     part = length / count if count else 0.0
     half = min(LONGEST, SHARE * part) / 2
     return [(part * (n + 0.5) - half, part * (n + 0.5) + half) for n in range(count)]
 
 
 def added(terms: Sequence[Term], length: float) -> Width:
-    """Returns the weighted sum of lane widths along a road of ``length`` metres. If every width is a number,
-    the sum is a number, too.
-    """
+    """Returns the weighted sum of widths along a road of ``length`` metres; of numbers only, the sum is a
+    number."""
     numbers = [factor * width for factor, width in terms if not isinstance(width, CubicProfile)]
     if len(numbers) == len(terms):
         return sum(numbers)
@@ -115,10 +95,8 @@ def cubics_at(width: Width, stations: Sequence[float]) -> list[Cubic]:
 
 
 def _through(values: Sequence[Width], length: float, stations: Iterable[float]) -> Width:
-    """Returns one width after another, with smooth changes between them.
-
-    ``stations`` are those at which the cubics of the offset and of the lane widths begin.
-    """
+    """Returns one width after another, with smooth changes between them. ``stations`` are those at which the
+    cubics of the offset and of the lane widths begin."""
     found = values[0]
     for (start, end), after in zip(change_windows(length, len(values) - 1), values[1:], strict=True):
         knots = np.linspace(start, end, PARTS + 1)
@@ -128,11 +106,9 @@ def _through(values: Sequence[Width], length: float, stations: Iterable[float]) 
 
 
 def _blended(one: Width, other: Width, knots: Array) -> Width:
-    """Returns a width that changes to another one from the first to the last knot.
-
-    Between two knots, a cubic has the values and slopes of the blended widths at both knots. What remains
-    beside the lane then has its true width and is nowhere negative.
-    """
+    """Returns a width that changes to another one from the first to the last knot. Between two knots, a cubic
+    has the values and slopes of the blended widths at both knots, so that what remains beside the lane has
+    its true width and is nowhere negative."""
     if one == other:
         return one
     start, end = knots[0], knots[-1]
@@ -156,3 +132,81 @@ def _blended(one: Width, other: Width, knots: Array) -> Width:
         (before.cubics(np.array(early)), np.stack(rows, axis=-1), after.cubics(np.array([at_end, *late])))
     )
     return CubicProfile.of_table([*early, *knots.tolist(), *late], table)
+
+
+def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]) -> list[Leg]:
+    """Returns the legs of a route along the roads with these ids: on each road, one leg for each lane that it
+    uses.
+
+    A route begins in the outermost lane from which it can go on (the rightmost one, with traffic on the
+    right). ``shifts`` are the required lane changes by road: the number of lanes to the left, negative to the
+    right. Otherwise the route changes lanes only where its lane does not lead to the next road or would
+    prevent a required change, and as late as possible: on the last road before the new lane is needed. Raises
+    UsageError if two roads are not joined, or a lane that is needed cannot be reached."""
+    ways = [_ways(network, one, two) for one, two in pairwise(roads)]
+    fit = _fit(network, roads, ways, shifts)
+    ways = [
+        each if shifts.get(roads[n]) else {lane: to for lane, to in each.items() if to in lanes} or each
+        for n, (each, lanes) in enumerate(zip(ways, fit[1:], strict=True))
+    ]
+    lane = _first(network, roads[0], ways[0] if ways else None, shifts.get(roads[0], 0))
+    found: list[Leg] = []
+    for n, road in enumerate(roads):
+        own = [lane]
+        shift = shifts.get(road, 0)
+        for _ in range(abs(shift)):
+            own.append(_beside(network, road, own[-1], 1 if shift > 0 else -1))
+        if n < len(ways):
+            target = min(ways[n], key=lambda each: (abs(each - own[-1]), -abs(each)))
+            if network.road(road).junction is not None and target != own[-1]:
+                raise UsageError(f"no way leads from lane {own[-1]} of road {road} to road {roads[n + 1]}")
+            while own[-1] != target:
+                own.append(own[-1] + (1 if target > own[-1] else -1))
+            lane = ways[n][target]
+        found += [Leg(road, each) for each in own]
+    return found
+
+
+def _first(network: Network, road: int, ways: Ways | None, shift: int) -> int:
+    """Returns the lane in which a route begins: the outermost from which it can go on after its change."""
+    profile = network.road(road).profile
+    target = profile.side if ways is None else max(ways, key=abs)
+    return target - shift if profile.leads_along(target) else target + shift
+
+
+def _fit(
+    network: Network, roads: Sequence[int], ways: Sequence[Ways], shifts: Mapping[int, int]
+) -> list[set[int]]:
+    """Returns for each road the lanes from which the lane changes in ``shifts`` are possible on this road
+    and, where both roads have one, on the next road too."""
+    found: list[set[int]] = [set()] * len(roads)
+    for n, road in reversed(list(enumerate(roads))):
+        lanes, shift = network.road(road).profile.along_ids, shifts.get(road, 0)
+        found[n] = {lane for lane in lanes if lane + shift in lanes}
+        if shift and n < len(ways):
+            found[n] = {lane for lane in found[n] if ways[n].get(lane + shift) in found[n + 1]} or found[n]
+    return found
+
+
+def _beside(network: Network, road: int, lane: int, left: int) -> int:
+    """Returns the lane to the left (1) or to the right (-1) of a lane."""
+    profile = network.road(road).profile
+    is_along = profile.leads_along(lane)
+    beside = lane + left if is_along else lane - left
+    if beside not in (profile.along_ids if is_along else profile.against_ids):
+        word = "left" if left > 0 else "right"
+        raise UsageError(f"the route cannot change to the {word} on road {road}: there is no lane")
+    return beside
+
+
+def _ways(network: Network, one: int, two: int) -> Ways:
+    """Returns which lanes of one road continue on the next one."""
+    if (found := network.connection_of.get(two)) is not None and found[1].incoming.road == one:
+        return {way.incoming: way.own for way in found[1].lanes}
+    if (found := network.connection_of.get(one)) is not None and found[1].outgoing.road == two:
+        return {way.own: way.outgoing for way in found[1].lanes}
+    for each in network.continuations:
+        if (each.before.road, each.after.road) == (one, two):
+            profile = network.road(one).profile
+            return {lane: after for lane, after in each.lanes if profile.leads_along(lane)}
+    raise UsageError(f"no way leads from road {one} to road {two}")

@@ -12,8 +12,7 @@ In JSON, the map is a graph: the nodes are junctions, bends and ends of roads, a
 ``at`` is x, y and the height in metres. Each pair in ``roads`` is a straight between two nodes; at a bend, a
 curve leads from one straight to the next, so that several straights and bends may join two junctions.
 ``route`` lists the nodes that the tested car passes, in driving order; it may be left out. With
-``"left_hand": true``, traffic drives on the left.
-"""
+``"left_hand": true``, traffic drives on the left."""
 
 import math
 import re
@@ -64,13 +63,11 @@ class MapNode(FrozenFields):
 
     at: tuple[Finite, Finite, Finite]
     """x, y and the height in metres of the point where the roads of a junction meet, where a road ends, or
-    where the two straights at a bend would meet.
-    """
+    where the two straights at a bend would meet."""
     kind: NodeKind
     control: Control = "none"
     """The signs of a junction: "lights" for all its roads, "stop" or "yield" for its minor roads; see
-    ``map_growing.signs_at``.
-    """
+    ``map_growing.signs_at``."""
     kerb: Annotated[float, Field(ge=1, le=100, allow_inf_nan=False)] = KERB
     """Radius in metres of the kerb between two neighbouring roads of a junction; not for roundabouts."""
     radius: Annotated[float, Field(ge=1, le=2000, allow_inf_nan=False)] | None = None
@@ -109,11 +106,7 @@ class MapDesign(FrozenFields):
         return fresh
 
     def mirrored(self, middle: float = 0.0) -> "MapDesign":
-        """Returns the map with left and right exchanged, and traffic on the other side.
-
-        Args:
-            middle: The y in metres of the mirror line, which is parallel to the x axis.
-        """
+        """Returns the map mirrored about the line y = ``middle`` metres, with traffic on the other side."""
         nodes = tuple(node.model_copy(update={"at": mirrored_point(node.at, middle)}) for node in self.nodes)
         return self.model_copy(update={"nodes": nodes, "left_hand": not self.left_hand})
 
@@ -137,10 +130,8 @@ class MapDesign(FrozenFields):
 
     @cached_property
     def chains(self) -> tuple[tuple[int, ...], ...]:
-        """The chains of roads that lead over bends from one junction or end of a road to the next.
-
-        Each chain is given by the nodes along it, and is listed once, in one of its two directions.
-        """
+        """The chains of roads that lead over bends from one junction or end of a road to the next. Each is
+        given by the nodes along it, and is listed once, in one of its two directions."""
         found: dict[tuple[int, ...], None] = {}
         for start, ends in self.neighbours.items():
             if self.node(start).kind == "bend":
@@ -193,11 +184,8 @@ def has_nodes(data: Any) -> bool:
 
 def read_map_design(data: Mapping[str, Any]) -> tuple[MapDesign, tuple[str, ...]]:
     """Reads a dictionary in RoadGPT's JSON format of maps; returns the design and an empty tuple of remarks.
-
-    Raises:
-        UsageError: A field is missing, misnamed, of the wrong type or out of range, or the roads or the route
-            do not fit the nodes.
-    """
+    Raises UsageError if a field is missing, misnamed, of the wrong type or out of range, or the roads or the
+    route do not fit the nodes."""
     numbered = {int(found[1]): raw for key, raw in data.items() if (found := KEY.fullmatch(str(key)))}
     for key in data:
         if not KEY.fullmatch(str(key)) and key not in ("lanes", "left_hand", "roads", "route"):
@@ -278,9 +266,8 @@ def _checked_ends(design: MapDesign) -> dict[int, list[int]]:
 
 
 def _check_node(design: MapDesign, number: int, others: Sequence[int]) -> None:
-    """Raises UsageError unless a node has as many roads as its kind needs, with large enough angles between
-    them.
-    """
+    """Raises UsageError unless a node has the roads that its kind needs, with large enough angles between
+    them."""
     kind = design.node(number).kind
     fewest, most = ROADS[kind]
     if not fewest <= len(others) <= most:
@@ -304,7 +291,6 @@ def _check_node(design: MapDesign, number: int, others: Sequence[int]) -> None:
 
 
 def _check_connected(design: MapDesign, ends: Mapping[int, Sequence[int]]) -> None:
-    """Raises UsageError unless the roads connect all nodes, and at least one node is not a bend."""
     if all(node.kind == "bend" for node in design.nodes):
         raise UsageError("all nodes are bends, so that no road begins or ends; add an end or a junction")
     seen, waiting = {1}, [1]
@@ -318,9 +304,6 @@ def _check_connected(design: MapDesign, ends: Mapping[int, Sequence[int]]) -> No
 
 
 def _check_route(design: MapDesign) -> None:
-    """Raises UsageError unless the route follows roads, turns back at roundabouts only, and has no bend at
-    its ends.
-    """
     route, joined = design.route, {frozenset(pair) for pair in design.roads}
     for one, other in pairwise(route):
         if frozenset((one, other)) not in joined:

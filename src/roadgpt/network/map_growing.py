@@ -15,14 +15,13 @@ from roadgpt.network.building import Builder
 from roadgpt.network.crossing import build_crossing
 from roadgpt.network.design import ISLAND, JunctionDesign, NetworkDesign
 from roadgpt.network.growing import build_route, contact_distances, roads_around, way_through
-from roadgpt.network.lane_legs import legs_along
+from roadgpt.network.lane_along import legs_along
 from roadgpt.network.map_design import BEND, MapDesign, MapLanes, MapNode
 from roadgpt.network.network import Junction, Leg, Network, RoadEnd, Roundabout
+from roadgpt.network.pose import curve_between, tangent_length
 from roadgpt.network.ring import build_roundabout
 from roadgpt.network.route import Route
-from roadgpt.network.stretch import climb_between
-from roadgpt.network.stretch_profiles import refuse_other_lanes
-from roadgpt.network.turning import curve_between, tangent_length
+from roadgpt.network.stretch import climb_between, refuse_other_lanes
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.road import check_length
 
@@ -31,9 +30,7 @@ NO_TURN = 1e-6  # rad; a bend with a smaller turn has no curve
 
 
 def network_made_from(design: NetworkDesign | MapDesign, world: World) -> Route:
-    """Returns the route of a design with junctions or a map, before ``Route.on_ground`` adds shoulders. For
-    errors see ``build_route`` and ``build_map``.
-    """
+    """Returns the route of a design with junctions or a map, before ``Route.on_ground`` adds shoulders."""
     return build_map(design, world) if isinstance(design, MapDesign) else build_route(design, world)
 
 
@@ -41,15 +38,10 @@ def build_map(design: MapDesign, world: World) -> Route:
     """Returns the route of a map, with the network of the whole map. Without a route in the design, the
     result has no legs; see ``Route``.
 
-    Args:
-        design: The nodes, the roads and the route.
-        world: The World. It gives the width of the shoulders, and the lane width where the design has none.
-
-    Raises:
-        UsageError: Junctions, roundabouts or bends have no room on a road, the island of a roundabout is too
-            small for its arms, a bend is tighter than its lane is wide, a road is longer than 50 km, or the
-            World asks for lanes or banked bends that networks do not have.
-    """
+    The World gives the width of the shoulders, and the lane width where the design has none. Raises
+    UsageError if junctions, roundabouts or bends have no room on a road, the island of a roundabout is too
+    small for its arms, a bend is tighter than its lane is wide, a road is longer than 50 km, or the World
+    asks for lanes or banked bends that networks do not have."""
     if design.left_hand:  # traffic on the left is the mirror image of traffic on the right
         return build_map(design.mirrored(), world).mirrored
     grown = _MapGrowth(design, profile_of_map(design.lanes, world))
@@ -64,8 +56,7 @@ def build_map(design: MapDesign, world: World) -> Route:
 
 def profile_of_map(lanes: MapLanes | None, world: World) -> Profile:
     """Returns the cross-section of the roads of a map: one lane in each direction, as wide as those of the
-    World if no lanes are given, and shoulders. Raises UsageError as ``refuse_other_lanes`` does.
-    """
+    World if no lanes are given, and shoulders."""
     refuse_other_lanes(world)
     width = world.section.lane_width if lanes is None else lanes.width
     return Profile.of(1, 1, width, world.section.shoulder)
@@ -78,8 +69,7 @@ def signs_at(node: MapNode, directions: Sequence[float]) -> tuple[Control, ...]:
     The ``control`` of the node decides. With "lights", all arms have lights. Otherwise all arms of a
     roundabout have stop signs with "stop", and give way with any other value. At other junctions, no arm has
     a sign with "none". Otherwise the two arms that are most nearly opposite are the main road and have
-    priority; the other arms have stop signs with "stop", and give way with "yield" or "priority".
-    """
+    priority; the other arms have stop signs with "stop", and give way with "yield" or "priority"."""
     count = len(directions)
     if node.kind == "roundabout":
         return (node.control if node.control in ("lights", "stop") else "yield",) * count
@@ -139,9 +129,8 @@ class _MapGrowth:
         self._ends[end, nodes[-2]] = RoadEnd(road, "end")
 
     def _pieces(self, nodes: Sequence[int], before: float, after: float) -> tuple[Piece, ...]:
-        """Returns the straights and curves of a road along nodes. It starts ``before`` metres behind the
-        first node, and ends ``after`` metres before the last one.
-        """
+        """Returns the straights and curves of a road along nodes, from ``before`` metres behind the first
+        node to ``after`` metres before the last one."""
         pieces: list[Piece] = []
         taken, curve = before, tuple[Piece, ...]()
         for n, (one, other) in enumerate(pairwise(nodes), 1):
@@ -212,8 +201,7 @@ class _MapGrowth:
 
     def _through(self, number: int, before: int, after: int) -> list[int]:
         """Returns the ids of the roads through a junction, from the road towards one node to that towards
-        another.
-        """
+        another."""
         built = self._built[number]
         incoming, outgoing = self._ends[number, before], self._ends[number, after]
         if isinstance(built, Junction):

@@ -3,8 +3,7 @@
 The lines along a road are those of its profile. Inside junctions there are only edge lines along the kerbs,
 and lines between the lanes of a road that a ramp joins or leaves. An arm at which traffic has to stop or to
 give way has a line across the end of its road. Where traffic gives way to a roundabout, this line lies at the
-outer edge of the ring instead.
-"""
+outer edge of the ring instead."""
 
 import math
 from collections.abc import Iterator
@@ -16,7 +15,6 @@ from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import Array
 from roadgpt.network.building import width_at
 from roadgpt.network.network import Arm, Contact, Junction, Network, NetworkRoad, RoadEnd, Roundabout
-from roadgpt.network.passages import CROSSED, CROSSWALK, STOP_LINE, line_before
 from roadgpt.network.paved import Area, ribbons, stations_of
 from roadgpt.road.profile import DASH, GAP, LINE
 
@@ -27,6 +25,9 @@ ABOVE = 0.003  # m, about the largest distance in height between the chords of a
 SHORTEST = 0.3  # m; shorter pieces of lines come from rounding
 CIRCLE = 64  # segments in a quarter of the circle on which a give-way line lies
 
+CROSSWALK = (1.0, 3.0)  # m, from a junction to a crosswalk, and length of the stripes (Germany, R-FGUe)
+CROSSED = sum(CROSSWALK) + 1.0  # m, from a junction with a crosswalk to a stop line, 1 m before the crosswalk
+STOP_LINE = 0.5  # m, width of a stop line; without a crosswalk it lies next to the junction (Germany, RMS-1)
 STRIPE = 0.5  # m, width of a stripe of a crosswalk, and of the gap between two stripes (Germany, RMS-1)
 
 StrokeKind = Literal["edge", "lane", "stop", "give_way", "crosswalk"]
@@ -36,10 +37,8 @@ class PaintedStroke(NamedTuple):
     """One painted line without gaps; each dash of a broken line is a stroke of its own."""
 
     kind: StrokeKind
-    width: float
-    """Width in metres; half of the width lies on each side of the points."""
-    points: Array
-    """Points ``(n, 3)`` in metres along the middle of the stroke, at the height of the road."""
+    width: float  # width in metres; half of the width lies on each side of the points
+    points: Array  # points ``(n, 3)`` in metres along the middle of the stroke, at the height of the road
     road: int | None = None
     """The id of the road along which the stroke leads; None for a stroke across a road or along a kerb."""
 
@@ -50,8 +49,7 @@ class JunctionSign(NamedTuple):
     control: Control
     place: tuple[float, float, float]
     """The foot of the post in metres, beside the traffic that the sign is for."""
-    heading: float
-    """The heading in radians of the traffic that the sign is for."""
+    heading: float  # the heading in radians of the traffic that the sign is for
 
 
 def strokes(network: Network) -> tuple[PaintedStroke, ...]:
@@ -66,12 +64,12 @@ def strokes(network: Network) -> tuple[PaintedStroke, ...]:
 
 def signs(network: Network) -> tuple[JunctionSign, ...]:
     """Returns the signs and lights at the arms of all junctions."""
-    return tuple(
-        _sign(network, arm)
-        for junction in network.junctions
-        for arm in junction.arms
-        if arm.control != "none"
-    )
+    found = []
+    for arm in (arm for junction in network.junctions for arm in junction.arms if arm.control != "none"):
+        member = network.road(arm.end.road)
+        x, y, z = member.road.at(*place_of_sign(member, arm.end.contact)).tolist()
+        found.append(JunctionSign(arm.control, (x, y, z), arm.direction + np.pi))
+    return tuple(found)
 
 
 def _of_road(network: Network, member: NetworkRoad) -> Iterator[PaintedStroke]:
@@ -83,34 +81,31 @@ def _of_road(network: Network, member: NetworkRoad) -> Iterator[PaintedStroke]:
     first, last = between_crosswalks(network, member)
     painted, boundaries = profile.markings(s), profile.boundaries(s)
     outer = {n for n, at in ((0, 0), (len(painted) - 1, -1)) if boundaries[at][0] == "solid"}
-    for number, line in enumerate(painted):
+    for number, (marking, edges) in enumerate(painted):
         if number in outer:
-            yield PaintedStroke("edge", LINE, road.at(s, (line.edges.left + line.edges.right) / 2), member.id)
+            yield PaintedStroke("edge", LINE, road.at(s, (edges.left + edges.right) / 2), member.id)
             continue
-        is_broken = line.marking == "broken"
+        is_broken = marking == "broken"
         starts = np.arange(0.0, road.length, DASH + GAP).tolist() if is_broken else [0.0]
         for at in starts:
             start, end = max(at, first), min(at + DASH if is_broken else road.length, last)
             if end - start < SHORTEST:
                 continue
             along = np.r_[start, s[(s > start) & (s < end)], end]
-            edges = profile.markings(along)[number].edges
+            _, edges = profile.markings(along)[number]
             yield PaintedStroke("lane", LINE, road.at(along, (edges.left + edges.right) / 2), member.id)
 
 
 def between_crosswalks(network: Network, member: NetworkRoad) -> tuple[float, float]:
     """Returns the first and last station in metres of the lines between a road's lanes, and of its median.
-    Lines and median reach from one end of the road to the other, but not across crosswalks.
-    """
+    Lines and median reach from one end of the road to the other, but not across crosswalks."""
     ends = (RoadEnd(member.id, "start") in network.crossed, RoadEnd(member.id, "end") in network.crossed)
     first = min(CROSSED * ends[0], member.road.length)
     return first, max(member.road.length - CROSSED * ends[1], first)
 
 
 def _kerb_lines(network: Network, inside: Area, height: float) -> Iterator[PaintedStroke]:
-    """Yields the edge lines along the kerbs and islands of a junction, from its paved area and its height in
-    metres; the carriageway lies on their left.
-    """
+    """Yields the edge lines along the kerbs and islands of a junction; the carriageway lies on their left."""
     import shapely
 
     inner = network.paved.buffer(-LINE / 2, join_style="mitre")
@@ -166,51 +161,45 @@ def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedS
 
 
 def line_to_stop_at(network: Network, junction: Junction, arm: Arm) -> Array | None:
-    """Returns points ``(n, 3)`` in metres along the middle of the line at which traffic from an arm stops or
-    gives way. The line is ``STOP_LINE`` metres wide. A line across an arm begins at mid-road.
-
-    None if the arm has priority or no sign, or if it gives way to a ring to which it has no connecting road.
-    """
+    """Returns points ``(n, 3)`` in metres along the middle of the line, ``STOP_LINE`` wide, at which traffic
+    from an arm stops or gives way. A line across an arm begins at mid-road. None if the arm has priority or
+    no sign, or if it gives way to a ring to which it has no connecting road."""
     if arm.control in ("priority", "none"):
         return None
     if gives_way_to_ring(network, junction, arm):
         return _around(network, junction, arm, network.roundabout_of[junction.id])
-    return _across(network, arm)
+    s, inner, edge = line_across(network, arm)
+    outer = edge - LINE if edge > inner else edge + LINE
+    return network.road(arm.end.road).road.at(np.full(2, s), np.array([inner, outer]))
 
 
 def gives_way_to_ring(network: Network, junction: Junction, arm: Arm) -> bool:
     """Returns whether traffic from an arm gives way at the outer edge of a roundabout's ring. The line then
-    lies on the road that leads into the ring, and not on the road of the arm.
-    """
+    lies on the road that leads into the ring, and not on that of the arm."""
     return arm.control == "yield" and junction.id in network.roundabout_of
 
 
 def road_of_line(network: Network, junction: Junction, arm: Arm) -> int:
-    """Returns the id of the road on which the line of ``line_to_stop_at`` lies. Raises StopIteration if there
-    is no line because no road leads from the arm into the roundabout.
-    """
+    """Returns the id of the road on which the line of ``line_to_stop_at`` lies."""
     if not gives_way_to_ring(network, junction, arm):
         return arm.end.road
     return next(each.road for each in junction.connections if each.incoming == arm.end)
 
 
+def line_before(arm: Arm) -> float:
+    """Returns the distance in metres from a junction to the stop line of an arm: 0 without a crosswalk."""
+    return CROSSED if arm.crosswalk else 0.0
+
+
 def line_across(network: Network, arm: Arm) -> tuple[float, float, float]:
-    """Returns the station of the line across an arm, the offset of the line's end at mid-road, and the offset
-    of its end at the edge of the lanes, all in metres.
-    """
+    """Returns the station of the line across an arm, and the offsets of its ends at mid-road and at the edge
+    of the lanes, all in metres."""
     member, at_end = network.road(arm.end.road), arm.end.contact == "end"
     half = min(line_before(arm) + STOP_LINE / 2, member.road.length)
     s = member.road.length - half if at_end else half
     edges = member.profile.edges(s)
     is_left = member.side_towards(arm.end.contact) > 0
     return s, member.begin_towards(arm.end.contact, s), float(edges.left if is_left else edges.right)
-
-
-def _across(network: Network, arm: Arm) -> Array:
-    """Returns the two ends ``(2, 3)`` of the middle of the line at an arm, from mid-road to the edge line."""
-    s, inner, edge = line_across(network, arm)
-    outer = edge - LINE if edge > inner else edge + LINE
-    return network.road(arm.end.road).road.at(np.full(2, s), np.array([inner, outer]))
 
 
 def _stripes(member: NetworkRoad, contact: Contact) -> Iterator[Array]:
@@ -228,7 +217,7 @@ def _stripes(member: NetworkRoad, contact: Contact) -> Iterator[Array]:
 
 def _around(network: Network, junction: Junction, arm: Arm, ring: Roundabout) -> Array | None:
     """Returns the middle ``(n, 3)`` of the line where traffic from an arm enters a roundabout, beside the
-    ring; None if no road leads from the arm into the roundabout."""
+    ring; None if no road leads there."""
     import shapely
 
     onto = [each for each in junction.connections if each.incoming == arm.end]
@@ -258,18 +247,11 @@ def _blocks(line: Array) -> Iterator[Array]:
         yield np.column_stack([np.interp(stops, along, line[:, k]) for k in range(3)])
 
 
-def _sign(network: Network, arm: Arm) -> JunctionSign:
-    member = network.road(arm.end.road)
-    x, y, z = member.road.at(*place_of_sign(member, arm.end.contact)).tolist()
-    return JunctionSign(arm.control, (x, y, z), arm.direction + np.pi)
-
-
 def place_of_sign(member: NetworkRoad, contact: Contact) -> tuple[float, float]:
-    """Returns the station and the offset in metres of the sign at one end of a road.
-
-    The sign stands beside the traffic that drives towards this end, outside the shoulder.
-    """
+    """Returns the station and the offset in metres of the sign at one end of a road: beside the traffic that
+    drives towards this end, outside the shoulder."""
     before = min(BEFORE, member.road.length)
     s = member.road.length - before if contact == "end" else before
-    aside = sum(width_at(lane.width, s) for lane in member.lanes_towards(contact)) + BESIDE
+    lanes = member.profile.along if contact == "end" else member.profile.against
+    aside = sum(width_at(lane.width, s) for lane in lanes) + BESIDE
     return s, member.begin_towards(contact, s) + member.side_towards(contact) * aside

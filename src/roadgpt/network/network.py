@@ -4,16 +4,20 @@ Ids of roads, junctions and lanes are those of OpenDRIVE. Lanes on the left of a
 positive ids, lanes on the right negative ids. If traffic drives on the right, lanes with negative ids are
 driven along the road, and lanes with positive ids against it; if traffic drives on the left, it is the other
 way round. Every junction has its own connecting roads, one for each way from one arm to another.
-"""
 
-from collections.abc import Sequence
+A road file with a route has two more fields: ``route``, a list of [road, lane], and ``network``."""
+
+import copy
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, cast
 
 import numpy as np
+from pydantic import TypeAdapter
 
 from roadgpt.brief.junctions import Control, PlainKind
+from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.network.paved import (
@@ -27,29 +31,27 @@ from roadgpt.network.paved import (
     without_small_islands,
 )
 from roadgpt.network.pose import Point, mirrored_point
+from roadgpt.reading import strictly
 from roadgpt.road import Profile, Road
-from roadgpt.road.profile import Lane
 
 Contact = Literal["start", "end"]
 OTHER_CONTACT: dict[Contact, Contact] = {"start": "end", "end": "start"}
 Kind = Literal[PlainKind, "merge", "diverge"]
+MOST_ROADS = 20_000
 
 
 class RoadEnd(NamedTuple):
     """One end of a road."""
 
-    road: int
-    """The id of the road."""
+    road: int  # the id of the road
     contact: Contact
 
 
 class Leg(NamedTuple):
     """One road of a route, and the lane that the route follows there."""
 
-    road: int
-    """The id of the road."""
-    lane: int
-    """The id of the lane; ``Profile.leads_along`` says in which direction it is driven."""
+    road: int  # the id of the road
+    lane: int  # the id of the lane; ``Profile.leads_along`` says in which direction it is driven
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +59,7 @@ class NetworkRoad:
     """A road of a network, or a connecting road of a junction."""
 
     id: int
-    road: Road
-    """The geometry; its ``profile`` is never None."""
+    road: Road  # the geometry; its ``profile`` is never None
     junction: int | None = None
     """The id of the junction to which a connecting road belongs; None for other roads."""
 
@@ -70,32 +71,20 @@ class NetworkRoad:
 
     @property
     def shoulder(self) -> float:
-        """The ``reach`` of the road's profile less its ``paved_reach``, in metres.
-
-        This is the width of the shoulders if both sides of the road are alike.
-        """
+        """The ``reach`` of the road's profile less its ``paved_reach``, in metres: the width of the shoulders
+        if both sides of the road are alike."""
         return self.profile.reach - self.profile.paved_reach
 
     def ids_towards(self, contact: Contact) -> range:
-        """Returns the ids of the driving lanes that lead towards one end of the road, from the centre line
-        outwards.
-        """
+        """Returns the ids of the driving lanes that lead towards an end, from the centre line outwards."""
         return self.profile.along_ids if contact == "end" else self.profile.against_ids
-
-    def lanes_towards(self, contact: Contact) -> tuple[Lane, ...]:
-        """Returns the driving lanes that lead towards one end of the road, and the shoulder beside them, from
-        the centre line outwards.
-        """
-        return self.profile.along if contact == "end" else self.profile.against
 
     def side_towards(self, contact: Contact) -> int:
         """Returns the side on which traffic drives towards an end: 1 left of the reference line, -1 right."""
         return self.profile.side if contact == "end" else -self.profile.side
 
     def begin_towards(self, contact: Contact, s: float) -> float:
-        """Returns the offset in metres, at station ``s``, of the inner edge of the lanes towards an end: the
-        edge nearest to the centre line.
-        """
+        """Returns the offset in metres, at station ``s``, of the inner edge of the lanes towards an end."""
         offset, (left, right) = self.profile.offset, self.profile.begins
         line = float(self.profile.centre(s)) if isinstance(offset, CubicProfile) else offset
         return line + left if self.side_towards(contact) > 0 else line - right
@@ -104,12 +93,9 @@ class NetworkRoad:
 class LaneLink(NamedTuple):
     """The ids of three lanes that lead one after another through a junction."""
 
-    incoming: int
-    """The lane of the incoming road."""
-    own: int
-    """The lane of the connecting road."""
-    outgoing: int
-    """The lane of the outgoing road."""
+    incoming: int  # the lane of the incoming road
+    own: int  # the lane of the connecting road
+    outgoing: int  # the lane of the outgoing road
 
 
 @dataclass(frozen=True)
@@ -138,20 +124,15 @@ class Arm:
     """The end of a road at a junction."""
 
     end: RoadEnd
-    direction: float
-    """The heading in radians out of the junction."""
-    control: Control = "none"
-    """The sign or the light that traffic into the junction meets."""
-    crosswalk: bool = False
-    """Whether pedestrians cross the road there."""
+    direction: float  # the heading in radians out of the junction
+    control: Control = "none"  # the sign or the light that traffic into the junction meets
+    crosswalk: bool = False  # whether pedestrians cross the road there
 
 
 @dataclass(frozen=True)
 class Junction:
-    """A place where roads meet, with a connecting road for each way through it.
-
-    A roundabout has one junction for each of its arms; see ``Roundabout``.
-    """
+    """A place where roads meet, with a connecting road for each way through it. A roundabout has one junction
+    for each of its arms; see ``Roundabout``."""
 
     id: int
     kind: Kind
@@ -179,12 +160,7 @@ class Roundabout:
 
 @dataclass(frozen=True, eq=False)
 class Network:
-    """Roads, the junctions that join them, and the roundabouts that consist of some of the junctions.
-
-    Raises:
-        ValueError: Two roads or two junctions have the same id; an arm, a connection or a continuation names
-            a road that does not exist; or traffic drives on the left on some roads only.
-    """
+    """Roads, the junctions that join them, and the roundabouts that consist of some of the junctions."""
 
     roads: tuple[NetworkRoad, ...]
     junctions: tuple[Junction, ...] = ()
@@ -220,19 +196,11 @@ class Network:
         return {each.id: each for each in self.junctions}
 
     def road(self, number: int) -> NetworkRoad:
-        """Returns the road with this id.
-
-        Raises:
-            KeyError: There is no such road.
-        """
+        """Returns the road with this id; raises KeyError if there is none."""
         return self._by_id[number]
 
     def junction(self, number: int) -> Junction:
-        """Returns the junction with this id.
-
-        Raises:
-            KeyError: There is no such junction.
-        """
+        """Returns the junction with this id; raises KeyError if there is none."""
         return self._junction_by_id[number]
 
     @property
@@ -242,10 +210,7 @@ class Network:
 
     @cached_property
     def mirrored(self) -> "Network":
-        """The network with the sign of y changed and traffic on the other side of the roads.
-
-        Roads, junctions and roundabouts keep their ids and their order.
-        """
+        """The network with the sign of y changed and traffic on the other side. Ids and order stay."""
         made = Network(
             tuple(replace(each, road=each.road.mirrored) for each in self.roads),
             tuple(map(_mirrored_junction, self.junctions)),
@@ -260,10 +225,8 @@ class Network:
 
     @property
     def right_hand(self) -> "Network":
-        """The network itself, or its mirror image if traffic drives on the left.
-
-        Computations that use this network need not handle traffic on the left.
-        """
+        """The network or, if traffic drives on the left, its mirror image, so that computations with it need
+        not handle traffic on the left."""
         return self.mirrored if self.left_hand else self
 
     def lanes_into(self, end: RoadEnd) -> range:
@@ -275,9 +238,7 @@ class Network:
         return self.road(end.road).ids_towards(OTHER_CONTACT[end.contact])
 
     def ends_of(self, leg: Leg) -> tuple[RoadEnd, RoadEnd]:
-        """Returns two ends of a leg's road: the end at which traffic in the leg's lane enters the road, and
-        the end at which this traffic leaves the road.
-        """
+        """Returns the ends of a leg's road at which traffic in the leg's lane enters and leaves the road."""
         start, end = RoadEnd(leg.road, "start"), RoadEnd(leg.road, "end")
         return (start, end) if self.road(leg.road).profile.leads_along(leg.lane) else (end, start)
 
@@ -314,15 +275,11 @@ class Network:
     @cached_property
     def roundabout_of(self) -> dict[int, Roundabout]:
         """Maps the id of each junction, connecting road and ring road of a roundabout to the roundabout."""
-        pairs = [
-            (number, ring)
-            for ring in self.roundabouts
-            for number in (*ring.junctions, *ring.ring, *self._connecting(ring.junctions))
-        ]
-        return dict(pairs)
-
-    def _connecting(self, junctions: Sequence[int]) -> list[int]:
-        return [each.road for number in junctions for each in self.junction(number).connections]
+        found: dict[int, Roundabout] = {}
+        for ring in self.roundabouts:
+            ways = (each.road for number in ring.junctions for each in self.junction(number).connections)
+            found |= dict.fromkeys((*ring.junctions, *ring.ring, *ways), ring)
+        return found
 
     @cached_property
     def nodes(self) -> tuple[tuple[Kind, tuple[Junction, ...]], ...]:
@@ -364,11 +321,7 @@ class Network:
         return [self.road(number) for number in (*numbers, *(ring.ring if ring else ()))]
 
     def outline(self, junction: int) -> Array:
-        """Returns the outline ``(n, 2)`` in metres of the paved area inside a junction, counter-clockwise.
-
-        Raises:
-            KeyError: There is no such junction.
-        """
+        """Returns the outline ``(n, 2)`` in metres of the paved area inside a junction, counter-clockwise."""
         inside = [self.road(each.road).road for each in self.junction(junction).connections]
         return outline_of(paved_by(inside))
 
@@ -386,3 +339,61 @@ def _mirrored_junction(junction: Junction) -> Junction:
     )
     node = mirrored_point(junction.node)
     return replace(junction, arms=(*arms[:1], *arms[:0:-1]), connections=connections, node=node)
+
+
+_Parts = tuple[tuple[Junction, ...], tuple[Roundabout, ...], tuple[Continuation, ...]]
+_NAMES = ("junctions", "roundabouts", "continuations")
+
+
+def network_to_json(network: Network) -> dict[str, Any]:
+    """Returns a network as JSON data for ``network_from_json``."""
+    roads = [{"id": each.id, "junction": each.junction, **each.road.to_json()} for each in network.roads]
+    parts = (network.junctions, network.roundabouts, network.continuations)
+    plain = TypeAdapter(_Parts).dump_python(parts, mode="json")
+    return {"roads": roads, **dict(zip(_NAMES, plain, strict=True))}
+
+
+def network_from_json(data: Any) -> Network:
+    """Restores a network from JSON data as returned by ``network_to_json``. Raises UsageError if a field is
+    missing or of the wrong type, a road cannot be read or has no lanes, or the parts do not make a Network.
+    """
+    try:
+        rows = data["roads"]
+        if not isinstance(rows, list) or len(rows) > MOST_ROADS:
+            raise ValueError(f"roads are a list of at most {MOST_ROADS:,}")
+        roads = tuple(_road(row) for row in rows)
+        junctions, rings = data["junctions"], data["roundabouts"]
+        parts = [_with_lane_links(junctions), rings, data.get("continuations", [])]
+        return Network(roads, *strictly(cast(type[_Parts], _Parts), parts))
+    except KeyError as error:
+        raise UsageError(f"the network cannot be read: {error} is missing; make the road again") from error
+    except (TypeError, ValueError) as error:
+        first = str(error).splitlines()[0][:200]
+        raise UsageError(f"the network cannot be read ({first}); make the road again") from error
+
+
+def _with_lane_links(junctions: Any) -> Any:
+    """Adds the outgoing lane to lane links of older files, which have pairs. Their roads have one lane in
+    each direction, so the missing id is 1 or -1."""
+    found = copy.deepcopy(junctions)
+    for junction in found:
+        for each in junction["connections"]:
+            after = -1 if each["outgoing"][1] == "start" else 1
+            each["lanes"] = [[*lanes, after] if len(lanes) == 2 else lanes for lanes in each["lanes"]]
+    return found
+
+
+def _road(row: Mapping[str, Any]) -> NetworkRoad:
+    number, junction = strictly(tuple[int, int | None], [row.get("id"), row.get("junction")])
+    road = Road.from_json(row, in_network=True)
+    if road.profile is None:
+        raise ValueError(f"road {number} has no lanes")
+    return NetworkRoad(number, road, junction)
+
+
+def legs_from_json(data: Any) -> tuple[Leg, ...]:
+    """Restores the legs of a route from a list of [road, lane]. Raises UsageError if it is something else."""
+    try:
+        return strictly(tuple[Leg, ...], data)
+    except (TypeError, ValueError) as error:
+        raise UsageError("a route is a list of [road, lane], two whole numbers each") from error

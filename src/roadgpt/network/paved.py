@@ -1,7 +1,6 @@
 """Computes the paved area of roads: the union of their carriageways, seen from above.
 
-All roads here have a profile, a reference line of pieces, and no superelevation.
-"""
+All roads here have a profile, a reference line of pieces, and no superelevation."""
 
 import math
 from collections.abc import Sequence
@@ -46,11 +45,9 @@ def areas_of(roads: Sequence[Road]) -> NDArray[np.object_]:
 
 
 def covered_by(areas: Sequence[Area] | NDArray[np.object_]) -> Area:
-    """Returns the area that several areas cover together; holes up to ``SLIVER`` m^2 are filled.
-
-    The corners of ``areas`` should be rounded to ``GRID``. The corners of the union are rounded afterwards,
-    which takes half as long as letting shapely round them during the union.
-    """
+    """Returns the area that several areas cover together; holes up to ``SLIVER`` m^2 are filled. The corners
+    of ``areas`` should be rounded to ``GRID``. The corners of the union are rounded afterwards, which takes
+    half as long as letting shapely round them during the union."""
     import shapely
 
     return filled(shapely.set_precision(shapely.union_all(areas), GRID))
@@ -73,8 +70,7 @@ def without_small_islands(whole: Area, nodes: Sequence[Area], least: Sequence[fl
 
     An island may lie between the ways of a junction and the end of a road. It is then a hole in the area of
     the network, but not in that of the junction; if it is smaller than ``least`` square metres at this
-    junction, it is added to both.
-    """
+    junction, it is added to both."""
     import shapely
 
     parts, paved = [], [[node] for node in nodes]
@@ -109,8 +105,7 @@ def ribbons(roads: Sequence[Road]) -> NDArray[np.object_]:
 
     The line that separates the two directions of traffic has a corner of the polygon at each end, because
     lanes of other roads may have a corner there. Without these corners, rounding would leave a gap between
-    the end of the road and such a lane.
-    """
+    the end of the road and such a lane."""
     import shapely
 
     if not roads:
@@ -145,11 +140,8 @@ def _pieces_of(road: Road) -> PieceCurve:
 
 def stations_of(road: Road) -> Array:
     """Returns stations in metres along a road, so close together that chords between them deviate from the
-    edges of the road by at most ``SAG`` metres.
-
-    The ends of all pieces of the reference line are stations; if widths vary, there is also a station about
-    every metre.
-    """
+    edges of the road by at most ``SAG`` metres. The ends of all pieces of the reference line are stations; if
+    widths vary, there is also a station about every metre."""
     profile = road.profile
     assert profile is not None
     stops, at = [0.0], 0.0
@@ -175,10 +167,8 @@ def _changes(road: Road) -> list[float]:
 
 
 def outline_of(area: Area) -> Array:
-    """Returns the outer outline ``(n, 2)`` in metres of the largest part of an area, counter-clockwise.
-
-    The first point is not repeated at the end.
-    """
+    """Returns the outer outline ``(n, 2)`` in metres of the largest part of an area, counter-clockwise,
+    without the first point repeated at the end."""
     import shapely
     from shapely.geometry.polygon import orient
 

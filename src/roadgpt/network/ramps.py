@@ -5,8 +5,7 @@
 
 The reference lines of the main road and of the ramp meet at the node. Behind a merge, the main road has an
 additional lane that ends in a taper; before an exit, it has one that begins in a taper. Traffic drives on the
-right. A ramp on the left joins the innermost lanes, beside the median.
-"""
+right. A ramp on the left joins the innermost lanes, beside the median."""
 
 import cmath
 import math
@@ -16,12 +15,11 @@ from dataclasses import dataclass, replace
 from roadgpt.geometry import CubicProfile
 from roadgpt.network.building import Builder, Stub, width_at
 from roadgpt.network.crossing import connected
+from roadgpt.network.design import RampDesign
 from roadgpt.network.lane_along import added
-from roadgpt.network.lane_design import RampDesign
 from roadgpt.network.network import Arm, Connection, Contact, Continuation, Junction, RoadEnd
-from roadgpt.network.pose import NetworkPose
+from roadgpt.network.pose import NetworkPose, curve_between
 from roadgpt.network.stretch import road_of
-from roadgpt.network.turning import curve_between
 from roadgpt.road import Profile, Segment
 from roadgpt.road.profile import Lane
 
@@ -42,17 +40,10 @@ def length_at_ramp(ramp: RampDesign) -> float:
     return sum(piece.length for piece in curve_between(CONTACT, CONTACT, turn)) + length_beside(ramp)
 
 
-def is_on_left(ramp: RampDesign) -> bool:
-    """Returns whether a ramp lies on the left of its road, where traffic drives on the right."""
-    return ramp.side == "left"
-
-
 def lines_at_ramp(ramp: RampDesign) -> tuple[list[complex], list[complex]]:
-    """Returns sketches of the route at a ramp, and of the road that the route does not take.
-
-    Each sketch is a list of points x + iy in metres. The route begins at the origin and leads along +x; the
-    last two points of its sketch give the direction in which it goes on.
-    """
+    """Returns sketches of the route at a ramp, and of the road that the route does not take: lists of points
+    x + iy in metres. The route begins at the origin and leads along +x; the last two points of its sketch
+    give the direction in which it goes on."""
     length, is_merge, by_ramp = length_beside(ramp), ramp.kind == "merge", ramp.take == "ramp"
     node = CONTACT if is_merge else length + CONTACT
     ahead = cmath.exp(-1j * ANGLE) if by_ramp else complex(1.0)
@@ -61,7 +52,7 @@ def lines_at_ramp(ramp: RampDesign) -> tuple[list[complex], list[complex]]:
         other *= cmath.exp(-1j * ANGLE) if by_ramp else cmath.exp(1j * ANGLE)
     elif not by_ramp:
         other *= cmath.exp(-1j * ANGLE)
-    if is_on_left(ramp):
+    if ramp.is_on_left:
         ahead, other = ahead.conjugate(), other.conjugate()
     behind = CONTACT + (length if is_merge else 0.0)
     on_route = [*_steps(0.0, 1.0, node), *_steps(node, ahead, behind), node + behind * ahead]
@@ -79,14 +70,10 @@ class RampBuilder:
 
     builder: Builder
     ramp: RampDesign
-    arrival: int
-    """The id of the road on which the route arrives."""
-    end: NetworkPose
-    """The pose at the end of the road on which the route arrives."""
-    before: Profile
-    """The cross-section of the road on which the route arrives."""
-    after: Profile
-    """The cross-section of the road on which the route goes on."""
+    arrival: int  # the id of the road on which the route arrives
+    end: NetworkPose  # the pose at the end of the road on which the route arrives
+    before: Profile  # the cross-section of the road on which the route arrives
+    after: Profile  # the cross-section of the road on which the route goes on
 
     def where_it_goes_on(self) -> NetworkPose:
         """Returns the pose at the start of the road on which the route goes on."""
@@ -97,19 +84,13 @@ class RampBuilder:
         return turned.ahead(CONTACT)
 
     @property
-    def _is_left(self) -> bool:
-        return is_on_left(self.ramp)
-
-    @property
     def _angle(self) -> float:
         """The angle in radians by which traffic turns right, from the ramp at a merge or onto the ramp at an
-        exit; negative for a ramp on the left.
-        """
-        return -ANGLE if self._is_left else ANGLE
+        exit; negative for a ramp on the left."""
+        return -ANGLE if self.ramp.is_on_left else ANGLE
 
     @property
     def _node(self) -> NetworkPose:
-        """The node, with the heading of the main road."""
         by_ramp = self.ramp.take == "ramp"
         if self.ramp.kind == "merge":
             return self.end.ahead(CONTACT, -self._angle if by_ramp else 0.0)
@@ -117,8 +98,7 @@ class RampBuilder:
 
     def build(self, going_on: int) -> list[int]:
         """Builds the merge or exit; returns the ids of its roads on the route, in driving order. ``going_on``
-        is the id of the road on which the route goes on, which begins at ``where_it_goes_on``.
-        """
+        is the id of the road on which the route goes on, which begins at ``where_it_goes_on``."""
         return self._merge(going_on) if self.ramp.kind == "merge" else self._exit(going_on)
 
     def _merge(self, going_on: int) -> list[int]:
@@ -127,7 +107,7 @@ class RampBuilder:
         width = _width(after)
         length, full = length_beside(self.ramp), self.ramp.length
         lane = CubicProfile.smooth([(0.0, width), (full, width), (length, 0.0)])
-        beside = self._straight(node.ahead(CONTACT), length, _with_lane(after, lane, self._is_left))
+        beside = self._straight(node.ahead(CONTACT), length, _with_lane(after, lane, self.ramp.is_on_left))
         self._continue(beside, going_on)
         other = self._not_taken(after, -CONTACT - BESIDE)
         main, ramp = (other, self.arrival) if by_ramp else (self.arrival, other)
@@ -139,14 +119,14 @@ class RampBuilder:
             self._way(junction, stubs[1], stubs[2], [(0, own)]),
             *self._back(junction, stubs[2], stubs[0]),
         ]
-        self._close(junction, stubs[2], *(stubs[1::-1] if self._is_left else stubs[:2]), ways=ways)
+        self._close(junction, stubs[2], *(stubs[1::-1] if self.ramp.is_on_left else stubs[:2]), ways=ways)
         return [ways[1 if by_ramp else 0].road, beside]
 
     def _exit(self, going_on: int) -> list[int]:
         by_ramp = self.ramp.take == "ramp"
         before, length = _constant(self.before, FAR), length_beside(self.ramp)
         lane = CubicProfile.smooth([(0.0, 0.0), (self.ramp.taper, _width(before))])
-        beside = self._straight(self.end, length, _with_lane(before, lane, self._is_left))
+        beside = self._straight(self.end, length, _with_lane(before, lane, self.ramp.is_on_left))
         self._continue(self.arrival, beside)
         other = self._not_taken(before, CONTACT)
         main, ramp = (other, going_on) if by_ramp else (going_on, other)
@@ -158,14 +138,13 @@ class RampBuilder:
             self._way(junction, stubs[0], stubs[1], [(own, 0)]),
             *self._back(junction, stubs[2], stubs[0]),
         ]
-        self._close(junction, stubs[0], *(stubs[:0:-1] if self._is_left else stubs[1:]), ways=ways)
+        self._close(junction, stubs[0], *(stubs[:0:-1] if self.ramp.is_on_left else stubs[1:]), ways=ways)
         return [beside, ways[1 if by_ramp else 0].road]
 
     def _lanes_beside(self, count: int) -> tuple[int, range]:
-        """Returns the index of the additional lane, and the indices of the ``count`` lanes of the main road,
-        on the road that has all of them.
-        """
-        return (0, range(1, count + 1)) if self._is_left else (count, range(count))
+        """Returns the index of the additional lane, and those of the ``count`` lanes of the main road, beside
+        each other."""
+        return (0, range(1, count + 1)) if self.ramp.is_on_left else (count, range(count))
 
     def _straight(self, start: NetworkPose, length: float, profile: Profile) -> int:
         segment = Segment(distance=length, direction="straight")
@@ -177,7 +156,7 @@ class RampBuilder:
         forward = min(each.count[0] for each in profiles)
         left = zip(*(each.against_ids for each in profiles), strict=False)
         # an additional lane on the left is the first one
-        first, second = (each.count[0] - forward if self._is_left else 0 for each in profiles)
+        first, second = (each.count[0] - forward if self.ramp.is_on_left else 0 for each in profiles)
         lanes = (*((-n - first, -n - second) for n in range(1, forward + 1)), *((a, b) for a, b in left))
         self.builder.continuations.append(
             Continuation(RoadEnd(before, "end"), RoadEnd(after, "start"), lanes)
@@ -190,27 +169,24 @@ class RampBuilder:
         return self.builder.stub(RoadEnd(road, contact), heading)
 
     def _back(self, junction: int, start: Stub, end: Stub) -> list[Connection]:
-        """Returns a list with the connection for oncoming traffic; the list is empty on a one-way road."""
+        """Adds the connection for oncoming traffic, if there is any."""
         lanes = [(n, n) for n in range(min(len(start.into), len(end.out_of)))]
         return [self._way(junction, start, end, lanes)] if lanes else []
 
     def _way(self, junction: int, start: Stub, end: Stub, lanes: Sequence[tuple[int, int]]) -> Connection:
-        """Adds a connecting road for pairs of lanes, counted from 0 at the line between the directions.
-
-        The broken lines between the lanes go on in the junction, because traffic hardly turns there.
-        """
+        """Adds a connecting road for pairs of lanes, counted from 0 at the line between the directions. The
+        broken lines between the lanes go on in the junction, because traffic hardly turns there."""
         far = (CONTACT, CONTACT)
         return connected(self.builder, junction, self._node.point, (start, end), far, tuple(lanes), "broken")
 
     def _not_taken(self, main: Profile, ahead: float) -> int:
         """Adds the main road or the ramp, whichever the route does not take; it begins ``ahead`` metres from
-        the node. Such a ramp has one lane beside the main road, whose cross-section is given.
-        """
+        the node. Such a ramp has one lane beside the main road, whose cross-section is given."""
         node = self._node
         if self.ramp.take == "ramp":
             return self._straight(node.ahead(ahead), BESIDE, main)
         width = _width(main)
-        offset = width_at(main.offset, 0.0) + width if self._is_left else float(main.edges(0.0).right)
+        offset = width_at(main.offset, 0.0) + width if self.ramp.is_on_left else float(main.edges(0.0).right)
         profile = replace(Profile.of(1, 0, width, main.shoulder_width), offset=offset)
         turn = self._angle if self.ramp.kind == "merge" else -self._angle
         return self._straight(NetworkPose(node.point, node.heading + turn).ahead(ahead), BESIDE, profile)
@@ -238,8 +214,7 @@ def _width(profile: Profile) -> float:
 
 def _with_lane(profile: Profile, width: CubicProfile, is_left: bool) -> Profile:
     """Returns the cross-section with one more lane, outside all lanes on the right or, if ``is_left``, inside
-    them. The lane inside moves the line between the directions to the left.
-    """
+    them. The lane inside moves the line between the directions to the left."""
     if is_left:
         lane = Lane("driving", width, "broken")
         offset = added([(1, profile.offset), (1, width)], FAR)

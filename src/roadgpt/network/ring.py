@@ -3,8 +3,7 @@
 The reference line of the ring is the edge of the central island; the ring is driven counter-clockwise, with
 its lanes on the right of this line. A road with one lane joins the outer lane of the ring. Each arm leads
 towards the centre and has a junction of its own, its mouth: the part of the ring at the arm. Through a mouth,
-one connecting road leads along the ring, one from the ring to the arm, and one from the arm to the ring.
-"""
+one connecting road leads along the ring, one from the ring to the arm, and one from the arm to the ring."""
 
 import math
 from collections.abc import Sequence
@@ -15,7 +14,7 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.network.building import Builder, Stub, connecting_road, one_way
 from roadgpt.network.network import Arm, Connection, Junction, LaneLink, RoadEnd, Roundabout
-from roadgpt.network.turning import curve_between
+from roadgpt.network.pose import curve_between
 from roadgpt.road import Road
 from roadgpt.road.profile import Marking
 
@@ -51,8 +50,7 @@ def mouth_of(radius: float, directions: Sequence[float]) -> float:
 
 def smallest_radius(directions: Sequence[float]) -> float:
     """Returns the smallest radius in metres of an island around which the mouths of all arms fit.
-    ``directions`` are those of the arms out of the centre in radians, counter-clockwise.
-    """
+    ``directions`` are those of the arms out of the centre in radians, counter-clockwise."""
     return (2 * SMALLEST_MOUTH + BETWEEN) / _least_gap(directions)
 
 
@@ -64,8 +62,7 @@ def _least_gap(directions: Sequence[float]) -> float:
 def around_length(radius: float, directions: Sequence[float], angle: float, lanes: int) -> float:
     """Returns the length in metres of a way through a roundabout, from contact to contact. ``directions`` are
     as in ``smallest_radius``. ``angle`` is the angle in radians, counter-clockwise, from the arm of arrival
-    to the arm that is taken; 2 pi for the way back.
-    """
+    to the arm that is taken; 2 pi for the way back."""
     half = mouth_of(radius, directions) / radius
     tangents = contact_distance(radius, lanes) - radius / math.cos(half), radius * math.tan(half)
     ramp = sum(piece.length for piece in curve_between(*tangents, half - math.pi / 2))
@@ -87,8 +84,7 @@ def build_roundabout(
     The ``centre`` and the ``radius`` of the island, at least ``smallest_radius``, are in metres. The stubs
     are in counter-clockwise order, and so are their signs or lights; each ends ``contact_distance`` from the
     centre. ``kerb`` is the requested radius in metres, which is only stored. Raises UsageError if a road has
-    more lanes in one direction than the ring.
-    """
+    more lanes in one direction than the ring."""
     if any(max(len(stub.into), len(stub.out_of)) > lanes for stub in stubs):
         said = "one lane" if lanes == 1 else f"{lanes} lanes"
         raise UsageError(
@@ -183,6 +179,5 @@ def _mouth(
 
 def _outermost(count: int) -> list[tuple[int, int]]:
     """Returns, for each of ``count`` lanes of a road, its index and the number of ring lanes outside the ring
-    lane that continues it.
-    """
+    lane that continues it."""
     return [(k, count - 1 - k) for k in range(count)]

@@ -1,8 +1,7 @@
 """Tells single roads and Routes apart, and makes a road from anything that describes one.
 
 The packages that drive, judge and draw roads use these functions. Importing this module loads no module that
-builds or describes networks; a single road needs none of those modules.
-"""
+builds or describes networks; a single road needs none of those modules."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -37,17 +36,10 @@ def refuse_without_route(road: Road, what: str) -> None:
 
 
 def made_from(blueprint: "Blueprint", world: World, geometry: Geometry = "arcs") -> Road:
-    """Returns the road that a blueprint describes. The World gives the lanes and banked bends that it lacks.
-
-    Args:
-        blueprint: A design with or without junctions, a map, or a road.
-        world: The World, which gives the lanes where the blueprint has none.
-        geometry: How a design without junctions becomes a road.
-
-    Raises:
-        UsageError: The road is too long, or ``geometry`` is not "arcs" for a design with junctions or a map;
-            see also ``build_route`` and ``build_map``.
-    """
+    """Returns the road that a blueprint describes. The World gives the lanes and banked bends that it lacks;
+    ``geometry`` says how a design without junctions becomes a road. Raises UsageError if the road is too
+    long, or ``geometry`` is not "arcs" for a design with junctions or a map; see also ``build_route`` and
+    ``build_map``."""
     if isinstance(blueprint, Design):
         return world.lay(build(blueprint, geometry))
     if isinstance(blueprint, Road):
@@ -60,17 +52,12 @@ def made_from(blueprint: "Blueprint", world: World, geometry: Geometry = "arcs")
 
 
 def road_from_json(data: Mapping[str, Any]) -> Road:
-    """Restores a road or a route from JSON data as returned by ``Road.to_json`` or ``Route.to_json``.
-
-    A route gets shoulders to the edge of the ground; see ``Route.on_ground``.
-
-    Raises:
-        UsageError: A field is missing or of the wrong type, a number is not finite, the road is too long or
-            too steep, or the route does not fit its network.
-    """
+    """Restores a road or a route from JSON data as returned by ``to_json``. A route gets shoulders to the
+    edge of the ground; see ``Route.on_ground``. Raises UsageError if a field is missing or of the wrong type,
+    a number is not finite, the road is too long or too steep, or the route does not fit its network."""
     if "network" not in data:
         return Road.from_json(data)
-    from roadgpt.network.network_json import legs_from_json, network_from_json
+    from roadgpt.network.network import legs_from_json, network_from_json
     from roadgpt.network.route import Route
 
     return Route.along(network_from_json(data["network"]), legs_from_json(data.get("route"))).on_ground()

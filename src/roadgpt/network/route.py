@@ -1,27 +1,188 @@
 """Defines the Route: a way through a network. A Route is itself a Road.
 
 The centre line of a Route consists of the reference lines of its roads, one after another. Everything that
-can be done with a Road can be done with a Route: check, drive, judge and draw it.
-"""
+can be done with a Road can be done with a Route: check, drive, judge and draw it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import accumulate, groupby, pairwise
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
+import numpy as np
+
+from roadgpt.brief.junctions import Control
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
+from roadgpt.geometry.curve import Array
 from roadgpt.geometry.elevation import Cubic
-from roadgpt.network.ground import shoulders_on_ground
 from roadgpt.network.lane_along import LaneAlong, added, change_windows, cubics_at, lane_along
-from roadgpt.network.network import Continuation, Leg, Network, NetworkRoad
-from roadgpt.network.network_json import network_to_json
-from roadgpt.network.passages import Passage, passages_of
+from roadgpt.network.markings import STOP_LINE, line_before
+from roadgpt.network.network import (
+    Arm,
+    Continuation,
+    Junction,
+    Leg,
+    Network,
+    NetworkRoad,
+    RoadEnd,
+    network_to_json,
+)
+from roadgpt.network.paved import Area
 from roadgpt.network.stretch import joined_grades, joined_plans
-from roadgpt.road import Profile, Road
-from roadgpt.road.moving import reversed_cubics, reversed_road
+from roadgpt.network.surface import ROUND
+from roadgpt.road import Edges, Profile, Road
 from roadgpt.road.profile import Lane, Marking, Width
+from roadgpt.road.road import reversed_cubics, reversed_road
+
+FARTHEST = 40.0  # m, from the reference line; ground farther away is left out
+STEP = 0.5  # m, between the stations at which edges are computed
+JUST = 1e-6  # m, before or behind a station, so that a jump of widths at the station does not matter
+AROUND = 20.0  # m, before and after a junction, where kerbs may still curve
+
+
+class Passage(NamedTuple):
+    """The way of a route through one junction or one roundabout."""
+
+    start: float  # station in metres at which the route enters the junction or roundabout
+    end: float  # station in metres at which the route leaves the junction or roundabout
+    entered: Junction  # the junction; for a roundabout, the junction of the arm on which the route arrives
+    arrival: RoadEnd  # the end, at the junction, of the road on which the route arrives
+    departure: RoadEnd  # the end, at the junction, of the road on which the route goes on
+    arms: tuple[RoadEnd, ...]
+    """The ends of all roads that meet there, first the road of arrival, then counter-clockwise if traffic
+    drives on the right and clockwise if it drives on the left."""
+
+    @property
+    def exit(self) -> int:
+        """Number of the exit, from 1 in the order of ``arms``; the road of arrival is the last exit."""
+        return self.arms.index(self.departure) or len(self.arms)
+
+    @property
+    def stop_line(self) -> float | None:
+        """Station in metres at which the line of a stop sign begins; None if there is no stop sign."""
+        return self.start - line_before(self._arm) - STOP_LINE if self.control == "stop" else None
+
+    @property
+    def control(self) -> Control:
+        """The sign or the light that the route meets at the road of arrival."""
+        return self._arm.control
+
+    @property
+    def _arm(self) -> Arm:
+        return next(arm for arm in self.entered.arms if arm.end == self.arrival)
+
+
+def passages_of(network: Network, legs: Sequence[Leg], starts: Sequence[float]) -> tuple[Passage, ...]:
+    """Returns the passages of a route in driving order; ``starts`` are those of ``Route.starts``. The way
+    through a roundabout is one passage, though a roundabout has several junctions."""
+    groups = groupby(range(len(legs)), key=lambda n: _place(network, legs[n]))
+    return tuple(
+        _passage(network, legs[own[0]], legs[own[-1]], starts[own[0]], starts[own[-1] + 1])
+        for own in (list(group) for place, group in groups if place is not None)
+    )
+
+
+def _place(network: Network, leg: Leg) -> tuple[str, int] | None:
+    """Returns a key for the junction or roundabout in which a leg lies; None outside junctions."""
+    ring = network.roundabout_of.get(leg.road)
+    if ring is not None:
+        return "roundabout", ring.junctions[0]
+    junction = network.road(leg.road).junction
+    return None if junction is None else ("junction", junction)
+
+
+def _passage(network: Network, one: Leg, other: Leg, start: float, end: float) -> Passage:
+    """Returns the way through a junction or roundabout from its first leg to its last one."""
+    entered, first = network.connection_of[one.road]
+    last = network.connection_of[other.road][1]
+    ring = network.roundabout_of.get(entered.id)
+    # the first arm of each junction of a roundabout is the one that is no part of the ring
+    arms = entered.arms if ring is None else [network.junction(each).arms[0] for each in ring.junctions]
+    if ring is None and network.left_hand:
+        arms = arms[::-1]
+    ends = [arm.end for arm in arms]
+    at = ends.index(first.incoming)
+    return Passage(start, end, entered, first.incoming, last.outgoing, (*ends[at:], *ends[:at]))
+
+
+def ground_of(network: Network) -> Area:
+    """Returns the paved area of a network, widened by the widest shoulder of its roads."""
+    shoulder = max(each.shoulder for each in network.roads)
+    area = network.paved
+    return area.buffer(shoulder, quad_segs=ROUND) if shoulder > 0 else area
+
+
+def edges_of_ground(route: Road, ground: Area, s: Array) -> Edges:
+    """Returns the offsets in metres of the left and the right edge of the ground at stations ``s`` ``(n,)``:
+    at right angles to the route, the first edge, or ``FARTHEST`` where there is none."""
+    import shapely
+
+    boundary, starts = ground.boundary, route.plan.at(s)
+    found = []
+    for side in (1.0, -1.0):
+        ends = route.at(s, side * FARTHEST)[:, :2]
+        rays = shapely.linestrings(np.stack((starts, ends), axis=1))
+        hits = shapely.intersection(rays, boundary)
+        away = shapely.distance(shapely.points(starts), hits)
+        found.append(side * np.where(np.isnan(away), FARTHEST, away))
+    return Edges(*found)
+
+
+def windows(passages: Sequence[Passage], length: float) -> list[tuple[float, float]]:
+    """Returns the first and last station in metres of each stretch of a route within ``AROUND`` metres of its
+    passages. Stretches that overlap are merged. ``length`` is that of the route in metres."""
+    found: list[tuple[float, float]] = []
+    for each in passages:
+        low, high = max(0.0, each.start - AROUND), min(length, each.end + AROUND)
+        if found and low <= found[-1][1]:
+            found[-1] = (found[-1][0], high)
+        else:
+            found.append((low, high))
+    return found
+
+
+def shoulders_on_ground(
+    route: Road, network: Network, passages: Sequence[Passage], starts: Sequence[float]
+) -> tuple[CubicProfile, CubicProfile]:
+    """Returns the widths in metres of the left and the right shoulder of a route, along its stations. The
+    route leads through the passages of a network; ``starts`` are the stations at which its legs begin.
+    Outside the ``windows``, the shoulders are as wide as those of the roads; inside, they reach to the edge
+    of the ground."""
+    assert route.profile is not None
+    ground, profile = ground_of(network), route.profile
+    rows: tuple[list[tuple[float, Cubic]], list[tuple[float, Cubic]]] = ([], [])
+    last = 0.0
+    for low, high in windows(passages, route.length):
+        s = np.linspace(low, high, max(2, round((high - low) / STEP) + 1))
+        s = np.union1d(s, [each for each in starts if low < each < high])
+        ends = edges_of_ground(route, ground, s)
+        # lanes begin and end where a junction does, so the shoulder beside them jumps there
+        after, before = profile.edges(s[:-1] + JUST), profile.edges(s[1:] - JUST)
+        begins = (ends.left[:-1] - after.left, after.right - ends.right[:-1])
+        stops = (ends.left[1:] - before.left, before.right - ends.right[1:])
+        usuals = _usual(profile.rims(last), profile.edges(last))
+        for side, begin, stop, usual in zip(rows, begins, stops, usuals, strict=True):
+            if low > last:
+                side.append((last, (usual, 0.0, 0.0, 0.0)))
+            widths = np.maximum(begin, 0.0)
+            slopes = (np.maximum(stop, 0.0) - widths) / np.diff(s)
+            side += [
+                (at, (a, b, 0.0, 0.0)) for at, a, b in np.column_stack((s[:-1], widths, slopes)).tolist()
+            ]
+        last = high
+    for side, usual in zip(rows, _usual(profile.rims(last), profile.edges(last)), strict=True):
+        end = min(last, route.length - 1e-6)
+        while side and side[-1][0] >= end:
+            side.pop()
+        side.append((end, (usual, 0.0, 0.0, 0.0)))
+    left, right = map(CubicProfile.of_rows, rows)
+    return left, right
+
+
+def _usual(rims: Edges, edges: Edges) -> tuple[float, float]:
+    """Returns the widths of the shoulders outside junctions."""
+    return float(rims.left - edges.left), float(edges.right - rims.right)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -33,8 +194,7 @@ class Route(Road):
     shoulders until ``on_ground`` adds them.
 
     A network through which no route was asked for is a Route without legs; see ``has_no_route``. Nothing can
-    drive such a Route. Its centre line is that of the network's first road outside junctions.
-    """
+    drive such a Route. Its centre line is that of the network's first road outside junctions."""
 
     is_route: ClassVar[bool] = True
     network: Network
@@ -43,11 +203,8 @@ class Route(Road):
     @classmethod
     def along(cls, network: Network, legs: Sequence[Leg]) -> Self:
         """Returns the route that follows these legs through a network, in this order. ``legs`` may be empty.
-
-        Raises:
-            UsageError: The network has no road outside junctions, a road or a lane does not exist, two legs
-                that follow each other are not joined, or the route begins or ends inside a junction.
-        """
+        Raises UsageError if the network has no road outside junctions, a road or a lane does not exist, two
+        legs that follow each other are not joined, or the route begins or ends inside a junction."""
         legs = tuple(map(Leg._make, legs))
         for leg in legs:
             _check_leg(network, leg)
@@ -72,11 +229,8 @@ class Route(Road):
 
     @cached_property
     def starts(self) -> tuple[float, ...]:
-        """The stations in metres of the start of each leg and, as the last one, of the end of the route.
-
-        A leg on the same road as the leg before begins in the middle of the lane change between them. Without
-        legs, this is only the station 0.
-        """
+        """The stations in metres of the start of each leg and, as the last one, of the end of the route. A
+        leg on the same road as the leg before begins in the middle of the lane change between them."""
         found, start = [], 0.0
         for number, group in groupby(self.legs, key=lambda leg: leg.road):
             length = self.network.road(number).road.length
@@ -108,10 +262,8 @@ class Route(Road):
         return replace(super().mirrored, network=self.network.mirrored, legs=_mirrored_legs(self.legs))
 
     def on_ground(self) -> Self:
-        """Returns the route with shoulders that reach to the edge of the ground.
-
-        The ground is the paved area of the network, widened by the widest shoulder of its roads.
-        """
+        """Returns the route with shoulders that reach to the edge of the ground: the paved area of the
+        network, widened by the widest shoulder of its roads."""
         assert self.profile is not None
         left, right = shoulders_on_ground(self, self.network, self.passages, self.starts)
         profile = replace(
@@ -126,9 +278,7 @@ class Route(Road):
         return {**self.to_route_json(), "network": network_to_json(self.network)}
 
     def to_route_json(self) -> dict[str, list[list[int]]]:
-        """Returns the content of a route file: ``{"route": [[road, lane], ...]}`` in driving order; without a
-        route, the list is empty.
-        """
+        """Returns the content of a route file: ``{"route": [[road, lane], ...]}`` in driving order."""
         return {"route": [list(leg) for leg in self.legs]}
 
 
@@ -146,7 +296,6 @@ def _check_leg(network: Network, leg: Leg) -> None:
 
 
 def _check_joint(network: Network, one: Leg, two: Leg) -> None:
-    """Raises UsageError unless the second leg follows the first one."""
     if one.road == two.road:
         is_joined = network.road(one.road).junction is None and abs(one.lane - two.lane) == 1
         if not is_joined or one.lane * two.lane < 0:
@@ -198,8 +347,7 @@ def _directed(member: NetworkRoad, leg: Leg) -> Road:
 
 def _parts(network: Network, legs: Sequence[Leg]) -> tuple[list[Road], list[LaneAlong]]:
     """Returns the roads of a route in its direction, and the lane that the route follows on each; legs that
-    follow each other on one road are one part.
-    """
+    follow each other on one road are one part."""
     roads, lanes = list[Road](), list[LaneAlong]()
     for number, group in groupby(legs, key=lambda leg: leg.road):
         own, member = list(group), network.road(number)
@@ -211,9 +359,8 @@ def _parts(network: Network, legs: Sequence[Leg]) -> tuple[list[Road], list[Lane
 
 
 def _profile(roads: Sequence[Road], lanes: Sequence[LaneAlong]) -> Profile:
-    """Returns the cross-section of a route: its own lane, one lane for all other lanes on each side, and the
-    shoulders.
-    """
+    """Returns the cross-section of a route: its own lane, one for all other lanes on each side, and
+    shoulders."""
     starts = [0.0, *accumulate(road.length for road in roads)]
     left_shoulder, left, offset, width, right, right_shoulder = (
         _joined_widths(column, roads, starts) for column in zip(*lanes, strict=True)

@@ -33,10 +33,8 @@ NAMES = ("_id", "id", "name", "test_id")  # keys of a test that may hold its nam
 
 class RoadSource(NamedTuple):
     """What a road file holds. ``remarks`` are sentences about what was changed, ignored or unusual in it.
-
     ``world`` has the fields of a World that it states for its road; see ``OF_FILE``. ``name`` is the id of a
-    road in OpenDRIVE, whose name is the ``label``, or the name of the test or file.
-    """
+    road in OpenDRIVE, whose name is the ``label``, or the name of the test or file."""
 
     blueprint: Blueprint
     remarks: tuple[str, ...]
@@ -48,11 +46,8 @@ class RoadSource(NamedTuple):
 
 def read_source(path: str | Path) -> RoadSource:
     """Reads the design or the road in a file, or in a folder that holds ``road.json``, such as that of a run,
-    with what the file states about its World: ``World().changed(**source.world)``.
-
-    Raises:
-        UsageError: The file cannot be read, is not valid, holds no road or several.
-    """
+    with what the file states about its World: ``World().changed(**source.world)``. Raises UsageError if the
+    file cannot be read, is not valid, holds no road or several."""
     found = read_sources(path)
     if len(found) > 1:
         advice = f"to write each into a file of its own: {command_line('import', path)}"
@@ -65,8 +60,7 @@ def read_source(path: str | Path) -> RoadSource:
 def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource | UsageError]:
     """Reads all roads of a file, those of the name ``wanted``, or one of an OpenDRIVE file; see
     ``read_opendrive``. A list of tests (.json), or one test in each line (.jsonl), holds several; those that
-    are not valid are returned as errors. Raises UsageError if the file cannot be read or has no such road.
-    """
+    are not valid are returned as errors. Raises UsageError if the file cannot be read or has no such road."""
     path = Path(path, "road.json") if Path(path).is_dir() else Path(path)
     ending, card, world = path.suffix.lower(), path.with_name("run.json"), {}
     try:
@@ -119,7 +113,6 @@ def _source(name: str, data: Any, world: Mapping[str, Any], path: Path) -> RoadS
 
 
 def _checked(world: Any) -> Mapping[str, Any]:
-    """Returns the fields of a World that a file states. Raises UsageError if they are not valid."""
     if not isinstance(world, dict) or not world.keys() <= {*OF_FILE}:
         raise UsageError(f"its world is not an object with {', '.join(OF_FILE)} or some of them; correct it")
     try:
@@ -130,29 +123,17 @@ def _checked(world: Any) -> Mapping[str, Any]:
 
 
 def read_road(path: str | Path, geometry: Geometry = "arcs", world: World | None = None) -> Road:
-    """Returns the road of a road file, a design file or the folder of a run.
-
-    Args:
-        path: The file, or a folder that holds ``road.json``.
-        geometry: How a design becomes a road: "arcs" or "spline", as for ``roadgpt.build``.
-        world: The World, as for ``made_from``; None for the default World with what the file states.
-
-    Raises:
-        UsageError: The file cannot be read, is not valid, or holds no road; see also ``made_from``.
-    """
+    """Returns the road of a road file, a design file or the folder of a run. ``geometry`` is as for
+    ``roadgpt.build``, and ``world`` as for ``made_from``; None for the default World with what the file
+    states. Raises UsageError if the file cannot be read, is not valid, or holds no road."""
     source = read_source(path)
     return made_from(source.blueprint, world or World().changed(**source.world), geometry)
 
 
 def read_any_design(data: Mapping[str, Any]) -> tuple[AnyDesign, tuple[str, ...]]:
-    """Reads a dictionary in RoadGPT's JSON format, of a road, a route or a map; returns the design and
-    remarks.
-
-    Each remark is a sentence about a contradiction in the data or an unusual value.
-
-    Raises:
-        UsageError: A field is missing, misnamed, of the wrong type, out of range or contradicts another.
-    """
+    """Reads a dictionary in RoadGPT's JSON format, of a road, a route or a map; returns the design, and a
+    sentence about each contradiction or unusual value. Raises UsageError if a field is missing, misnamed, of
+    the wrong type, out of range or contradicts another."""
     if isinstance(data, Mapping) and has_nodes(data):
         return read_map_design(data)
     return read_network_design(data) if is_network_design(data) else read_design(data)
@@ -167,7 +148,9 @@ def _blueprint_in(data: Any) -> tuple[Blueprint, tuple[str, ...]]:
             return read_any_design(data)
         if "pieces" not in data and ("road_points" in data or "interpolated_points" in data):
             return _test_road(data)
-        if "pieces" in data or ("nodes" in data and not _has_widths(data["nodes"])):
+        nodes = data.get("nodes")
+        has_widths = isinstance(nodes, list) and plain(nodes)[0] != nodes
+        if "pieces" in data or ("nodes" in data and not has_widths):
             return Road.from_json(data), ()
     found = points_in(data)
     if found is None:
@@ -177,10 +160,6 @@ def _blueprint_in(data: Any) -> tuple[Blueprint, tuple[str, ...]]:
 
 def _through(points: list[Any], remarks: tuple[str, ...]) -> tuple[Blueprint, tuple[str, ...]]:
     return Road.through(points), remarks
-
-
-def _has_widths(nodes: Any) -> bool:
-    return isinstance(nodes, list) and plain(nodes)[0] != nodes
 
 
 def _test_road(data: dict[str, Any]) -> tuple[Road, tuple[str, ...]]:

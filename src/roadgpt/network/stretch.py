@@ -1,20 +1,41 @@
-"""Builds the road between two junctions from segments. The road is level where it meets a junction."""
+"""Builds the road between two junctions from segments, with its cross-section. It is level where it meets a
+junction.
+
+Where the route joins a road from a ramp, or leaves a road by a ramp, the line between the directions of this
+road lies beside its reference line, so that the reference line of the route can lead along the ramp."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from roadgpt.geometry import GradeProfile, PieceCurve
+from roadgpt.brief.words import MOST_LANES
+from roadgpt.errors import UsageError
+from roadgpt.geometry import CubicProfile, GradeProfile, PieceCurve
 from roadgpt.geometry.pieces import joined
-from roadgpt.road import Profile, Road, Segment
-from roadgpt.road.alignment import pieces_of
-from roadgpt.road.builder import elevation_of
-from roadgpt.road.elevation import CREST_RADIUS, MOST_OF_SEGMENT
+from roadgpt.network.building import width_at
+from roadgpt.network.design import (
+    MEDIAN,
+    JunctionDesign,
+    LanesChangeDesign,
+    LanesDesign,
+    NetworkDesign,
+    PlaceDesign,
+    RampDesign,
+)
+from roadgpt.plural import plural
+from roadgpt.road import Profile, Road, Segment, World
+from roadgpt.road.builder import elevation_of, pieces_of
+from roadgpt.road.design import CREST_RADIUS, MOST_OF_SEGMENT
+from roadgpt.road.profile import Lane, Marking
+from roadgpt.road.world import OWN
 
 LEVEL = 1e-9  # ratio; a smaller grade is level
 LANDING = 6.0  # m of level road before a junction: a little more than the length of a car that waits there
 MOST_OF_LANDING = 0.4  # largest share of a segment that the level road may take
+MAIN = LanesDesign(forward=2, backward=0)
+"""The lanes of a road that a ramp joins, where none are given: one carriageway of a motorway."""
+MOST_OF_ROAD = 0.8  # largest share of a road that the taper of a lane may take
 
 
 def road_of(
@@ -28,8 +49,7 @@ def road_of(
 
     ``is_level`` says whether the road is level at its start and at its end. A level end is a few metres long;
     a vertical curve within the first or last segment joins it to the grade of this segment. The radius is
-    ``CREST_RADIUS``, or smaller where the segment is too short.
-    """
+    ``CREST_RADIUS``, or smaller where the segment is too short."""
     x, y, z = start
     plan = PieceCurve(x, y, heading, joined(pieces_of(segments)))
     return Road(plan, level_ends(segments, z, is_level), profile=profile)
@@ -50,8 +70,7 @@ def level_ends(segments: Sequence[Segment], z: float, is_level: tuple[bool, bool
 
 def _from_level(knots: list[tuple[float, float]], distance: float) -> list[tuple[float, float]]:
     """Returns the knots (station, grade) with a level part at the start and a vertical curve behind it, both
-    within ``distance`` metres. The first knot is at station 0, and the grade is constant up to the second.
-    """
+    within ``distance`` metres. The first knot is at station 0, and the grade is constant up to the second."""
     (_, grade), *rest = knots
     if abs(grade) < LEVEL:
         return knots
@@ -62,9 +81,8 @@ def _from_level(knots: list[tuple[float, float]], distance: float) -> list[tuple
 
 
 def without_level_ends(road: Road, is_level: tuple[bool, bool]) -> Road:
-    """Returns a road without the level ends that ``road_of`` made where ``is_level`` is true. The grade
-    beside a level end continues to the end of the road. The heights of ``road`` must be given by grades.
-    """
+    """Returns a road without the level ends that ``road_of`` made where ``is_level`` is true: the grade
+    beside a level end continues to the end of the road."""
     profile = road.elevation
     assert isinstance(profile, GradeProfile)
     knots = profile.knots
@@ -80,14 +98,12 @@ def without_level_ends(road: Road, is_level: tuple[bool, bool]) -> Road:
 
 
 def _increasing(knots: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Returns the knots without those at the station of the knot before."""
     return [knots[0], *(b for a, b in pairwise(knots) if b[0] > a[0])]
 
 
 def climb_between(z: float, end: float, length: float) -> GradeProfile:
     """Returns the heights over ``length`` metres from height ``z`` to height ``end``: level at both ends,
-    with one grade between the two vertical curves.
-    """
+    with one grade between the two vertical curves."""
     climb = end - z
     if abs(climb) < LEVEL:
         return GradeProfile.level(length, z)
@@ -105,9 +121,7 @@ def climb_between(z: float, end: float, length: float) -> GradeProfile:
 
 
 def joined_grades(roads: Sequence[Road]) -> GradeProfile:
-    """Returns the heights along one or more roads that follow each other, from the start of the first one.
-    Raises TypeError if the elevation of a road is not a GradeProfile.
-    """
+    """Returns the heights along roads that follow each other, from the start of the first one."""
     knots: list[tuple[float, float]] = []
     start, height = 0.0, 0.0
     for n, road in enumerate(roads):
@@ -134,10 +148,173 @@ def joined_plans(roads: Sequence[Road]) -> PieceCurve:
 
 def joined_roads(roads: Sequence[Road]) -> Road:
     """Returns one road made of roads that continue each other. Its cross-section is that of the road with the
-    fewest lanes in the direction of the roads. For errors see ``joined_grades``.
-    """
+    fewest lanes in the direction of the roads."""
     if len(roads) == 1:
         return roads[0]
     profiles = [road.profile for road in roads if road.profile is not None]
     profile = min(profiles, key=lambda profile: profile.count)
     return Road(joined_plans(roads), joined_grades(roads), profile=profile)
+
+
+def stretch_profiles(design: NetworkDesign, world: World) -> list[Profile]:
+    """Returns the cross-section of each road of a design, with the tapers of lanes that end or begin."""
+    section = world.section
+    refuse_other_lanes(world)
+    first = design.lanes or LanesDesign(width=section.lane_width)
+    lengths = [sum(segment.distance for segment in segments) for segments in design.stretches]
+    return profiles_between(first, design.junctions, lengths, section.shoulder)
+
+
+def refuse_other_lanes(world: World) -> None:
+    """Raises UsageError if the World asks for lanes or banked bends that networks do not have."""
+    changed = [name for name, usual in OWN.items() if getattr(world.section, name) != usual]
+    if changed:
+        flags = ", ".join(f"--{name.replace('_', '-')}" for name in changed)
+        raise UsageError(f"a network takes its lanes from its design, and has level roads; leave out {flags}")
+
+
+def profiles_between(
+    first: LanesDesign, places: Sequence[PlaceDesign], lengths: Sequence[float], shoulder: float
+) -> list[Profile]:
+    """Returns the cross-sections of the roads before, between and behind the places that a route passes.
+    ``first`` are the lanes of the first road; the lengths of the roads and the width of the shoulders are in
+    metres.
+
+    Raises UsageError in four cases: a road would have no lane or too many lanes; the lanes of a road
+    contradict the lane drop, gain or change before this road; a ramp on the left would cross oncoming lanes;
+    the ramp that the route takes has oncoming traffic or more than one lane."""
+    lanes = [first]
+    for number, place in enumerate(places, 1):
+        lanes.append(_behind(number, place, lanes[-1]))
+    found = [_profile(each, shoulder) for each in lanes]
+    offsets = _offsets(places, lanes)
+    around = (None, *places, None)
+    for n, length in enumerate(lengths):
+        before, after = around[n], around[n + 1]
+        if offsets[n]:
+            found[n] = replace(found[n], offset=offsets[n])
+        if isinstance(after, RampDesign):
+            _check_oncoming(n + 1, after, lanes[n : n + 2])
+        gain = before if isinstance(before, LanesChangeDesign) and before.kind == "lane_gain" else None
+        drop = after if isinstance(after, LanesChangeDesign) and after.kind == "lane_drop" else None
+        if gain is not None or drop is not None:
+            found[n] = _tapered(found[n], gain, drop, length)
+        is_ramp = _is_ramp(after, "merge") or _is_ramp(before, "diverge")
+        if is_ramp and (lanes[n].forward, lanes[n].backward) != (1, 0):
+            raise UsageError(
+                f"junction {n + _is_ramp(after, 'merge')}: the route comes or goes by the ramp, which has "
+                'one lane and no oncoming traffic; give that road "lanes": {"forward": 1, "backward": 0}'
+            )
+    return found
+
+
+def _check_oncoming(number: int, ramp: RampDesign, around: Sequence[LanesDesign]) -> None:
+    """Raises UsageError if a ramp on the left would cross oncoming lanes of the road before or behind it."""
+    behind, by_ramp = ramp.kind == "merge", ramp.take == "ramp"
+    main = [around[behind]] if by_ramp else around
+    if ramp.is_on_left and any(each.backward for each in main):
+        raise UsageError(
+            f"junction {number}: the ramp lies on the side of oncoming traffic and would cross its lanes; "
+            'give the road that it joins or leaves "backward": 0, or leave its side out'
+        )
+
+
+def _offsets(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> list[float]:
+    """Returns the offset of the line between the directions from the reference line, in metres for each road.
+    It changes only at junctions and where the route leads from a ramp to the main road, or the other way."""
+    found: list[float] = []
+    for n in range(len(lanes)):
+        before = places[n - 1] if n else None
+        if n == 0 or isinstance(before, JunctionDesign):
+            found.append(_first_offset(places[n:], lanes[n:]))
+        elif isinstance(before, RampDesign) and before.take == "ramp":
+            is_merge = before.kind == "merge"
+            ramp, main = (lanes[n - 1], lanes[n]) if is_merge else (lanes[n], lanes[n - 1])
+            found.append(found[-1] + _beside_ramp(before, ramp, main) * (1 if is_merge else -1))
+        else:
+            found.append(found[-1])
+    return found
+
+
+def _first_offset(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> float:
+    """Returns the offset with which the reference line leads along the ramp of the next exit; 0 if the route
+    takes no such exit before the next junction."""
+    for place, (own, behind) in zip(places, pairwise(lanes), strict=False):
+        if isinstance(place, RampDesign) and _is_ramp(place, "diverge"):
+            return _beside_ramp(place, behind, own)
+        if isinstance(place, JunctionDesign) or _is_ramp(place, "merge"):
+            break
+    return 0.0
+
+
+def _beside_ramp(place: RampDesign, ramp: LanesDesign, main: LanesDesign) -> float:
+    """Returns the offset in metres of the main road's line between the directions from that of the ramp."""
+    return -ramp.width if place.is_on_left else main.forward * main.width
+
+
+def _is_ramp(place: PlaceDesign | None, kind: str) -> bool:
+    return isinstance(place, RampDesign) and place.kind == kind and place.take == "ramp"
+
+
+def _behind(number: int, place: PlaceDesign, before: LanesDesign) -> LanesDesign:
+    if isinstance(place, LanesChangeDesign):
+        step = {"lane_drop": -1, "lane_gain": 1, "lane_change": 0}[place.kind]
+        count = plural(before.forward + step, "lane")
+        if not 1 <= before.forward + step <= MOST_LANES:
+            raise UsageError(
+                f"junction {number}: a {place.kind} leaves {count}, and a road has 1 to {MOST_LANES}; give "
+                "the road before it other lanes"
+            )
+        if place.lanes is None:
+            return before.model_copy(update={"forward": before.forward + step})
+        if place.lanes.forward != before.forward + step or place.lanes.width != before.width:
+            raise UsageError(
+                f"junction {number}: the road behind a {place.kind} has {count} here, {before.width:g} m "
+                "wide; give these, or leave its lanes out"
+            )
+        return place.lanes
+    if isinstance(place, RampDesign) and place.take == "main":
+        return before
+    if place.lanes is not None:
+        return place.lanes
+    if isinstance(place, RampDesign):
+        update = {"width": before.width}
+        if place.kind == "merge":
+            return MAIN.model_copy(update=update)
+        return LanesDesign(forward=1, backward=0, width=before.width)
+    return before
+
+
+def _profile(lanes: LanesDesign, shoulder: float) -> Profile:
+    made = Profile.of(lanes.forward, lanes.backward, lanes.width, shoulder)
+    if lanes.edge != "solid":
+        made = replace(made, left=_edged(made.left, lanes.edge), right=_edged(made.right, lanes.edge))
+    if lanes.divided:
+        made = replace(made, median=MEDIAN, centre_marking="solid")
+    return made if lanes.centre is None else replace(made, centre_marking=lanes.centre)
+
+
+def _edged(side: Sequence[Lane], marking: Marking) -> tuple[Lane, ...]:
+    """Returns the lanes of one side with another marking at their outer edge, the only one that is solid."""
+    return tuple(replace(lane, marking=marking) if lane.marking == "solid" else lane for lane in side)
+
+
+def _tapered(
+    profile: Profile, gain: LanesChangeDesign | None, drop: LanesChangeDesign | None, length: float
+) -> Profile:
+    """Returns the cross-section with a lane whose width rises from 0 at the start, and a lane whose width
+    falls to 0 at the end. Both may be the same lane."""
+    outer = profile.count[0] - 1
+    first, last = (None if each is None else 0 if each.side == "left" else outer for each in (gain, drop))
+    most = MOST_OF_ROAD * length / (2 if first == last else 1)
+    lanes = list(profile.right)
+    for index, lane in enumerate(lanes):
+        full = width_at(lane.width, 0.0)
+        knots = [(0.0, full)]
+        if gain is not None and index == first:
+            knots = [(0.0, 0.0), (min(gain.length, most), full)]
+        if drop is not None and index == last:
+            knots += [(length - min(drop.length, most), full), (length, 0.0)]
+        if len(knots) > 1:
+            lanes[index] = replace(lane, width=CubicProfile.smooth(knots))
+    return replace(profile, right=tuple(lanes))

@@ -1,8 +1,7 @@
 """Divides the surface of a network into the roads outside junctions and the level areas of the junctions.
 
 A roundabout is one area, which includes the pieces of its ring. The roads and the areas together cover the
-paved area of the network. Pictures, pages and exported meshes are made from these parts.
-"""
+paved area of the network. Pictures, pages and exported meshes are made from these parts."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -29,12 +28,9 @@ class JunctionSurface:
     """The level surface of one junction, or of one roundabout, seen from above."""
 
     kind: Kind
-    height: float
-    """Height in metres."""
-    junctions: tuple[int, ...]
-    """The ids of the junctions: one, or all those of a roundabout."""
-    paved: Area
-    """The area of the connecting roads, and of the ring of a roundabout."""
+    height: float  # height in metres
+    junctions: tuple[int, ...]  # the ids of the junctions: one, or all those of a roundabout
+    paved: Area  # the area of the connecting roads, and of the ring of a roundabout
     shoulder: Area
     """The shoulder around the paved area, without the shoulders of the roads that lead there; may be
     empty."""
@@ -50,8 +46,7 @@ class JunctionSurface:
 class NetworkSurface:
     """The surface of a network, in parts that do not overlap."""
 
-    roads: tuple[NetworkRoad, ...]
-    """The roads outside junctions and roundabouts."""
+    roads: tuple[NetworkRoad, ...]  # the roads outside junctions and roundabouts
     areas: tuple[JunctionSurface, ...]
     shoulder: float
     """The width in metres of the shoulder around the junctions, the widest of the network; 0 for none."""
@@ -70,12 +65,8 @@ class NetworkSurface:
 
     @property
     def reach(self) -> float:
-        """An upper bound in metres, for all ``roads``, of the distance from the reference line of a road to
-        the outer edge of its shoulder.
-
-        Raises:
-            ValueError: There are no roads.
-        """
+        """The largest distance in metres from the reference line of a road in ``roads`` to the outer edge of
+        its shoulder; an upper bound."""
         return self.shoulder + max(each.profile.paved_reach for each in self.roads)
 
 
@@ -98,8 +89,7 @@ def _area_of(
     network: Network, node: tuple[Kind, tuple[Junction, ...]], paved: Area, width: float, beside: Area
 ) -> JunctionSurface:
     """Returns the surface of one of ``Network.nodes``, from its paved area, the width in metres of the
-    shoulder, and ``beside``: the area of all roads outside junctions, with their shoulders.
-    """
+    shoulder, and ``beside``: the area of all roads outside junctions, with their shoulders."""
     import shapely
 
     kind, junctions = node
@@ -126,8 +116,7 @@ def _beside_medians(
     network: Network, paved: Area, wide: Area, holes: "Sequence[Polygon]"
 ) -> "Iterator[Polygon]":
     """Yields what lies between the ways of a junction and the ends of medians, apart from the ``holes`` in
-    the paved area of the junction; ``wide`` is this area with a shoulder around it.
-    """
+    the paved area of the junction; ``wide`` is this area with a shoulder around it."""
     import shapely
 
     for part in shapely.get_parts(network.paved):
@@ -147,8 +136,7 @@ def polygons(shape: Any) -> Area:
 
 def triangulated(area: Area) -> tuple[Array, NDArray[np.int64]]:
     """Returns the corners ``(n, 2)`` of an area in metres, and triangles that fill it: indices ``(m, 3)`` of
-    corners, counter-clockwise. An empty area has none.
-    """
+    corners, counter-clockwise. An empty area has none."""
     import shapely
 
     found = shapely.get_parts(shapely.constrained_delaunay_triangles(area))

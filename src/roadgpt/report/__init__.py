@@ -6,8 +6,7 @@ curvature_grade.png    curvature, grade and speed along the road, with the limit
 overview.png           all roads of a campaign
 
 The packages ``view``, ``film`` and ``page`` make the page with a road in 3-D, films of drives, and reports on
-many roads.
-"""
+many roads."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,9 +15,8 @@ from pathlib import Path
 from roadgpt.network import has_no_route
 from roadgpt.report.birds_eye import Scale, birds_eye
 from roadgpt.report.canvas import FORMATS, PNG, Format, in_our_style, save_all
-from roadgpt.report.height import height_profile
+from roadgpt.report.height import height_profile, strip
 from roadgpt.report.overview import overview
-from roadgpt.report.strip import strip
 from roadgpt.run import Run
 
 __all__ = [
@@ -28,7 +26,6 @@ __all__ = [
     "Scale",
     "birds_eye",
     "draw",
-    "drawing",
     "height_profile",
     "overview",
     "strip",
@@ -47,8 +44,7 @@ def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[
         folder: the folder for the pictures; files of the same names are replaced.
         axes: "equal" for axes that fit the road and are to scale; "thesis" for the fixed axes of RoadGPT's
             thesis.
-        formats: the file formats; each picture is written in all of them.
-    """
+        formats: the file formats; each picture is written in all of them."""
     if run.road is None:
         return []
     folder = Path(folder)
@@ -63,7 +59,7 @@ class Drawing:
     """Draws the pictures of a campaign while it runs. Pass it to ``roadgpt.campaign`` as ``draw``."""
 
     axes: Scale = "equal"
-    formats: tuple[Format, ...] = PNG
+    formats: Sequence[Format] = PNG
 
     def of_run(self, run: Run, folder: Path) -> list[Path]:
         """Draws all pictures of a Run, and returns their paths."""
@@ -72,8 +68,3 @@ class Drawing:
     def of_campaign(self, folder: Path) -> list[Path]:
         """Draws all roads of a campaign on one or more pages, and returns the paths of the pages."""
         return overview(folder, self.formats)
-
-
-def drawing(axes: Scale = "equal", formats: Sequence[Format] = PNG) -> Drawing:
-    """Returns a Drawing; ``axes`` and ``formats`` have the same meaning as in ``draw``."""
-    return Drawing(axes, tuple(formats))

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from matplotlib import colormaps
@@ -17,11 +17,29 @@ from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
 from roadgpt.network import has_no_route, is_route
 from roadgpt.plural import plural
-from roadgpt.report.canvas import INK, SEVERE, SOFT, Header, add_axes, in_our_style, new_figure, note, save
-from roadgpt.report.labels import Labels
+from roadgpt.report.canvas import (
+    INK,
+    SEVERE,
+    SOFT,
+    Header,
+    add_axes,
+    in_our_style,
+    inches,
+    new_figure,
+    note,
+    save,
+)
 from roadgpt.report.places import MarkedPlace, minor_places_of, places_of
-from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, is_far, plan_points, show_from_above
-from roadgpt.report.text_width import inches
+from roadgpt.report.plan_view import (
+    GROUND,
+    Frame,
+    Labels,
+    draw_ends,
+    draw_road,
+    is_far,
+    plan_points,
+    show_from_above,
+)
 from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.verdict import SEVERITIES, Severity, severity
@@ -29,6 +47,8 @@ from roadgpt.verdict import SEVERITIES, Severity, severity
 if TYPE_CHECKING:
     from roadgpt.campaign.faults.reason import FailureReason
 
+KeyEntry = tuple[str, float, dict[str, Any]]
+"""The meaning of a line, the width of its sample in inches, and how matplotlib draws it."""
 Scale = Literal["equal", "thesis"]
 """Axes that fit the road ("equal"), or x and y from 0 to 220 m as in RoadGPT's thesis ("thesis")."""
 
@@ -55,9 +75,7 @@ FAULT_LEAST = 45.0  # m across
 
 def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> Figure:
     """Returns a picture of the road of a Run from above, with the driven path and the places of failures and
-    findings. It shows ``frame``, or the axes of ``scale``: "equal" fits the road; "thesis" has x and y from 0
-    to 220 m.
-    """
+    findings. It shows ``frame``, or the axes of ``scale``."""
     road, world = run.road, run.world
     assert road is not None
     centre = plan_points(road)
@@ -67,14 +85,21 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     right = BAR if run.drive is not None else 0.3
     header = Header.of(run, LEFT + across + right)
     per_inch = frame.width / across
-    rows = [row for row in (_outside_key(run.drive), _network_key(road, world, frame, per_inch)) if row]
+    found = severities(run.drive)
+    rims = {name: {"lw": RIM, "color": SEVERE[name]} for name in OUTSIDE if name in found}
+    outside: list[KeyEntry] = [(f"{name} its lane", SWATCH, style) for name, style in rims.items()]
+    rows = [row for row in (outside, _network_key(road, world, frame, per_inch)) if row]
     foot = BOTTOM + KEY * len(rows)
     figure = new_figure(header.width, foot + across * frame.height / frame.width + header.height)
     axes = add_axes(figure, LEFT, foot, right, header.height)
     header.write(figure)
     for number, row in enumerate(reversed(rows)):
         _draw_key(figure, FOOT + KEY * number, row)
-    _ground(axes, frame, world.site.map_size)
+    size = world.site.map_size
+    show_from_above(axes, frame, 8)
+    axes.set_facecolor("#d5d8dc")
+    axes.add_patch(Rectangle((0, 0), size, size, fc=GROUND, ec="none", zorder=0))
+    axes.add_patch(Rectangle((0, 0), size, size, fc="none", ec=SOFT, lw=1.4, ls=(0, (6, 3)), zorder=0.6))
     draw_road(axes, road, world, per_inch)
     draw_ends(axes, road, world)
     if run.drive is not None:
@@ -86,9 +111,8 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
 
 
 def _mark_and_label(axes: Axes, run: Run, frame: Frame, centre: Array, per_inch: float) -> None:
-    """Draws and labels the marked places of a Run, the border of the map and the ends of the road. The places
-    of incidents that did not cause the failure are labelled last and in smaller letters.
-    """
+    """Draws and labels the marked places, the border of the map and the ends of the road. Incidents that did
+    not cause the failure come last, in smaller letters."""
     road, world = run.road, run.world
     assert road is not None
     minor, places = minor_places_of(run), places_of(run)
@@ -117,7 +141,6 @@ def _mark_and_label(axes: Axes, run: Run, frame: Frame, centre: Array, per_inch:
 
 
 def _frame(run: Run, centre: Array) -> Frame:
-    """Returns a frame around the road and the driven path."""
     assert run.road is not None
     shown = centre
     if run.drive is not None:
@@ -127,17 +150,7 @@ def _frame(run: Run, centre: Array) -> Frame:
     return Frame.around(shown, margin, LEAST, run.world.site.map_size)
 
 
-def _ground(axes: Axes, frame: Frame, size: float) -> None:
-    """Draws ground, grid, the border of the map, and the area outside it."""
-    show_from_above(axes, frame, 8)
-    axes.set_facecolor("#d5d8dc")
-    axes.add_patch(Rectangle((0, 0), size, size, fc=GROUND, ec="none", zorder=0))
-    border = Rectangle((0, 0), size, size, fc="none", ec=SOFT, lw=1.4, ls=(0, (6, 3)), zorder=0.6)
-    axes.add_patch(border)
-
-
 def _path(figure: Figure, axes: Axes, run: Run) -> None:
-    """Draws the driven path, and the scale of its colours."""
     assert run.drive is not None
     line = driven_path(axes, run.drive)
     shown = axes.get_position()
@@ -170,9 +183,8 @@ def driven_path(axes: Axes, drive: Drive) -> LineCollection:
 
 
 def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
-    """Draws a marker at a place and, if the place comes from a drive, the outline of the car. An incident
-    that did not cause the failure has a smaller marker and no outline.
-    """
+    """Draws a marker at a place and, if it comes from a drive, the outline of the car; both only small or not
+    at all for an incident that did not cause the failure."""
     if place.is_minor:
         axes.plot(place.x, place.y, place.sign, ms=MINOR, mfc=place.colour, mec="white", mew=0.8, zorder=9.5)
         return
@@ -185,9 +197,8 @@ def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
 
 
 def severities(drive: Drive | None, every: int = 1) -> list[Severity]:
-    """Returns how far outside its lane the car was at most in each ``every`` steps that the verdict checks;
-    empty without a drive.
-    """
+    """Returns how far outside its lane the car was at most in each ``every`` steps that the verdict
+    checks."""
     if drive is None or not drive.lane_steps:
         return []
     shares = drive["outside"][: drive.lane_steps]
@@ -204,39 +215,17 @@ def _draw_rim(axes: Axes, pieces: Array, found: list[Severity]) -> None:
         axes.add_collection(rim)
 
 
-class KeyEntry(NamedTuple):
-    """One entry of a picture's key: a sample of a line, and the meaning of the line."""
-
-    text: str
-    width: float
-    """Width of the sample in inches."""
-    style: dict[str, Any]
-    """How matplotlib draws a line from the left of the sample to its right."""
-
-
-def _outside_key(drive: Drive | None) -> list[KeyEntry]:
-    """Returns the key to the rim's colours."""
-    found = severities(drive)
-    return [
-        KeyEntry(f"{name} its lane", SWATCH, {"lw": RIM, "color": SEVERE[name]})
-        for name in OUTSIDE
-        if name in found
-    ]
-
-
 def _network_key(road: Road, world: World, frame: Frame, per_inch: float) -> list[KeyEntry]:
-    """Returns the key to the lane of the route and to the signs that a frame shows; empty for a road without
-    junctions.
-    """
+    """Returns the key to the lane of the route and to the signs that a frame shows."""
     if not is_route(road):
         return []
     from roadgpt.report.network_view import FAR_ROUTE, SIGN_NAMES, TINT, sign_style, signs_shown
 
     colour = FAR_ROUTE if is_far(road, world, per_inch) else TINT
-    lane = [KeyEntry("lane of the route", SWATCH, {"lw": RIM, "color": colour})]
+    lane = [("lane of the route", SWATCH, {"lw": RIM, "color": colour})]
     found = {sign.control for sign in signs_shown(road, per_inch) if frame.holds(*sign.place[:2])}
     signs = [
-        KeyEntry(SIGN_NAMES[control], DOT, {**sign_style(control), "markevery": [0]})
+        (SIGN_NAMES[control], DOT, {**sign_style(control), "markevery": [0]})
         for control in SIGN_NAMES
         if control in found
     ]
@@ -244,7 +233,6 @@ def _network_key(road: Road, world: World, frame: Frame, per_inch: float) -> lis
 
 
 def _draw_key(figure: Figure, above: float, entries: list[KeyEntry]) -> None:
-    """Draws a row of a key, ``above`` inches above the foot of a figure."""
     wide, high = figure.get_size_inches()
     left, y = LEFT, above / high
     for text, width, style in entries:
@@ -255,10 +243,8 @@ def _draw_key(figure: Figure, above: float, entries: list[KeyEntry]) -> None:
 
 @in_our_style
 def draw_fault(run: Run, reason: "FailureReason", more: str, path: Path) -> Path:
-    """Writes a picture of the place where a Run failed to ``path``; the suffix of ``path`` gives the format.
-    The header of the picture gives the reason. ``more`` is added to the reason, such as "fails every time (5
-    of 5 disturbed drives)".
-    """
+    """Writes a picture of the place where a Run failed, with the reason in its header, and ``more``, such as
+    "fails every time (5 of 5 disturbed drives)"."""
     assert run.road is not None
     s = run.road.sample(1.0)
     near = (s.s >= reason.station - BEFORE) & (s.s <= reason.station + AFTER)

@@ -1,8 +1,10 @@
-"""Defines the colours and the header of all pictures, and writes pictures to files."""
+"""Defines the style, the text and the header of all pictures, and writes pictures to files."""
 
 import io
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -10,11 +12,11 @@ from matplotlib import rc_context, rcParamsDefault
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.patheffects import withStroke
 
 from roadgpt.errors import UsageError
 from roadgpt.network import has_no_route
-from roadgpt.report.text_width import fitted, inches
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
 from roadgpt.verdict import SEVERITIES, Severity, graded
@@ -23,7 +25,6 @@ Format = Literal["png", "svg", "pdf"]
 """File format of a picture: PNG in pixels; SVG and PDF can be scaled."""
 FORMATS: tuple[Format, ...] = get_args(Format)
 PNG: tuple[Format, ...] = ("png",)
-
 DPI = 110
 # Metadata that would hold the date and matplotlib's version, and so differ from day to day.
 UNDATED: Mapping[str, Mapping[str, None]] = {
@@ -35,7 +36,6 @@ UNDATED: Mapping[str, Mapping[str, None]] = {
 SAVING: dict[Any, Any] = {"svg.hashsalt": "roadgpt", "svg.fonttype": "path", "pdf.fonttype": 42}
 INK, SOFT, FAINT = "#1b1e23", "#5f6670", "#d9dce1"
 GRASS = "#cfdcc0"
-
 # Okabe and Ito's colours, which colour-blind people can distinguish; a word or a symbol is always shown, too.
 BLUE, ORANGE, GREEN, VERMILLION, PURPLE = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#aa4499"
 YELLOW = "#d0bf00"
@@ -53,7 +53,6 @@ LETTERS = {YELLOW: INK, ORANGE: INK}
 """Colour of text on each light colour; text on all other colours is white."""
 DARKER = {YELLOW: "#7d7100", ORANGE: "#9a6400"}
 """Darker variants of light colours, for text on white."""
-
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 MARGIN = 0.3  # inches, left and right of the header
 LINE = 0.19  # inches
@@ -61,6 +60,10 @@ TITLE, TEXT, SMALL = 11, 10, 8.5  # points
 BADGE = 9  # points
 MOST_LINES = 2  # of the description
 MOST_SAID = 8  # lines of the outcome; only a very long error message is cut
+UNKNOWN = "□"  # in place of a letter that the font lacks
+POINTS = 72.0  # per inch
+ELLIPSIS = " …"
+BREAK = re.compile(r"(?<!\d) | (?!(?:%|g|s|m|km|km/h|m/s|degrees)(?:\W|$))")
 
 
 # A user's matplotlibrc would otherwise change our pictures.
@@ -113,8 +116,7 @@ class Header:
     """The header of a picture, with description, outcome, seed, length of the road and driver."""
 
     run: Run
-    width: float
-    """Width of the picture, inches."""
+    width: float  # width of the picture, inches
     title: str
     said: str
 
@@ -157,14 +159,11 @@ def outcome_of(run: Run) -> str:
 
 
 def _badge(run: Run) -> float:
-    """Width of the coloured outcome, inches."""
     return 0.24 + inches(outcome_of(run), BADGE, bold=True)
 
 
 def origin(run: Run) -> str:
-    """Returns one line with the seed and number of the road, its length in metres (or "no route") and, if
-    there is a drive, the driver, the simulator and the oracle.
-    """
+    """Returns one line with seed, number and length of the road and, if it was driven, by whom."""
     seed = f"seed {run.request.seed}"
     said = [f"{seed}, road {run.index}"] if run.words else [seed] if run.drive is not None else []
     said.append("no route" if run.road and has_no_route(run.road) else f"{run.length:.0f} m")
@@ -175,9 +174,7 @@ def origin(run: Run) -> str:
 
 
 def save(figure: Figure, path: Path) -> Path:
-    """Writes a picture in the format that the path's suffix names; the same figure gives an identical file.
-    Raises UsageError as ``format_of`` does.
-    """
+    """Writes a picture in the format of the path's suffix; the same figure gives an identical file."""
     write_whole(path, encoded(figure, format_of(path)))
     return path
 
@@ -188,11 +185,7 @@ def save_all(figure: Figure, path: Path, formats: Sequence[Format] = PNG) -> lis
 
 
 def format_of(path: Path) -> Format:
-    """Returns the picture format that a path's suffix names.
-
-    Raises:
-        UsageError: the suffix is none of .png, .svg and .pdf.
-    """
+    """Returns the picture format that a path's suffix names."""
     for name in FORMATS:
         if path.suffix.lower() == f".{name}":
             return name
@@ -205,3 +198,46 @@ def encoded(figure: Figure, name: Format) -> bytes:
     with rc_context(SAVING):
         figure.savefig(data, format=name, dpi=DPI, metadata=dict(UNDATED[name]))
     return data.getvalue()
+
+
+def plain(text: str) -> str:
+    """Returns text as one line, with a box in place of each letter that the font lacks."""
+    return "".join(letter if _advance(letter, False) else UNKNOWN for letter in " ".join(text.split()))
+
+
+def inches(text: str, size: float, bold: bool = False) -> float:
+    """Returns the width of the longest line in inches; ``size`` is the font size in points."""
+    return max(sum(_advance(letter, bold) for letter in row) for row in text.split("\n")) * size / POINTS
+
+
+def fitted(text: str, width: float, size: float, bold: bool = False, lines: int = 1) -> str:
+    """Returns text wrapped to at most ``lines`` lines of ``width`` inches, with an ellipsis for what is cut
+    off. A number and its unit stay on one line."""
+    words = BREAK.split(plain(text))
+    rows: list[str] = []
+    while words and len(rows) < lines:
+        count = 1
+        while count < len(words) and inches(" ".join(words[: count + 1]), size, bold) <= width:
+            count += 1
+        is_last = len(rows) == lines - 1 and count < len(words)
+        rows.append(_shortened(" ".join(words[:count]), width, size, bold, is_last))
+        words = words[count:]
+    return "\n".join(rows)
+
+
+def _shortened(row: str, width: float, size: float, bold: bool, has_more: bool) -> str:
+    if not has_more and inches(row, size, bold) <= width:
+        return row
+    while row and inches(row + ELLIPSIS, size, bold) > width:
+        row = row[:-1]
+    return row.rstrip() + ELLIPSIS
+
+
+@cache
+def _advance(letter: str, bold: bool) -> float:
+    """Returns the advance of a letter, relative to the font size; 0 if the font lacks the letter."""
+    font = get_font(findfont(FontProperties(family="DejaVu Sans", weight="bold" if bold else "normal")))
+    if not font.get_char_index(ord(letter)):
+        return 0.0
+    font.set_size(100.0, POINTS)
+    return float(font.load_char(ord(letter)).linearHoriAdvance) / 65536 / 100

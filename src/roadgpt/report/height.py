@@ -1,6 +1,7 @@
-"""Draws the height over the distance along the road, to scale or on the axes of RoadGPT's thesis."""
+"""Draws what lies along the road: height, curvature and grade, and speed, with the limits of the rules."""
 
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,14 +9,29 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 from numpy.typing import NDArray
 
+from roadgpt.brief.junctions import NAMES
 from roadgpt.drive.outlook import passages
 from roadgpt.geometry.curve import Array
 from roadgpt.report.birds_eye import Scale
-from roadgpt.report.canvas import FAINT, HALO, INK, Header, add_axes, inches_of, new_figure, note
-from roadgpt.report.junctions import LINE, LINES, shade_junctions
+from roadgpt.report.canvas import (
+    BLUE,
+    FAINT,
+    HALO,
+    INK,
+    ORANGE,
+    POINTS,
+    SOFT,
+    VERMILLION,
+    Header,
+    add_axes,
+    inches,
+    inches_of,
+    new_figure,
+    note,
+)
 from roadgpt.report.places import STEP, name_places, places_of
 from roadgpt.report.plan_view import stations_of
-from roadgpt.report.text_width import inches
+from roadgpt.road import Road
 from roadgpt.run import Run
 
 WIDTH = 9.6  # inches
@@ -35,12 +51,160 @@ CLEAR = 0.06  # inches between a label and the road
 OVER_THE_FRAME = 3  # pixels by which a line on the border of the axes may reach over it
 EARTH, SURFACE = "#dcd9c3", "#4b5563"
 
+STRIP_LEFT, STRIP_RIGHT = 1.1, 0.8  # inches
+PANEL, GAP = 1.55, 0.16  # inches
+DARK_ORANGE = "#a06a00"  # for letters
+LEAST_APART = 0.12  # of half a panel, between two numbers
+RADII = (15, 20, 30, 60, 100, 200, 400, 1000, 2000, 5000)  # m, named on the right
+SEEN, SMALL = 0.005, 0.25  # of a limit: values between these are drawn larger, and the limit is not shown
+SHADE = "#e4e8ee"
+NAME_SIZE, NAME_LINE = 8.5, 0.16  # points; inches from one line of names to the next
+LINES = 3  # of names, where they stand close together
+
+
+def strip(run: Run) -> Figure:
+    """Returns a figure with panels for curvature, for grade and, if there is a drive, for speed."""
+    assert run.road is not None
+    panels = [_curvature, _grade] + ([_speed] if run.drive is not None else [])
+    header = Header.of(run, WIDTH)
+    high = header.height + BOTTOM + len(panels) * PANEL + (len(panels) - 1) * GAP
+    figure = new_figure(WIDTH, high)
+    header.write(figure)
+    s = stations_of(run.road)
+    for number, panel in enumerate(panels):
+        top = header.height + number * (PANEL + GAP)
+        axes = add_axes(figure, STRIP_LEFT, high - top - PANEL, STRIP_RIGHT, top)
+        axes.set_xlim(0, run.length)
+        axes.grid(color=FAINT, lw=0.8)
+        axes.set_axisbelow(True)
+        panel(axes, run, s)
+        shade_junctions(axes, run.road, "foot" if panel is _grade else None)
+        axes.yaxis.set_label_coords(-0.84 / (WIDTH - STRIP_LEFT - STRIP_RIGHT), 0.5)
+        for place in places_of(run):
+            axes.axvline(place.s, color=place.colour, lw=1.2, ls=(0, (4, 3)), zorder=4)
+        if panel is panels[-1]:
+            axes.set_xlabel("distance along the road, m")
+        else:
+            axes.tick_params(labelbottom=False)
+    name_places(figure.axes[0], places_of(run), run.length)
+    return figure
+
+
+def _curvature(axes: Axes, run: Run, s: Array) -> None:
+    assert run.road is not None
+    bend, limit = run.road.curvature(s), 1 / run.world.limits.min_radius
+    reach = _fill(axes, s, bend, limit)
+    ends = [end for each in passages(run.road) for end in (each.start, each.end)]
+    # ways through junctions have a limit of their own
+    _limits(axes, limit, f"limit: radius {run.world.limits.min_radius:.1f} m", [0.0, *ends, run.length])
+    axes.set_ylabel("curvature, 1/m")
+    _name_sides(axes, "left", "right")
+    other = axes.twinx()
+    other.set_ylim(-reach, reach)
+    ticks = [sign / radius for sign in (1, -1) for radius in _labelled_radii(reach)]
+    other.set_yticks(ticks, [f"{abs(1 / tick):.0f}" for tick in ticks])
+    other.set_ylabel("radius, m", size=10, color=INK)
+    other.tick_params(labelsize=8, colors=SOFT, length=3)
+    for side in other.spines.values():
+        side.set_visible(False)
+
+
+def _fill(axes: Axes, s: Array, values: Array, limit: float) -> float:
+    """Draws signed values so that their limit is visible, if they come near it; returns the axis' largest
+    value."""
+    largest = float(np.abs(values).max())
+    is_small = SEEN * limit < largest < SMALL * limit
+    reach = 1.6 * largest if is_small else max(1.35 * limit, 1.1 * largest)
+    axes.set_ylim(-reach, reach)
+    axes.fill_between(s, values, 0, where=values >= 0, color=BLUE, alpha=0.35, lw=0)
+    axes.fill_between(s, values, 0, where=values <= 0, color=ORANGE, alpha=0.45, lw=0)
+    axes.plot(s, values, color=INK, lw=1.4)
+    axes.axhline(0, color=SOFT, lw=0.8)
+    return reach
+
+
+def _labelled_radii(reach: float) -> list[float]:
+    found: list[float] = []
+    for radius in RADII:
+        below = 1 / found[-1] if found else reach
+        if min(below - 1 / radius, 1 / radius) > LEAST_APART * reach:
+            found.append(radius)
+    return found
+
+
+def _grade(axes: Axes, run: Run, s: Array) -> None:
+    assert run.road is not None
+    grade, limit = run.road.grade(s) * 100, run.world.limits.max_grade * 100
+    _fill(axes, s, grade, limit)
+    _limits(axes, limit, f"limit: {limit:.0f} %", [0.0, run.length])
+    axes.set_ylabel("grade, %")
+    _name_sides(axes, "up", "down")
+
+
+def _speed(axes: Axes, run: Run, s: Array) -> None:
+    assert run.drive is not None
+    speed, limit = run.drive["speed"] * 3.6, run.world.limits.speed_limit * 3.6
+    axes.set_ylim(0, 1.3 * max(limit, float(speed.max())))
+    axes.plot(run.drive["s"], speed, color=INK, lw=1.4)
+    axes.axhline(limit, color=VERMILLION, lw=1.1, ls=(0, (1, 1.5)))
+    _name_limit(axes, limit, f"limit: {limit:.0f} km/h")
+    axes.set_ylabel("speed, km/h")
+
+
+def _name_sides(axes: Axes, above: str, below: str) -> None:
+    for y, text, colour in ((0.75, above, BLUE), (0.25, below, DARK_ORANGE)):
+        axes.annotate(
+            text, (0, y), (-0.6 * POINTS, 0), xycoords="axes fraction", textcoords="offset points",
+            size=9, weight="bold", color=colour, ha="center", va="center", rotation=90,
+        )  # fmt: skip
+
+
+def _limits(axes: Axes, limit: float, text: str, ends: list[float]) -> None:
+    """Draws both signs of a limit, from each station with an even index in ``ends`` to the next; one outside
+    the axes is only named."""
+    if limit > axes.get_ylim()[1]:
+        note(axes, (0.995, 0.96), f"{text}, beyond this axis", 8.5)
+        return
+    for side in (-limit, limit):
+        axes.hlines([side] * (len(ends) // 2), ends[::2], ends[1::2], VERMILLION, (0, (1, 1.5)), lw=1.1)
+    _name_limit(axes, limit, text)
+
+
+def _name_limit(axes: Axes, limit: float, text: str) -> None:
+    axes.annotate(
+        text, (1, limit), (-5, 3), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
+        ha="right", va="bottom", size=8.5, color=VERMILLION, path_effects=HALO,
+    )  # fmt: skip
+
+
+def shade_junctions(axes: Axes, road: Road, names: Literal["top", "foot"] | None = "top") -> None:
+    """Shades the stretches inside junctions. On the axes, x is the distance along the road; the limits of x
+    must be set already. ``names`` is where the names of the junctions are written; None writes none."""
+    wide, high = inches_of(axes)
+    low, top = axes.get_xlim()
+    per_inch = (top - low) / wide
+    ends = [low] * LINES
+    for passage in passages(road):
+        axes.axvspan(passage.start, passage.end, fc=SHADE, ec="none", zorder=0.4)
+        if names is None:
+            continue
+        name = NAMES[passage.entered.kind][0]
+        half = (inches(name, NAME_SIZE) / 2 + 0.05) * per_inch
+        middle = min(max((passage.start + passage.end) / 2, low + half), top - half)
+        row = next((n for n, end in enumerate(ends) if middle - half >= end), 0)
+        ends[row] = middle + half
+        away = (0.05 + NAME_LINE * row) / high
+        axes.text(
+            middle, 1 - away if names == "top" else away, name,
+            transform=axes.get_xaxis_transform(), size=NAME_SIZE, color=SOFT, ha="center",
+            va="top" if names == "top" else "bottom", path_effects=HALO, zorder=7,
+        )  # fmt: skip
+
 
 def height_profile(run: Run, scale: Scale = "equal") -> Figure:
     """Returns a picture of the height over the distance along the road, with grades, crests and sags.
 
-    The height is exaggerated where it would be hard to see to scale; the axis says how many times.
-    """
+    The height is exaggerated where it would be hard to see to scale; the axis says how many times."""
     assert run.road is not None
     s = stations_of(run.road)
     z = run.road.at(s)[:, 2]
@@ -51,7 +215,7 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
     else:
         per_inch = run.length * 1.03 / (WIDTH - LEFT - RIGHT)
         times = exaggeration(float(np.ptp(z)), run.length, per_inch)
-        foot, head = UNDER + STEP * len(places), ABOVE + (LINE * LINES if junctions else 0)
+        foot, head = UNDER + STEP * len(places), ABOVE + (NAME_LINE * LINES if junctions else 0)
         spare = max(0.0, LOWEST - float(np.ptp(z)) * times / per_inch - foot - head) / 2
         foot, head = foot + spare, head + spare
         tall = np.ptp(z) * times / per_inch + foot + head
@@ -79,15 +243,13 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
 def exaggeration(span: float, length: float, per_inch: float, tallest: float = TALLEST) -> int:
     """Returns how many times heights that span ``span`` metres are exaggerated in a picture with ``per_inch``
     metres of road per inch, so that they are ``tallest`` inches high at most. Heights of less than 0.5 % of
-    the length, or of 2 m, are drawn as if they were as much.
-    """
+    the length, or of 2 m, are drawn as if they were as much."""
     shown = max(span, FLATTEST * length, FLATTEST_M)
     return max(each for each in EXAGGERATIONS if each == 1 or each * shown / per_inch <= tallest)
 
 
 def draw_heights(axes: Axes, s: Array, z: Array, label: str = "height, m") -> None:
-    """Draws heights ``z`` over stations ``s``, each ``(n,)``, on axes whose limits are set. The axis says how
-    many times the height is exaggerated."""
+    """Draws heights ``z`` over stations ``s``, each ``(n,)``, on axes whose limits are set."""
     wide, high = inches_of(axes)
     times = float(np.ptp(axes.get_xlim()) / wide / (np.ptp(axes.get_ylim()) / high))
     axes.set_ylabel(label if abs(times - 1) < 0.05 else f"{label}\n(exaggerated {float(f'{times:.2g}'):g} x)")
@@ -118,8 +280,7 @@ def _thesis(run: Run, z: Array, top: float) -> tuple[Figure, Axes, Array, str]:
 def label_heights(axes: Axes, s: Array, z: Array, grade: Array) -> None:
     """Labels crests and sags with their heights, then stretches of constant grade and the steepest place of
     each slope with the grade in percent. ``s``, ``z`` and ``grade``, each ``(n,)``, belong to the drawn line.
-    A label that finds no place beside the texts and markers on the axes is left out.
-    """
+    A label that finds no place beside the texts and markers on the axes is left out."""
     (left, right), (wide, high) = axes.get_xlim(), inches_of(axes)
     per_inch, clear = (right - left) / wide, CLEAR * float(np.ptp(axes.get_ylim())) / high
     marks = [line for line in axes.lines if np.size(line.get_xdata()) < len(s)]

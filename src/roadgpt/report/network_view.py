@@ -13,12 +13,11 @@ from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Network, NetworkRoad, Route
 from roadgpt.network.arrows import arrows
-from roadgpt.network.ground import ground_of
 from roadgpt.network.markings import JunctionSign, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area, stations_of
+from roadgpt.network.route import ground_of
 from roadgpt.network.surface import NetworkSurface
-from roadgpt.report.canvas import GRASS
-from roadgpt.report.text_width import POINTS
+from roadgpt.report.canvas import GRASS, POINTS
 
 VERGE, ASPHALT, PAINT = "#dcd9c3", "#b9bdc3", "#ffffff"
 TINT, ARROW = "#8fb3d6", "#0072b2"
@@ -40,8 +39,7 @@ STEP = 0.5  # m between the points of the edges of the route
 
 def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
     """Draws a network and the lane of the route; a map without a route has no such lane. ``per_inch`` is the
-    number of metres per inch of the picture.
-    """
+    number of metres per inch of the picture."""
     network = route.network
     surface = NetworkSurface.of(network)
     if surface.shoulder > 0:
@@ -74,7 +72,6 @@ def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
 
 
 def _median(network: Network, member: NetworkRoad) -> Array:
-    """Returns the outline ``(n, 2)`` in metres of the median of a road, between its crosswalks."""
     first, last = between_crosswalks(network, member)
     s = stations_of(member.road)
     s = np.r_[first, s[(s > first) & (s < last)], last]
@@ -110,7 +107,6 @@ def path_of(area: Area) -> Path:
 
 
 def _draw_route(axes: Axes, route: Route, per_inch: float) -> None:
-    """Tints the lane of the route, and draws arrows on it."""
     assert route.profile is not None
     s = np.linspace(0.0, route.length, max(2, int(route.length / STEP)) + 1)
     left, right = route.profile.lane(s)

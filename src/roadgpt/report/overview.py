@@ -32,15 +32,15 @@ from roadgpt.report.canvas import (
     VERMILLION,
     YELLOW,
     Format,
+    fitted,
     in_our_style,
+    inches,
     new_figure,
     save_all,
 )
 from roadgpt.report.plan_view import ASPHALT, FAR_ASPHALT, GROUND, STEPS
-from roadgpt.report.text_width import fitted, inches
-from roadgpt.run.card import CARD, read_card
 from roadgpt.run.execution import FIELDS
-from roadgpt.run.folder import run_of_test
+from roadgpt.run.folder import CARD, read_card, run_of_test
 from roadgpt.verdict import graded, percent
 
 PER_PAGE, MOST_PAGES = 100, 10
@@ -62,16 +62,13 @@ class Thumbnail:
 
     number: int
     outcome: str
-    points: Array
-    """Points of the road, ``(n, 2)``, metres."""
+    points: Array  # points of the road, ``(n, 2)``, metres
     failed_at: tuple[float, float] | None = None
     """Position of the car when it failed, x and y in metres; None if it did not fail or has no records."""
-    href: str = ""
-    """Address of the link in a gallery; empty for no link."""
+    href: str = ""  # address of the link in a gallery; empty for no link
     share: float | None = None
     """Largest share of the car that was outside its lane; None if there is no drive."""
-    paved: Outline | None = None
-    """The paved area of a network, in metres; None for a road without junctions."""
+    paved: Outline | None = None  # paved area of a network, in metres; None for a road without junctions
     driven: Array = field(default_factory=lambda: np.empty((0, 3)))
     """Records of the drive, ``(n, 3)``: x and y of the car, and how far its middle was inside the edge of its
     lane (negative outside), metres."""
@@ -93,11 +90,7 @@ def overview(folder: Path | str, formats: Sequence[Format] = PNG) -> list[Path]:
     1,000 roads are drawn.
 
     The roads are read from the files ``test.NNNN.json``, so the function also works for folders that the
-    SBFT competition's tools wrote.
-
-    Raises:
-        UsageError: there is no test in the folder, or the file of a test or of the campaign cannot be read.
-    """
+    SBFT competition's tools wrote."""
     drawn: list[Path] = []
     for number, figure in enumerate(pages(folder), 1):
         name = f"overview{'' if number == 1 else f'-{number}'}.png"
@@ -119,7 +112,6 @@ def pages(folder: Path | str) -> Iterator[Figure]:
 
 
 def _about(folder: Path) -> tuple[str, str]:
-    """Returns the campaign's description, and its seed, driver and oracle."""
     if not (folder / CARD).is_file():
         return folder.name, ""
     request = read_card(folder).request
@@ -144,24 +136,21 @@ def _thumbnail(path: Path) -> Thumbnail:
 
 
 def _paved(path: Path) -> Outline | None:
-    """Returns the paved area of the network in the run of a test; None if it has none."""
     run = run_of_test(path)
     if run is None or not (run / "road.json").is_file():
         return None
     data = _loaded(run / "road.json")
     if not isinstance(data, dict) or "network" not in data:
         return None
-    from roadgpt.network.network_json import network_from_json
+    from roadgpt.network.network import network_from_json
     from roadgpt.report.network_view import path_of
 
     return path_of(network_from_json(data["network"]).paved)
 
 
 def _share(path: Path, records: list[Any], outcome: str) -> float | None:
-    """Returns the largest share of the car outside its lane, by the verdict or else the test's records.
-
-    The last record of a test that passed is at the goal and does not count.
-    """
+    """Returns the largest share of the car outside its lane, by the verdict or else the test's records; the
+    last record of a test that passed is at the goal and does not count."""
     run = run_of_test(path)
     if run is not None and (run / "verdict.json").is_file():
         verdict = _loaded(run / "verdict.json")
@@ -179,9 +168,8 @@ def _loaded(path: Path) -> Any:
 
 
 def page_of(entries: list[Thumbnail], about: tuple[str, str], part: str) -> Figure:
-    """Returns one page with the maps of roads, in rows. ``about`` is the description and the seed. ``part``
-    is the page number with the number of pages; it may be empty.
-    """
+    """Returns one page with the maps of roads; ``about`` is description and seed, ``part`` the
+    page's number."""
     count = len(entries)
     # a number of columns that gives the page about the shape of a sheet of paper
     columns = min(10, max(1, count if count <= 4 else int(np.ceil(np.sqrt(count * 1.05)))))

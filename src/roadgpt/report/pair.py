@@ -14,24 +14,25 @@ from roadgpt.report.canvas import (
     SOFT,
     VERMILLION,
     dress,
+    fitted,
     in_our_style,
+    inches,
     inches_of,
     new_figure,
     note,
 )
 from roadgpt.report.height import THESIS_X, THESIS_Z, draw_heights, exaggeration, label_heights
-from roadgpt.report.labels import Labels
 from roadgpt.report.places import places_of
 from roadgpt.report.plan_view import (
     GROUND,
     Frame,
+    Labels,
     draw_ends,
     draw_road,
     plan_points,
     show_from_above,
     stations_of,
 )
-from roadgpt.report.text_width import fitted, inches
 from roadgpt.road import Road, World
 from roadgpt.run import Run
 
@@ -48,15 +49,15 @@ ROOM = 1.0  # inches of the axes above and under the heights
 def pair(one: Run, other: Run, scale: Scale = "equal", drivers: tuple[str, str] | None = None) -> Figure:
     """Returns a figure that shows two roads, one above the other, on the same scales: axes that fit both
     ("equal"), or the fixed axes of RoadGPT's thesis. If ``drivers`` names two drivers, the figure shows how
-    they drove, and how far outside its lane the car was instead of the heights.
-    """
+    they drove, and how far outside its lane the car was instead of the heights."""
     runs = (one, other)
     figure = new_figure(*SIZE)
     side = max(LEAST, *((1 + 2 * SHARE) * float(np.ptp(_plan(run), axis=0).max()) for run in runs))
     shown = max(run.length for run in runs), max(float(np.ptp(_heights(run))) for run in runs)
     for number, run in enumerate(runs):
         foot = (1 - number) * ROW + BOTTOM
-        frame = THESIS if scale == "thesis" else _square(run, side + 2 * MARGIN)
+        (x, y), half = (_plan(run).min(axis=0) + _plan(run).max(axis=0)) / 2, side / 2 + MARGIN
+        frame = THESIS if scale == "thesis" else Frame(x - half, x + half, y - half, y + half)
         assert run.road is not None
         above = _axes(figure, LEFT, foot, SIDE)
         draw_plan(above, run.road, run.world, frame, frame.width / SIDE)
@@ -82,7 +83,6 @@ def pair(one: Run, other: Run, scale: Scale = "equal", drivers: tuple[str, str] 
 
 
 def _outside(above: Axes, beside: Axes, run: Run, long: float) -> None:
-    """Draws the driven path, and the share of the car outside its lane over the distance."""
     assert run.drive is not None
     driven_path(above, run.drive).set(array=None, color=INK)
     for place in places_of(run):
@@ -100,7 +100,6 @@ def _outside(above: Axes, beside: Axes, run: Run, long: float) -> None:
 
 
 def _axes(figure: Figure, left: float, foot: float, wide: float) -> Axes:
-    """Adds axes of height SIDE at a place in inches."""
     across, high = figure.get_size_inches()
     axes: Axes = figure.add_axes((left / across, foot / high, wide / across, SIDE / high))
     return dress(axes)
@@ -116,16 +115,8 @@ def _heights(run: Run) -> Array:
     return np.asarray(run.road.at(stations_of(run.road))[:, 2])
 
 
-def _square(run: Run, side: float) -> Frame:
-    """Returns a square frame with sides of ``side`` metres, centred on a road."""
-    points = _plan(run)
-    x, y = (points.min(axis=0) + points.max(axis=0)) / 2
-    return Frame(x - side / 2, x + side / 2, y - side / 2, y + side / 2)
-
-
 def draw_plan(axes: Axes, road: Road, world: World, frame: Frame, per_inch: float) -> None:
-    """Draws a road from above, with its start and its end named, on axes that show ``frame``, with
-    ``per_inch`` metres per inch."""
+    """Draws a road from above, its ends named, on axes that show ``frame``, ``per_inch`` metres per inch."""
     show_from_above(axes, frame, 7)
     axes.set_facecolor(GROUND)
     draw_road(axes, road, world, per_inch)
@@ -137,7 +128,6 @@ def draw_plan(axes: Axes, road: Road, world: World, frame: Frame, per_inch: floa
 
 
 def _beside(axes: Axes, run: Run, shown: tuple[float, float], scale: Scale) -> None:
-    """Draws heights over the distance; ``shown`` is the length and the height that the axes cover, metres."""
     assert run.road is not None
     s, z = stations_of(run.road), _heights(run)
     long, span = shown

@@ -1,6 +1,5 @@
 """Finds the places of a Run to mark in pictures: the places of failures, other incidents and findings. For a
-drive that passed, also finds the place where the largest share of the car was outside its lane.
-"""
+drive that passed, also finds the place where the largest share of the car was outside its lane."""
 
 import math
 import textwrap
@@ -12,8 +11,7 @@ from matplotlib.axes import Axes
 
 from roadgpt.check import Finding
 from roadgpt.drive import Drive
-from roadgpt.report.canvas import DARKER, HALO, INK, SEVERE, VERMILLION, inches_of
-from roadgpt.report.text_width import fitted, plain
+from roadgpt.report.canvas import DARKER, HALO, INK, SEVERE, VERMILLION, fitted, inches_of, plain
 from roadgpt.run import Run
 from roadgpt.verdict import Incident, Verdict, percent
 from roadgpt.verdict.judging import far_beyond
@@ -50,12 +48,10 @@ class MarkedPlace:
     x: float
     y: float
     s: float
-    text: str
-    """The label; empty if the place has only a marker."""
+    text: str  # the label; empty if the place has only a marker
     step: int | None = None
     """Index of the step of the drive at which the car was there; None if the place does not come from a
-    drive.
-    """
+    drive."""
     colour: str = VERMILLION
     is_minor: bool = False
     """Whether the place is that of an incident that did not cause the failure; it has a smaller marker."""
@@ -73,12 +69,9 @@ class MarkedPlace:
 
 
 def places_of(run: Run) -> list[MarkedPlace]:
-    """Returns the places to mark, except those of incidents that did not cause the failure.
-
-    For a failed drive, this is the place of the failure. For a drive that passed, it is the place where the
-    largest share of the car was outside its lane; if the car stayed inside, there is no such place. For an
-    invalid road, these are the places of the findings, at most three.
-    """
+    """Returns the places to mark, except those of incidents that did not cause the failure: where the drive
+    failed; where the largest share of the car was outside its lane, if it passed; or of up to three
+    findings."""
     verdict = run.verdict
     if verdict is not None and verdict.cause is not None and verdict.at_xy is not None:
         side = f"\nto the {verdict.side}" if verdict.side else ""
@@ -98,9 +91,7 @@ def places_of(run: Run) -> list[MarkedPlace]:
 
 def minor_places_of(run: Run) -> list[MarkedPlace]:
     """Returns the places of all incidents on a route, without the cause of the failure. Incidents of one kind
-    that follow each other within 15 m share one label, at the first incident; the label gives their number
-    and stations. The groups of incidents that share a label are in the order of their first incidents.
-    """
+    that follow each other within 15 m share one label, with their number and stations, at the first."""
     verdict = run.verdict
     incidents = () if verdict is None else verdict.incidents or ()
     groups: list[list[Incident]] = []
@@ -124,7 +115,6 @@ def minor_places_of(run: Run) -> list[MarkedPlace]:
 
 
 def _named(group: Sequence[Incident]) -> str:
-    """Returns the kind, number and stations of incidents of one kind."""
     first, last = (f"{limit(each.at_s for each in group):.0f}" for limit in (min, max))
     where = f"{first} m" if first == last else f"{first} to {last} m"
     often = f"\n{len(group)} times" if len(group) > 1 else ""
@@ -132,28 +122,23 @@ def _named(group: Sequence[Incident]) -> str:
 
 
 def _farthest(drive: Drive, verdict: Verdict) -> MarkedPlace:
-    """Returns the place where the largest share of the car was outside its lane."""
     step = int(drive["outside"][: drive.lane_steps].argmax())
     x, y, s = (float(drive[name][step]) for name in ("x", "y", "s"))
-    beyond = "" if verdict.beyond is None else f",\n{far_beyond(verdict.beyond)}"
+    beyond = far_beyond(verdict.beyond)
     return MarkedPlace(
-        x, y, s, f"{percent(verdict.max_oob)} of the car outside{beyond}", step, SEVERE[verdict.severity]
+        x, y, s, f"{percent(verdict.max_oob)} of the car outside,\n{beyond}", step, SEVERE[verdict.severity]
     )
 
 
 def _said(finding: Finding) -> str:
-    """Returns the rule in a few words; for an unmet requirement the sentence of the finding."""
     if finding.rule == "promises":
         return textwrap.fill(plain(finding.sentence), LONGEST)
     return RULES.get(finding.rule, finding.rule.replace("_", " "))
 
 
 def name_places(axes: Axes, places: Sequence[MarkedPlace], length: float, at_top: bool = False) -> None:
-    """Labels places on axes whose x is the distance along a road of ``length`` metres.
-
-    Each label is next to the station of its place. The labels are staggered: each label is farther from the
-    bottom of the axes than the label before; with ``at_top``, farther from the top.
-    """
+    """Labels places on axes whose x is the distance along a road of ``length`` metres, each farther from the
+    bottom of the axes than the one before; with ``at_top``, farther from the top."""
     wide, high = inches_of(axes)
     for number, place in enumerate(places):
         is_late = place.s > length / 2
@@ -169,7 +154,6 @@ def name_places(axes: Axes, places: Sequence[MarkedPlace], length: float, at_top
 
 
 def _step(run: Run, time: float | None) -> int | None:
-    """Returns the index of the step of the drive that is nearest to a time in seconds."""
     if run.drive is None or time is None:
         return None
     return int(np.abs(run.drive["time"] - time).argmin())

@@ -1,17 +1,20 @@
-"""Draws the road from above, to scale: shoulders, carriageway, edge lines and centre dashes."""
+"""Draws the road from above, to scale: shoulders, carriageway, edge lines and centre dashes; and places
+labels so that they cover neither the road nor each other."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import islice
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon
 from matplotlib.ticker import MultipleLocator
+from numpy.typing import NDArray
 
 from roadgpt.geometry.curve import Array
 from roadgpt.network import has_no_route, is_route
-from roadgpt.report.canvas import GRASS
-from roadgpt.report.text_width import POINTS
+from roadgpt.report.canvas import GRASS, HALO, INK, POINTS, SOFT, inches
 from roadgpt.road import Edges, Road, World
 
 GROUND, VERGE, ASPHALT, PAINT = "#eef1ea", "#dcd9c3", "#b9bdc3", "#ffffff"
@@ -36,8 +39,7 @@ class Frame:
     def around(cls, points: Array, margin: float, least: float, size: float) -> "Frame":
         """Returns a frame that shows points ``(n, 2)`` with a margin, and is at least ``least`` wide and
         high. If possible, the frame ends at most ``margin`` outside the map, a square with the side ``size``.
-        All is in metres.
-        """
+        All is in metres."""
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
         width, height = np.maximum(high - low, least)
         shape = np.array([max(width, height * NARROWEST), max(height, width / WIDEST)])
@@ -62,9 +64,7 @@ class Frame:
 
 
 def show_from_above(axes: Axes, frame: Frame, most: int) -> None:
-    """Sets limits, labels and grid of axes that show a frame to scale; the grid has at most ``most`` cells
-    across.
-    """
+    """Sets limits, labels and grid of axes that show a frame to scale, at most ``most`` cells across."""
     axes.set(xlim=(frame.x0, frame.x1), ylim=(frame.y0, frame.y1), aspect="equal")
     axes.set_xlabel("x, metres east")
     axes.set_ylabel("y, metres north")
@@ -82,8 +82,7 @@ def stations_of(road: Road) -> Array:
 
 
 def plan_points(road: Road) -> Array:
-    """Returns points, shape ``(n, 2)``, along the centre line of a road; for a route, also along the
-    reference lines of all roads in its network."""
+    """Returns points ``(n, 2)`` along a road; for a route, also along all roads of its network."""
     s = stations_of(road)
     points: Array = road.at(s[np.linspace(0, len(s) - 1, min(len(s), MOST_POINTS)).astype(int)])[:, :2]
     if is_route(road):
@@ -94,8 +93,7 @@ def plan_points(road: Road) -> Array:
 
 def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
     """Draws shoulders, carriageway and, where lanes are wide enough, markings; ``per_inch`` is the number
-    of metres per inch of the picture. For a route, draws the whole network.
-    """
+    of metres per inch of the picture. For a route, draws the whole network."""
     s, profile = stations_of(road), world.profile_of(road)
     if is_route(road):
         from roadgpt.report.network_view import draw_network, draw_network_from_far
@@ -127,8 +125,7 @@ def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
 
 
 def is_far(road: Road, world: World, per_inch: float) -> bool:
-    """Returns whether roads are drawn as lines, because their lanes are too narrow in the picture. The
-    picture has ``per_inch`` metres per inch."""
+    """Returns whether lanes are so narrow at ``per_inch`` metres per inch that roads are drawn as lines."""
     return float(world.profile_of(road).width(0.0)) / per_inch * POINTS < THINNEST_LANE
 
 
@@ -152,3 +149,150 @@ def draw_ends(axes: Axes, road: Road, world: World) -> None:
         pairs = np.stack([across[:-1], across[1:]], axis=1)
         shades = [colours[i % len(colours)] for i in range(len(pairs))]
         axes.add_collection(LineCollection(list(pairs), colors=shades, linewidths=3.2, zorder=5))
+
+
+SIZE, MINOR_SIZE, LINE = 10, 8.5, 0.19  # points, points, inches
+Box = tuple[float, float, float, float]
+"""Left, right, lower and upper border, metres."""
+REACHES = (0.34, 0.5, 0.72, 1.0, 1.4)  # inches from the place to the label
+FAR_REACHES = (1.9, 2.5, 3.2)  # inches, for minor labels only
+COVERED = 16.0  # cost of covering another label
+WAYS = 16
+
+BORDER = "border of the map"
+BORDER_SIZE, HIGH, BORDER_GAP = 8.5, 0.16, 0.05  # points; inches: of the letters, and from the border
+PLACES = 9  # that are tried along a side
+CLEAR = 12.0  # m from the centre line: carriageway, shoulder, and a little more
+
+
+@dataclass
+class Labels:
+    """Places labels on axes so that they cover neither given points nor each other."""
+
+    axes: Axes
+    frame: Frame
+    per_inch: float  # metres per inch of the picture
+    clear_of: Array  # points ``(n, 2)`` that no label should cover
+    radius: float
+    """Radius in metres of the circle around each point of ``clear_of`` that no label should cover."""
+    _boxes: list[Box] = field(default_factory=list)
+    _leaders: list[Array] = field(default_factory=list)
+    """Points on the lines that connect labels with their places, each ``(n, 2)``."""
+
+    def name_border(self, size: float) -> None:
+        """Labels the border of a square map with sides of ``size`` metres, if there is room."""
+        wide = (inches(BORDER, BORDER_SIZE) + 0.1) * self.per_inch
+        offers = _offers(self.frame, size, wide, HIGH * self.per_inch, BORDER_GAP * self.per_inch)
+        clear = ((box, turned) for box, turned in offers if _distances(box, self.clear_of).min() > CLEAR)
+        for box, turned in islice(clear, 1):
+            self._boxes.append(box)
+            self.axes.text(
+                (box[0] + box[1]) / 2, (box[2] + box[3]) / 2, BORDER, ha="center", va="center",
+                size=BORDER_SIZE, color=SOFT, rotation=90 if turned else 0, zorder=0.7,
+            )  # fmt: skip
+
+    def put(
+        self,
+        place: tuple[float, float],
+        text: str,
+        colour: str = INK,
+        away: Array | None = None,
+        is_minor: bool = False,
+    ) -> bool:
+        """Labels a place (x, y) in metres, if it is in the frame; ``away`` is the preferred direction of
+        the label, of length 1. Minor labels have smaller letters and may be farther away; returns False if
+        there was no room for a minor one."""
+        if not self.frame.holds(*place):
+            return True
+        rows = text.split("\n")
+        size, reaches = (MINOR_SIZE, REACHES + FAR_REACHES) if is_minor else (SIZE, REACHES)
+        wide = (inches(text, size) + 0.1) * self.per_inch
+        high = (len(rows) * LINE * size / SIZE + 0.04) * self.per_inch
+        cost, x, y = min(self._offers(place, wide, high, away, reaches), key=lambda offer: offer[0])
+        if is_minor and cost >= COVERED:
+            return False
+        self._boxes.append(_box(x, y, wide, high))
+        self._leaders.append(_leader(place, x, y, self._boxes[-1]))
+        self.axes.annotate(
+            text, place, (x, y), ha="center", va="center", size=size, color=colour, zorder=12,
+            path_effects=HALO, linespacing=1.15,
+            arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.9, "shrinkA": 0, "shrinkB": 5},
+        )  # fmt: skip
+        return True
+
+    def _offers(
+        self,
+        place: tuple[float, float],
+        wide: float,
+        high: float,
+        away: Array | None,
+        reaches: tuple[float, ...],
+    ) -> list[tuple[float, float, float]]:
+        """Returns cost and centre of every place that a label could take."""
+        offers = []
+        for reach in reaches:
+            for angle in np.arange(WAYS) * (2 * np.pi / WAYS):
+                way = np.array([np.cos(angle), np.sin(angle)])
+                # ``reach`` is the distance to the near side of the label, not to its middle
+                x = place[0] + way[0] * (reach * self.per_inch + wide / 2)
+                y = place[1] + way[1] * (reach * self.per_inch + high / 2)
+                cost = reach + (0.0 if away is None else 0.6 * (1 - float(way @ away)))
+                cost += self._cover(x, y, wide, high) + self._crossing(place, x, y, wide, high)
+                offers.append((cost, x, y))
+        return offers
+
+    def _cover(self, x: float, y: float, wide: float, high: float) -> float:
+        x0, x1, y0, y1 = box = _box(x, y, wide, high)
+        is_covered = _distances(box, self.clear_of) < self.radius
+        cost = 10.0 * float(is_covered.mean()) + 2.0 * bool(is_covered.any())
+        cost += COVERED * sum(x0 < b and a < x1 and y0 < d and c < y1 for a, b, c, d in self._boxes)
+        frame = self.frame
+        return cost + 20.0 * (x0 < frame.x0 or x1 > frame.x1 or y0 < frame.y0 or y1 > frame.y1)
+
+    def _crossing(self, place: tuple[float, float], x: float, y: float, wide: float, high: float) -> float:
+        """Returns the cost of lines that cross labels."""
+        own = _box(x, y, wide, high)
+        line = _leader(place, x, y, own)
+        through = sum(bool(_inside(box, line).any()) for box in self._boxes)
+        return 8.0 * (through + sum(bool(_inside(own, other).any()) for other in self._leaders))
+
+
+def _box(x: float, y: float, wide: float, high: float) -> Box:
+    return x - wide / 2, x + wide / 2, y - high / 2, y + high / 2
+
+
+def _leader(place: tuple[float, float], x: float, y: float, box: Box) -> Array:
+    line = np.linspace(place, (x, y), 24)
+    return line[~_inside(box, line)]
+
+
+def _inside(box: Box, points: Array) -> NDArray[np.bool_]:
+    x0, x1, y0, y1 = box
+    x, y = points.T
+    return np.asarray((x > x0) & (x < x1) & (y > y0) & (y < y1))
+
+
+def _offers(frame: Frame, size: float, wide: float, high: float, gap: float) -> Iterator[tuple[Box, bool]]:
+    """Yields boxes beside each visible border, middle first, and whether their text is vertical."""
+    for y in (-gap - high, size + gap):
+        if frame.y0 < y and y + high < frame.y1:
+            for x in _along(max(frame.x0, 0.0) + wide / 2, min(frame.x1, size) - wide / 2):
+                yield (x - wide / 2, x + wide / 2, y, y + high), False
+    for x in (-gap - high, size + gap):
+        if frame.x0 < x and x + high < frame.x1:
+            for y in _along(max(frame.y0, 0.0) + wide / 2, min(frame.y1, size) - wide / 2):
+                yield (x, x + high, y - wide / 2, y + wide / 2), True
+
+
+def _along(low: float, high: float) -> list[float]:
+    if low > high:
+        return []
+    middle = (low + high) / 2
+    return sorted(np.linspace(low, high, PLACES).tolist(), key=lambda place: abs(place - middle))
+
+
+def _distances(box: Box, points: Array) -> Array:
+    x0, x1, y0, y1 = box
+    dx = np.maximum(np.maximum(x0 - points[:, 0], points[:, 0] - x1), 0)
+    dy = np.maximum(np.maximum(y0 - points[:, 1], points[:, 1] - y1), 0)
+    return np.hypot(dx, dy)

@@ -32,11 +32,7 @@ def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None 
         what: a Road, a Design, or a Run that has a road.
         ax: the axes to draw on; None uses matplotlib's current axes.
         world: the World with the widths of lanes and shoulders; None uses the Run's World, or the default
-            World.
-
-    Raises:
-        UsageError: ``what`` is not a Road, a Design or a Run, or is a Run without a road.
-    """
+            World."""
     road, world = _road_of(what, world)
     if ax is None:
         from matplotlib import pyplot
@@ -62,7 +58,6 @@ def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None 
 
 
 def _road_of(what: Any, world: World | None) -> tuple[Road, World]:
-    """Returns the road of a value, and its world."""
     if isinstance(what, Run):
         if what.road is None:
             raise UsageError(f"run {what.index} has no road to plot: {what.description}")
@@ -76,8 +71,7 @@ def _road_of(what: Any, world: World | None) -> tuple[Road, World]:
 @in_our_style
 def png_of(value: Any) -> bytes | None:
     """Returns the bytes of a PNG file with a picture of a Road, a Design, a Run or a Campaign; None if there
-    is nothing to show. The picture of a Campaign is the first page of ``overview``.
-    """
+    is nothing to show. The picture of a Campaign is the first page of ``overview``."""
     figure = _figure(value)
     return None if figure is None else encoded(figure, "png")
 

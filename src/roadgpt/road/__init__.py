@@ -2,20 +2,16 @@
 
 A Design is a human-readable list of segments, written by a designer plug-in. A Road is 3-D geometry. Its
 method ``road.at(s, t)`` returns a point: the station ``s`` is the distance along the centre line, and the
-offset ``t`` is the distance from the centre line, positive to the left.
-"""
+offset ``t`` is the distance from the centre line, positive to the left."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from roadgpt.road.builder import Geometry, build
+from roadgpt.road.builder import Geometry, build, in_short_segments
 from roadgpt.road.design import Design, Segment, read_design
-from roadgpt.road.moving import moved
-from roadgpt.road.oracles import ORACLES
 from roadgpt.road.profile import Edges, Profile
-from roadgpt.road.road import Road, Samples
-from roadgpt.road.short_segments import in_short_segments
-from roadgpt.road.world import CrossSection, Limits, Site, World
+from roadgpt.road.road import Road, Samples, moved
+from roadgpt.road.world import ORACLES, CrossSection, Limits, Site, World
 
 if TYPE_CHECKING:
     from roadgpt.road.opendrive import ImportedRoad, read_opendrive

@@ -5,31 +5,91 @@
 
 ``theta`` is the heading at the start, counter-clockwise from +x, as in the code of the thesis (the prompt in
 the thesis states +y). ``distance`` is the length along the plan curve. A segment may also contain ``radius``,
-``transition`` and ``vertical_radius``, which are not part of the format in the thesis.
-"""
+``transition`` and ``vertical_radius``, which are not part of the format in the thesis."""
 
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Annotated, Any, Literal
+from itertools import pairwise
+from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from roadgpt.errors import UsageError
-from roadgpt.road.elevation import VerticalCurve, vertical_curves
-from roadgpt.road.profile_json import ONLY_NETWORKS
+from roadgpt.road.profile import ONLY_NETWORKS
 
+CREST_RADIUS = 250.0  # m, radius of a parabola where the design gives none
+MOST_OF_SEGMENT = 0.9  # share of a segment that its two parabolas may take, where no radius is given
+MOST_OF_SLOPE = 0.98  # share of a slope, over all its segments, that parabolas with a given radius may take
 MAX_INCLINE = 15.0  # percent, RoadGPT's system prompt
 MAX_TURN = 70.0  # degrees in one segment, RoadGPT's system prompt
 MAX_SEGMENTS = 2000
 REQUIRED = ("distance", "direction", "incline", "turn_degrees")  # fields of each segment in a file
 FITS = 0.99  # a remark is made if less than this share of a given vertical radius can be built
-KEY = re.compile(r"road_segment(\d{1,6})")
-
+SEGMENT_KEY = re.compile(r"road_segment(\d{1,6})")
 Direction = Literal["left", "right", "straight"]
 OTHER_DIRECTION: dict[Direction, Direction] = {"left": "right", "right": "left", "straight": "straight"}
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Length = Annotated[float, Field(ge=0.001, le=100_000, allow_inf_nan=False)]
+
+
+class VerticalCurve(NamedTuple):
+    """The parabola that joins the grades of two segments. Its middle is where the two segments meet."""
+
+    number: int  # index of the second of the two segments, from 0
+    s: float  # station in metres of the middle of the parabola
+    half: float  # half of the length of the parabola in metres
+    change: float  # change of grade as a ratio, positive in a dip
+
+    @property
+    def radius(self) -> float:
+        """The vertical radius of the parabola in metres."""
+        return 2 * self.half / abs(self.change)
+
+
+def vertical_curves(
+    distances: Sequence[float], grades: Sequence[float], radii: Sequence[float | None]
+) -> list[VerticalCurve]:
+    """Returns the vertical curves where grades change, in order. ``distances`` are the lengths of segments in
+    metres, and ``grades`` their grades as ratios. ``radii`` are the radii in metres of the curves at the
+    starts of the segments; None for a default radius.
+
+    A curve whose radius is given has the length that this radius requires. It is shortened where it would
+    overlap its neighbour or extend beyond the road."""
+    joints: list[tuple[int, float, float]] = []
+    wants: list[float] = []
+    at = 0.0
+    for i in range(1, len(grades)):
+        at += distances[i - 1]
+        change, radius = grades[i] - grades[i - 1], radii[i]
+        shorter = min(distances[i - 1], distances[i])
+        usual = min(CREST_RADIUS * abs(change) / 2, MOST_OF_SEGMENT * shorter / 2)
+        half = usual if radius is None else radius * abs(change) / 2
+        if half > 1e-6:
+            joints.append((i, at, change))
+            wants.append(half)
+    stations = [0.0, *(s for _, s, _ in joints), at + distances[-1]]
+    rooms = [MOST_OF_SLOPE * (b - a) for a, b in pairwise(stations)]
+    own = [radii[i] is not None for i, _, _ in joints]
+    out = []
+    for n, (i, s, change) in enumerate(joints):
+        half = wants[n]
+        if own[n]:
+            before, after = n - 1, n + 1
+            half = min(half, _share(wants, own, rooms[n], n, before if n else None))
+            half = min(half, _share(wants, own, rooms[n + 1], n, after if after < len(joints) else None))
+        if half > 1e-6:
+            out.append(VerticalCurve(i, s, half, change))
+    return out
+
+
+def _share(wants: Sequence[float], own: Sequence[bool], room: float, n: int, other: int | None) -> float:
+    """Returns the length in metres that half of curve ``n`` may take up of the slope at one of its ends."""
+    if other is None:
+        return room
+    if not own[other]:  # a curve without a given radius keeps its length
+        return room - wants[other]
+    return room * wants[n] / max(wants[n] + wants[other], 1e-9)
 
 
 class FrozenFields(BaseModel):
@@ -54,8 +114,7 @@ class Segment(FrozenFields):
     """Length in metres of the transition curve (clothoid) at either end of a turn."""
     vertical_radius: Length | None = None
     """Radius in metres of the vertical curve at the start of the segment. This curve joins the grade of the
-    previous segment to the grade of this one.
-    """
+    previous segment to the grade of this one."""
 
     def mirrored(self) -> "Segment":
         """Returns the segment with left and right exchanged."""
@@ -79,10 +138,8 @@ class Design(FrozenFields):
         return f"Design({about}, from {self.starting_point} at {self.theta:g} degrees)"
 
     def to_json(self) -> dict[str, Any]:
-        """Returns the design as a dictionary in the JSON format of the RoadGPT thesis.
-
-        Whole numbers become integers, as in the answers of the language models in the thesis.
-        """
+        """Returns the design in the JSON format of the RoadGPT thesis. Whole numbers become integers, as in
+        the answers of the language models there."""
         return {
             "starting_point": [as_written(v) for v in self.starting_point],
             "theta": as_written(self.theta),
@@ -116,16 +173,14 @@ def written_segments(segments: Sequence[Segment]) -> dict[str, Any]:
 
 
 def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
-    """Reads a dictionary in the format of the RoadGPT thesis; returns the Design and remarks.
-
-    Each remark is a sentence about a contradiction in the data or an unusual value.
+    """Reads a dictionary in the format of the RoadGPT thesis; returns the Design, and a sentence about each
+    contradiction or unusual value in the data.
 
     If ``direction`` contradicts the sign of ``turn_degrees``, as in an example in the thesis, ``direction``
     is used. A turn of more than 70 degrees or an incline of more than 15 % is kept, with a remark.
 
-    Raises:
-        UsageError: There is no segment, or a field is missing, misnamed, of the wrong type or out of range.
-    """
+    Raises UsageError if there is no segment, or a field is missing, misnamed, of the wrong type or out of
+    range."""
     if not isinstance(data, Mapping):
         raise UsageError("a design is a JSON object with starting_point, theta and road_segment1, ...")
     if data.get("left_hand", False) is not False:
@@ -161,7 +216,7 @@ def _unfit(segments: Sequence[Segment]) -> Iterator[str]:
 def _numbered(data: Mapping[str, Any]) -> list[tuple[int, Any]]:
     found = []
     for key, raw in data.items():
-        match = KEY.fullmatch(str(key))
+        match = SEGMENT_KEY.fullmatch(str(key))
         if match:
             found.append((int(match[1]), raw))
         elif key not in ("starting_point", "theta"):
@@ -178,9 +233,7 @@ def _numbered(data: Mapping[str, Any]) -> list[tuple[int, Any]]:
 
 
 def misnumbered(what: str, numbers: Sequence[int]) -> tuple[str, ...]:
-    """Returns a remark if the numbers of ``what`` are not 1, 2, 3, and so on, in the order in which they are
-    taken; an empty tuple if they are.
-    """
+    """Returns a remark if ``what`` is not numbered 1, 2, 3, and so on, in the order in which it is taken."""
     if [*numbers] == [*range(1, len(numbers) + 1)]:
         return ()
     told = ", ".join([*map(str, numbers[:12]), *(["..."] if len(numbers) > 12 else [])])

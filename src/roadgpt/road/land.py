@@ -1,7 +1,4 @@
-"""Creates the terrain around a road.
-
-Near the road, the terrain lies below the road surface; farther away, it has gentle hills.
-"""
+"""Creates the terrain around a road: below the road surface near it, and with gentle hills farther away."""
 
 from dataclasses import dataclass
 
@@ -23,20 +20,16 @@ LONGEST_STEP = 2.0  # m along the road
 
 @dataclass(frozen=True, eq=False)
 class Land:
-    """Heights of the terrain on a rectangular grid with columns at ``x`` and rows at ``y``, in metres.
-
-    Rows and columns are ``cell`` metres apart, except near the border of the grid, where they are farther
-    apart.
+    """Heights of the terrain on a rectangular grid with columns at ``x`` and rows at ``y``, in metres. Rows
+    and columns are ``cell`` metres apart, except near the border of the grid, where they are farther apart.
     """
 
     x: Array
     y: Array
-    heights: Array
-    """Heights in metres, of shape (rows, columns)."""
+    heights: Array  # heights in metres, of shape (rows, columns)
     away: Array
     """Distance in metres from each grid point to the strip along the road, of shape (rows, columns). In this
-    strip, the land follows the height of the road.
-    """
+    strip, the land follows the height of the road."""
     cell: float
 
     @classmethod
@@ -51,8 +44,7 @@ class Land:
     def beneath(cls, line: Array, reach: float | None, floor: float) -> "Land":
         """Returns the terrain beneath roads, which are given by points ``(n, 3)`` in metres, at most
         ``LONGEST_STEP`` apart. Up to ``reach`` metres from the points, the terrain lies below the points.
-        With ``reach`` None, the terrain is flat, below all points and at most at height ``floor``.
-        """
+        With ``reach`` None, the terrain is flat, below all points and at most at height ``floor``."""
         low, high = line[:, :2].min(axis=0), line[:, :2].max(axis=0)
         low, high = np.minimum(low, (low + high - LEAST) / 2), np.maximum(high, (low + high + LEAST) / 2)
         span = float((high - low).max()) + 2 * MARGIN
@@ -66,10 +58,8 @@ class Land:
         return cls(*_widened(x, y, heights, away), cell)
 
     def height(self, x: Array, y: Array) -> Array:
-        """Returns interpolated heights ``(n,)`` in metres at points ``x``, ``y``, ``(n,)`` each.
-
-        Beyond the grid, the height is that of the nearest point on its border.
-        """
+        """Returns interpolated heights ``(n,)`` in metres at points ``x``, ``y``, ``(n,)`` each. Beyond the
+        grid, the height is that of the nearest point on its border."""
         return self.between(self.heights, x, y)
 
     def between(self, values: Array, x: Array, y: Array) -> Array:
@@ -93,10 +83,7 @@ def _lowest(road: Road, profile: Profile, line: Array) -> Array:
 
 
 def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple[Array, Array]:
-    """Returns the heights, and the distances ``away`` as in ``Land``, each of shape (rows, columns).
-
-    Near the road the heights are a little below it; farther away they form smooth land with hills.
-    """
+    """Returns the heights, and the distances ``away`` as in ``Land``, each of shape (rows, columns)."""
     lowest = np.full((len(y), len(x)), np.inf)
     i = np.rint((line[:, 0] - x[0]) / cell).astype(int)
     j = np.rint((line[:, 1] - y[0]) / cell).astype(int)
@@ -119,7 +106,7 @@ def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple
 
 
 def _hills(x: Array, y: Array, cell: float) -> Array:
-    """Returns waves of several lengths, without those that are too short for the cells, in metres."""
+    """Returns waves of several lengths in metres, without those that are too short for the cells."""
     swell = np.sin(x / 37 + 1.3) * np.sin(y / 43 + 0.4) * (cell < 44)
     swell = swell + 0.5 * np.sin(x / 17 - y / 21) * (cell < 20)
     return np.asarray(3.4 * (swell - 0.3) + 5.5 * np.sin(x / 71 + 2.0) * np.sin(y / 83 + 0.9))

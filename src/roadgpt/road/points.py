@@ -8,8 +8,7 @@
 
 All values are in metres. Widths are not used, because lane widths are defined by the World. If points have a
 height and a width, and all heights are equal, the heights are not used either, since they only state the
-ground height of the simulator's map. Sentences say so.
-"""
+ground height of the simulator's map. Sentences say so."""
 
 import csv
 import math
@@ -46,8 +45,7 @@ Points = tuple[list[Any], tuple[str, ...]]
 
 def points_in(data: Any) -> Points | None:
     """Returns the road points in parsed JSON; None if there are none. Of several lists of points in a
-    dictionary, the one whose key comes first in ``KEYS`` is returned.
-    """
+    dictionary, the one whose key comes first in ``KEYS`` is returned."""
     if isinstance(data, dict):
         found = [key for key in KEYS if isinstance(data.get(key), list) and data[key]]
         if found:
@@ -73,15 +71,13 @@ def plain(points: list[Any]) -> Points:
 
 
 def _number(point: dict[str, Any]) -> float:
-    """Returns the sequence number of a point; 0 if the point has none."""
     number = point.get("sequenceNumber", 0)
     return float(number) if isinstance(number, (int, float)) else 0.0
 
 
 def points_of_table(text: str) -> Points:
     """Returns the points in the text of a .csv or .tsv table: [x, y] or [x, y, z] for each row. Raises
-    UsageError if it has no columns for x and y, or a cell is not a number.
-    """
+    UsageError if it has no columns for x and y, or a cell is not a number."""
     lines = [line for line in text.lstrip("\ufeff").splitlines() if line.strip() and line.lstrip()[0] != "#"]
     if len(lines) > MOST_ROWS:
         raise UsageError(f"the table has {len(lines):,} rows; give {MOST_ROWS:,} at most, a metre apart")
@@ -134,8 +130,7 @@ def _cell(row: list[str], column: int, number: int, delimiter: str | None) -> fl
 
 def _value(text: str, delimiter: str | None) -> float | None:
     """Returns the finite number that a text states; None if it states none. Between semicolons or tabs, a
-    decimal comma is accepted.
-    """
+    decimal comma is accepted."""
     try:
         value = float(text.replace(",", ".") if delimiter in (";", "\t") else text)
     except ValueError:

@@ -8,18 +8,18 @@
 
 Lanes on the right of the centre line lead along the road, towards larger stations; lanes on the left lead
 against it. If traffic drives on the left, the lanes on the left lead along the road. The default is one lane
-in each direction.
-"""
+in each direction."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from math import inf
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 
@@ -32,24 +32,21 @@ Marking = Literal["solid", "broken", "none", "double"]
 """A double line is two solid lines."""
 Width = float | CubicProfile
 """A width in metres: one number, or cubics of the station."""
+KNOWN = {"left", "right", "driven", "centre_marking", "superelevation", "offset", "median", "left_hand"}
+ONLY_NETWORKS = "traffic drives on the left on the roads of networks only"
+MOST_LANES = 20  # on one side
+MOST_ROWS = 20_000
+WIDEST = 100.0  # m, of a lane or shoulder
+LARGEST = 1e12  # greatest absolute value of a station or a coefficient
+STEEPEST = 0.35  # rad, of superelevation
 
 
 class Edges(NamedTuple):
-    """The offsets of a left and a right edge, in metres, positive to the left of the centre line.
-
-    Both arrays have the shape of the stations for which they were computed.
-    """
+    """The offsets of a left and a right edge, in metres, positive to the left of the centre line. Both arrays
+    have the shape of the stations for which they were computed."""
 
     left: Array
     right: Array
-
-
-class PaintedLine(NamedTuple):
-    """One longitudinal road marking."""
-
-    marking: Marking
-    edges: Edges
-    """The offsets of the left and the right edge of the line."""
 
 
 @dataclass(frozen=True)
@@ -58,8 +55,7 @@ class Lane:
 
     kind: Kind
     width: Width
-    marking: Marking = "none"
-    """The marking at the outer edge of the lane."""
+    marking: Marking = "none"  # the marking at the outer edge of the lane
 
 
 @dataclass(frozen=True)
@@ -85,8 +81,7 @@ class Profile:
 
     Raises:
         ValueError: ``driven`` is not the index of a driving lane, a shoulder is followed by a driving lane, a
-            width is negative, or a width, the superelevation or the offset does not end with a constant.
-    """
+            width is negative, or a width, the superelevation or the offset does not end with a constant."""
 
     left: tuple[Lane, ...]
     right: tuple[Lane, ...]
@@ -120,16 +115,9 @@ class Profile:
         shoulder: float = 3.0,
         superelevation_angle: CubicProfile | None = None,
     ) -> "Profile":
-        """Returns a cross-section of equally wide lanes. The tested car drives in the rightmost lane.
-
-        Args:
-            forward: Number of lanes in the direction of the road, one or more.
-            backward: Number of oncoming lanes. With 0 the road is one-way.
-            lane_width: Width of every lane in metres.
-            shoulder: Width of the shoulder on each side in metres; 0 for none.
-            superelevation_angle: The angle in radians by which the surface is rotated about the centre line,
-                positive where it falls to the right; None for a level cross-section.
-        """
+        """Returns a cross-section of equally wide lanes; the tested car drives in the rightmost one. The
+        numbers of lanes are those along the road, one or more, and against it. The width of every lane, and
+        of the shoulder on each side, is in metres. For ``superelevation_angle`` see ``Profile``."""
 
         def side(count: int) -> tuple[Lane, ...]:
             inner = [Lane("driving", lane_width, "broken")] * (count - 1)
@@ -179,10 +167,8 @@ class Profile:
 
     @property
     def against_ids(self) -> range:
-        """The ids in OpenDRIVE of the oncoming driving lanes, from the centre line outwards.
-
-        If there is a median, its id is ``-side``, and these ids begin after it.
-        """
+        """The ids in OpenDRIVE of the oncoming driving lanes, from the centre line outwards. If there is a
+        median, its id is ``-side``, and these ids begin after it."""
         first = 2 if self.median else 1
         return range(-self.side * first, -self.side * (first + self.count[1]), -self.side)
 
@@ -198,9 +184,7 @@ class Profile:
 
     @property
     def shoulder_width(self) -> float:
-        """The width in metres of the shoulder beside the lanes along the road, at its start; 0 if there is
-        none.
-        """
+        """The width in metres of the shoulder beside the lanes along the road, at its start; 0 for none."""
         return float(self.shoulder(0.0))
 
     @property
@@ -210,18 +194,14 @@ class Profile:
 
     @cached_property
     def paved_reach(self) -> float:
-        """The largest distance in metres between the centre line and an edge of the carriageway.
-
-        If the widths of several lanes vary, the value is an upper bound.
-        """
+        """The largest distance in metres between the centre line and an edge of the carriageway. If the
+        widths of several lanes vary, the value is an upper bound."""
         return self._with_offset(_driving(self.left), _driving(self.right))
 
     @cached_property
     def reach(self) -> float:
-        """The largest distance in metres between the centre line and the edge of a lane or shoulder.
-
-        If the widths of several lanes or shoulders vary, the value is an upper bound.
-        """
+        """The largest distance in metres between the centre line and the edge of a lane or shoulder. If the
+        widths of several lanes or shoulders vary, the value is an upper bound."""
         return self._with_offset(self.left, self.right)
 
     @property
@@ -236,8 +216,7 @@ class Profile:
     @property
     def begins(self) -> tuple[float, float]:
         """The distances in metres from the line between the directions to the first lane on the left and to
-        the first on the right. The median lies on the side of the oncoming lanes.
-        """
+        the first on the right. The median lies on the side of the oncoming lanes."""
         return (0.0, self.median) if self.left_hand else (self.median, 0.0)
 
     def centre(self, s: ArrayLike) -> Array:
@@ -269,8 +248,7 @@ class Profile:
 
     def sides(self, s: ArrayLike) -> Edges:
         """Returns the offsets at which the lanes on the left and those on the right begin: the edges of the
-        median. Without a median, both are the offset of the line between the directions.
-        """
+        median. Without a median, both are the offset of the line between the directions."""
         centre, begin = self.centre(s), self.begins
         return Edges(centre + begin[0], centre - begin[1])
 
@@ -280,18 +258,14 @@ class Profile:
         return Edges(left + _sum(self.left, s), right - _sum(self.right, s))
 
     def lane_edges(self, s: ArrayLike) -> tuple[list[Array], list[Array]]:
-        """Returns the offsets of the outer edges of all lanes and shoulders, left and right of the centre.
-
-        The result is a list for the left side and a list for the right side. Each list has one array per
-        lane, from the centre line outwards.
-        """
+        """Returns the offsets of the outer edges of all lanes and shoulders: a list for the left side and one
+        for the right, each with one array per lane, from the centre line outwards."""
         begin = self.sides(s)
         left = [begin.left + _sum(self.left[: n + 1], s) for n in range(len(self.left))]
         return left, [begin.right - _sum(self.right[: n + 1], s) for n in range(len(self.right))]
 
     def boundaries(self, s: ArrayLike) -> list[tuple[Marking, Array]]:
         """Returns the boundaries of all driving lanes from left to right, each with its marking and offsets.
-
         The first and the last one are the edges of the carriageway; a median has a boundary on either side.
         """
         left, right = self.lane_edges(s)
@@ -305,25 +279,22 @@ class Profile:
             *((lane.marking, t) for lane, t in lanes_right),
         ]
 
-    def markings(self, s: ArrayLike) -> list[PaintedLine]:
-        """Returns the painted lines from left to right; boundaries without a marking are left out.
-
-        A line between two lanes is painted over their boundary. A line at an edge of the carriageway is
-        painted on the lane's side of this edge.
-        """
-        found = []
+    def markings(self, s: ArrayLike) -> list[tuple[Marking, Edges]]:
+        """Returns the painted lines from left to right, each with the offsets of its own left and right edge;
+        boundaries without a marking are left out. A line
+        between two lanes is painted over their boundary. A line at an edge of the carriageway is painted on
+        the lane's side of this edge."""
+        found: list[tuple[Marking, Edges]] = []
         for marking, edges in self._painted_boundaries(s):
             if marking == "double":
-                found.append(PaintedLine("solid", Edges(edges.left, edges.left - LINE)))
-                found.append(PaintedLine("solid", Edges(edges.right + LINE, edges.right)))
+                found.append(("solid", Edges(edges.left, edges.left - LINE)))
+                found.append(("solid", Edges(edges.right + LINE, edges.right)))
             elif marking != "none":
-                found.append(PaintedLine(marking, edges))
+                found.append((marking, edges))
         return found
 
     def _painted_boundaries(self, s: ArrayLike) -> list[tuple[Marking, Edges]]:
-        """Returns the marking of each boundary and the marking's edges; both lie on the boundary if it has no
-        marking.
-        """
+        """Returns the marking of each boundary, and its edges; both lie on a boundary without a marking."""
         rows = self.boundaries(s)
         sides = [1, *[0] * (len(rows) - 2), -1]
         return [
@@ -332,10 +303,8 @@ class Profile:
         ]
 
     def marking_limits(self, s: ArrayLike) -> Edges:
-        """Returns the offsets of the outer edges of the two lane markings that bound the driven lane.
-
-        If a boundary of the lane has no marking, the offset of the boundary is returned.
-        """
+        """Returns the offsets of the outer edges of the two lane markings that bound the driven lane. If a
+        boundary of the lane has no marking, the offset of the boundary is returned."""
         at = self.boundaries_to_left
         (_, left), (_, right) = self._painted_boundaries(s)[at : at + 2]
         return Edges(left.left, right.right)
@@ -357,7 +326,6 @@ def as_cubics(width: Width) -> CubicProfile:
 
 
 def _driving(lanes: Sequence[Lane]) -> Sequence[Lane]:
-    """Returns the driving lanes from the centre line up to the first shoulder."""
     count = next((n for n, lane in enumerate(lanes) if lane.kind != "driving"), len(lanes))
     return lanes[:count]
 
@@ -377,9 +345,7 @@ def _sum(lanes: Sequence[Lane], s: ArrayLike) -> Array:
 
 def _painted(t: Array, side: int, is_double: bool) -> Edges:
     """Returns the edges of a line painted over the offset ``t`` or, at an edge of the carriageway, inside it.
-
-    ``side`` is 1 at the left edge, -1 at the right edge, and 0 between two lanes.
-    """
+    ``side`` is 1 at the left edge, -1 at the right edge, and 0 between two lanes."""
     if not side:
         half = (LINE + DOUBLE) / 2 if is_double else LINE / 2
         return Edges(t + half, t - half)
@@ -387,7 +353,6 @@ def _painted(t: Array, side: int, is_double: bool) -> Edges:
 
 
 def _extremes(width: Width) -> tuple[float, float]:
-    """Returns the smallest and the largest width in metres."""
     if not isinstance(width, CubicProfile):
         return width, width
     return width.extremes()
@@ -396,3 +361,120 @@ def _extremes(width: Width) -> tuple[float, float]:
 def _reach(lanes: Sequence[Lane]) -> float:
     """Returns the largest distance to the last lane's outer edge; an upper bound if several widths vary."""
     return sum(_extremes(lane.width)[1] for lane in lanes)
+
+
+def profile_to_json(profile: Profile) -> dict[str, Any]:
+    """Returns the cross-section as the field ``profile`` of a road file. A width is a number, or rows ``[s,
+    a, b, c, d]``: at a distance ``u`` in metres after station ``s``, it is ``a + b u + c u^2 + d u^3``
+    metres. The superelevation is always written as rows, in radians."""
+    out = {
+        "left": [_lane_to_json(lane) for lane in profile.left],
+        "right": [_lane_to_json(lane) for lane in profile.right],
+        "driven": profile.driven,
+        "centre_marking": profile.centre_marking,
+    }
+    if profile.median:
+        out["median"] = profile.median
+    if profile.offset != 0:
+        out["offset"] = _written(profile.offset)
+    if profile.left_hand:
+        out["left_hand"] = True
+    angle = profile.superelevation_angle
+    return out if angle is None else {**out, "superelevation": _rows(angle)}
+
+
+def profile_from_json(data: Any) -> Profile:
+    """Restores a cross-section; raises UsageError if a field is missing, unknown, wrong or out of range."""
+    try:
+        _only(data, KNOWN)
+        angle = data.get("superelevation")
+        driven = data["driven"]
+        if not isinstance(driven, int) or isinstance(driven, bool):
+            raise ValueError("driven is the index of a lane along the road")
+        if not isinstance(left_hand := data.get("left_hand", False), bool):
+            raise ValueError("left_hand is true or false")
+        return Profile(
+            _lanes(data["left"]),
+            _lanes(data["right"]),
+            driven,
+            _one_of(data["centre_marking"], Marking),
+            None if angle is None else _cubics(angle, STEEPEST),
+            _width(data.get("offset", 0.0), -WIDEST),
+            _median(data.get("median", 0.0)),
+            left_hand,
+        )
+    except KeyError as error:
+        raise UsageError(f"the profile of the road cannot be read: {error} is missing; add it") from error
+    except (TypeError, ValueError, OverflowError) as error:
+        raise UsageError(f"the profile of the road cannot be read: {error}; correct the file") from error
+
+
+def _lane_to_json(lane: Lane) -> dict[str, Any]:
+    return {"kind": lane.kind, "width": _written(lane.width), "marking": lane.marking}
+
+
+def _written(width: Width) -> float | list[list[float]]:
+    return _rows(width) if isinstance(width, CubicProfile) else width
+
+
+def _rows(cubics: CubicProfile) -> list[list[float]]:
+    return [[s, *row] for s, row in cubics.rows]
+
+
+def _lanes(rows: Any) -> tuple[Lane, ...]:
+    if not isinstance(rows, list) or len(rows) > MOST_LANES:
+        raise ValueError(f"lanes are a list of up to {MOST_LANES} objects with kind, width and marking")
+    for row in rows:
+        _only(row, {"kind", "width", "marking"})
+    return tuple(
+        Lane(_one_of(row["kind"], Kind), _width(row["width"]), _one_of(row["marking"], Marking))
+        for row in rows
+    )
+
+
+def _width(data: Any, least: float = 0.0) -> Width:
+    if isinstance(data, list):
+        return _cubics(data, WIDEST)
+    if isinstance(data, bool) or not isinstance(data, (int, float)) or not least <= data <= WIDEST:
+        raise ValueError(f"a width is a number from {least:g} to {WIDEST:g}, or rows [s, a, b, c, d]")
+    return float(data)
+
+
+def _median(data: Any) -> float:
+    width = _width(data)
+    if isinstance(width, CubicProfile):
+        raise ValueError(f"a median is a number from 0 to {WIDEST:g}")
+    return width
+
+
+def _cubics(rows: Any, most: float) -> CubicProfile:
+    if not isinstance(rows, list) or not 0 < len(rows) <= MOST_ROWS:
+        raise ValueError(f"1 to {MOST_ROWS:,} rows [s, a, b, c, d] are needed")
+    if any(
+        not isinstance(row, list) or len(row) != 5 or any(isinstance(v, bool) for v in row) for row in rows
+    ):
+        raise ValueError("a row has five numbers [s, a, b, c, d]")
+    numbers = [tuple(float(v) for v in row) for row in rows]
+    if not all(abs(v) <= LARGEST for row in numbers for v in row):
+        raise ValueError(f"a number is not finite, or beyond {LARGEST:g}")
+    cubics = CubicProfile(tuple(row[0] for row in numbers), tuple((a, b, c, d) for _, a, b, c, d in numbers))
+    if found := cubics.beyond(-most, most):
+        raise ValueError(f"a value is {found[1]:g} at s = {found[0]:g} m, beyond {most:g}")
+    return cubics
+
+
+def _only(data: Any, known: set[str]) -> None:
+    if not isinstance(data, Mapping):
+        raise ValueError("a profile and each of its lanes is a JSON object")
+    unknown = sorted(set(map(str, data)) - known)
+    if unknown:
+        raise ValueError(
+            f"the field '{unknown[0][:40]}' is unknown; the fields are {', '.join(sorted(known))}"
+        )
+
+
+def _one_of(value: Any, choices: Any) -> Any:
+    names: Sequence[str] = get_args(choices)
+    if value not in names:
+        raise ValueError(f"'{str(value)[:40]}' is unknown; give {' or '.join(names)}")
+    return value

@@ -1,5 +1,9 @@
-"""Defines the Road: 3-D geometry that is evaluated at stations and offsets."""
+"""Defines the Road: 3-D geometry that is evaluated at stations and offsets. Also moves and reverses roads.
 
+Source of the distances of a drive from the ends of its road: the simulations of the RoadGPT thesis and of the
+SBFT competition."""
+
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Self
@@ -19,11 +23,14 @@ from roadgpt.geometry import (
     SplineCurve,
     SplineProfile,
     project,
+    shifted,
 )
 from roadgpt.geometry.curve import Array
-from roadgpt.road.profile import Profile
-from roadgpt.road.profile_json import ONLY_NETWORKS, profile_from_json, profile_to_json
+from roadgpt.road.profile import ONLY_NETWORKS, Profile, profile_from_json, profile_to_json
 
+START = 2.5  # m along the road: station of the car's centre of gravity at the start
+GOAL = 8.0  # m from the end of the left edge of the lane; a car that comes this close has arrived
+SHORTEST_DRIVE = START + GOAL  # m; on a shorter road a car has arrived before it sets off
 CONTROL_SPACING = 2.0  # m, so that SBFT's spline keeps the designed radii (14.8 m nominal is accepted)
 MOST_CONTROL_POINTS = 500  # SBFT rule
 FARTHEST = 25_000_000.0  # m, of a coordinate; Web Mercator reaches 20,037,508
@@ -35,16 +42,14 @@ SHARPEST = 1e3  # 1/m, greatest curvature in a file
 STEEPEST = 10.0  # metres up or down for each metre forward
 LOOKED_AT = 5000  # number of stations at which the grade of a road is checked
 MOST_POINTS = 200_000  # of a road that is given by points
+NOT_POINTS = "road points are lists of two or three numbers each, like [[10, 20], [60, 25]]"
 BANKED_ROUNDS = 4  # of the iteration that finds the station of a point on a banked road
 
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Points, headings, curvatures and grades of a road at stations ``s``.
-
-    Every array has shape ``(n,)``. Lengths are in metres, headings in radians, curvatures in 1/m, and grades
-    are ratios.
-    """
+    """Points, headings, curvatures and grades of a road at stations ``s``. Every array has shape ``(n,)``.
+    Lengths are in metres, headings in radians, curvatures in 1/m, and grades are ratios."""
 
     s: Array
     x: Array
@@ -62,11 +67,8 @@ class Samples:
 
 @dataclass(frozen=True, eq=False)
 class Road:
-    """A road, defined by its centre line in plan (a plane curve) and its elevation profile.
-
-    ``nodes`` are the control points ``(n, 2)`` or ``(n, 3)`` in metres if the road was built from points;
-    None otherwise.
-    """
+    """A road, defined by its centre line in plan (a plane curve) and its elevation profile. ``nodes`` are the
+    control points ``(n, 2)`` or ``(n, 3)`` in metres if the road was built from points; None otherwise."""
 
     is_route: ClassVar[bool] = False
     """Whether the road is a Route, which leads through the junctions of a network."""
@@ -82,18 +84,12 @@ class Road:
 
     @classmethod
     def through(cls, points: ArrayLike, road_points: ArrayLike | None = None) -> Self:
-        """Returns the road whose centre line is the SBFT competition's spline through the given points.
+        """Returns the road whose centre line is the SBFT competition's spline through points ``(n, 2)`` or
+        ``(n, 3)`` in metres. ``road_points`` are the control points of the test that it was read from, if
+        they differ.
 
-        Args:
-            points: The points ``(n, 2)`` or ``(n, 3)`` in metres through which the spline passes.
-            road_points: Control points of the test that the road was read from, if they differ from
-                ``points``.
-
-        Raises:
-            UsageError: The array does not have this shape, there are fewer than two points or more than
-                200,000, a number is not finite or beyond 25,000 km, two neighbouring points are the same, or
-                the road is too long or too steep.
-        """
+        Raises UsageError if there are fewer than two points or more than 200,000, a number is not finite or
+        beyond 25,000 km, two neighbouring points are the same, or the road is too long or too steep."""
         nodes = _checked(points)
         control = None if road_points is None else _checked(road_points)[:, :2]
         plan = SplineCurve.through(nodes)
@@ -117,10 +113,8 @@ class Road:
 
     def at(self, s: ArrayLike, t: ArrayLike = 0.0) -> Array:
         """Returns points ``(..., 3)`` in metres at stations ``s`` and offsets ``t`` to the left, in metres.
-
         On a road with superelevation, offsets are measured along the surface, which is rotated about the
-        centre line. Source: ASAM OpenDRIVE 1.8, reference line coordinate system.
-        """
+        centre line. Source: ASAM OpenDRIVE 1.8, reference line coordinate system."""
         s, t = np.broadcast_arrays(np.asarray(s, float), np.asarray(t, float))
         heading = self.plan.heading(s)
         xy, z, back = self.plan.at(s), self.elevation.height(s), None
@@ -133,19 +127,16 @@ class Road:
 
     def _banked(self, s: Array, t: Array) -> tuple[Array, Array, Array]:
         """Returns how far, in metres, points on the inclined surface lie to the left of, above and behind the
-        points of the centre line at ``s``.
-        """
+        points of the centre line at ``s``."""
         assert self.profile is not None
         angle, pitch = self.profile.superelevation(s), np.arctan(self.elevation.grade(s))
         up = t * np.sin(angle)
         return t * np.cos(angle), up * np.cos(pitch), up * np.sin(pitch)
 
     def locate(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
-        """Returns the stations and the offsets to the left, in metres, of points given in plan.
-
-        Each point is projected onto the nearest point of the centre line. On a road with superelevation, the
-        offset is that of the surface point vertically above or below the given point.
-        """
+        """Returns the stations and the offsets to the left, in metres, of points given in plan. Each point is
+        projected onto the nearest point of the centre line. On a road with superelevation, the offset is that
+        of the surface point vertically above or below the given point."""
         points = np.stack(np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float)), -1)
         s, t = project(self.plan, points)
         if self.profile is None or self.profile.superelevation_angle is None:
@@ -158,18 +149,13 @@ class Road:
         return s, np.asarray(t / np.cos(self.profile.superelevation(s)))
 
     def with_profile(self, profile: Profile | None) -> Self:
-        """Returns the road with the given cross-section. With None, the road uses the cross-section of the
-        World.
-        """
+        """Returns the road with the given cross-section; with None, it uses that of the World."""
         return replace(self, profile=profile, _sampled={})
 
     @property
     def mirrored(self) -> Self:
-        """The road with the sign of y changed: left becomes right, and traffic changes sides.
-
-        Raises:
-            TypeError: The road is a spline.
-        """
+        """The road with the sign of y changed: left becomes right, and traffic changes sides. Not for a
+        spline."""
         if not isinstance(self.plan, PieceCurve):
             raise TypeError("only roads of lines, arcs and clothoids are mirrored")
         profile = None if self.profile is None else self.profile.mirrored
@@ -192,10 +178,8 @@ class Road:
         return self.elevation.vertical_curvature(s)
 
     def sample(self, step: float = 1.0) -> Samples:
-        """Returns samples of the road about every ``step`` metres, both ends included; at least two.
-
-        The result is cached.
-        """
+        """Returns samples of the road about every ``step`` metres, both ends included; at least two. The
+        result is cached."""
         if step not in self._sampled:
             s = np.linspace(0.0, self.length, max(2, round(self.length / step) + 1))
             xy = self.plan.at(s)
@@ -219,8 +203,7 @@ class Road:
 
         For a road that was not built from points, the control points are sampled from the centre line at most
         2 m apart, so that the spline preserves the radii of the road. The SBFT rules allow only 500 points;
-        on a road longer than 998 m, these points are farther apart, least so in tight bends.
-        """
+        on a road longer than 998 m, these points are farther apart, least so in tight bends."""
         if self.road_points is not None:
             return self.road_points
         if self.nodes is not None:
@@ -253,16 +236,9 @@ class Road:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any], in_network: bool = False) -> Self:
-        """Restores a road from JSON data as returned by ``to_json``.
-
-        Args:
-            data: The JSON data.
-            in_network: Whether the road belongs to a network, where traffic may drive on the left.
-
-        Raises:
-            UsageError: A field is missing, is not a number or is not finite, the road is too long or too
-                steep, or traffic drives on the left of a single road.
-        """
+        """Restores a road from JSON data as returned by ``to_json``. Traffic may drive on the left only
+        ``in_network``. Raises UsageError if a field is missing, is not a number or is not finite, or the road
+        is too long or too steep."""
         own = profile_from_json(data["profile"]) if data.get("profile") is not None else None
         if own is not None and own.left_hand and not in_network:
             raise UsageError(f"{ONLY_NETWORKS}; leave left_hand out of the profile")
@@ -290,10 +266,8 @@ class Road:
 
 
 def control_stations(s: Array, curvature: Array) -> Array:
-    """Returns the stations in metres of a road's control points.
-
-    The road has the given curvatures in 1/m at stations ``s`` in metres, which are equally spaced.
-    """
+    """Returns the stations in metres of the control points of a road with the given curvatures in 1/m at
+    equally spaced stations ``s`` in metres."""
     length = float(s[-1])
     count = max(4, int(np.ceil(length / CONTROL_SPACING)) + 1)
     if count <= MOST_CONTROL_POINTS:
@@ -346,11 +320,9 @@ def _checked(points: ArrayLike) -> Array:
             raise TypeError("true and false are not numbers")
         nodes = np.array(points, float)
     except (TypeError, ValueError, OverflowError) as error:
-        raise UsageError(
-            "road points are lists of two or three numbers each, like [[10, 20], [60, 25]]"
-        ) from error
+        raise UsageError(NOT_POINTS) from error
     if nodes.ndim != 2 or nodes.shape[1] not in (2, 3):
-        raise UsageError("road points are lists of two or three numbers each, like [[10, 20], [60, 25]]")
+        raise UsageError(NOT_POINTS)
     if not np.isfinite(nodes).all() or np.abs(nodes).max(initial=0) > FARTHEST:
         wrong = int(np.argmin((np.abs(nodes) <= FARTHEST).all(axis=1)))
         told = ", ".join(f"{v:.10g}" for v in nodes[wrong].tolist())
@@ -362,5 +334,55 @@ def _checked(points: ArrayLike) -> Array:
 
 
 def _has_truths(points: Sequence[Any]) -> bool:
-    """Returns whether true or false is given in place of a number."""
     return any(isinstance(value, bool) for row in points if isinstance(row, (list, tuple)) for value in row)
+
+
+def moved(road: Road, x: float, y: float, z: float = 0.0) -> Road:
+    """Returns a road shifted by the given distances in metres along each axis. The road must consist of
+    lines, arcs and clothoids, or be a spline through nodes. If the nodes have no heights, ``z`` is ignored.
+    """
+    shift = np.array([x, y])
+    if road.nodes is not None:
+        nodes = road.nodes + np.array([x, y, z])[: road.nodes.shape[1]]
+        control = None if road.road_points is None else road.road_points + shift
+        return Road.through(nodes, control).with_profile(road.profile)
+    assert isinstance(road.plan, PieceCurve)
+    plan = replace(road.plan, x=road.plan.x + x, y=road.plan.y + y)
+    elevation = road.elevation
+    if z and isinstance(elevation, GradeProfile):
+        elevation = replace(elevation, z0=elevation.z0 + z)
+    elif z:
+        assert isinstance(elevation, CubicProfile)
+        rows = tuple((a + z, b, c, d) for a, b, c, d in elevation.coefficients)
+        elevation = replace(elevation, coefficients=rows)
+    return Road(plan, elevation, profile=road.profile)
+
+
+def reversed_road(road: Road) -> Road:
+    """Returns a road that leads from the end of the given road to its start. The given road must consist of
+    lines, arcs and clothoids, or be a spline through nodes. The result has no ``profile`` of its own."""
+    if road.nodes is not None:
+        return Road.through(road.nodes[::-1])
+    assert isinstance(road.plan, PieceCurve)
+    x, y = road.plan.at(road.length).tolist()
+    heading = float(road.plan.heading(road.length)) + math.pi
+    pieces = tuple(Piece(piece.length, -piece.k1, -piece.k0) for piece in reversed(road.plan.pieces))
+    return Road(PieceCurve(x, y, heading, pieces), _turned(road.elevation, road.length))
+
+
+def _turned(profile: ElevationProfile, length: float) -> ElevationProfile:
+    if isinstance(profile, GradeProfile):
+        stations = np.array([0.0, *(s for s in profile.stations if 0 < s < length), length])
+        grades = -profile.grade(stations)[::-1]
+        return GradeProfile(
+            float(profile.height(length)), tuple((length - stations[::-1]).tolist()), tuple(grades.tolist())
+        )
+    assert isinstance(profile, CubicProfile)
+    return reversed_cubics(profile, length)
+
+
+def reversed_cubics(profile: CubicProfile, length: float) -> CubicProfile:
+    """Converts cubics of the station on a road of ``length`` metres to those of the distance from its end."""
+    stations = np.array([0.0, *(s for s in profile.stations if 0 < s < length), length])
+    at_ends = shifted(profile.cubics(stations[:-1]), np.diff(stations)) * np.array([1.0, -1.0, 1.0, -1.0])
+    return CubicProfile.of_table((length - stations[:0:-1]).tolist(), at_ends[::-1])

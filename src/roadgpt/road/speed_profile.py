@@ -7,14 +7,13 @@ r"""Plans a car's speed along its path, limited by the friction circle, in two s
 Source: the usual quasi-steady method, for example Kapania, Subosits, Gerdes (2016),
 https://doi.org/10.1115/1.4033311. On a road that is inclined by the angle e towards the inside of a bend of
 curvature k, the tyres carry, per unit of mass, a lateral force of ``v^2 k cos e - g sin e`` and a wheel load
-of ``g cos e + v^2 k sin e``.
-"""
+of ``g cos e + v^2 k sin e``."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import repeat
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,59 +30,30 @@ LATERAL, BRAKING, TRACTION = 0.64, 0.9, 0.7  # g, of the car for which roads are
 LEAST_STRETCH = 0.2  # m of lane per m of road, on the inside of a bend
 
 
-class PathGeometry(Protocol):
-    """The geometry of a driven path. Every sequence has one value per station."""
+@dataclass(frozen=True, eq=False)
+class PathGeometry:
+    """The geometry of a driven path, as lists over equally spaced stations of the road."""
 
-    @property
-    def step(self) -> float:
-        """Distance between consecutive stations in metres, measured along the road."""
-
-    @property
-    def stretch(self) -> Sequence[float]:
-        """Length of path per length of road at each station; below 1 on the inside of a bend."""
-
-    @property
-    def curvature(self) -> Sequence[float]:
-        """Curvature of the path in 1/m; it differs from the curvature of the road."""
-
-    @property
-    def grade(self) -> Sequence[float]:
-        """Grade as a ratio."""
-
-    @property
-    def crest(self) -> Sequence[float]:
-        """Change of grade d2z/ds2 in 1/m, negative on a crest."""
-
-    @property
-    def superelevation(self) -> Sequence[float]:
-        """Superelevation in radians, positive where the surface falls to the right."""
+    step: float  # distance in metres between stations along the road
+    stretch: list[float]
+    """Length of the path per metre of the road's centre line; below 1 on the inside of a bend."""
+    curvature: list[float]  # curvature of the path itself in 1/m, positive to the left
+    grade: list[float]  # grade of the road as a ratio
+    crest: list[float]  # vertical curvature of the road in 1/m, negative on a crest
+    superelevation: list[float]
+    """Superelevation of the road in radians, positive where the surface falls to the right."""
 
 
 @dataclass(frozen=True)
 class DrivingLimits:
     """The limits that a driver respects. Accelerations are in multiples of g."""
 
-    lateral: float
-    """Largest lateral acceleration in a steady bend, in g."""
-    braking: float
-    """Largest deceleration when braking on a straight, in g."""
-    traction: float
-    """Largest acceleration when speeding up on a straight, in g."""
-    speed: float
-    """Speed limit in m/s."""
+    lateral: float  # largest lateral acceleration in a steady bend, in g
+    braking: float  # largest deceleration when braking on a straight, in g
+    traction: float  # largest acceleration when speeding up on a straight, in g
+    speed: float  # speed limit in m/s
     power: float = 100.0
     """Engine power per mass of the car in W/kg, which limits the acceleration at higher speeds."""
-
-
-class _LanePath(NamedTuple):
-    """The middle of a lane as a PathGeometry."""
-
-    step: float
-    stretch: Sequence[float]
-    curvature: Sequence[float]
-    grade: Sequence[float]
-    crest: Sequence[float]
-    superelevation: Sequence[float]
 
 
 def expected_speed(
@@ -93,8 +63,7 @@ def expected_speed(
 
     The car drives on dry asphalt in the middle of its lane, within the speed limit and the default driver's
     limits of acceleration. ``curvature``, ``grade`` and ``step`` are as in ``lane_speed``. ``profile`` is the
-    cross-section of the road; with None, the road has the lanes and the superelevation of the World.
-    """
+    cross-section of the road; with None, the road has the lanes and the superelevation of the World."""
     limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.limits.speed_limit)
     s = step * np.arange(np.size(curvature))
     if profile is not None:
@@ -123,14 +92,13 @@ def lane_speed(
     speed. The arguments have values at stations ``step`` metres apart. ``curvature`` ``(n,)`` in 1/m and
     ``grade``, a ratio, are those of the centre line. ``superelevation`` is in radians, positive where the
     surface falls to the right. ``offset`` is that of the middle of the lane, in metres to the left. All but
-    the curvature may be one value for all stations.
-    """
+    the curvature may be one value for all stations."""
     bend = np.asarray(curvature, float)
     angle = np.broadcast_to(np.asarray(superelevation, float), bend.shape)
     along = np.maximum(1 - bend * offset * np.cos(angle), LEAST_STRETCH)
     grades = np.broadcast_to(np.asarray(grade, float), bend.shape)
     level = [0.0] * len(bend)
-    lane = _LanePath(step, along.tolist(), (bend / along).tolist(), grades.tolist(), level, angle.tolist())
+    lane = PathGeometry(step, along.tolist(), (bend / along).tolist(), grades.tolist(), level, angle.tolist())
     return np.array(plan_speed(lane, limits))
 
 
@@ -138,10 +106,8 @@ def plan_speed(
     line: PathGeometry, limits: DrivingLimits, highest: Sequence[float] | None = None
 ) -> list[float]:
     """Returns the speed in m/s at every station of the path; ``highest`` limits it further at each station.
-
     The wheel load takes slopes, crests, dips and superelevation into account. Per unit of mass and without
-    superelevation, it is ``g cos a + v^2 k cos(a)^3``, where a is the slope angle and k is ``line.crest``.
-    """
+    superelevation, it is ``g cos a + v^2 k cos(a)^3``, where a is the slope angle and k is ``line.crest``."""
     slopes = list(map(_inclination, line.grade, line.superelevation, line.curvature))
     top = list(map(_corner_speed, slopes, line.curvature, line.crest, repeat(limits)))
     if highest is not None:
@@ -154,14 +120,10 @@ def plan_speed(
 class _Inclination(NamedTuple):
     """How the road is inclined at one station."""
 
-    level: float
-    """Cosine of the slope along the road."""
-    cube: float
-    """The third power of ``level``."""
-    cos: float
-    """Cosine of the superelevation."""
-    sin: float
-    """Sine of the superelevation, positive where the surface falls to the inside of the bend."""
+    level: float  # cosine of the slope along the road
+    cube: float  # the third power of ``level``
+    cos: float  # cosine of the superelevation
+    sin: float  # sine of the superelevation, positive where the surface falls to the inside of the bend
 
 
 def _inclination(grade: float, superelevation: float, curvature: float) -> _Inclination:
@@ -171,9 +133,8 @@ def _inclination(grade: float, superelevation: float, curvature: float) -> _Incl
 
 
 def _corner_speed(slope: _Inclination, curvature: float, crest: float, limits: DrivingLimits) -> float:
-    """Returns the highest speed in m/s at one station within the speed limit, the lateral limit and the least
-    wheel load on a crest.
-    """
+    """Returns the highest speed in m/s within the speed limit, the lateral limit and the least wheel load on
+    a crest."""
     level, cube, cos, sin = slope
     crest *= cube
     needed = abs(curvature) * (cos - limits.lateral * sin) - limits.lateral * crest
@@ -196,8 +157,7 @@ def _sweep(
     forward: bool,
 ) -> None:
     """Lowers speeds that the car cannot reach by accelerating (forward), or from which it cannot brake to the
-    speed at the following station (backward).
-    """
+    speed at the following station (backward)."""
     way = 1 if forward else -1
     order = range(len(top)) if forward else range(len(top) - 1, -1, -1)
     before = top[order[0]] if not forward else 0.0

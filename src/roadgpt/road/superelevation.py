@@ -34,8 +34,7 @@ def superelevation(plan: PlanCurve, reach: float, speed: float, ratio: float | N
 
     ``reach`` is the distance in metres from the centre line to the farther edge of the carriageway. ``speed``
     is the design speed in m/s. ``ratio`` is the superelevation of every bend as a ratio; with None, each bend
-    has the value that CD 109 gives for its radius.
-    """
+    has the value that CD 109 gives for its radius."""
     if isinstance(plan, PieceCurve):
         knots = _of_pieces(plan, reach, speed, ratio)
     else:
@@ -74,8 +73,7 @@ def _run_in(
 
 def superelevation_for(curvature: Array, speed: float, ratio: float | None = None) -> Array:
     """Returns the superelevation in radians for curvatures in 1/m (positive to the left), without a run-in;
-    for ``speed`` and ``ratio`` see ``superelevation``.
-    """
+    for ``speed`` and ``ratio`` see ``superelevation``."""
     bend = np.abs(curvature)
     if ratio is None:
         sizes = np.minimum((speed * 3.6) ** 2 * bend / (100 * SHARE), MOST)

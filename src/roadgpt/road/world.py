@@ -1,10 +1,9 @@
-"""Defines the World, which all roads of a campaign share: a Site, a CrossSection and Limits.
+"""Defines the World, which all roads of a campaign share: a Site, a CrossSection and Limits, and the oracles
+by name: when a drive fails because the car is out of its lane.
 
-Files keep the values of all three in one flat table, in the order of ``FIELDS``.
-"""
+Files keep the values of all three in one flat table, in the order of ``FIELDS``."""
 
 import re
-import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any
@@ -15,7 +14,6 @@ from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.road.design import FrozenFields
-from roadgpt.road.oracles import oracle_limits, oracle_name
 from roadgpt.road.profile import Marking, Profile
 from roadgpt.road.road import Road
 from roadgpt.road.superelevation import superelevation
@@ -23,6 +21,13 @@ from roadgpt.road.superelevation import superelevation
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
 
+ORACLES: dict[str, dict[str, Any]] = {
+    "half": {"oob_tolerance": 0.5, "lane_departure": False},
+    "sbft": {"oob_tolerance": 0.85, "lane_departure": False},
+    "thesis": {"oob_tolerance": 0.95, "lane_departure": False},
+    "departure": {"oob_tolerance": 0.5, "lane_departure": True},
+}
+"""The fields of Limits that each oracle sets; ``departure`` is that of UN Regulation No. 157."""
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 FRICTIONS = (0.0, 2.0)  # the first is not reached
@@ -31,16 +36,72 @@ LANE_WIDTHS = (2.0, 10.0)  # m, of the driven lane in options and files
 STEEPEST = 0.12  # ratio, largest superelevation of bends
 OWN = {"lanes": "1+1", "lane_width_end": None, "centre_line": None, "bank": "none"}
 """The fields that change the usual cross-section of two equal lanes, with their defaults. Files contain
-only those that differ from their default.
-"""
+only those that differ from their default."""
+OVER_LEAST_RADIUS = 1.055
+"""Ratio of the smallest designed radius to ``min_radius``: a spline through control points 2 m apart is 3 %
+tighter than its turn."""
+FIELDS = {
+    "map_size": "site",
+    "lanes": "section",
+    "lane_width": "section",
+    "lane_width_end": "section",
+    "centre_line": "section",
+    "bank": "section",
+    "shoulder": "section",
+    "friction": "site",
+    "speed_limit": "limits",
+    "oob_tolerance": "limits",
+    "lane_departure": "limits",
+    "min_radius": "limits",
+    "max_grade": "limits",
+    "z_floor": "site",
+    "min_length": "limits",
+}
+"""The fields of a World in the order in which files list them, each with the part that it belongs to."""
+KEYS = {"shoulder": "verge"}
+"""The fields that have another name in files, each with its name in files."""
+OF_FILES = {key: name for name, key in KEYS.items()}
+
+
+def oracle_limits(oracle: str = "half", **given: Any) -> dict[str, Any]:
+    """Returns the fields of Limits that an oracle sets: one of ORACLES; or a share of the car such as "0.7";
+    or "departure:0.7", where a front tyre beyond the marking fails the test as well. Raises UsageError if
+    there is no such oracle, or it contradicts a field of ``given``."""
+    share = oracle.removeprefix("departure:")
+    try:
+        limits = ORACLES.get(oracle) or {"oob_tolerance": float(share), "lane_departure": share != oracle}
+    except ValueError:
+        limits = {"oob_tolerance": 0.0}
+    if not 0 < limits["oob_tolerance"] <= 1:
+        raise UsageError(f"there is no oracle '{oracle}'; give {', '.join(ORACLES)}, or a share from 0 to 1")
+    if wrong := [f"{name} {value}".lower() for name, value in given.items() if value != limits[name]]:
+        raise UsageError(f"oracle {oracle} and {wrong[0]} contradict each other; leave one of them out")
+    return limits
+
+
+def oracle_name(oob_tolerance: float, lane_departure: bool) -> str:
+    """Returns the name of the oracle with these limits; ``oracle_limits`` returns them again."""
+    limits = {"oob_tolerance": oob_tolerance, "lane_departure": lane_departure}
+    other = f"{'departure:' * lane_departure}{oob_tolerance!r}"
+    return next((name for name, own in ORACLES.items() if own == limits), other)
+
+
+def oracle_in_words(oracle: str) -> str:
+    """Returns "half: FAIL when more than half of the car is outside its lane", for the oracle "half"."""
+    limits = oracle_limits(oracle)
+    tyre = "a front tyre is over the marking, or " * limits["lane_departure"]
+    share = share_in_words(limits["oob_tolerance"])
+    return f"{oracle}: FAIL when {tyre}more than {share} is outside its lane"
+
+
+def share_in_words(share: float) -> str:
+    """Returns a share of the car in words: "half of the car" or "85 % of the car"."""
+    return "half of the car" if share == 0.5 else f"{100 * share:g} % of the car"
 
 
 def lanes_in(text: str) -> str:
-    """Returns a text such as "2 + 1" (2 lanes along the road, 1 against it) with its blanks removed.
-
-    Raises:
-        ValueError: The text has another form; the message says which form is needed.
-    """
+    """Returns a text such as "2 + 1" (2 lanes along the road, 1 against it) with its blanks removed. Raises
+    ValueError if it has another form."""
     plain = text.replace(" ", "")
     if not re.fullmatch(r"[1-4]\+[0-4]", plain):
         raise ValueError("give 1 to 4 lanes along the road, a plus and 0 to 4 against it, such as 2+1")
@@ -48,11 +109,8 @@ def lanes_in(text: str) -> str:
 
 
 def bank_in(value: str | float, most: float = STEEPEST, unit: str = "a ratio") -> str | float:
-    """Returns the superelevation of bends unchanged if it is "none", "auto" or a number from 0 to ``most``.
-
-    Raises:
-        ValueError: The value is something else; the message states the valid values.
-    """
+    """Returns the superelevation of bends unchanged; raises ValueError unless it is "none", "auto" or a
+    number from 0 to ``most``."""
     if value in ("none", "auto") or (isinstance(value, float) and 0 <= value <= most):
         return value
     raise ValueError(f"give 'none', 'auto' or {unit} from 0 to {most:g}")
@@ -67,45 +125,34 @@ class Site(FrozenFields):
     map_size: Annotated[float, Field(ge=SMALLEST_MAP, le=LARGEST_MAP)] = USUAL_MAP
     """Side length of the square map in metres. One corner of the map is at (0, 0)."""
     friction: Annotated[float, Field(gt=FRICTIONS[0], le=FRICTIONS[1])] = 1.0
-    """Friction coefficient: 1.0 for dry asphalt, about 0.6 wet, 0.35 on snow, 0.1 on ice.
-
-    If no value is given here, a description that names a surface, such as "wet", sets the friction: see
-    ``World.on_surface_of``.
-    """
+    """Friction coefficient: 1.0 for dry asphalt, about 0.6 wet, 0.35 on snow, 0.1 on ice. If no value is
+    given here, a description that names a surface, such as "wet", sets the friction: see
+    ``World.on_surface_of``."""
     z_floor: float = -28.0
     """Height in metres of the flat ground of the simulator's map."""
 
 
 class CrossSection(FrozenFields):
-    """The lanes, shoulders and banked bends of roads that have no Profile of their own.
-
-    A CrossSection is the same for roads of all lengths; ``profile`` makes the Profile of one road from it.
-    """
+    """The lanes, shoulders and banked bends of roads that have no Profile of their own. A CrossSection is the
+    same for roads of all lengths; ``profile`` makes the Profile of one road from it."""
 
     lanes: Lanes = "1+1"
-    """Number of lanes along the road, and number of oncoming lanes, such as "2+1".
-
-    The tested car keeps to the rightmost lane.
-    """
+    """Number of lanes along the road, and number of oncoming lanes, such as "2+1". The tested car keeps to
+    the rightmost lane."""
     lane_width: Positive = 4.0
     """Width of every lane in metres."""
     lane_width_end: Positive | None = None
     """Width of every lane in metres at the end of the road, reached smoothly from ``lane_width`` at the
-    start; None for a constant width.
-    """
+    start; None for a constant width."""
     centre_line: Marking | None = None
     """The line between the directions; None for a broken line on a road with one lane in each direction, and
-    for a solid one on any other road.
-    """
+    for a solid one on any other road."""
     bank: Annotated[str | float, AfterValidator(bank_in)] = "none"
     """Superelevation of bends: "none", "auto" for the values of the design guide CD 109, or one ratio for all
-    bends.
-    """
+    bends."""
     shoulder: NotNegative = 3.0
-    """Width in metres of the firm shoulder beside the carriageway.
-
-    With 0 the road floats above the ground, as in the RoadGPT thesis.
-    """
+    """Width in metres of the firm shoulder beside the carriageway. With 0 the road floats above the ground,
+    as in the RoadGPT thesis."""
 
     def profile(self, length: float) -> Profile:
         """Returns the Profile of a road that is ``length`` metres long, without superelevation."""
@@ -132,27 +179,17 @@ class CrossSection(FrozenFields):
         return 2 * count * max(self.lane_width, self.lane_width_end or 0.0)
 
 
-OVER_LEAST_RADIUS = 1.055
-"""Ratio of the smallest designed radius to ``min_radius``: a spline through control points 2 m apart is 3 %
-tighter than its turn.
-"""
-
-
 class Limits(FrozenFields):
-    """Defines what the validity rules allow, and when a test fails.
-
-    Most defaults are those of the RoadGPT thesis.
-    """
+    """Defines what the validity rules allow, and when a test fails. Most defaults are those of the RoadGPT
+    thesis."""
 
     speed_limit: Positive = 70 / 3.6
     """Speed limit in m/s. The default is the competition's 70 km/h."""
     oob_tolerance: Annotated[float, Field(gt=0, le=1)] = oracle_limits()["oob_tolerance"]
     """Fraction of the car's area, 0 to 1, that may be outside its lane before the test fails."""
     lane_departure: bool = False
-    """Whether the test also fails as soon as a front tyre crosses the outer edge of a lane marking.
-
-    Source: UN Regulation No. 157, 5.2.1.
-    """
+    """Whether the test also fails as soon as a front tyre crosses the outer edge of a lane marking. Source:
+    UN Regulation No. 157, 5.2.1."""
     min_radius: Positive = 14.326
     """Minimum radius of a turn in metres. The default is 47 ft, the tightest turn of the SBFT rules."""
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
@@ -171,36 +208,10 @@ class Limits(FrozenFields):
         return self.min_radius * OVER_LEAST_RADIUS
 
 
-FIELDS = {
-    "map_size": "site",
-    "lanes": "section",
-    "lane_width": "section",
-    "lane_width_end": "section",
-    "centre_line": "section",
-    "bank": "section",
-    "shoulder": "section",
-    "friction": "site",
-    "speed_limit": "limits",
-    "oob_tolerance": "limits",
-    "lane_departure": "limits",
-    "min_radius": "limits",
-    "max_grade": "limits",
-    "z_floor": "site",
-    "min_length": "limits",
-}
-"""The fields of a World in the order in which files list them, each with the part that it belongs to."""
-KEYS = {"shoulder": "verge"}
-"""The fields that have another name in files, each with its name in files."""
-EARLIER = {key: name for name, key in KEYS.items()}
-
-
 def _in_parts(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Groups the values of a flat table by the part of a World that they belong to.
-
-    ``oracle``, as in ``roadgpt.road.oracles``, stands for two of the Limits. Unknown values stay at the top
-    level, as does a value that is given twice, or whose part is given as a whole as well; pydantic refuses
-    them there.
-    """
+    """Groups the values of a flat table by the part of a World that they belong to. ``oracle`` stands for two
+    of the Limits. Unknown values stay at the top level, as does a value that is given twice, or whose part is
+    given as a whole as well; pydantic refuses them there."""
     if "oracle" in values:
         oracle, values = values["oracle"], {name: values[name] for name in values if name != "oracle"}
         given = {name: values[name] for name in oracle_limits() if name in values}
@@ -208,7 +219,7 @@ def _in_parts(values: Mapping[str, Any]) -> dict[str, Any]:
     out = {name: value for name, value in values.items() if name in ("site", "section", "limits")}
     flat: dict[str, Any] = {}
     for key, value in values.items():
-        name = EARLIER.get(key, key)
+        name = OF_FILES.get(key, key)
         part = FIELDS.get(name)
         if part is None or part in out or name in flat.get(part, {}):
             flat.setdefault(key, value)
@@ -218,47 +229,13 @@ def _in_parts(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class World(FrozenFields):
-    """Everything that the roads of a run or a campaign share: a Site, a CrossSection and Limits.
-
-    Files have the fields of all three in one flat table, and ``World.model_validate`` reads such a table.
-    ``World(friction=0.6)`` and ``world.friction``, as written for earlier versions, still work, but give a
-    DeprecationWarning.
-    """
+    """Everything that the roads of a run or a campaign share: a Site, a CrossSection and Limits. Files have
+    the fields of all three in one flat table, and ``World.model_validate`` reads such a table."""
 
     site: Site = Site()
     section: CrossSection = CrossSection()
     """The cross-section of roads whose own ``profile`` is None."""
     limits: Limits = Limits()
-
-    if not TYPE_CHECKING:  # mypy shall not accept the earlier form
-
-        def __init__(self, **values: Any) -> None:
-            for name in values:
-                if part := FIELDS.get(EARLIER.get(name, name)):
-                    kind = type(self).model_fields[part].annotation.__name__
-                    instead = f"World({part}={kind}({EARLIER.get(name, name)}=...))"
-                    warnings.warn(f"World({name}=...) is deprecated; write {instead}", DeprecationWarning, 2)
-            super().__init__(**values)
-
-        __init__.__pydantic_base_init__ = True  # so that reading a file does not call it, as in RootModel
-
-        def __getattr__(self, name: str) -> Any:
-            field = EARLIER.get(name, name)
-            if part := FIELDS.get(field):
-                instead = f"world.{part}.{field}"
-                warnings.warn(f"world.{name} is deprecated; write {instead}", DeprecationWarning, 2)
-                return getattr(getattr(self, part), field)
-            return super().__getattr__(name)
-
-        def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> "World":
-            """Returns a copy with other values for some fields; the earlier form of ``changed``."""
-            flat = [name for name in update or {} if EARLIER.get(name, name) in FIELDS]
-            if not flat:
-                return super().model_copy(update=update, deep=deep)
-            told = f"world.model_copy(update={{'{flat[0]}': ...}}) is deprecated"
-            instead = f"world.changed({EARLIER.get(flat[0], flat[0])}=...)"
-            warnings.warn(f"{told}; write {instead}", DeprecationWarning, 2)
-            return self.changed(**update)
 
     @model_validator(mode="before")
     @classmethod
@@ -278,12 +255,9 @@ class World(FrozenFields):
         return {name: getattr(getattr(self, part), name) for name, part in FIELDS.items()}
 
     def changed(self, **values: Any) -> "World":
-        """Returns a World with other values for some fields of its parts, such as ``friction=0.6``.
-
-        Raises:
-            pydantic.ValidationError: There is no such field, or its value is invalid.
-        """
-        named = {EARLIER.get(name, name) for name in values}
+        """Returns a World with other values for some fields of its parts, such as ``friction=0.6``. Raises
+        pydantic.ValidationError if there is no such field, or its value is invalid."""
+        named = {OF_FILES.get(name, name) for name in values}
         named |= {*oracle_limits()} if "oracle" in named else set()
         kept = {
             name: value
@@ -293,11 +267,8 @@ class World(FrozenFields):
         return World.model_validate(kept | values)
 
     def on_surface_of(self, brief: "Brief | None") -> "World":
-        """Returns the World with the friction of the surface that a Brief names, such as a wet road.
-
-        A friction that was given to this World is kept, even if it equals the default. Without a Brief that
-        names a surface, the World is returned unchanged.
-        """
+        """Returns the World with the friction of the surface that a Brief names, such as a wet road. A
+        friction that was given to this World is kept, even if it equals the default."""
         friction = brief.friction if brief is not None else None
         if friction is None or "friction" in self.site.model_fields_set:
             return self
@@ -305,10 +276,7 @@ class World(FrozenFields):
 
     def with_lanes_of(self, brief: "Brief | None") -> "World":
         """Returns the World with the ``lanes`` and ``centre_line`` that a Brief of a single road requires.
-
-        Lanes and lines that were given to this World are kept, even if they equal the defaults. Without a
-        Brief, or with a Brief for a network, the World is returned unchanged.
-        """
+        Those that were given to this World are kept, even if they equal the defaults."""
         if brief is None or brief.is_of_network:
             return self
         given = self.section.model_fields_set
@@ -318,11 +286,7 @@ class World(FrozenFields):
 
     def profile_of(self, road: Road) -> Profile:
         """Returns the Profile of a road: ``road.profile`` or, if that is None, one made from ``section``.
-
-        Raises:
-            UsageError: This World has banked bends, but the road has no superelevation because it was not
-                passed through ``lay``.
-        """
+        Raises UsageError if bends are banked here, and the road was not passed through ``lay``."""
         if road.profile is not None:
             return road.profile
         if self.section.bank != "none":
@@ -330,11 +294,9 @@ class World(FrozenFields):
         return self.section.profile(road.length)
 
     def lay(self, road: Road) -> Road:
-        """Returns the road with the lanes and banked bends of this World's ``section``.
-
-        A road that has a Profile of its own keeps it. If ``section`` has two lanes of constant width with the
-        default centre line and no banked bends, the road is returned unchanged.
-        """
+        """Returns the road with the lanes and banked bends of this World's ``section``. A road that has a
+        Profile of its own keeps it. If ``section`` has two lanes of constant width with the default centre
+        line and no banked bends, the road is returned unchanged."""
         section = self.section
         if road.profile is not None or all(getattr(section, name) == usual for name, usual in OWN.items()):
             return road

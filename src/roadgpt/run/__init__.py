@@ -27,8 +27,7 @@ from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
 from roadgpt.network import made_from, refuse_without_route
 from roadgpt.road import Design, Geometry, Road, World, in_short_segments
-from roadgpt.run.card import seed_in
-from roadgpt.run.folder import Draw, read_run, write_run
+from roadgpt.run.folder import Draw, read_run, seed_in, write_run
 from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup, seed_of
 from roadgpt.run.versions import versions_of
 from roadgpt.stopping import look
@@ -114,12 +113,6 @@ def perform(
 def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Meter | None = None) -> Brief:
     """Returns the Brief that the setup's reader reads from the words. The Brief is checked against the size
     of the world's map and the world's other limits.
-
-    Raises:
-        BriefError: the words cannot be read, or ask for something that the world does not allow, such as a
-            road that is too long for the map.
-        PartError: the reader that the setup names is not installed.
-        ChatError: a language model could not be reached, or gave no usable answer.
     """
     with counting(meter or Meter.of(setup.chat), "reading"):
         try:
@@ -154,12 +147,6 @@ def prove(
         despite_findings: whether to drive a road that breaks rules, as roads of real maps often do. The Run
             then has both the findings and the verdict. A road that is physically impossible to drive is never
             driven.
-
-    Raises:
-        UsageError: a plug-in is not installed, the driver's file does not define a driver, the simulator
-            cannot apply a setting of the world, no road can be built from the design, or a map without a
-            route is to be driven.
-        DriverError: the driver hung while it was created.
     """
     world = world.on_surface_of(brief)
     check_parts(setup, world)
@@ -177,13 +164,7 @@ def prove(
 
 @cache
 def check_parts(setup: Setup, world: World = USUAL) -> None:
-    """Checks that the rules, the simulator and the driver can be loaded, before the first road is made.
-
-    Raises:
-        UsageError: a plug-in is not installed, the driver's file does not define a driver, or the simulator
-            cannot apply a setting of the world.
-        DriverError: the driver hung while it was created.
-    """
+    """Checks that the rules, the simulator and the driver can be loaded, before the first road is made."""
     rules_of(setup.rules)
     if setup.drives:
         refuse_ignored(plugins.find("simulators", setup.simulator), world)
@@ -226,10 +207,6 @@ def _designed(run: Run, brief: Brief, earlier: Sequence[Design]) -> Run:
 
 
 def _driven(run: Run, despite_findings: bool = False) -> Run:
-    """Drives the road and returns the Run with the drive and the verdict.
-
-    The road is not driven if a finding forbids it, or if the setup says that roads are only designed.
-    """
     setup = run.request.setup
     run = replace(run, versions=versions_of([setup]))
     objections = [finding for finding in run.findings if finding.stops or not despite_findings]

@@ -54,12 +54,8 @@ def write_lines(path: Path, lines: Iterable[str]) -> None:
 
 
 def refuse_links(*paths: Path) -> None:
-    """Refuses paths that are links. In a folder from somebody else, a link may point to any file, and writing
-    to the link would change that file.
-
-    Raises:
-        UsageError: one of the paths is a link, or neither a file nor a folder.
-    """
+    """Raises UsageError for links: in a folder from somebody else, one may point to any file, which writing
+    would change."""
     for path in paths:
         if path.is_symlink() or (path.exists() and not (path.is_file() or path.is_dir())):
             what = "a link to somewhere else" if path.is_symlink() else "a pipe or a device"
@@ -69,13 +65,8 @@ def refuse_links(*paths: Path) -> None:
 
 
 def remove_numbered(folder: Path) -> None:
-    """Removes the files of a folder that are named by a number, such as ``3.png``, which an earlier call may
-    have written; new ones are fewer.
-
-    Raises:
-        UsageError: the folder is a link.
-        RoadGPTError: a file cannot be removed.
-    """
+    """Removes the files of a folder that are named by a number, such as ``3.png``, which an earlier call
+    wrote."""
     refuse_links(folder)
     with explained(RoadGPTError, f"cannot write into {folder}", "make room there"):
         for path in folder.glob("[0-9]*.*"):
@@ -87,12 +78,8 @@ def remove_numbered(folder: Path) -> None:
 def alone_in(folder: Path) -> Iterator[None]:
     """Locks a folder for this process inside a ``with`` block, and creates the folder if it does not exist.
 
-    The lock is a file in the folder; the system releases it if the process is killed. The file is not deleted
-    afterwards: another process that had just opened it would hold a lock on a deleted file, and Windows
-    cannot delete open files.
-
-    Raises:
-        UsageError: another process works in the folder, or the folder cannot be used.
+    The system releases the lock if the process is killed. Its file stays: another process that had just
+    opened it would hold a lock on a deleted file, and Windows cannot delete open files.
     """
     with ExitStack() as stack:
         try:

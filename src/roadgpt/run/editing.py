@@ -14,24 +14,16 @@ from roadgpt.errors import UsageError, explained
 from roadgpt.network import read_source
 from roadgpt.road import Design, Road, World
 from roadgpt.run.atomic import json_text, to_bytes
-from roadgpt.run.folder import EDIT_CARD, Draw, write_run
-from roadgpt.run.folder_names import new_folder
+from roadgpt.run.folder import EDIT_CARD, Draw, new_folder, write_run
 from roadgpt.run.model import Request, Run
 
 BEFORE = "before"
 
 
 def original_of(path: str, run: Run | None, world: World) -> tuple[Run, Design, tuple[str, ...]]:
-    """Returns the Run to change, its Design, and notes on adjustments made when a file was read.
-
-    Args:
-        path: where the Run or the road file is.
-        run: the Run; None for the file of a design, which becomes a Run with the usual Setup and the seed 0.
-        world: the World for the design in a file. A map size that was given to it goes before the file's.
-
-    Raises:
-        UsageError: there is no such file, or the road has no Design, only points, or junctions.
-    """
+    """Returns the Run to change, its Design, and notes on adjustments made when a file was read. Without a
+    ``run``, the file of a design becomes one with the usual Setup, the seed 0, and this World; a map size
+    that was given to it goes before the file's."""
     remarks: tuple[str, ...] = ()
     if run is None:
         if not Path(path).exists():
@@ -58,12 +50,8 @@ def reject_used(out: Path) -> None:
 
 
 def folder_for(words: str, seed: int, out: Path | None) -> Path:
-    """Returns an empty folder for the changed road: ``out``, which is created if it does not exist, or, if
-    ``out`` is None, a new folder named after the change request and the seed.
-
-    Raises:
-        UsageError: the folder cannot be created, or is not empty.
-    """
+    """Returns an empty folder for the changed road: ``out``, or a new one named after the request and the
+    seed."""
     if out is None:
         return new_folder(words, seed)
     with explained(UsageError, f"cannot use {out}", "name another folder"):
@@ -95,11 +83,8 @@ class _Beside:
 def write_edit(
     run: Run, before: Run, words: str, changes: Sequence[str], source: str, folder: Path, draw: Draw | None
 ) -> Path:
-    """Writes a changed road into an empty folder, and returns the folder of its Run.
-
-    ``before`` is the Run of the original road, without a drive, and ``source`` is its path. ``draw``
-    draws both roads; None for no pictures.
-    """
+    """Writes a changed road and, drawn beside it, the original without a drive, into an empty folder; returns
+    the folder of its Run. ``source`` is where the original was read."""
     card = {
         "request": words,
         "of": source,

@@ -16,13 +16,8 @@ NAME = "road"  # of the files in a Run's own folder
 def export(
     run: Run, folder: Path | str, formats: Sequence[str], tell: Callable[[str], None], name: str = NAME
 ) -> tuple[Path, ...]:
-    """Writes the road of a Run in each format, and its drive if the format can hold one. ``tell`` gets a
-    sentence on each thing that a format cannot show rightly.
-
-    Raises:
-        PartError: a format is unknown.
-        ExportError: there is no road, a format cannot hold it, or a file cannot be written.
-    """
+    """Writes the road of a Run in each format, and its drive if the format can hold one; ``tell`` gets the
+    doubts."""
     if run.road is None:
         raise ExportError(f"run {run.index} has no road to export: {run.description}")
     is_driven = run.drive is not None and len(run.drive) > 1

@@ -1,6 +1,8 @@
-"""Writes the folder of one Run completely or not at all, and reads it back as an equal Run.
+"""Folders of runs: their names, ``campaign.json``, and the folder of one Run, which is written completely or
+not at all and read back as an equal Run.
 
 campaign/
+  campaign.json            the request, so that the campaign can be resumed
   test.0001.json           written last: if it exists, the Run is finished
   runs/0001/
     brief.json design.json road.json drive.npz verdict.json    the Run's values, each in its own format
@@ -11,26 +13,81 @@ campaign/
     *.png                  the pictures
 """
 
+import re
 import shutil
-from dataclasses import asdict, dataclass, replace
+import unicodedata
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Protocol
+from typing import Annotated, Any, ClassVar, Literal, Protocol
 
 from pydantic import ConfigDict, Field, ValidationError
 
 from roadgpt.brief import remarks
-from roadgpt.brief.model import Brief
+from roadgpt.brief.model import Brief, Frozen
 from roadgpt.chat import Spent
 from roadgpt.check import Finding
-from roadgpt.design.report import DesignReport
+from roadgpt.design import DesignReport
 from roadgpt.drive import Drive
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, explained
 from roadgpt.network import road_from_json
-from roadgpt.reading import LARGEST, read_json, read_text, strictly
+from roadgpt.reading import LARGEST, read_json, read_model, read_text, strictly
 from roadgpt.run.atomic import json_text, refuse_links, to_bytes, whole_folder, write_whole
+from roadgpt.run.execution import test_name, test_text
 from roadgpt.run.model import Outcome, Request, Run, Seconds
-from roadgpt.run.sbft_json import test_name, test_text
-from roadgpt.verdict import Verdict, most_beyond
+from roadgpt.verdict import Verdict
+
+HOME = Path("roadgpt-runs")
+LONGEST = 40  # letters of a description
+
+
+def slug(words: str) -> str:
+    """Returns a description as a path component: only a-z, 0-9 and '-', at most 40 characters; "road" if
+    no character is left."""
+    plain = unicodedata.normalize("NFKD", words[:1000].casefold()).encode("ascii", "ignore").decode()
+    return re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[:LONGEST].strip("-") or "road"
+
+
+def new_folder(words: str, seed: int, home: Path = HOME) -> Path:
+    """Creates a new folder named after the description and the seed; and a number, if the name is taken."""
+    name, number = f"{slug(words)}-{seed}", 1
+    with explained(UsageError, f"cannot make a folder in {home}", "say --out FOLDER"):
+        home.mkdir(parents=True, exist_ok=True)
+        while True:
+            folder = home / (name if number == 1 else f"{name}-{number}")
+            try:
+                folder.mkdir()
+            except FileExistsError:
+                number += 1
+            else:
+                return folder
+
+
+CARD = "campaign.json"
+
+
+class Card(Frozen):
+    """The content of ``campaign.json``: a Request, the number of roads, and whether the campaign is done."""
+
+    format: Literal[1] = 1
+    request: Request
+    roads: int
+    is_finished: bool
+    versions: Mapping[str, str] = {}
+    """What decided the results of all roads besides the request, see ``run.versions``."""
+
+
+def seed_in(folder: Path) -> int | None:
+    """Returns the seed of the campaign in a folder; None if the folder holds no campaign."""
+    return read_card(folder).request.seed if (folder / CARD).is_file() else None
+
+
+def read_card(folder: Path) -> Card:
+    """Reads the ``campaign.json`` of a campaign's folder."""
+    absent = f"{folder} is not empty and was not made by roadgpt run; name another folder"
+    found = read_model(Card, folder / CARD, "the card of a campaign", absent, most=4_000_000)
+    return found.model_copy(update={"request": found.request.came_with(folder / CARD)})
+
 
 EDIT_CARD = "edit.json"
 FORMAT = 1
@@ -38,7 +95,7 @@ RUNS = "runs"
 
 
 class Draw(Protocol):
-    """Draws pictures and saves them in folders of runs; ``report.drawing`` returns an implementation."""
+    """Draws pictures and saves them in folders of runs; ``report.Drawing`` does it."""
 
     def of_run(self, run: Run, folder: Path) -> object:
         """Draws the pictures of a Run and saves them in its folder."""
@@ -55,22 +112,15 @@ def run_folder(campaign: Path, index: int) -> Path:
 
 
 def write_run(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
-    """Writes a Run into a campaign's folder, its test file last; returns the Run's own folder.
-
-    Args:
-        run: the Run.
-        campaign: the folder of the campaign.
-        draw: draws pictures and saves them in the folder; None for no pictures.
-    """
+    """Writes a Run into a campaign's folder, its test file last; returns the Run's own folder."""
     folder = write_run_folder(run, campaign, draw)
     write_whole(campaign / test_name(run.index), test_text(run))
     return folder
 
 
 def write_run_folder(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
-    """Writes the Run's own folder, except the test file, and returns the folder. Until the test file exists,
-    the Run does not count as finished.
-    """
+    """Writes the Run's own folder and returns it. Until the test file exists, the Run does not count as
+    finished."""
     folder = run_folder(campaign, run.index)
     refuse_links(campaign / RUNS, folder)
     with whole_folder(folder) as draft:
@@ -82,9 +132,7 @@ def write_run_folder(run: Run, campaign: Path, draw: Draw | None = None) -> Path
 
 
 def remove_run(index: int, campaign: Path) -> None:
-    """Removes a Run from a campaign's folder. The test file is removed first; from then on, the Run counts as
-    unfinished. Nothing happens if there is no such Run.
-    """
+    """Removes a Run, if it is there: the test file first, from when on the Run counts as unfinished."""
     (campaign / test_name(index)).unlink(missing_ok=True)
     shutil.rmtree(run_folder(campaign, index), ignore_errors=True)
 
@@ -191,7 +239,7 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
     data = strictly(_Card, card)
     brief, design, road, verdict = (value(f"{n}.json") for n in ("brief", "design", "road", "verdict"))
     trace = folder / "error.txt"
-    found = Run(
+    return Run(
         request=Request.model_validate(card["request"]).came_with(folder / "run.json"),
         index=data.index,
         seed=data.seed,
@@ -211,15 +259,9 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
         trace=read_text(trace, LARGEST, "a file of a run") if trace.is_file() else "",
         seconds=strictly(Seconds, value("seconds.json") or {}),
     )
-    judged = found.verdict
-    if found.road is None or found.drive is None or judged is None or judged.beyond is not None:
-        return found
-    # an earlier version of RoadGPT, which did not compute this value, wrote the Run
-    return replace(found, verdict=replace(judged, beyond=most_beyond(found.road, found.drive, found.world)))
 
 
 def _change(card: Any) -> str:
-    """Returns the change request that a road was made from; an empty string for any other road."""
     words = card.get("request") if isinstance(card, dict) else None
     return words if isinstance(words, str) else ""
 

@@ -1,19 +1,19 @@
-"""Defines the Run, which holds everything about one road from words to verdict, and the Run's Request, seed
-and versions.
+"""Defines the Run, which holds everything about one road from words to verdict, and its Request and seed; and
+counts lost drives, so that a command stops using a simulator that has lost three drives in a row.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Generic, Literal, Self, TypeVar
 
 import numpy as np
 
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
-from roadgpt.design.report import DesignReport
+from roadgpt.design import DesignReport
 from roadgpt.drive import permission
-from roadgpt.errors import UsageError
+from roadgpt.errors import GivenUpError, UsageError
 from roadgpt.road import Design, Geometry, Road, World
 
 if TYPE_CHECKING:
@@ -50,12 +50,9 @@ class Setup(Frozen):
         return self.model_copy(update={"chat": self.chat and self.chat.essence()})
 
     def came_with(self, file: object) -> Self:
-        """Returns a copy that is marked as coming from a file of unknown origin. A driver in a Python
-        file and the language model's server are then used only with the user's permission.
-
-        See ``roadgpt.provenance``. A driver needs no permission if the user has named its file too, for
-        example with ``--driver``.
-        """
+        """Returns a copy that is marked as coming from a file of unknown origin, see ``roadgpt.provenance``:
+        a driver in a Python file and the language model's server are used only if the user names or permits
+        them."""
         driver = permission.driver_from_file(self.driver, file)
         chat = self.chat and self.chat.came_with(file)
         return self.model_copy(update={"driver": driver, "chat": chat})
@@ -70,10 +67,8 @@ def permissions(setups: Sequence[Setup], asks: bool = False) -> list[str]:
 
 
 class Request(Frozen):
-    """The values that roads are made from, except for the number of roads.
-
-    The same Request gives the same files, except for times.
-    """
+    """The values that roads are made from, except for their number; the same Request gives the same files,
+    except for times."""
 
     words: str = ""
     """The description; empty if the roads were not made from words."""
@@ -86,10 +81,7 @@ class Request(Frozen):
         return {"words": self.words, "seed": self.seed, **dict(self.setup.essence()), **self.world.values()}
 
     def came_with(self, file: object) -> Self:
-        """Returns a copy that is marked as coming from a file of unknown origin.
-
-        See ``Setup.came_with``.
-        """
+        """Returns a copy that is marked as coming from a file of unknown origin, see ``Setup.came_with``."""
         given = self.setup.model_fields_set | self.world.limits.model_fields_set
         if not given >= {"driver", "oob_tolerance"}:
             raise UsageError(f"{file} lacks driver or oob_tolerance, whose defaults have changed; add them")
@@ -98,14 +90,10 @@ class Request(Frozen):
 
 @dataclass(frozen=True)
 class Seconds:
-    """The wall-clock times of a Run. They differ when the Run is repeated; if a language model was used, the
-    times in ``Run.designing`` and ``Run.spent`` differ, too.
-    """
+    """The wall-clock times of a Run, which differ when it is repeated."""
 
-    design: float = 0.0
-    """Seconds of reading, designing and checking."""
-    drive: float = 0.0
-    """Seconds of driving and judging."""
+    design: float = 0.0  # seconds of reading, designing and checking
+    drive: float = 0.0  # seconds of driving and judging
 
     @property
     def total(self) -> float:
@@ -197,11 +185,33 @@ def seed_of(seed: int, index: int) -> int:
 
     The seed comes from numpy's SeedSequence, so that campaigns with consecutive seeds, such as 1 and 2, have
     no road in common. numpy guarantees that SeedSequence gives the same numbers in all versions.
-
-    Raises:
-        UsageError: the campaign's seed is negative.
     """
     if seed < 0:
         raise UsageError(f"{seed} is no seed; give a whole number from 0 up")
     drawn = np.random.SeedSequence([seed, index]).generate_state(1, np.uint64)[0]
     return int(drawn) >> (64 - SEED_BITS)
+
+
+Key = TypeVar("Key")
+MOST = 3  # in a row; each may have cost minutes of waiting for the simulator to start
+
+
+class LostDrives(Generic[Key]):
+    """Counts how many drives in a row a simulator has lost."""
+
+    def __init__(self) -> None:
+        self.lost: list[Key] = []  # keys of the lost drives
+
+    def count(self, key: Key, is_lost: bool) -> bool:
+        """Counts the drive that ``key`` identifies; returns True if the last three drives were all lost."""
+        if not is_lost:
+            self.lost.clear()
+            return False
+        self.lost.append(key)
+        return len(self.lost) >= MOST
+
+    @staticmethod
+    def given_up(reason: str, again: str) -> GivenUpError:
+        """Returns the error to raise: with the message of the last drive, and how the rest can be driven
+        later."""
+        return GivenUpError(f"the simulator failed {MOST} times in a row and is given up ({reason})", again)

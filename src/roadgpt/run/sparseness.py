@@ -42,12 +42,9 @@ EPS_METRES = 0.2
 class Departure(NamedTuple):
     """The place where a car left its lane."""
 
-    side: str
-    """The side on which the car left its lane: "left" or "right"."""
-    number: int
-    """Index of the first record in which the car was outside its lane."""
-    first: int = 0
-    """Index of the record in which the car entered the segment."""
+    side: str  # the side on which the car left its lane: "left" or "right"
+    number: int  # index of the first record in which the car was outside its lane
+    first: int = 0  # index of the record in which the car entered the segment
     before: Array | None = None
     """The road from the start of the segment to the place where the car left its lane, points ``(n, 2)``;
     None if it cannot be cut out of the road."""
@@ -66,15 +63,9 @@ class Departure(NamedTuple):
 def departure(
     points: ArrayLike, records: Sequence[ExecutionRecord], before: float = AROUND, after: float = AROUND
 ) -> Departure | None:
-    """Returns where the car left its lane in a failed test, as the competition's analysis finds it; None if
-    the car did not leave its lane.
-
-    Args:
-        points: control points of the road, ``(n, 2)`` or with more columns, metres.
-        records: the execution data of the drive.
-        before: length of road in metres to include before the place where the car left its lane.
-        after: length of road in metres to include after that place.
-    """
+    """Returns where the car left its lane in a failed test, as the competition's analysis finds it, from
+    control points of the road, metres, and the execution data; ``before`` and ``after`` are metres of road
+    around the place. None if the car did not leave its lane."""
     number = next((i for i, record in enumerate(records) if record.is_oob), None)
     if number is None:
         return None
@@ -109,11 +100,8 @@ def _interpolated(points: ArrayLike) -> Array | None:
 
 
 def _cut_out(line: Array, place: Sequence[float], before: float, after: float) -> tuple[Array, Array] | None:
-    """Returns the part of a line that ends at its point nearest to a place, and the part that follows.
-
-    The first part is ``before`` metres long and the second ``after`` metres, or less where the line ends.
-    Returns None if the two parts cannot be cut out.
-    """
+    """Returns ``before`` metres of a line up to its point nearest to a place and ``after`` metres behind it,
+    or less where the line ends; None if they cannot be cut out."""
     near, _ = _foot(line, place)
     nodes = np.flatnonzero(np.hypot(*(line - near).T) < NODE)
     if not nodes.size or not nodes[-1]:
@@ -129,7 +117,6 @@ def _first_metres(line: Array, metres: float) -> Array:
 
 
 def _foot(line: Array, place: Sequence[float]) -> tuple[Array, float]:
-    """Returns the point of a line that is nearest to a place, and their distance."""
     start, way = line[:-1], np.diff(line, axis=0)
     square = np.maximum((way**2).sum(axis=1), 1e-12)
     share = np.clip(((place - start) * way).sum(axis=1) / square, 0, 1)

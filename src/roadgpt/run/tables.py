@@ -31,14 +31,12 @@ ELSEWHERE = ("simulator", "designer", "chat")  # written in other columns; ``cha
 class TallyEntry(NamedTuple):
     """The values of one Run that are counted in the tables of its campaign."""
 
-    number: int
-    """Number of the road, from 1."""
+    number: int  # number of the road, from 1
     outcome: Outcome
     is_valid: bool
     has_road: bool
     seconds: Seconds
-    simulated: float
-    """Duration of the drive, seconds of simulated time; 0 if the road was not driven."""
+    simulated: float  # duration of the drive, seconds of simulated time; 0 if the road was not driven
     departure: "Departure | None"
     """Where the car left its lane; None if it stayed in its lane or if the test did not fail."""
 
@@ -123,12 +121,8 @@ def write_description(request: Request, roads: int, folder: Path) -> None:
 def write_settings(
     request: Request, theirs: Mapping[str, object], ours: Mapping[str, object], folder: Path
 ) -> None:
-    """Writes experiment_description.csv: the competition's columns in their order, then RoadGPT's.
-
-    ``theirs`` has values for the competition's columns. Simulator, map size, tolerance and speed limit come
-    from the Request if ``theirs`` lacks them; other columns without a value stay empty. ``ours`` has values
-    for RoadGPT's own columns, which are written before the fields of the world.
-    """
+    """Writes experiment_description.csv: ``theirs``, values for the competition's columns in their order,
+    where missing ones come from the Request or stay empty; then ``ours``; then the fields of the world."""
     world = request.world
     known = {
         "executor": request.setup.simulator,

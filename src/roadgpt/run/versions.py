@@ -43,15 +43,14 @@ def versions_now(asked: Iterable[tuple[Request, str]], loads: bool = True) -> di
 
 def versions_of(setups: Sequence[Setup], driver: Any = None, generators: Iterable[str] = ()) -> Versions:
     """Returns the record of tests with these Setups and generators, driven by a driver that was created; for
-    BeamNG also its settings, and the version of its Python client, which determines the version of BeamNG."""
+    a simulator with settings also these, and the versions of the libraries that they name."""
     driven = [setup for setup in setups if setup.drives]
     found = {"roadgpt": __version__, "roadgpt source": _source(Path(__file__).parents[1])}
     found |= {"python": platform.python_version(), "machine": f"{platform.system()} {platform.machine()}"}
     found |= {name: _version(name) for name in LIBRARIES + (("mujoco-core", "numba") if driven else ())}
-    if any(setup.simulator == "beamng" for setup in driven):
-        from roadgpt.drive.simulators.beamng.settings import BeamngSettings
-
-        found |= {"beamngpy": _version("beamngpy"), "beamng": BeamngSettings.of().summary()}
+    for name in {setup.simulator for setup in driven} & {*plugins.names("settings")}:
+        settings = plugins.find("settings", name)
+        found |= {each: _version(each) for each in settings.libraries} | {name: settings.of().summary()}
     used = {("generators", name) for name in generators}
     used |= {(kind, name) for kind in ("rules", "network_rules") for name in plugins.names(kind)}
     for its in setups:

@@ -73,11 +73,7 @@ class CameraPose(NamedTuple):
 
 @dataclass(frozen=True)
 class Camera:
-    """A pinhole camera with square pixels, mounted on a car.
-
-    Raises:
-        UsageError: the image size or the field of view is out of range, or the mount is unknown.
-    """
+    """A pinhole camera with square pixels, mounted on a car."""
 
     width: int = 640
     """Width of the image in pixels."""

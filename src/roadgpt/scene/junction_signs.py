@@ -58,7 +58,7 @@ def faces_of(sign: JunctionSign) -> Iterator[SignFace]:
 
 
 def _layers(sign: JunctionSign) -> list[tuple[SignColour, Array]]:
-    """Returns the colours of a sign's front from the back to the front, each with its outline ``(n, 2)``."""
+    """Returns the colours of a sign's front, from back to front, each with its outline ``(n, 2)``."""
     if sign.control == "stop":
         letters: list[tuple[SignColour, Array]] = [("white", bar) for bar in _word()]
         return [("white", _polygon(OCTAGON, 0.48)), ("red", _polygon(OCTAGON, 0.44)), *letters]
@@ -68,7 +68,6 @@ def _layers(sign: JunctionSign) -> list[tuple[SignColour, Array]]:
 
 
 def _word() -> Iterator[Array]:
-    """Yields the bars ``(4, 2)`` of the word on a stop sign."""
     half, wide, tall = BAR / 2, WIDE / 2, TALL / 2
     up, across = tall - half, wide - half
     boxes = {  # left, right, lower and upper edge
@@ -92,8 +91,7 @@ def _polygon(angles: Array, radius: float) -> Array:
 
 
 def _placed(sign: JunctionSign, outline: Array, height: float, ahead: float) -> Array:
-    """Returns a polygon in a plane that faces the traffic. The x axis of the outline points to the right as
-    drivers see it."""
+    """Returns a polygon that faces the traffic; x of the outline points to the right as drivers see it."""
     c, s = np.cos(sign.heading), np.sin(sign.heading)
     right, towards = np.array([s, -c, 0.0]), np.array([-c, -s, 0.0])
     up = np.array([0.0, 0.0, 1.0])
@@ -112,8 +110,7 @@ def _tube(sign: JunctionSign, radius: float, low: float, high: float) -> Iterato
 
 
 def _lights(sign: JunctionSign, middle: float) -> Iterator[SignFace]:
-    """Yields the faces of a traffic light: a box before a black board with a white rim, and three lenses, of
-    which the green one is lit."""
+    """Yields a box before a black board with a white rim, and three lenses, of which the green one is lit."""
     wide, high, deep = BOX
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     board, rim = (corners * [wide / 2 + more, high / 2 + more] for more in (BOARD, RIM))

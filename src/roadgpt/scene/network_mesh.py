@@ -28,12 +28,22 @@ from roadgpt.network.surface import (
 )
 from roadgpt.road.profile import LINE as PAINTED
 from roadgpt.scene.junction_signs import SignColour, faces_of
-from roadgpt.scene.light import daylight, level_light
+from roadgpt.scene.light import (
+    BLACK,
+    CONCRETE,
+    DIM_RED,
+    DIM_YELLOW,
+    GREEN,
+    RED,
+    RIM,
+    WHITE,
+    YELLOW,
+    daylight,
+    level_light,
+)
 from roadgpt.scene.mesh import GRASS, ROAD, Patch, attributes, grid
-from roadgpt.scene.palette import BLACK, CONCRETE, DIM_RED, DIM_YELLOW, GREEN, RED, RIM, WHITE, YELLOW
-from roadgpt.scene.road_mesh import LIFT, median, posts, slab, slope, stations_between, surface
-from roadgpt.scene.surfaces import INSET, LINE, PERIOD, LaneBoundaries
-from roadgpt.scene.terrain import LitTerrain
+from roadgpt.scene.road_mesh import LIFT, LitTerrain, median, posts, slab, slope, stations_between, surface
+from roadgpt.scene.shade import INSET, LINE, PERIOD, LaneBoundaries
 
 FAR = 1e4  # m, offset of boundaries that are too far away to be seen
 BESIDE = 0.3  # m of asphalt with an edge line, laid along a kerb
@@ -62,15 +72,8 @@ class StationAxis:
 
     @classmethod
     def of(cls, network: Network, roads: tuple[NetworkRoad, ...], widest: float) -> "StationAxis":
-        """Returns the axis on which the given roads lie one after another, followed by two stretches for
-        junctions: one without paint, and one on which the carriageway ends at offset 0.
-
-        Args:
-            network: the network.
-            roads: all roads of the network.
-            widest: the greatest x extent of a junction in metres; the stretch without paint is longer than
-                ``widest``.
-        """
+        """Returns the axis of all roads of a network; the stretch without paint is longer than ``widest``,
+        the greatest x extent of a junction in metres."""
         starts, rows, at = {}, [], 0.0
         for each in roads:
             # a broken line begins with a dash at the start of each road
@@ -100,14 +103,14 @@ def _three(network: Network, member: NetworkRoad, s: Array) -> Array:
 
 
 def _has_broken_line_only(network: Network, member: NetworkRoad) -> bool:
-    """Returns whether the only line within the carriageway is a broken one along the reference line, which no
-    crosswalk interrupts."""
+    """Returns whether the only inner line is a broken one along the reference line, which no crosswalk
+    interrupts."""
     if network.crossed & {RoadEnd(member.id, "start"), RoadEnd(member.id, "end")}:
         return False
     profile = member.profile
     inner = profile.markings(np.zeros(1))[1:-1]
-    middle = [float(line.edges.left[0] + line.edges.right[0]) for line in inner]
-    return [line.marking for line in inner] == ["broken"] and abs(middle[0]) < LEAST_OFFSET
+    middle = [float(edges.left[0] + edges.right[0]) for _, edges in inner]
+    return [marking for marking, _ in inner] == ["broken"] and abs(middle[0]) < LEAST_OFFSET
 
 
 def network_patches(
@@ -163,7 +166,6 @@ def _road(
 
 
 def _junction(area: JunctionSurface, axis: StationAxis) -> list[Patch]:
-    """Returns the asphalt of a junction, its shoulder and its islands."""
     out = [_level(area.paved, area.height, ROAD, axis.plain)]
     if not area.shoulder.is_empty:
         out += _shoulder(area, axis.kerb)
@@ -176,8 +178,7 @@ def _junction(area: JunctionSurface, axis: StationAxis) -> list[Patch]:
 
 
 def _shoulder(area: JunctionSurface, station: float) -> list[Patch]:
-    """Returns the shoulder of a junction, in two parts: gravel that turns into grass beside the carriageway,
-    and grass farther away.
+    """Returns the shoulder of a junction: gravel that turns into grass, and grass farther away.
 
     All corners of the whole may lie at the carriageway, as those between two ways do; between corners without
     any distance from it, it would be all gravel.
@@ -211,14 +212,12 @@ def _level(area: Area, height: float, kind: int, station: float, beside: "Area |
 
 
 def _wall(ring: Array, foot: float, high: float) -> Patch:
-    """Returns a wall around a closed counter-clockwise ring ``(n, 2)``, seen from outside."""
     low = np.column_stack([ring, np.full(len(ring), foot)])
     return _strip(low, low + [0.0, 0.0, high], 0.7, CONCRETE)
 
 
 def _strip(right: Array, left: Array, light: float, kind: int) -> Patch:
-    """Returns a strip between two lines ``(n, 3)``, seen from the side on which they run as their names
-    say."""
+    """Returns a strip between two lines ``(n, 3)``, seen from the side on which they are right and left."""
     values = attributes(0.0, 0.0, np.full((len(right), 2), light))
     return grid(np.stack([right, left], axis=1), values, kind)
 
@@ -254,9 +253,7 @@ def _painted(points: Array, width: float, kind: int = WHITE) -> Patch:
 
 
 def _start_and_goal(route: Route) -> list[Patch]:
-    """Returns a white line where the lane of the route begins, and a chequered band where it ends; nothing
-    without a route.
-    """
+    """Returns a white line where the lane of the route begins, and a chequered band where it ends."""
     if has_no_route(route):
         return []
     assert route.profile is not None
@@ -273,7 +270,6 @@ def _start_and_goal(route: Route) -> list[Patch]:
 
 
 def _flat(points: Array, kind: int) -> Patch:
-    """Returns a convex polygon ``(n, 3)``."""
     corners = np.arange(1, len(points) - 1)
     triangles = np.stack([np.zeros_like(corners), corners, corners + 1], axis=1)
     normal = np.cross(points[1] - points[0], points[2] - points[0])

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.compiled import compiled, inlined
 from roadgpt.geometry.curve import Array
-from roadgpt.scene.compiled import compiled, inlined
 from roadgpt.scene.mesh import Mesh
 
 NEAR = 0.12  # m; anything nearer is not drawn
@@ -47,8 +47,7 @@ class RenderBuffers(NamedTuple):
 def _fill(
     x: Array, y: Array, corners: int, a: float, b: float, c: float, number: int, depth: Depth, ids: Numbers
 ) -> None:
-    """Marks the samples inside a convex outline where the triangle, with depth 1 / (a x + b y + c), is
-    nearer."""
+    """Marks samples in a convex outline where the triangle, with depth 1 / (a x + b y + c), is nearer."""
     rows, columns = depth.shape
     top, bottom = y[0], y[0]
     for k in range(1, corners):
@@ -81,7 +80,6 @@ def _fill(
 
 @inlined
 def _is_outside(sphere: Array, eye: Array, reach_x: float, reach_y: float) -> bool:
-    """Returns whether a sphere lies wholly outside the image."""
     dx, dy, dz = sphere[0] - eye[0], sphere[1] - eye[1], sphere[2] - eye[2]
     right = dx * eye[3] + dy * eye[4] + dz * eye[5]
     down = dx * eye[6] + dy * eye[7] + dz * eye[8]
@@ -96,8 +94,7 @@ def _is_outside(sphere: Array, eye: Array, reach_x: float, reach_y: float) -> bo
 
 @inlined
 def _beyond(x: float, y: float, ahead: float, reach_x: float, reach_y: float) -> int:
-    """Returns a number with a bit for each border of the image that a point lies beyond, and one more bit if
-    the point is too near."""
+    """Returns a bit for each border of the image that a point lies beyond, and one if it is too near."""
     code = 1 if x > reach_x * ahead else (2 if -x > reach_x * ahead else 0)
     code += 4 if y > reach_y * ahead else (8 if -y > reach_y * ahead else 0)
     if x > reach_x * ahead and -x > reach_x * ahead:  # behind the camera it may be both
@@ -109,7 +106,6 @@ def _beyond(x: float, y: float, ahead: float, reach_x: float, reach_y: float) ->
 
 @inlined
 def _outline(three: Array, focal: float, middle_x: float, middle_y: float, x: Array, y: Array) -> int:
-    """Finds the corners of the outline in the image, clipped at the near plane; returns their number."""
     corners = 0
     for k in range(3):
         p, q = three[k], three[(k + 1) % 3]
@@ -130,8 +126,7 @@ def _outline(three: Array, focal: float, middle_x: float, middle_y: float, x: Ar
 
 @inlined
 def _holds_samples(x: Array, y: Array, corners: int, rows: int, columns: int) -> bool:
-    """Returns whether the outline may contain a sample; distant triangles are often so small that they
-    contain none."""
+    """Returns whether the outline may contain a sample; distant triangles often contain none."""
     left, right, top, bottom = x[0], x[0], y[0], y[0]
     for k in range(1, corners):
         left, right = min(left, x[k]), max(right, x[k])
@@ -150,8 +145,7 @@ def _to_camera(
     points: Array, first: int, end: int, eye: Array, reach_x: float, reach_y: float, seen: Array,
     codes: NDArray[np.uint8],
 ) -> None:  # fmt: skip
-    """Writes the points of a patch in camera coordinates, and the borders of the image that each lies
-    beyond."""
+    """Writes the points in camera coordinates, and the borders of the image that each lies beyond."""
     for n in range(first, end):
         dx, dy, dz = points[n, 0] - eye[0], points[n, 1] - eye[1], points[n, 2] - eye[2]
         m = n - first
@@ -162,8 +156,7 @@ def _to_camera(
 
 @inlined
 def _cross_products(three: Array, across: Array) -> float:
-    """Computes the cross products of the three pairs of corners; returns the determinant of the corners,
-    which is negative if the triangle is seen from its front."""
+    """Writes the cross products of pairs of corners; returns the determinant, negative for a front."""
     a, b, c = three[0], three[1], three[2]
     for k in range(3):
         j, m = (k + 1) % 3, (k + 2) % 3
@@ -179,8 +172,8 @@ def _plane_equations(
     attributes: Array, triangles: NDArray[np.int64], t: int, across: Array, volume: float, focal: float,
     middle_x: float, middle_y: float, plane: Array,
 ) -> None:  # fmt: skip
-    """Computes the vectors g (see the top of this file) for the number 1, which gives the inverse depth, and
-    for the three attributes of a triangle. The rays are (x, y, 1) with x and y in pixels."""
+    """Computes the vectors g (see the top of this file) for 1, which gives the inverse depth, and for the
+    three attributes of a triangle. The rays are (x, y, 1) with x and y in pixels."""
     for k in range(4):
         for j in range(3):
             g = 0.0

@@ -1,21 +1,23 @@
 """Builds the meshes of the road: carriageway and shoulders as one surface, embankments, and posts."""
 
 from collections.abc import Callable
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, cached_property
 from itertools import pairwise
 
 import numpy as np
+from scipy import ndimage
 
 from roadgpt.export.edges import line, normals, stations
 from roadgpt.export.embankments import FOOT, Embankment, embankments
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
+from roadgpt.road.land import Land
 from roadgpt.road.profile import LINE
-from roadgpt.scene.light import daylight, level_light
+from roadgpt.scene.light import CONCRETE, daylight, level_light
 from roadgpt.scene.mesh import GRASS, POST, ROAD, Patch, attributes, grid, joined
-from roadgpt.scene.palette import CONCRETE
-from roadgpt.scene.terrain import LitTerrain
 
+CELLS = 8  # cells along a side of a patch
 CHORD = 0.004  # m, greatest distance between a curve and its polyline
 LONGEST = 4.0  # m between stations, so that light and texture follow crests
 BLOCK = 24  # steps from station to station in a patch
@@ -25,6 +27,38 @@ POST_EVERY, POST_WIDE, POST_HIGH = 25.0, 0.14, 1.0
 straight German roads, to give a better impression of speed."""
 LIFT = 0.006  # m by which lines and medians lie above the road
 POST_FROM_RIM = 0.6  # m from the outer edge of the shoulder
+
+
+@dataclass(frozen=True, eq=False)
+class LitTerrain:
+    """The terrain with its brightness in the light of sun and sky."""
+
+    land: Land
+
+    @cached_property
+    def light(self) -> Array:
+        """The brightness (rows, columns) of the terrain, computed from its slope."""
+        land = self.land
+        slope_y, slope_x = np.gradient(ndimage.gaussian_filter(land.heights, 1.0), land.y, land.x)
+        normals = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1)
+        return daylight(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
+
+    def light_at(self, x: Array, y: Array) -> Array:
+        """Returns the brightness of the terrain at points (x, y)."""
+        return self.land.between(self.light, x, y)
+
+    def patches(self) -> list[Patch]:
+        """Returns the surface of the terrain as patches."""
+        land = self.land
+        x, y = np.meshgrid(land.x, land.y, indexing="ij")
+        points, values = np.stack([x, y, land.heights.T], axis=-1), attributes(0.0, 0.0, self.light.T)
+        rows, columns = land.heights.shape
+        blocks = [
+            (slice(i, i + CELLS + 1), slice(j, j + CELLS + 1))
+            for j in range(0, rows - 1, CELLS)
+            for i in range(0, columns - 1, CELLS)
+        ]
+        return [grid(points[block], values[block], GRASS) for block in blocks]
 
 
 def road_patches(road: Road, world: World, terrain: LitTerrain) -> list[Patch]:

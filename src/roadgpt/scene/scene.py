@@ -15,14 +15,13 @@ from roadgpt.road import Road, World
 from roadgpt.road.land import LONGEST_STEP, Land
 from roadgpt.scene.camera import Camera, Pose, axes_of
 from roadgpt.scene.car import palette_of, saloon
+from roadgpt.scene.light import screen_table
 from roadgpt.scene.mesh import Mesh
 from roadgpt.scene.network_mesh import StationAxis, network_patches
+from roadgpt.scene.patterns import noise
 from roadgpt.scene.raster import PLANE, SAMPLES, RenderBuffers, draw
-from roadgpt.scene.road_mesh import road_patches
-from roadgpt.scene.shade import shade, to_screen
-from roadgpt.scene.surfaces import LaneBoundaries
-from roadgpt.scene.terrain import LitTerrain
-from roadgpt.scene.textures import noise, screen_table
+from roadgpt.scene.road_mesh import LitTerrain, road_patches
+from roadgpt.scene.shade import LaneBoundaries, shade, to_screen
 from roadgpt.scene.trees import Trees, overlay, pictures, plant
 
 Image = NDArray[np.uint8]
@@ -61,13 +60,8 @@ class Scene:
 
     @classmethod
     def of(cls, road: Road, world: World) -> "Scene":
-        """Returns the scene of a road, or of the whole network of a route.
-
-        The same road and world always give the same images.
-
-        Raises:
-            ExportError: the road has a number that is not finite.
-        """
+        """Returns the scene of a road, or of the whole network of a route; always the same for the same
+        arguments."""
         road = world.lay(road)
         land, trees = landscape(road, world)
         terrain = LitTerrain(land)
@@ -89,10 +83,6 @@ class Scene:
             pose: pose of the car that carries the camera.
             out: contiguous array of bytes to write the image to; None for a new array.
             car: pose of the car that is drawn, with its shadow; None to draw no car.
-
-        Raises:
-            UsageError: a number of a pose is not finite or exceeds 1e7, or ``out`` does not have the image's
-                shape or is not of bytes.
         """
         if not all(np.abs(each).max() <= FARTHEST for each in (pose, car) if each is not None):
             raise UsageError("a number of a pose is not finite, or beyond 10,000 km")
@@ -118,7 +108,6 @@ class Scene:
         return out
 
     def _buffers(self, camera: Camera) -> RenderBuffers:
-        """Returns this thread's working memory for an image of this size."""
         key = (camera.width, camera.height)
         kept: dict[tuple[int, int], RenderBuffers] = self._own.__dict__.setdefault("sheets", {})
         if key not in kept:
@@ -136,7 +125,7 @@ class Scene:
 
 
 def _shade_of(car: Pose | None) -> NDArray[np.float64]:
-    """Returns the numbers ``(9,)`` that define the shadow of a car; zeros for None."""
+    """Returns the shadow of a car as the ``numbers`` of ``shade``."""
     out = np.zeros(9)
     if car is not None:
         forward, _, up = axes_of(car.heading, car.pitch, car.roll)

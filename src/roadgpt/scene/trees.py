@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from roadgpt.compiled import compiled, inlined
 from roadgpt.geometry.curve import Array
 from roadgpt.road.land import Land
-from roadgpt.scene.compiled import compiled, inlined
 from roadgpt.scene.light import SUN, SUN_X, SUN_Y
+from roadgpt.scene.patterns import mipmapped
 from roadgpt.scene.raster import RenderBuffers
-from roadgpt.scene.shade import air, hazy
-from roadgpt.scene.surfaces import Colour
-from roadgpt.scene.textures import mipmapped
+from roadgpt.scene.shade import Colour, air, hazy
 
 SEED = 11
 SIDE = 128  # texels; width and height of a picture
@@ -46,10 +45,8 @@ class Trees(NamedTuple):
 def plant(line: Array, reach: float, land: Land) -> Trees:
     """Returns trees in loose groups on the terrain, none of them near a road.
 
-    Args:
-        line: Points ``(n, 2)`` in metres on the centre lines of the roads.
-        reach: The greatest distance in metres from a centre line to the outer edge of a shoulder.
-        land: The terrain.
+    ``line`` has points ``(n, 2)`` on the centre lines of the roads, and ``reach`` is the greatest distance
+    from them to the outer edge of a shoulder, all in metres.
     """
     rng = np.random.default_rng(SEED)
     x0, x1, y0, y1 = land.x[BORDER], land.x[-BORDER - 1], land.y[BORDER], land.y[-BORDER - 1]
@@ -80,8 +77,7 @@ def pictures() -> NDArray[np.float32]:
 
 
 def _crown(rng: np.random.Generator) -> tuple[Array, Array, Array]:
-    """Returns the tufts of a broad-leaved tree: positions (x, y, z), normals, and radii. x and y are in
-    -1..1, z is in 0..1 upwards."""
+    """Returns tufts of a broad-leaved tree: places with x, y in -1..1 and z in 0..1, normals, and radii."""
     boughs = rng.normal(size=(14, 3))
     boughs *= (0.62 * rng.random(14) ** 0.4 / np.linalg.norm(boughs, axis=1))[:, None]
     tufts = boughs[rng.integers(14, size=420)]
@@ -136,8 +132,7 @@ def _tree(
 def _texel(
     pictures: NDArray[np.float32], look: int, start: int, side: int, u: float, v: float, k: int
 ) -> float:
-    """Returns channel k of a picture at (u, v) in its texels, interpolated between four of them; 0
-    outside."""
+    """Returns channel k at (u, v) in texels, interpolated between four of them; 0 outside the picture."""
     fu, fv = math.floor(u - 0.5), math.floor(v - 0.5)
     du, dv = u - 0.5 - fu, v - 0.5 - fv
     out = 0.0
@@ -151,8 +146,7 @@ def _texel(
 
 @inlined
 def _mip_level(high: float) -> tuple[int, int]:
-    """Returns the first texel and the side of the smallest copy of a picture that is sharp enough for a tree
-    of this height in pixels."""
+    """Returns first texel and side of the smallest copy that is sharp enough for this height in pixels."""
     side, start = SIDE, 0
     while side > 1 and side > 1.4 * high:
         start += side * side
@@ -162,8 +156,8 @@ def _mip_level(high: float) -> tuple[int, int]:
 
 @inlined
 def _range(a: float, b: float, reach: float, size: int) -> tuple[int, int]:
-    """Returns the first pixel, and the end, of the range between two places in the image, extended by
-    ``reach`` pixels on both sides and limited to 0 and ``size``."""
+    """Returns first pixel and end of a range, extended by ``reach`` on both sides and limited to 0 and
+    ``size``."""
     return max(0, int(min(a, b) - reach)), min(size, int(max(a, b) + reach) + 1)
 
 

@@ -6,7 +6,7 @@ tolerance at any control step, if it falls off the road, if it moves less than 1
 is exceeded. It passes if it comes within 8 m of the end of the road. Any other lane and the shoulder count as
 outside. If ``World.limits.lane_departure`` is set, the car also fails as soon as a front tyre crosses a lane
 marking. Every verdict states how far outside its lane the car was, on the scale of
-``roadgpt.verdict.severity``. If the driver handed over, as some do near junctions, the verdict says who drove
+``roadgpt.verdict.verdict``. If the driver handed over, as some do near junctions, the verdict says who drove
 which share of the way, and whether the driver itself drove where the car failed.
 
 On a route through junctions a verdict also lists wrong turns, driving against the direction of the lane,
@@ -16,9 +16,18 @@ tyres off the road, and stop signs that were passed without a stop (``roadgpt.ve
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from roadgpt.verdict.incident import Incident
-from roadgpt.verdict.severity import SEVERITIES, Severity, graded, percent, severity
-from roadgpt.verdict.verdict import Cause, Outcome, Side, Verdict
+from roadgpt.verdict.verdict import (
+    SEVERITIES,
+    Cause,
+    Incident,
+    Outcome,
+    Severity,
+    Side,
+    Verdict,
+    graded,
+    percent,
+    severity,
+)
 
 if TYPE_CHECKING:
     from roadgpt.verdict.judging import judge, most_beyond

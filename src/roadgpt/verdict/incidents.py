@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 
 from roadgpt.geometry import wrap_angle
 from roadgpt.network import Route
-from roadgpt.verdict.incident import Incident, IncidentKind
 from roadgpt.verdict.oracle import is_outside
+from roadgpt.verdict.verdict import Incident, IncidentKind
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
@@ -76,7 +76,6 @@ def begins(holds: BoolArray) -> list[int]:
 
 
 def _is_beside(route: Route, drive: "Drive") -> BoolArray:
-    """Returns for each step whether the car's centre of gravity is beside the road of the route."""
     assert route.profile is not None
     edges = route.profile.edges(drive["s"])
     beside: BoolArray = (drive["t"] > edges.left) | (drive["t"] < edges.right)

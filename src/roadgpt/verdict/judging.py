@@ -8,12 +8,9 @@ import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.network import is_route
-from roadgpt.road.oracles import share_in_words
-from roadgpt.verdict.incident import Incident
-from roadgpt.verdict.margin import EPSILON, margins
-from roadgpt.verdict.oracle import consult, has_departed, is_outside
-from roadgpt.verdict.severity import percent
-from roadgpt.verdict.verdict import Cause, Side, Verdict
+from roadgpt.road.world import share_in_words
+from roadgpt.verdict.oracle import EPSILON, consult, has_departed, is_outside, margins
+from roadgpt.verdict.verdict import Cause, Incident, Side, Verdict, percent
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
@@ -80,12 +77,7 @@ def judge(
     ``roadgpt.verdict.incidents``. If the car kept its lane up to the goal, the first wrong turn, wrong way or
     missed stop is the failure. A tyre off the road is counted but fails no test.
 
-    Args:
-        road: The road.
-        drive: The drive on this road.
-        world: The World, which sets the tolerance and the other failure criteria.
-        known: The index of the step that decides the verdict, and the cause of failure (None if the car did
-            not fail). If ``known`` is None, both are computed.
+    ``known`` is the step that decides and the cause of failure, or None, if an earlier verdict has them.
 
     Raises:
         UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``.
@@ -129,7 +121,6 @@ def judge(
 
 
 def _incidents(road: "Road", drive: "Drive", world: "World") -> tuple[Incident, ...] | None:
-    """Returns what the car did wrong, in order of time; None if the road is not a Route."""
     if not is_route(road):
         return None
     from roadgpt.verdict.incidents import incidents_of  # a single road does not need it
@@ -142,14 +133,14 @@ def most_beyond(road: "Road", drive: "Drive", world: "World") -> float:
 
     The distance is measured from the outer edge of the marking; it is 0 if the car never extended beyond it.
     """
-    from roadgpt.drive.marking_monitor import MarkingMonitor
+    from roadgpt.drive.lane_position import MarkingMonitor
 
     body = MarkingMonitor.for_body(road, world, drive.car).along(drive, floor=0.0)
     return max(float(body[: drive.lane_steps].max()), 0.0)
 
 
 def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, Cause | None]:
-    """Returns the step at which the drive failed and the cause; the last step and None if it did not fail."""
+    """Returns the step at which the drive failed and the cause; the last step and None if it did not."""
     last = len(drive) - 1
     out = is_outside(road, drive, world)
     if out.any():
@@ -172,9 +163,8 @@ def _first_of(incidents: Sequence[Incident], drive: "Drive", step: int) -> tuple
 
 
 def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
-    """Returns the number of incidents of each kind as words that follow a description, which has already
-    named the first incident of the cause's kind.
-    """
+    """Returns the number of incidents of each kind in words; the first of the cause's kind is named
+    already."""
     of_kind: Counter[str | None] = Counter(each.kind for each in incidents)
     same = of_kind.pop(cause, 0)
     words = [f"{same} times in all"] if same > 1 else []
@@ -200,9 +190,7 @@ def far_beyond(beyond: float) -> str:
 
 
 def _kept(drive: "Drive", world: "World", margin: float, beyond: float) -> str:
-    """Describes a PASS. The text also states how far outside its lane the car was, because the tolerance
-    allows this up to a limit.
-    """
+    """Describes a PASS, and how far outside its lane the car was, which the tolerance allows to a limit."""
     reached = f"to the goal after {drive['s'][-1]:.0f} m"
     if not drive.max_outside:
         return f"kept its lane {reached}, never less than {margin:.2f} m sideways from failing"

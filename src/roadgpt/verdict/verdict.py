@@ -1,20 +1,45 @@
-"""Defines the Verdict: whether the car kept its lane, by which margin, and where it first failed."""
+"""Defines the Verdict: whether the car kept its lane, by which margin, and where it first failed.
 
+The levels of severity say how far outside its lane a car was, and colour all pictures, pages, tables and
+terminal output. A car that passes a test may have been partly outside its lane, and with a tolerance above
+0.5, such as that of RoadGPT's thesis, even mostly.
+"""
+
+import math
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any, ClassVar, Literal, Self
+from typing import Any, ClassVar, Literal, Self, get_args
 
 from pydantic import ConfigDict, ValidationError
 
 from roadgpt.errors import UsageError
 from roadgpt.reading import strictly
-from roadgpt.verdict.incident import Incident
-from roadgpt.verdict.severity import Severity, severity
 
 Outcome = Literal["PASS", "FAIL"]
 Cause = Literal["out of lane", "fell", "stuck", "timeout", "wrong turn", "wrong way", "stop line"]
 Side = Literal["left", "right"]
+Severity = Literal["at most 10 % outside", "partly outside", "mostly outside"]
+SEVERITIES: tuple[Severity, ...] = get_args(Severity)
+"""All levels, from the best to the worst."""
+PARTLY, MOSTLY = 0.1, 0.5
+"""Shares of the car's bounding box outside its lane above which the level is "partly" or "mostly outside"."""
+
+
+IncidentKind = Literal["out of lane", "wrong turn", "wrong way", "off road", "stop line"]
+
+
+@dataclass(frozen=True)
+class Incident:
+    """One thing that the car did wrong, with the place and the time at which it began."""
+
+    kind: IncidentKind
+    at_s: float
+    """Station of the car's centre of gravity in metres."""
+    at_xy: tuple[float, float]
+    """Position (x, y) of the car's centre of gravity in metres."""
+    at_time: float
+    """Time in seconds since the start of the drive."""
 
 
 @dataclass(frozen=True)
@@ -42,19 +67,18 @@ class Verdict:
     The step at which the car reached the goal or was stuck is not included.
     """
     margin: float
-    """Smallest margin during the drive in metres, as defined in `roadgpt.verdict.margin`.
+    """Smallest margin during the drive in metres, as defined in `roadgpt.verdict.oracle`.
 
     The margin is how far the car could have been shifted sideways before failing. It is negative exactly if
     the car left its lane or fell.
     """
     oob_counter: int
     """Number of times the car went out of its lane."""
-    beyond: float | None = None
+    beyond: float = 0.0
     """Largest distance in metres by which the car's body extended beyond a marking of its lane.
 
     The distance is measured from the outer edge of the marking, over the same steps as ``max_oob``; it is 0
-    if the car never extended beyond a marking. The field is None if the verdict was read from a file of an
-    older version and the drive is missing.
+    if the car never extended beyond a marking.
     """
     at_s: float | None = None
     """Station in metres where the car failed; None if the car did not fail."""
@@ -119,3 +143,31 @@ class Verdict:
             raise UsageError(f"the verdict cannot be read ({said}): judge the drive again") from error
         except (AttributeError, TypeError, ValueError) as error:
             raise UsageError(f"the verdict cannot be read ({error}): judge the drive again") from error
+
+
+def severity(share: float) -> Severity:
+    """Returns the level for a share (0 to 1) of the car's bounding box outside its lane."""
+    if share > MOSTLY:
+        return "mostly outside"
+    return "partly outside" if share > PARTLY else SEVERITIES[0]
+
+
+def graded(outcome: str, share: float | None) -> str:
+    """Returns an outcome as displayed, for example "PASS (partly outside)": the level is appended only to
+    PASS, and only if the share of the box outside the lane, 0 to 1, is known and above 10 %."""
+    if outcome != "PASS" or (share or 0.0) <= PARTLY:
+        return outcome
+    return f"{outcome} ({severity(share or 0.0)})"
+
+
+def percent(share: float) -> str:
+    """Returns a share (0 to 1) as text in per cent.
+
+    Only exactly 0 becomes "0 %", and only exactly 1 becomes "100 %"; less than
+    0.001 % is rounded up to it."""
+    told = f"{100 * share:.0f}"
+    if told == "0" and share > 0:
+        told = f"{max(100 * share, 0.001):.1g}"
+    elif told == "100" and share < 1:
+        told = f"{math.floor(1000 * share) / 10:.1f}"
+    return f"{told} %"

@@ -16,17 +16,14 @@ from roadgpt.export.exporters.opendrive import document
 from roadgpt.geometry import GradeProfile
 from roadgpt.network import read_source
 from roadgpt.road import (
-    CrossSection,
     ImportedRoad,
-    Limits,
     Road,
-    Site,
     World,
     build,
-    moved,
     read_opendrive,
 )
 from strategies import designs
+from tables import rows
 
 DATA = Path(__file__).parent / "data"
 LANES = """<lanes>{offset}<laneSection s="0">
@@ -81,15 +78,6 @@ def test_every_kind_of_road_comes_back_within_a_millimetre(tmp_path: Path, name:
     assert apart(found.road, ROADS[name]) < 1e-3
     assert apart(Road.from_json(found.road.to_json()), found.road) == 0
     assert apart(written(found.road, tmp_path / "again").road, found.road) < 1e-3
-
-
-def test_lanes_limits_and_friction_come_back(tmp_path: Path) -> None:
-    world = World(
-        section=CrossSection(lane_width=3.25, shoulder=1.25),
-        site=Site(friction=0.35),
-        limits=Limits(speed_limit=70 / 3.6),
-    )
-    assert written(ROADS["arcs"], tmp_path, world).world(World()) == world
 
 
 def test_a_road_file_may_be_opendrive(tmp_path: Path) -> None:
@@ -188,53 +176,6 @@ def test_a_road_with_left_lanes_only_is_taken_the_other_way(tmp_path: Path) -> N
     assert found.road.curvature(s[1:-1]) == pytest.approx(-there.curvature(40 - s[1:-1]), abs=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("speed", "limit"),
-    [
-        ('max="50" unit="km/h"', 50 / 3.6),
-        ('max="30" unit="mph"', 13.4112),
-        ('max="12"', 12.0),
-        ('max="no limit"', None),
-    ],
-)
-def test_speed_limits_in_all_units(tmp_path: Path, speed: str, limit: float | None) -> None:
-    rest = f'<type s="0" type="town"><speed {speed}/></type>'
-    assert read_opendrive(file(tmp_path, rest=rest)).speed_limit == (limit and pytest.approx(limit))
-
-
-def test_borders_instead_of_widths(tmp_path: Path) -> None:
-    right = (
-        '<lane id="-1" type="driving"><border sOffset="0" a="-3.1"/></lane>'
-        '<lane id="-2" type="shoulder"><border sOffset="0" a="-4.1"/></lane>'
-    )
-    found = read_opendrive(file(tmp_path, right=right))
-    assert (found.lane_width, found.shoulder) == (3.1, 1.0)
-
-
-def test_a_border_that_narrows_is_the_same_line_as_a_width_that_narrows(tmp_path: Path) -> None:
-    left_side = '<left><lane id="1" type="driving"><width sOffset="0" a="3"/></lane></left>'
-    driven = '<lane id="-2" type="driving"><width sOffset="0" a="3"/></lane>'
-    roads = []
-    for inner in ('<width sOffset="0" a="2" b="-0.04"/>', '<border sOffset="0" a="-2" b="0.04"/>'):
-        path = file(tmp_path, right=f'<lane id="-1" type="median">{inner}</lane>{driven}')
-        path.write_text(path.read_text().replace(left_side, ""))
-        roads.append(read_opendrive(path).road)
-    assert apart(*roads) < 1e-6
-
-
-def test_kinks_are_rounded_off_and_told_of(tmp_path: Path) -> None:
-    x, y = 1 + 40 * math.cos(0.5), 2 + 40 * math.sin(0.5)
-    more = f'<geometry s="40" x="{x!r}" y="{y!r}" hdg="0.7" length="30"><line/></geometry>'
-    found = read_opendrive(file(tmp_path, LINE + more))
-    assert found.remarks == (
-        "its line has 1 kink of 11.5 degrees (at s = 40.0); it is rounded off, "
-        "at most 0.15 m from the file's line",
-    )
-    assert found.road.at(found.road.length)[:2] == pytest.approx(
-        (1 + 40 * math.cos(0.5) + 30 * math.cos(0.7), 2 + 40 * math.sin(0.5) + 30 * math.sin(0.7)), abs=1e-6
-    )
-
-
 def test_what_a_road_cannot_show_is_told_by_name_and_number(tmp_path: Path) -> None:
     rest = (
         '<lateralProfile><superelevation s="0" a="0.05" b="0" c="0" d="0"/>'
@@ -260,16 +201,6 @@ def test_what_a_road_cannot_show_is_told_by_name_and_number(tmp_path: Path) -> N
     )
 
 
-def test_a_road_of_one_direction_stays_one_way(tmp_path: Path) -> None:
-    path = file(tmp_path)
-    path.write_text(path.read_text().replace('<lane id="1" type="driving">', '<lane id="1" type="border">'))
-    found = read_opendrive(path)
-    assert found.remarks == ()
-    assert found.road.profile is not None
-    assert found.road.profile.count == (1, 0)
-    assert [float(each) for each in found.road.profile.rims(10.0)] == [3.0, -3.5]
-
-
 SECTIONS = """<OpenDRIVE><road id="1" length="90"><planView>
 <geometry s="0" x="0" y="0" hdg="0" length="90"><line/></geometry></planView><lanes>
 {}</lanes></road></OpenDRIVE>"""
@@ -281,23 +212,6 @@ def section(s: float, right: str, left: str = "driving") -> str:
         f'<laneSection s="{s}"><left><lane id="1" type="{left}">{width}</lane></left>'
         f'<right><lane id="-1" type="{right}">{width}</lane></right></laneSection>'
     )
-
-
-def test_a_lane_that_begins_later_is_driven_all_along_and_told_of(tmp_path: Path) -> None:
-    path = tmp_path / "later.xodr"
-    sections = section(0, "sidewalk", "none") + section(30, "driving", "none") + section(70, "none", "none")
-    path.write_text(SECTIONS.format(sections))
-    assert read_opendrive(path).remarks[0] == (
-        "in its file cars drive only from s = 30 to 70 m, here along the whole road"
-    )
-
-
-def test_the_side_that_is_driven_for_longer_is_taken(tmp_path: Path) -> None:
-    path = tmp_path / "side.xodr"
-    path.write_text(SECTIONS.format(section(0, "sidewalk") + section(80, "driving")))
-    found = read_opendrive(path)
-    assert found.road.at(0.0)[0] == pytest.approx(90)
-    assert "direction of its left lanes" in found.remarks[0]
 
 
 def test_the_default_road_is_the_longest_with_a_driving_lane(tmp_path: Path) -> None:
@@ -320,23 +234,6 @@ def test_the_default_road_is_the_longest_with_a_driving_lane(tmp_path: Path) -> 
     assert read_opendrive(path).id == "2"
 
 
-def test_a_lane_without_a_width_is_given_one(tmp_path: Path) -> None:
-    right = '<lane id="-1" type="driving"><width sOffset="0" a="0"/></lane>'
-    found = read_opendrive(file(tmp_path, right=right))
-    assert found.lane_width == 2.0
-    assert (
-        "the width of its lane is 0 m at s = 0 m, outside 2 to 10 m, and is limited to that" in found.remarks
-    )
-
-
-def test_the_longest_road_outside_of_junctions_is_taken(tmp_path: Path) -> None:
-    found = read_opendrive(DATA / "sg_junction.xodr")
-    assert found.road.length == pytest.approx(100)
-    assert found.remarks[0].startswith("road 0 is taken, the longest of 6")
-    with pytest.raises(UsageError, match="there is no road 99 in it; there are: 0, 1, 2"):
-        read_opendrive(DATA / "sg_junction.xodr", "99")
-
-
 @pytest.mark.parametrize("path", sorted(DATA.glob("*.xodr")), ids=lambda path: path.stem)
 def test_files_of_other_tools_are_read_whole(path: Path) -> None:
     """SUMO's netconvert 1.28 and scenariogeneration 0.16.7 wrote them; every road is described."""
@@ -352,21 +249,7 @@ def test_files_of_other_tools_are_read_whole(path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("line", "sentence"),
-    [
-        ("", "its <planView> has no geometry"),
-        (
-            '<geometry s="0" x="0" y="0" hdg="0" length="9"><bezier/></geometry>',
-            "is a <bezier>; known are line",
-        ),
-        ('<geometry s="0" x="0" y="0" hdg="0" length="9"/>', "the geometry at s = 0 has no shape"),
-        ('<geometry s="0" x="0" y="0" hdg="0" length="-9"><line/></geometry>', "is -9 m long; correct it"),
-        ('<geometry s="0" x="0" hdg="0" length="9"><line/></geometry>', "a <geometry> has no y; add it"),
-        (LINE.replace('"40"', '"4e9"'), "give one of up to 50 km"),
-        (LINE.replace("<line/>", '<arc curvature="99"/>'), "turns more tightly than 0.1 m"),
-        (LINE.replace("<line/>", '<paramPoly3 pRange="x"/>'), "has a pRange 'x'"),
-        (LINE + LINE.replace('s="0"', 's="30"'), "is 40 m long, but the next one begins at s = 30"),
-        (LINE + LINE.replace('s="0"', 's="40"'), r"its line jumps by 40\.00 m at s = 40"),
-    ],
+    rows(__file__, "what_cannot_be_read_is_named"),
 )
 def test_what_cannot_be_read_is_named(tmp_path: Path, line: str, sentence: str) -> None:
     with pytest.raises(UsageError, match=rf"some\.xodr: road 1: .*{sentence}"):
@@ -378,21 +261,3 @@ def test_a_road_that_nobody_drives_on_is_told_of(tmp_path: Path) -> None:
     path.write_text(path.read_text().replace('"driving"', '"sidewalk"'))
     with pytest.raises(UsageError, match=r"no lane of type driving \(its lanes are: border, sidewalk\)"):
         read_opendrive(path)
-
-
-@pytest.mark.parametrize("name", ["arcs", "spline"])
-def test_a_road_can_be_moved(name: str) -> None:
-    road = ROADS[name]
-    s = np.linspace(0, road.length, 50)
-    assert moved(road, 5, -7).at(s) == pytest.approx(road.at(s) + [5, -7, 0], abs=1e-9)
-    up = moved(road, 5, -7, 30).at(s) - road.at(s)
-    assert up[:, 2] == pytest.approx(30 if road.nodes is None or road.nodes.shape[1] == 3 else 0, abs=1e-9)
-
-
-def test_a_speed_limit_that_changes_is_told_of(tmp_path: Path) -> None:
-    rest = '<type s="0"><speed max="50" unit="km/h"/></type><type s="20"><speed max="30" unit="km/h"/></type>'
-    found = read_opendrive(file(tmp_path, rest=rest))
-    assert found.remarks == (
-        "its speed limit changes from 50 km/h to 30 km/h at s = 20 m; 50 km/h is used everywhere",
-    )
-    assert found.speed_limit == pytest.approx(50 / 3.6)

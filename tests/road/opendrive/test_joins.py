@@ -81,8 +81,8 @@ def tightest(found: ImportedRoad) -> float:
     return float(1 / max(bend.max(), 1e-9))
 
 
-@pytest.mark.parametrize("length", [1e-9, 3e-5, 4e-4, 9.9e-4, 2e-3])
-@pytest.mark.parametrize("heading", [0.0, 0.3, -2.0])
+@pytest.mark.parametrize("length", [1e-9, 4e-4, 2e-3])
+@pytest.mark.parametrize("heading", [0.3, -2.0])
 @pytest.mark.parametrize("place", ["start", "middle", "end", "many"])
 def test_an_element_of_a_millimetre_is_made_one_with_its_neighbours(
     tmp_path: Path, length: float, heading: float, place: str
@@ -123,12 +123,6 @@ def test_a_tight_spiral_of_a_few_centimetres_is_a_kink(tmp_path: Path) -> None:
     assert pen.away(found) < 0.2
 
 
-def test_the_edge_of_a_lane_has_a_length_of_its_own(tmp_path: Path) -> None:
-    far = '<laneOffset s="0" a="1e9" b="1e9" c="0" d="0"/>'
-    with pytest.raises(UsageError, match=r"the road is .* m long.*; give one of up to 50 km"):
-        Pen().line(60).read(tmp_path, offset=far)
-
-
 @pytest.mark.parametrize("degrees", [0.2, 3.0, 12.0, 40.0])
 def test_what_is_told_of_a_kink_is_measured(tmp_path: Path, degrees: float) -> None:
     pen = Pen(3, 4, 0.7).line(40).line(50, math.radians(degrees))
@@ -162,47 +156,6 @@ def test_a_gap_becomes_no_wriggle(tmp_path: Path, aside: float, least: float) ->
         assert found.remarks == ()
 
 
-def test_a_gap_of_half_a_metre_is_no_road(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"its line jumps by 0\.50 m at s = 40\.0; correct the file"):
-        Pen().line(40).line(50, aside=0.5).read(tmp_path)
-
-
-def test_kinks_from_metre_to_metre_become_a_bend(tmp_path: Path) -> None:
-    pen = Pen().line(20)
-    for _ in range(30):
-        pen.line(1.0, math.radians(2))
-    found = pen.line(20, math.radians(2)).read(tmp_path)
-    assert tightest(found) > 20  # an arc of 28.6 m
-    assert pen.away(found) < 0.05
-    assert "31 kinks of up to 2.0 degrees" in found.remarks[0]
-
-
-def test_a_lane_that_widens_at_once_is_a_kink_too(tmp_path: Path) -> None:
-    """The edge of a median that grows by 10 cm a metre from s = 20 on turns there by 5.7 degrees."""
-    median = (
-        '<lane id="-1" type="median"><width sOffset="0" a="1"/><width sOffset="20" a="1" b="0.1"/></lane>'
-        '<lane id="-2" type="driving"><width sOffset="0" a="3"/></lane>'
-    )
-    found = Pen().line(60).read(tmp_path, right=median)
-    assert found.remarks[0].startswith("its line has 1 kink of 5.7 degrees (at s = 20.0); it is rounded off")
-    assert tightest(found) > 20
-    s = np.array([1.0, 15.0, 30.0, 55.0])
-    x, y, _ = found.road.at(s).T
-    assert y == pytest.approx(-np.where(x < 20, 1, 1 + 0.1 * (x - 20)), abs=1e-3)
-
-
-def test_heights_keep_their_cubics_where_the_line_is_bridged(tmp_path: Path) -> None:
-    heights = (
-        '<elevationProfile><elevation s="0" a="3" b="0.02" c="0" d="0"/>'
-        '<elevation s="41" a="3.82" b="-0.03" c="0" d="0"/></elevationProfile>'
-    )
-    found = Pen().line(40).line(50, math.radians(8)).read(tmp_path, rest=heights)
-    s = np.linspace(0, found.road.length, 5_000)
-    z = found.road.at(s)[:, 2]
-    assert np.abs(np.diff(z)).max() < 0.04 * s[1]
-    assert z == pytest.approx(np.where(s < 41, 3 + 0.02 * s, 3.82 - 0.03 * (s - 41)), abs=0.01)
-
-
 @st.composite
 def pens(draw: st.DrawFn) -> Pen:
     """Lines and arcs with misses of every size between them, and tiny elements."""
@@ -230,3 +183,8 @@ def test_any_line_is_read_or_refused_in_a_sentence(
     away = pen.away(found)
     told = [float(m) for remark in found.remarks for m in re.findall(r"at most ([\d.]+) m from", remark)]
     assert away < (told[0] if told else 0.0) + 0.02
+
+
+def test_a_gap_of_half_a_metre_is_no_road(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"its line jumps by 0\.50 m at s = 40\.0; correct the file"):
+        Pen().line(40).line(50, aside=0.5).read(tmp_path)

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from roadgpt.errors import UsageError
 from roadgpt.road import ImportedRoad, Profile, World, read_opendrive
-from roadgpt.road.opendrive.left_out import UNREAD
+from roadgpt.road.opendrive import UNREAD
 from roadgpt.road.opendrive.tree import COUNTED, DRIVING, READ, SILENT
 
 LENGTH = 200.0
@@ -62,10 +62,6 @@ def rows(tag: str, station: str, records: list[tuple[float, ...]]) -> str:
 def told(found: ImportedRoad, *words: str) -> bool:
     """Whether one remark has all these words."""
     return any(all(word in remark for word in words) for remark in found.remarks)
-
-
-def test_a_plain_file_needs_no_remark(tmp_path: Path) -> None:
-    assert read(tmp_path).remarks == ()
 
 
 PIECES = [(0.0, 40.0, 0.0), (40.0, 60.0, 0.01), (100.0, 55.0, -0.008), (155.0, 45.0, 0.0)]
@@ -188,18 +184,6 @@ def test_a_line_that_does_not_begin_at_0_keeps_its_stations(tmp_path: Path, begi
     assert own(found).width(np.array([59.9, 60.1])) == pytest.approx([3, 4])
 
 
-def test_stations_that_drift_from_the_lengths_are_kept(tmp_path: Path) -> None:
-    """Twenty elements of 9.95 m whose stations are 10 m apart: a height at s = 100 is at the eleventh."""
-    line = "".join(
-        f'<geometry s="{10 * n}" x="{9.95 * n!r}" y="0" hdg="0" length="9.95"><line/></geometry>'
-        for n in range(20)
-    )
-    heights = rows("elevation", "s", [(0.0, 0.0, 0.0, 0.0, 0.0), (100.0, 0.0, 0.05, 0.0, 0.0)])
-    found = read(tmp_path, line=line, rest=f"<elevationProfile>{heights}</elevationProfile>")
-    x = found.road.at(np.linspace(0, found.road.length, 2000))
-    assert x[x[:, 2] > 1e-3][0, 0] == pytest.approx(99.5, abs=0.2)
-
-
 FRICTION = [
     # records, friction that is taken, words that are told
     ([(0, 1.0), (100, 0.2)], 1.0, ["changes from 1 to 0.2 at s = 100 m", "; 1 is used everywhere"]),
@@ -281,31 +265,6 @@ def test_a_friction_of_further_lanes_alone_is_told(tmp_path: Path, kind: str) ->
     assert told(found, "a friction of 0.3 is stated for other lanes", "is not used")
 
 
-def test_speed_limits_of_other_lanes_are_told(tmp_path: Path) -> None:
-    fast, slow = (f'<speed sOffset="0" max="{most}" unit="km/h"/>' for most in (80, 30))
-    found = read(tmp_path, section(0.0, lane(-1, WIDTH + MARK + fast), lane(1, WIDTH + MARK + slow)))
-    assert found.speed_limit == pytest.approx(80 / 3.6)
-    assert told(found, "a speed limit of 30 km/h is stated for other lanes")
-
-
-def test_further_lanes_of_other_friction_are_told(tmp_path: Path) -> None:
-    ice, dry = (f'<material sOffset="0" friction="{value}"/>' for value in (0.1, 1.0))
-    lanes = section(0.0, lane(-1, WIDTH + MARK + dry), lane(1, WIDTH + MARK + ice))
-    assert told(
-        read(tmp_path, lanes),
-        "a friction of 0.1 is stated for other lanes, or the whole road, and is not used",
-    )
-
-
-@pytest.mark.parametrize(
-    "kind", ["entry", "exit", "onRamp", "offRamp", "connectingRamp", "mwyEntry", "mwyExit"]
-)
-def test_ramps_are_driven_by_their_old_and_new_names(tmp_path: Path, kind: str) -> None:
-    found = read(tmp_path, section(0.0, lane(-1, kind=kind)))
-    assert own(found).count[0] == 1
-    assert found.remarks == ()
-
-
 TOLD = {
     "late height": ("", '<elevationProfile><elevation s="50" a="3"/></elevationProfile>',
         "first <elevation> begins late"),
@@ -369,15 +328,6 @@ TOLD = {
 )
 def test_what_says_nothing_needs_no_remark(tmp_path: Path, rest: str) -> None:
     assert read(tmp_path, rest=rest).remarks == ()
-
-
-def test_records_in_several_lists_are_one_list(tmp_path: Path) -> None:
-    late, early = (
-        f"<elevationProfile>{rows('elevation', 's', [row])}</elevationProfile>" for row in HEIGHTS[1::-1]
-    )
-    found = read(tmp_path, rest=late + early)
-    assert found.road.elevation.height(S[S < 120]) == pytest.approx(at_each_metre(HEIGHTS, S[S < 120]))
-    assert told(found, "<elevation>", "sorted", "s = 0 m")
 
 
 @pytest.mark.parametrize("name", TOLD)

@@ -3,7 +3,6 @@
 import math
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from roadgpt.road import ImportedRoad, Profile, read_opendrive
@@ -36,20 +35,6 @@ def read(folder: Path, *sections: str, rest: str = "") -> tuple[ImportedRoad, Pr
     found = read_opendrive(path)
     assert found.road.profile is not None
     return found, found.road.profile
-
-
-def test_the_usual_two_lanes_need_no_profile(tmp_path: Path) -> None:
-    lanes = (
-        lane(1, 3.25, mark=SOLID),
-        lane(-1, 3.25, mark=SOLID),
-        lane(2, 1, "shoulder"),
-        lane(-2, 1, "border"),
-    )
-    path = tmp_path / "road.xodr"
-    path.write_text(ROAD.format(rest="", lanes=section(*lanes)))
-    found = read_opendrive(path)
-    assert found.road.profile is None
-    assert (found.lane_width, found.shoulder, found.remarks) == (3.25, 1.0, ())
 
 
 def test_all_lanes_with_their_widths_and_marks(tmp_path: Path) -> None:
@@ -110,32 +95,6 @@ def test_lanes_behind_a_median_are_left_out_and_the_road_is_one_way(tmp_path: Pa
     assert "left out: 2 further lanes (1 driving, 1 median)" in found.remarks
 
 
-def test_a_carriageway_of_a_motorway_has_its_inner_shoulder(tmp_path: Path) -> None:
-    lanes = lane(-1, 0.75, "shoulder", SOLID), lane(-2, 3.5, mark=BROKEN), lane(-3, 3.5, mark=SOLID)
-    found, profile = read(tmp_path, section(*lanes, centre=""))
-    assert found.road.at(10.0) == pytest.approx((10.0, -0.75, 0.0), abs=1e-6)
-    assert [float(each) for each in profile.rims(10.0)] == [0.75, -7.0]
-    assert profile.centre_marking == "solid"  # that of the shoulder, at the inner edge of the first lane
-
-
-def test_a_narrow_driven_lane_is_widened_and_told_of(tmp_path: Path) -> None:
-    found, profile = read(tmp_path, section(lane(1, 3), lane(-1, 'sOffset="0" a="0" b="0.05"')))
-    assert profile.width(10.0) == 2.0
-    assert profile.width(80.0) == pytest.approx(4.0)
-    assert (
-        "the width of its lane is 0 m at s = 0 m, outside 2 to 10 m, and is limited to that" in found.remarks
-    )
-
-
-@pytest.mark.parametrize("rows", ['a="-9"', 'a="1e12" b="1e12" c="1e12" d="1e12"', 'a="3" d="-1e9"'])
-def test_senseless_widths_give_a_road_that_can_be_kept(tmp_path: Path, rows: str) -> None:
-    found, profile = read(tmp_path, section(lane(1, f'sOffset="0" {rows}'), lane(-1, f'sOffset="0" {rows}')))
-    s = np.linspace(0.0, LENGTH, 50)
-    assert np.all((profile.width(s) >= 2.0) & (profile.width(s) <= 10.0))
-    assert np.all((profile.edges(s).left >= 0.0) & (profile.edges(s).left <= 100.0))
-    assert type(found.road).from_json(found.road.to_json()).profile == profile
-
-
 def test_superelevation_turns_the_surface_about_the_reference_line(tmp_path: Path) -> None:
     """The lanes begin 5 m to the right of the line about which the surface is turned by 0.1 rad."""
     bank = '<lateralProfile><superelevation s="0" a="0.1" b="0" c="0" d="0"/></lateralProfile>'
@@ -156,22 +115,6 @@ def test_superelevation_of_a_road_that_is_turned_round(tmp_path: Path) -> None:
         angle, t = 0.001 * there, 3 + 0.01 * there
         wanted = (there, t * math.cos(angle), t * math.sin(angle))
         assert found.road.at(s, profile.edges(s).right) == pytest.approx(wanted, abs=1e-6)
-
-
-def test_a_velodrome_is_flattened_and_told_of(tmp_path: Path) -> None:
-    bank = '<lateralProfile><superelevation s="0" a="0.8" b="0" c="0" d="0"/></lateralProfile>'
-    found, profile = read(tmp_path, section(lane(1, 3), lane(-1, 3)), rest=bank)
-    assert profile.superelevation(9.0) == 0.35
-    assert (
-        "its superelevation is 45.84 degrees at s = 0 m, outside -20.05 to 20.05 "
-        "degrees, and is limited to that"
-    ) in found.remarks
-
-
-def test_a_file_without_road_marks_gets_the_usual_ones(tmp_path: Path) -> None:
-    found, profile = read(tmp_path, section(lane(1, 3), lane(-1, 3), lane(-2, 3), centre=""))
-    assert [each.marking for each in profile.right] == ["broken", "solid"]
-    assert "it has no road marks in its file; the usual ones are painted here" in found.remarks
 
 
 def test_the_longest_road_mark_is_taken(tmp_path: Path) -> None:

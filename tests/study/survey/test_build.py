@@ -13,18 +13,15 @@ from matplotlib.image import imread
 
 from planned import planned
 from roadgpt.brief import read
-from roadgpt.brief.model import Amount
-from roadgpt.cli.commands.survey_ import command
 from roadgpt.errors import UsageError
-from roadgpt.report.film import Film, Settings
 from roadgpt.road import Design, Segment
 from roadgpt.run import Run, Setup, perform, prove, write_run
-from roadgpt.run.card import CARD as CAMPAIGN
-from roadgpt.run.card import Card
-from roadgpt.study.survey import build, media
-from roadgpt.study.survey.media import Axes
-from roadgpt.study.survey.plan import criteria_of, plan_from_runs, plan_text, read_plan
-from roadgpt.study.survey.survey import Survey, read_survey
+from roadgpt.run.folder import CARD as CAMPAIGN
+from roadgpt.run.folder import Card
+from roadgpt_study.survey import build
+from roadgpt_study.survey.command import command
+from roadgpt_study.survey.plan import criteria_of, plan_from_runs, plan_text, read_plan
+from roadgpt_study.survey.survey import Survey, read_survey
 
 SETUP = Setup(drives=False)
 NAMES = ("path", "view", "settings")
@@ -112,20 +109,6 @@ def straight(length: float, start: tuple[float, float, float] = (10, 10, 0)) -> 
     return prove(Design(starting_point=start, theta=45, segments=(segment,)), setup=Setup(drives=False))
 
 
-def test_axes_are_the_thesis_where_all_roads_fit_and_one_for_all_where_not() -> None:
-    short, long = straight(150).road, straight(280).road
-    assert short is not None
-    assert long is not None
-    thesis = Axes.of([short])
-    assert (thesis.frame.x0, thesis.frame.x1, thesis.along, thesis.height) == (0, 220, 200, 20)
-    both = Axes.of([short, long])
-    assert both.along >= 280
-    assert both.height >= 28 - 0.5
-    corners = np.concatenate([short.at(np.array([0.0, short.length])), long.at(np.array([0.0, long.length]))])
-    assert all(both.frame.holds(x, y) for x, y, _ in corners)
-    assert both.frame.width == pytest.approx(both.frame.height)
-
-
 @pytest.mark.parametrize(
     ("words", "criteria"),
     [
@@ -141,14 +124,6 @@ def test_axes_are_the_thesis_where_all_roads_fit_and_one_for_all_where_not() -> 
 def test_criteria_are_those_that_the_thesis_asked_for(words: str, criteria: tuple[str, ...]) -> None:
     """Its figures 6.9, 6.12, 6.15 and 6.18."""
     assert criteria_of(read(words)) == criteria
-
-
-def test_that_there_are_turns_is_no_number_of_turns() -> None:
-    """The reader by default reads one turn or more out of "a road"; raters are not asked about that."""
-    brief = read("a road")
-    assert criteria_of(brief.model_copy(update={"turns": Amount(lo=1)})) == ()
-    assert criteria_of(brief.model_copy(update={"turns": Amount(lo=1, hi=1)})) == ("turns",)
-    assert criteria_of(brief.model_copy(update={"turns": Amount(lo=4)})) == ("turns",)
 
 
 def test_a_file_may_name_texts_criteria_and_questions_of_its_own(runs: Path, tmp_path: Path) -> None:
@@ -251,26 +226,6 @@ def test_films_are_made_once_and_where_none_can_be_that_is_said(
     assert not list((tmp_path / "out" / "media").glob("*.mp4"))
 
 
-def test_a_film_for_raters_ends_before_its_outcome_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every frame is of a second before the drive is over, when films tell how it went."""
-    segment = Segment(distance=30, direction="straight", incline=0)
-    run = prove(Design(starting_point=(60, 60, 0), theta=0, segments=(segment,)), 7)
-    last: list[float] = []
-
-    def plan(*runs: Run, path: Path, view: str, settings: Settings) -> None:
-        last.append(Film.of(runs, "chase", settings).times[-1])
-
-    monkeypatch.setattr(media, "film_of", lambda a, *rest: plan(a, **dict(zip(NAMES, rest, strict=True))))
-    monkeypatch.setattr(
-        media, "split_film", lambda a, b, *rest: plan(a, b, **dict(zip(NAMES, rest, strict=True)))
-    )
-    media.make_film([run], Path("one.mp4"), "chase")
-    media.make_film([run, run], Path("two.mp4"), "chase")
-    assert run.drive is not None
-    assert len(last) == 2
-    assert all(run.drive.duration - 0.2 < time < run.drive.duration for time in last)
-
-
 def test_the_commands_make_and_analyse_a_survey(runs: Path, tmp_path: Path) -> None:
     out, runner = str(tmp_path / "s"), CliRunner()
     alone = runner.invoke(command, ["new", "--out", out])
@@ -294,19 +249,3 @@ def test_the_commands_make_and_analyse_a_survey(runs: Path, tmp_path: Path) -> N
     charts = [{path.stem for path in (tmp_path / "s").rglob(f"*.{name}")} for name in ("svg", "pdf")]
     assert charts[0] == charts[1] != set()
     assert "nobody has been invited" in str(runner.invoke(command, ["analyse", out]).exception)
-
-
-def test_a_survey_without_films_is_made_without_films(
-    runs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def forbidden(*_: object) -> None:
-        raise AssertionError("a film was made")
-
-    monkeypatch.setattr(build, "can_film", lambda: True)
-    monkeypatch.setattr(build, "make_film", forbidden)
-    out = tmp_path / "s"
-    words = ["new", "--from", str(runs), "--out", str(out), "--asks", "J", "--contact", "j@x.example"]
-    done = CliRunner().invoke(command, [*words, "--no-films", "--pairs", "0"])
-    assert done.exit_code == 0, done.output
-    assert not read_plan(out / "SURVEY.toml").films, "made anew it has none either"
-    assert not read_survey(out).lacks, "nobody is told to install what was not wanted"

@@ -8,9 +8,9 @@ import pytest
 from chromium import FOUND, BrowserTab, browser
 from roadgpt.road import Design, Segment
 from roadgpt.run import Setup, prove
-from roadgpt.study.survey.media import write_view
-from roadgpt.study.survey.server import Server
-from roadgpt.study.survey.survey import MATCHES, MEDIA, Medium
+from roadgpt_study.survey.build import write_view
+from roadgpt_study.survey.server import Server
+from roadgpt_study.survey.survey import MATCHES, MEDIA, Medium
 from survey_made import EVIL, PICTURE, folder_of, port_of, served, survey
 
 pytestmark = pytest.mark.skipif(FOUND is None, reason="no chromium is installed")

@@ -15,23 +15,20 @@ from pathlib import Path
 import pytest
 
 from roadgpt.errors import RoadGPTError, UsageError
-from roadgpt.run.atomic import write_whole
-from roadgpt.study.survey import serving
-from roadgpt.study.survey.server import Server
-from roadgpt.study.survey.serving import LINKS, open_server
-from roadgpt.study.survey.store import ANSWERS, AnswerStore, digest_of
-from roadgpt.study.survey.survey import ALIKE, MATCHES, read_survey
+from roadgpt_study.survey.serving import open_server
+from roadgpt_study.survey.store import ANSWERS, AnswerStore, digest_of
+from roadgpt_study.survey.survey import ALIKE, MATCHES, read_survey
 from survey_made import Client, agreed, folder_of, port_of, served, survey
 
 RATERS = 50
 WITHOUT = """
 import sys
-for name in ("starlette", "uvicorn", "jinja2", "markupsafe"):
+for name in ("starlette", "uvicorn"):
     sys.modules[name] = None  # as where it is not installed
-import roadgpt.study.study_report, roadgpt.study.execution
-import roadgpt.study.survey.build, roadgpt.study.survey.analysis, roadgpt.study.survey.rating_charts
+import roadgpt_study.study_report, roadgpt_study.execution
+import roadgpt_study.survey.build, roadgpt_study.survey.analysis, roadgpt_study.survey.rating_charts
 from roadgpt.__main__ import main
-roadgpt.study.survey.rating_charts.save_all = lambda *_: []  # charts stay on the page; a PDF takes seconds
+roadgpt_study.survey.rating_charts.save_all = lambda *_: []  # charts stay on the page; a PDF takes seconds
 for words in sys.argv[1:]:
     sys.argv[1:] = words.split()
     try:
@@ -163,18 +160,6 @@ def test_what_was_confirmed_outlives_kill_9(tmp_path: Path) -> None:
         client.close()
 
 
-def test_ctrl_c_ends_the_server_in_words(tmp_path: Path) -> None:
-    folder = folder_of(survey(), tmp_path / "s")
-    with command(folder, "--raters", "2", "--open") as (process, links, _port):
-        assert (folder / LINKS).read_text().count("/r/") == len(links) == 2
-        assert (folder / LINKS).stat().st_mode & 0o077 == 0, "links are nobody else's business"
-        process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert "0 of 2 raters agreed so far" in out
-    assert "Traceback" not in out + err
-
-
 def test_ctrl_c_ends_the_server_among_many_requests(tmp_path: Path) -> None:
     """A signal that comes within a request is no error of that request: it ends the server as well."""
     folder = folder_of(survey(), tmp_path / "s")
@@ -244,33 +229,6 @@ def test_answers_come_all_or_none_and_only_from_raters_who_agreed(tmp_path: Path
     store.close()
 
 
-def test_links_that_cannot_be_written_are_not_used_up(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    folder = folder_of(survey(), tmp_path / "s")
-
-    def full(path: Path, content: str, **_: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    told: list[str] = []
-    with monkeypatch.context() as patch:
-        patch.setattr(serving, "write_whole", full)
-        with pytest.raises(RoadGPTError, match="make room there"):
-            serving.serve(folder, told.append, raters=3)
-
-    def stopped(*_: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(Server, "serve_forever", stopped)
-    with pytest.raises(KeyboardInterrupt):
-        serving.serve(folder, told.append, raters=3)
-    tokens = [line.rpartition("/")[2] for line in (folder / LINKS).read_text().splitlines()]
-    store = AnswerStore(folder / ANSWERS)
-    assert len(tokens) == store.links() == 3
-    assert all(store.rater_of(token) for token in tokens)
-    store.close()
-
-
 def test_what_cannot_be_served_is_told_in_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="holds no survey"):
         open_server(tmp_path, "127.0.0.1", 0)
@@ -302,18 +260,5 @@ def test_answers_are_for_their_owner_alone(tmp_path: Path) -> None:
         (tmp_path / ANSWERS).chmod(0o666)
         AnswerStore(tmp_path / ANSWERS).close()
         assert (tmp_path / ANSWERS).stat().st_mode & 0o777 == 0o600
-    finally:
-        os.umask(before)
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="no such rights")
-def test_a_private_file_is_never_readable_by_others(tmp_path: Path) -> None:
-    before = os.umask(0)
-    try:
-        write_whole(tmp_path / "links.txt", "x", is_private=True)
-        (tmp_path / "links.txt").chmod(0o666)
-        write_whole(tmp_path / "links.txt", "y", is_private=True)
-        assert (tmp_path / "links.txt").stat().st_mode & 0o777 == 0o600
-        assert (tmp_path / "links.txt").read_text() == "y"
     finally:
         os.umask(before)

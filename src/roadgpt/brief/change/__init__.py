@@ -16,7 +16,7 @@ from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import EditRequest
 from roadgpt.brief.change.spoken import spoken
 from roadgpt.brief.readers.model import ModelReader
-from roadgpt.brief.readers.model.confidence import DOUBT
+from roadgpt.brief.readers.model.trained import DOUBT
 from roadgpt.brief.refusal import MOST_CHARACTERS, causes_of
 from roadgpt.brief.words import SURFACES
 from roadgpt.chat import ChatSettings

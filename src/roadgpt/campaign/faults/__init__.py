@@ -10,7 +10,7 @@ _MODULES = {
     "reason_of": "reason",
     "repeated": "stability",
     "simplest": "minimise",
-    "smallest_change": "change",
+    "smallest_change": "minimise",
 }
 """The functions for users, which are imported when they are first used."""
 

@@ -11,11 +11,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from roadgpt.campaign.faults.distinct import groups_of, typical
-from roadgpt.campaign.faults.failures import LocatedFailure, failures_of
+from roadgpt.campaign.faults.failures import LocatedFailure, failures_of, groups_of, typical
 from roadgpt.campaign.faults.reason import Way
-from roadgpt.campaign.faults.remedy import REMEDIES, Removed, has_remedies, stored_remedies
-from roadgpt.campaign.faults.told_apart import TriedGroup, faults_by_remedy
+from roadgpt.campaign.faults.remedy import (
+    REMEDIES,
+    Removed,
+    TriedGroup,
+    faults_by_remedy,
+    has_remedies,
+    stored_remedies,
+)
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.plural import plural
 
@@ -48,10 +53,9 @@ class Fault:
 
     number: int
     """Number, from 1; those with the most failures come first. 0 if other groups belong to faults."""
-    members: tuple[LocatedFailure, ...]
-    """All failures of the fault or group, in the order of their tests."""
+    members: tuple[LocatedFailure, ...]  # all failures of the fault or group, in the order of their tests
     typical: tuple[LocatedFailure, ...]
-    """Up to three typical failures, that of the largest group first; see ``distinct.typical``."""
+    """Up to three typical failures, that of the largest group first; see ``failures.typical``."""
     remedy: str | None = None
     """Name of the small change with which the failures disappear; None if this is a group, not a fault."""
     tested_first: tuple[LocatedFailure, ...] = ()
@@ -73,20 +77,15 @@ class Fault:
 class Faults:
     """The distinct faults of a folder, and the groups of failures that belong to none."""
 
-    them: tuple[Fault, ...]
-    """The faults; if none is known, the groups of similar failures."""
-    alone: tuple[Fault, ...]
-    """The groups that belong to no fault; empty if no fault is known."""
-    is_tested: bool
-    """Whether small changes were tried on enough failures; if not, ``them`` holds groups."""
+    them: tuple[Fault, ...]  # the faults; if none is known, the groups of similar failures
+    alone: tuple[Fault, ...]  # the groups that belong to no fault; empty if no fault is known
+    is_tested: bool  # whether small changes were tried on enough failures; if not, ``them`` holds groups
     to_test: tuple[LocatedFailure, ...]
     """Failures to be driven with small changes next; empty if enough failures were tested."""
     to_come: int
     """Estimated number of failures to be driven with small changes in all, those ``to_test`` among them."""
-    failures: int
-    """Number of all failures in the folder, or in the cell that was chosen."""
-    compared: int
-    """Number of failures that were compared; the others belong to no group."""
+    failures: int  # number of all failures in the folder, or in the cell that was chosen
+    compared: int  # number of failures that were compared; the others belong to no group
 
     @property
     def distinct(self) -> int:
@@ -125,7 +124,6 @@ class Faults:
 
     @property
     def _alone(self) -> str:
-        """Says how many failures belong to no fault; empty if there are none, or no faults."""
         if not self.alone:
             return ""
         count = sum(len(each.members) for each in self.alone)
@@ -154,17 +152,10 @@ def _way_text(way: Way, side: str | None, members: Sequence[LocatedFailure]) -> 
 
 
 def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
-    """Returns the distinct faults of a run, of a folder of runs, or of a campaign.
+    """Returns the distinct faults of a run, of a folder of runs, or of a campaign, or of one of its cells.
 
-    Args:
-        folder: the folder of the run, the runs or the campaign.
-        most: maximum number of failures to compare, evenly spread over all; None: all failures. It is ignored
-            if small changes were tried on failures of the folder, since the stored results belong to groups
-            that were formed from all failures.
-        cell: name of a cell of a campaign; empty: all cells.
-
-    Raises:
-        UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.
+    At most ``most`` failures are compared, evenly spread; all of them once small changes were tried on some,
+    since the results belong to groups that were formed from all.
     """
     known, failures = failures_of(folder, None if has_remedies(folder) else most, cell)
     groups = _grouped(known)
@@ -186,7 +177,6 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
 
 
 def _grouped(known: Sequence[LocatedFailure]) -> list[Fault]:
-    """Returns the groups of similar failures, the largest first."""
     members: dict[int, list[LocatedFailure]] = {}
     for cluster, each in zip(groups_of([each.around for each in known]), known, strict=True):
         members.setdefault(cluster, []).append(each)
@@ -199,7 +189,6 @@ def _grouped(known: Sequence[LocatedFailure]) -> list[Fault]:
 
 
 def _spread(them: Sequence[LocatedFailure], count: int) -> tuple[LocatedFailure, ...]:
-    """Returns some of the failures, evenly spread, beginning with the first."""
     return tuple(them[len(them) * at // count] for at in range(count))
 
 
@@ -212,7 +201,6 @@ Tested = Mapping[NumberedTest, Removed]
 
 
 def _tested(folder: Path, known: Sequence[LocatedFailure]) -> Tested:
-    """Returns the stored results of all failures that were driven with small changes."""
     if not has_remedies(folder):
         return {}
     stored = {each.name: stored_remedies(folder, each) for each in known}

@@ -21,14 +21,14 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from roadgpt.campaign.faults.distinct import between
+from roadgpt.campaign.faults.failures import between
 from roadgpt.campaign.faults.fault import Fault, Faults
 from roadgpt.campaign.faults.minimise import simplest
 from roadgpt.campaign.faults.reason import FailureReason, reason_of
 from roadgpt.campaign.faults.remedy import FOLDER, made_folder, page_of, stored
 from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
+from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
-from roadgpt.campaign.rerun import kept_run
 from roadgpt.export import save
 from roadgpt.reading import strictly
 from roadgpt.run import Run, write_run
@@ -54,16 +54,13 @@ class AnalysisTask(NamedTuple):
     """One fault to analyse; the task can be sent to another process."""
 
     folder: Path
-    fault: int
-    """Number of the fault."""
+    fault: int  # number of the fault
     names: tuple[NumberedTest, ...]
     """Names of the tests with the fault's typical failures, the most typical first."""
-    times: int
-    """Number of disturbed drives on the road of each failure."""
+    times: int  # number of disturbed drives on the road of each failure
     minimise: bool = False
     draw: FailureDrawing | None = None
-    formats: tuple[str, ...] = ("png",)
-    """File formats of the pictures."""
+    formats: tuple[str, ...] = ("png",)  # file formats of the pictures
 
 
 @dataclass(frozen=True)
@@ -78,17 +75,9 @@ class FailureAnalysis:
 
 
 def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
-    """Returns the number of a fault and its analysis: why its typical failure happens, how often this failure
-    happens again and, if ``task.minimise`` is set, the simplest road that reproduces the failure.
-
-    The function analyses the most typical failure of ``task.names`` that recurs in at least half of the
-    disturbed drives. If none recurs so often, it analyses the failure that recurs most often. A stored
-    analysis of the same road with the same number of drives is read, and these drives are not repeated.
-
-    Raises:
-        UsageError: the run or a stored analysis cannot be read, or a plug-in is not installed.
-        RoadGPTError: a file cannot be written.
-    """
+    """Returns the number of a fault and the analysis of its most typical failure that recurs in at least half
+    of the disturbed drives, or else of the one that recurs most often; with ``task.minimise`` also the
+    simplest road for it. A stored analysis with as many drives is read instead."""
     best: FailureAnalysis | None = None
     for name in task.names:
         found = _repeated(task, name)
@@ -158,12 +147,7 @@ def instructive(
 
 
 def write_top(folder: Path, top: Sequence[tuple[Fault, FailureAnalysis]], draw: FailureDrawing) -> Path:
-    """Writes the road, the picture and the sentence of each failure, and a table, into ``faults/top``.
-
-    Raises:
-        ExportError: a road cannot be written as OpenDRIVE.
-        RoadGPTError: a file cannot be written.
-    """
+    """Writes the road, the picture and the sentence of each failure, and a table, into ``faults/top``."""
     place, rows = made_folder(folder / FOLDER / TOP), []
     remove_numbered(place)
     for number, (fault, looked) in enumerate(top, 1):
@@ -181,12 +165,8 @@ def write_top(folder: Path, top: Sequence[tuple[Fault, FailureAnalysis]], draw: 
 
 
 def write_tables(found: Faults, looked: Mapping[int, FailureAnalysis], folder: Path) -> Path:
-    """Writes ``faults.csv`` and ``failures.csv``; returns the path of ``faults.csv``. The same failures give
-    the same bytes. ``looked`` holds the analysis of each fault by its number.
-
-    Raises:
-        RoadGPTError: a file cannot be written.
-    """
+    """Writes ``faults.csv``, whose path is returned, and ``failures.csv``; ``looked`` has the analysis of
+    each fault by its number."""
     place = made_folder(folder / FOLDER)
     every = (*found.them, *found.alone)
     members = [(each, fault.number or "") for fault in every for each in fault.members]

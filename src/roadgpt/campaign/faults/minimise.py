@@ -1,13 +1,16 @@
-"""Simplifies a road on which the car fails; the cause and the side of the failure stay the same.
+"""Simplifies a road on which the car fails, and finds the smallest change that turns a road on which the car
+passed into one on which it fails.
 
 The method is delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing Input,
 IEEE Transactions on Software Engineering 28 (2002). Unless the drives run out, the simplified road is
-1-minimal: any single further simplification makes the failure disappear.
+1-minimal: any single further simplification makes the failure disappear. The smallest change is a set of
+changed fields from which none can be left out; bisection finds the smallest fraction of it that still makes
+the car fail.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from roadgpt.brief.model import Brief
 from roadgpt.check import inspect
@@ -23,15 +26,13 @@ ROUNDED = (
 )  # fmt: skip
 """The fields that are rounded, each with the unit, metres or degrees; the coarsest first."""
 
-Change = Callable[[Segment], Segment | None]
-"""Returns the simplified segment, or None to remove the segment."""
+Change = Callable[[Segment], Segment | None]  # returns the simplified segment, or None to remove the segment
 
 
 class Simplification(NamedTuple):
     """One simplification of one segment."""
 
-    segment: int
-    """Index of the segment, from 0, in the Design that is simplified."""
+    segment: int  # index of the segment, from 0, in the Design that is simplified
     change: Change
 
 
@@ -46,8 +47,7 @@ class Simplest:
     run: Run
     """The Run on the simplified road; it fails for the same cause and to the same side as the original."""
     segments_before: int
-    drives: int
-    """Number of drives that the search took."""
+    drives: int  # number of drives that the search took
     is_minimal: bool
     """False if the maximum number of drives was reached before every simplification had been tried."""
 
@@ -76,15 +76,13 @@ class Trial:
         self.failure, self.brief, self.most = failure, brief, most
         self.kind = (failure.verdict.cause, failure.verdict.side)
         self.drives = 0
-        self.is_exhausted = False
-        """True if a drive was refused because all drives were used up."""
+        self.is_exhausted = False  # true if a drive was refused because all drives were used up
         self._known: dict[Design, Run | None] = {}
 
     def fails(self, design: Design | None) -> Run | None:
         """Drives the road of a Design; returns the Run if the car fails for the same cause and to the same
-        side as in the original failure. Returns None if the car does not fail in this way. Also returns None,
-        without a drive, for a road that is invalid even in the middle of the map, or if no drives are left.
-        """
+        side as before, otherwise None; also, undriven, for a road that is invalid anywhere on the map, or if
+        no drives are left."""
         if design is None:
             return None
         if design not in self._known:
@@ -123,16 +121,8 @@ def _moved(design: Design, failure: Run) -> list[Design]:
 
 
 def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) -> Simplest:
-    """Simplifies a road such that the car still fails on it for the same cause and to the same side.
-
-    Args:
-        failure: a failing Run with a Design.
-        brief: requirements that the simplified road must satisfy; None: no requirements.
-        most: maximum number of drives.
-
-    Raises:
-        UsageError: the Run did not fail, or has no Design.
-    """
+    """Simplifies the road of a failing Run with a Design such that the car still fails for the same cause and
+    to the same side; every road keeps ``brief``, and there are at most ``most`` drives."""
     trial = Trial(failure, brief, most)
     assert failure.plain_design is not None
     design, before = failure.plain_design, None
@@ -221,3 +211,124 @@ SIMPLIFIERS: tuple[Simplifier, ...] = (
     ),
 )
 """The types of simplification; those that simplify the road most come first."""
+
+
+FINEST = 1 / 64  # of the change
+TOLD = {
+    "distance": ("length", " m"),
+    "turn_degrees": ("turn", " degrees"),
+    "radius": ("radius", " m"),
+    "transition": ("clothoid", " m"),
+    "incline": ("grade", " %"),
+    "vertical_radius": ("vertical radius", " m"),
+}
+"""The name and the unit of a field of a segment in texts."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One changed field of one segment: its value on the road that passed and on the road that failed."""
+
+    segment: int  # index of the segment, from 0
+    field: str
+    kept: Any
+    failing: Any
+
+    @property
+    def sentence(self) -> str:
+        """The difference as text for users."""
+        name, unit = TOLD.get(self.field, (self.field, ""))
+        before, after = (_value_text(value, unit) for value in (self.kept, self.failing))
+        return f"segment {self.segment + 1}: {name} {before} -> {after}"
+
+
+def _value_text(value: Any, unit: str) -> str:
+    if value is None:
+        return "as it comes"
+    return f"{value:.4g}{unit}" if isinstance(value, float) else str(value)
+
+
+@dataclass(frozen=True)
+class SmallestChange:
+    """The smallest change found, and the Run of the failing road that results from this change."""
+
+    run: Run
+    differences: tuple[Difference, ...]
+    drives: int  # number of drives that the search took
+
+
+def smallest_change(
+    kept: Run, failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES
+) -> SmallestChange:
+    """Finds, among the differences between a Run that passed and a Run that failed, on roads of equally many
+    segments, the smallest change that makes the car fail. Every road that is driven keeps ``brief``, and
+    there are at most ``most`` drives."""
+    if kept.plain_design is None or failure.plain_design is None:
+        raise UsageError("only roads with designs without junctions can be compared segment by segment")
+    counts = len(kept.plain_design.segments), len(failure.plain_design.segments)
+    if counts[0] != counts[1]:
+        raise UsageError(
+            f"the roads have {counts[0]} and {counts[1]} segments; "
+            "a smallest change is looked for between roads of equally many"
+        )
+    trial = Trial(failure, brief, most)
+    # from the start of the failing road; the car drives the same anywhere on the map
+    base = failure.plain_design.model_copy(update={"segments": kept.plain_design.segments})
+    every = _differences(base, failure.plain_design)
+    needed = _fewest(base, every, trial)
+    least = _least(base, needed, trial)
+    run = trial.fails(_changed(base, least))
+    return SmallestChange(run or failure, tuple(least), trial.drives)
+
+
+def _differences(kept: Design, failing: Design) -> list[Difference]:
+    return [
+        Difference(index, field, getattr(old, field), getattr(new, field))
+        for index, (old, new) in enumerate(zip(kept.segments, failing.segments, strict=True))
+        for field in Segment.model_fields
+        if getattr(old, field) != getattr(new, field)
+    ]
+
+
+def _changed(design: Design, differences: Sequence[Difference]) -> Design:
+    segments = list(design.segments)
+    for each in differences:
+        segments[each.segment] = segments[each.segment].model_copy(update={each.field: each.failing})
+    return design.model_copy(update={"segments": tuple(segments)})
+
+
+def _fewest(base: Design, every: Sequence[Difference], trial: Trial) -> list[Difference]:
+    """Returns some of the differences: with these the car still fails, and none can be left out."""
+    left = [*every]
+    size = max(1, len(left) // 2)
+    while True:
+        for at in range(0, len(left), size):
+            fewer = left[:at] + left[at + size :]
+            if fewer and trial.fails(_changed(base, fewer)) is not None:
+                left = fewer
+                break
+        else:
+            if size == 1:
+                return left
+            size = max(1, size // 2)
+
+
+def _least(base: Design, differences: Sequence[Difference], trial: Trial) -> list[Difference]:
+    """Returns the differences, all scaled by the smallest common fraction with which the car still fails."""
+    low, high = 0.0, 1.0
+    while high - low > FINEST:
+        middle = (low + high) / 2
+        if trial.fails(_changed(base, _scaled(differences, middle))) is not None:
+            high = middle
+        else:
+            low = middle
+    return _scaled(differences, high)
+
+
+def _scaled(differences: Sequence[Difference], share: float) -> list[Difference]:
+    return [
+        replace(each, failing=each.kept + share * (each.failing - each.kept))
+        if isinstance(each.kept, float) and isinstance(each.failing, float)
+        else each
+        for each in differences
+    ]

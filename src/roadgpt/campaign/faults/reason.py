@@ -12,7 +12,6 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from roadgpt.campaign.faults.alignment import STRAIGHT
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
@@ -23,6 +22,7 @@ from roadgpt.verdict.verdict import Cause
 Way = Literal["wide", "inside", "off", "stopped", "late"]
 """The car ran wide of a bend, cut its inside, left a straight, came to a standstill, or ran out of time."""
 
+STRAIGHT = 1 / 250  # 1/m; a road that bends less is called straight
 GRAVITY = 9.81  # m/s^2
 BEFORE, AFTER = 25.0, 5.0  # m before and after the departure, where the bend is looked for
 ENTRY = 0.5  # share of a bend's curvature at which it begins
@@ -39,8 +39,7 @@ class Manner(NamedTuple):
     """The side to which the road bends; None if the road is straight there, or if the car stopped or was too
     late.
     """
-    radius: float | None
-    """Smallest radius of the bend's centre line, metres; None if ``side`` is None."""
+    radius: float | None  # smallest radius of the bend's centre line, metres; None if ``side`` is None
 
 
 @dataclass(frozen=True)
@@ -51,8 +50,7 @@ class FailureReason:
     sentence: str
     station: float
     radius: float | None
-    side: Literal["left", "right"] | None
-    """Radius and side of the bend, as in ``Manner``."""
+    side: Literal["left", "right"] | None  # radius and side of the bend, as in ``Manner``
     entered: float
     """Speed, m/s, at the beginning of the bend or at the lane departure, whichever came first. If the car
     stopped or was too late: the last speed of the drive.
@@ -61,10 +59,8 @@ class FailureReason:
     """Largest friction coefficient required to follow the middle of the lane at the speeds driven; 0 if the
     car stopped or was too late. On level ground, 0.93 means a lateral acceleration of 0.93 g.
     """
-    friction: float
-    """Friction coefficient of the road."""
-    grade: float
-    """Grade of the road at the bend, as a ratio."""
+    friction: float  # friction coefficient of the road
+    grade: float  # grade of the road at the bend, as a ratio
     hill: float
     """Vertical acceleration from a crest (negative) or a dip (positive) at the speed driven, as a fraction
     of g.
@@ -72,11 +68,7 @@ class FailureReason:
 
 
 def reason_of(run: Run) -> FailureReason:
-    """Returns the reason why a Run failed.
-
-    Raises:
-        UsageError: the Run did not fail, or was not driven.
-    """
+    """Returns the reason why a Run failed."""
     if run.verdict is None or run.drive is None or run.road is None or run.verdict.kept:
         raise UsageError(f"road {run.index} did not fail; only failures have a reason")
     road, drive, verdict, world = run.road, run.drive, run.verdict, run.world
@@ -118,12 +110,9 @@ def lane_curvature(road: Road, world: World, stations: Array) -> Array:
 
 
 def bend_at(road: Road, world: World, station: float) -> tuple[Array, float, float]:
-    """Returns where the lane bends most, from 25 m before to 5 m after a departure at ``station``.
-
-    Returns:
-        The stations searched, in metres, 0.5 m apart; the curvature of the lane that is largest in magnitude,
-        in 1/m, positive to the left; and the station of this curvature, in metres.
-    """
+    """Returns where the lane bends most, from 25 m before to 5 m after a departure at ``station``: the
+    stations searched, 0.5 m apart; the largest curvature of the lane, 1/m, positive to the left; and its
+    station."""
     near = np.arange(max(0.0, station - BEFORE), min(road.length, station + AFTER) + 0.5, 0.5)
     bends = lane_curvature(road, world, near)
     tightest = int(np.argmax(np.abs(bends)))
@@ -188,6 +177,5 @@ def _slope_text(grade: float, hill: float) -> str:
 
 
 def _speed_at(drive: Drive, station: float) -> float:
-    """Returns the speed, m/s, when the car first came to a station."""
     reached = np.flatnonzero(drive["s"] >= station)
     return float(drive["speed"][reached[0] if len(reached) else -1])

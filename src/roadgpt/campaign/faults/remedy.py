@@ -1,34 +1,134 @@
-"""Tries small changes of the road around a failure, and stores which of them make the failure disappear.
+"""Tries small changes of the road around a failure, stores which of them make the failure disappear, and by
+them joins groups of similar failures into distinct faults.
 
 Failures that disappear with the same small change have the same cause, whatever their roads look like
 elsewhere. A failure has disappeared if the car passes the test, or fails more than 30 m after the place of
-the departure.
+the departure. A fault is a set of failures that disappear with one small change, while this change leaves the
+failures of other faults as they are. Groups for which there is no such change belong to no fault.
 
 DIR/faults/remedies/c01/0017.json    for each change, whether it removes the failure; null: the change does
                                      not apply to the road
 
-For a folder of runs, the level c01/ is left out.
+For a folder of runs, the level c01/ is left out. A change makes some samples of a road longer or shorter and
+changes their curvature or grade; the road after them moves accordingly. The changed road is built for one
+drive only, so it may leave the map or overlap itself.
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain, combinations, pairwise
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, Self, TypeVar
 
 import numpy as np
 
-from roadgpt.campaign.faults.alignment import Alignment, Bend
-from roadgpt.campaign.faults.distinct import AROUND
-from roadgpt.campaign.faults.failures import LocatedFailure
-from roadgpt.campaign.faults.reason import bend_at
+from roadgpt.campaign.faults.failures import AROUND, LocatedFailure
+from roadgpt.campaign.faults.reason import STRAIGHT, bend_at
+from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
-from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import RoadGPTError, UsageError, explained
+from roadgpt.geometry import GradeProfile, Piece, PieceCurve
+from roadgpt.geometry.curve import Array
 from roadgpt.reading import read_json
 from roadgpt.road import Road, World
 from roadgpt.run import Run, prove
 from roadgpt.run.atomic import json_text, refuse_links, write_whole
-from roadgpt.run.lost_drives import LostDrives
+from roadgpt.run.model import LostDrives
+
+STEP = 0.5  # m, between samples
+
+
+class Bend(NamedTuple):
+    """A bend: the indices of its first and last sample."""
+
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, eq=False)
+class Alignment:
+    """Curvature and grade of a road at its samples; all arrays have shape ``(n,)``."""
+
+    steps: Array  # distance from each sample to the one before, metres; 0 for the first
+    curvature: Array  # 1/m, positive to the left; it changes linearly between samples
+    grade: Array  # grade as a ratio; it changes linearly between samples
+
+    @classmethod
+    def of(cls, road: Road) -> Self:
+        """Samples a road about every half metre."""
+        stations = np.linspace(0.0, road.length, int(np.ceil(road.length / STEP)) + 1)
+        return cls(np.diff(stations, prepend=0.0), road.curvature(stations), road.grade(stations))
+
+    @property
+    def stations(self) -> Array:
+        """Stations of the samples, metres."""
+        return np.cumsum(self.steps)
+
+    def bends(self) -> list[Bend]:
+        """Returns the bends in driving order: longest sequences of samples that curve to one side, with a
+        radius below 250 m."""
+        side = np.where(np.abs(self.curvature) > STRAIGHT, np.sign(self.curvature), 0.0)
+        edges = [0, *(np.flatnonzero(np.diff(side)) + 1), len(side)]
+        pieces = pairwise(edges)
+        return [Bend(int(first), int(end) - 1) for first, end in pieces if side[first]]
+
+    def widened(self, bend: Bend, factor: float) -> Self:
+        """Returns a copy with radius and length of a bend times ``factor``; the bend turns as many
+        degrees as before."""
+        curvature = self.curvature.copy()
+        curvature[bend.first : bend.last + 1] /= factor
+        return replace(self.shortened(bend, factor), curvature=curvature)
+
+    def shortened(self, bend: Bend, factor: float) -> Self:
+        """Returns a copy with the length of a bend times ``factor``; below 1, the bend turns less."""
+        steps = self.steps.copy()
+        steps[bend.first + 1 : bend.last + 1] *= factor
+        return replace(self, steps=steps)
+
+    def eased(self, around: Bend, length: float) -> Self:
+        """Returns a copy in which the curvature is averaged over ``length`` metres, from so far before a bend
+        to so far after it."""
+        count = 2 * round(length / STEP / 2)
+        padded = np.pad(self.curvature, count // 2, mode="edge")
+        mean = np.convolve(padded, np.ones(count + 1) / (count + 1), "valid")
+        near = slice(max(0, around.first - count), around.last + count + 1)
+        curvature = self.curvature.copy()
+        curvature[near] = mean[near]
+        return replace(self, curvature=curvature)
+
+    def with_straight(self, bend: Bend, length: float) -> Self:
+        """Returns a copy with a straight of ``length`` metres inserted before a bend."""
+        count, at = round(length / STEP), bend.first
+        straight = self.curvature.copy()
+        straight[at] = 0.0
+        return replace(
+            self,
+            steps=np.insert(self.steps, at + 1, np.full(count, STEP)),
+            curvature=np.insert(straight, at, np.zeros(count)),
+            grade=np.insert(self.grade, at, np.full(count, self.grade[at])),
+        )
+
+    def levelled(self, factor: float) -> Self:
+        """Returns a copy in which all grades are multiplied by ``factor``."""
+        return replace(self, grade=self.grade * factor)
+
+    def road(self, like: Road) -> Road:
+        """Builds the road, with the same start position, start heading and start height as ``like``."""
+        x, y = like.plan.at(np.array(0.0))
+        bends = self.curvature
+        plan = PieceCurve(
+            float(x),
+            float(y),
+            float(like.plan.heading(np.array(0.0))),
+            tuple(
+                Piece(float(length), float(k0), float(k1))
+                for length, k0, k1 in zip(self.steps[1:], bends[:-1], bends[1:], strict=True)
+            ),
+        )
+        height = float(like.elevation.height(np.array(0.0)))
+        return Road(plan, GradeProfile(height, tuple(self.stations), tuple(self.grade)))
+
 
 NEAR = 40.0  # m; a bend farther from the failing one, or from the departure, is not changed
 FOLDER, REMEDY_FOLDER = "faults", "remedies"
@@ -39,16 +139,13 @@ class FailurePlace(NamedTuple):
     """The alignment of a road, and the bends around the place where the car left its lane."""
 
     alignment: Alignment
-    departure: int
-    """Index of the sample at the departure."""
-    bend: Bend | None
-    """The bend at the departure; None if the road is straight there."""
+    departure: int  # index of the sample at the departure
+    bend: Bend | None  # the bend at the departure; None if the road is straight there
     before: Bend | None
     """The last bend that ends less than 40 m before ``bend`` (before the departure if ``bend`` is None); None
     if there is no such bend.
     """
-    after: Bend | None
-    """The bend after ``bend``; None if none begins within 40 m after the departure."""
+    after: Bend | None  # the bend after ``bend``; None if none begins within 40 m after the departure
 
 
 T = TypeVar("T")
@@ -60,14 +157,10 @@ Change = Callable[[FailurePlace], Alignment | None]
 class Remedy:
     """One small change of a road, or of the speed limit."""
 
-    name: str
-    """Kind and size, such as 'wider 15'."""
-    sentence: str
-    """The change as text for users, which completes 'it disappears with ...'."""
-    change: Change
-    """Returns the changed alignment; None if the change does not apply."""
-    limit: float = 1.0
-    """Factor of the speed limit."""
+    name: str  # kind and size, such as 'wider 15'
+    sentence: str  # the change as text for users, which completes 'it disappears with ...'
+    change: Change  # returns the changed alignment; None if the change does not apply
+    limit: float = 1.0  # factor of the speed limit
 
     @property
     def kind(self) -> str:
@@ -80,8 +173,6 @@ def _of_bend(
     change: Callable[[Alignment, Bend, float], Alignment],
     size: float,
 ) -> Change:
-    """Returns a change of one of the bends of a FailurePlace, which applies if there is such a bend."""
-
     def changed(place: FailurePlace) -> Alignment | None:
         bend = bend_of(place)
         return change(place.alignment, bend, size) if bend else None
@@ -135,14 +226,8 @@ KINDS = frozenset(remedy.kind for remedy in REMEDIES)
 def remedies_of(run: Run, kinds: Collection[str] = KINDS) -> Removed:
     """Drives a failing Run's road with each change, and returns which changes make the failure disappear.
 
-    If a small change removes the failure, the larger change of the same kind is not driven and counts as
-    removing the failure, too. Some changes do not apply, for example if there is no bend before the failure.
-    No change applies to a road with its own cross-section but no Design, because such a cross-section is
-    given by station.
-
-    Raises:
-        UsageError: the driver or the simulator cannot be loaded.
-        GivenUpError: the simulator failed three times in a row.
+    If a small change does, the larger one of its kind is not driven and counts as removing it, too. No change
+    applies to a road with its own cross-section but no Design, since that is given by station.
     """
     road, verdict = run.road, run.verdict
     assert road is not None
@@ -206,9 +291,8 @@ def _driven(run: Run, road: Road, world: World) -> Run:
 
 
 def try_remedies(folder: Path, failure: LocatedFailure) -> None:
-    """Drives the road of a failure with each small change and stores the results in ``folder``. Does nothing
-    if the results are stored already. Raises the errors of ``remedies_of``, and RoadGPTError if a file cannot
-    be written."""
+    """Drives the road of a failure with each small change and stores the results in ``folder``, unless they
+    are there."""
     if stored_remedies(folder, failure) is None:
         removed = remedies_of(kept_run(folder, *failure.name))
         path = page_of(folder / FOLDER / REMEDY_FOLDER, failure.name)
@@ -239,11 +323,7 @@ def page_of(place: Path, name: NumberedTest) -> Path:
 
 
 def stored(path: Path, result_in: Callable[[Any], T]) -> T | None:
-    """Returns the result in the data of a JSON file; None if there is no such file.
-
-    Raises:
-        UsageError: the file cannot be read.
-    """
+    """Returns the result in the data of a JSON file; None if there is no such file."""
     try:
         return result_in(read_json(path))
     except FileNotFoundError:
@@ -253,12 +333,81 @@ def stored(path: Path, result_in: Callable[[Any], T]) -> T | None:
 
 
 def made_folder(place: Path) -> Path:
-    """Makes the folder ``place`` inside ``DIR/faults``, unless it exists, and returns ``place``.
-
-    Raises:
-        RoadGPTError: the folder cannot be made, or a part of its path from ``faults`` on is a symbolic link.
-    """
+    """Makes the folder ``place`` inside ``DIR/faults``, unless it exists, and returns ``place``."""
     refuse_links(place, *(each for each in place.parents if FOLDER in (each.name, each.parent.name)))
     with explained(RoadGPTError, f"cannot make {place}", "make room there"):
         place.mkdir(parents=True, exist_ok=True)
     return place
+
+
+WITHIN = 0.85  # smallest share of the pairs of failures in one fault that its change removes
+JOINS = 0.7  # a group joins a fault if the fault's change removes more than this share of its tested failures
+ACROSS = 0.2  # largest share of the pairs of failures from two faults that the change of either removes
+MOST = 4  # faults of one driver in one world
+FEWEST = 2  # smallest number of failures of a fault, unless there is only one group: one failure has no pairs
+SMALL = len(REMEDIES) // 2  # index of the first of the larger changes
+LARGER = 0.8  # weight of a failure that needs a larger change: small changes say more about the cause
+EPS = 1e-9
+
+
+class TriedGroup(NamedTuple):
+    """A group of similar failures, of which some were tested."""
+
+    size: int  # number of failures in the group
+    removed: tuple[Removed, ...]  # for each tested failure: which changes make it disappear
+
+
+def faults_by_remedy(groups: Sequence[TriedGroup]) -> list[str | None]:
+    """Returns for each group the name of the change that defines its fault; None if the group belongs to no
+    fault.
+
+    Each change in a set defines one fault. Of the sets of one to four changes that keep ``WITHIN``,
+    ``ACROSS`` and ``FEWEST``, the one whose faults have most failures is taken, where a failure that needs a
+    larger change counts 0.8; of equally good ones that with the fewest and smallest changes.
+    """
+    shares = np.array([[_share(group, remedy.name) for remedy in REMEDIES] for group in groups])
+    best: list[int | None] = [None] * len(groups)
+    most = 0.0
+    every = range(len(REMEDIES))
+    for chosen in chain.from_iterable(combinations(every, count) for count in range(1, MOST + 1)):
+        found = _assigned(shares, chosen)
+        sizes = Counter[int]()
+        for group, at in zip(groups, found, strict=True):
+            if at is not None:
+                sizes[at] += group.size
+        value = sum(size * (1.0 if at < SMALL else LARGER) for at, size in sizes.items())
+        is_seen_often = len(groups) == 1 or all(size >= FEWEST for size in sizes.values())
+        if value > most and is_seen_often and _is_apart(groups, shares, found):
+            best, most = found, value
+    return [None if at is None else REMEDIES[at].name for at in best]
+
+
+def _share(group: TriedGroup, name: str) -> float:
+    return sum(bool(each[name]) for each in group.removed) / len(group.removed) if group.removed else 0.0
+
+
+def _assigned(shares: Array, chosen: Sequence[int]) -> list[int | None]:
+    """Returns for each group the one of the chosen changes that removes most of it, more than ``JOINS``; None
+    if there is none."""
+    found: list[int | None] = []
+    for row in shares:
+        at = max(chosen, key=lambda one: (row[one], -one))
+        found.append(at if row[at] > JOINS else None)
+    return found
+
+
+def _is_apart(groups: Sequence[TriedGroup], shares: Array, found: Sequence[int | None]) -> bool:
+    """Tells whether the faults keep to ``WITHIN`` and ``ACROSS``; each group counts by its size."""
+    members = {at: [i for i, own in enumerate(found) if own == at] for at in found if at is not None}
+    sizes = np.array([group.size for group in groups], float)
+
+    def removed(at: int, by: int) -> float:
+        return float(np.average(shares[members[at], by], weights=sizes[members[at]]))
+
+    if any(removed(at, at) ** 2 < WITHIN - EPS for at in members):
+        return False
+    # a pair disappears with the change of either fault
+    return all(
+        1 - (1 - removed(one, other)) * (1 - removed(other, one)) <= ACROSS + EPS
+        for one, other in combinations(members, 2)
+    )

@@ -21,7 +21,7 @@ from roadgpt.drive.permission import require_permission
 from roadgpt.errors import DriverError, SimulationError, SimulatorError
 from roadgpt.road import Road, World
 from roadgpt.run import Run
-from roadgpt.run.lost_drives import LostDrives
+from roadgpt.run.model import LostDrives
 from roadgpt.verdict import Verdict, judge
 
 SURE = 0.95  # confidence level of the interval
@@ -36,12 +36,10 @@ MOST = 3.0  # standard deviations; a number beyond this is drawn again
 class Disturbance:
     """One random disturbance of a drive."""
 
-    friction: float
-    """Factor by which the friction coefficient of the road is multiplied."""
+    friction: float  # factor by which the friction coefficient of the road is multiplied
     offset: float
     """Lateral offset of the start position from the middle of the lane, metres, positive to the left."""
-    delay: float
-    """Delay of the driver's perception, seconds."""
+    delay: float  # delay of the driver's perception, seconds
 
 
 def disturbance_of(seed: int, number: int) -> Disturbance:
@@ -91,8 +89,7 @@ class Repeated:
     number: int
     disturbance: Disturbance
     failed: bool
-    margin: float
-    """Margin to out of bounds, metres; NaN if the drive ended with an error."""
+    margin: float  # margin to out of bounds, metres; NaN if the drive ended with an error
     at_s: float | None
 
 
@@ -135,34 +132,15 @@ class Stability:
 
 
 def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = map) -> Stability:
-    """Drives the Run's road several times, each time with a different disturbance.
-
-    The disturbances are derived from the Run's seed, so the results can be reproduced.
-
-    Args:
-        run: the Run of a valid road, with any outcome.
-        times: number of drives, 1 or more.
-        spread: the function that runs the drives: the built-in ``map``, or the ``map`` of a process pool.
-
-    Raises:
-        UsageError: the user did not permit the driver's file to be run, or the driver or the simulator cannot
-            be loaded.
-        GivenUpError: the simulator failed three times in a row.
-    """
+    """Drives the road of a valid Run ``times`` times, each time with a disturbance derived from the Run's
+    seed and its number. ``spread`` runs the drives: the built-in ``map``, or that of a pool."""
     require_permission(run.request.setup.driver)  # other processes do not know who named the driver
     return Stability(tuple(spread(once, [(run, number) for number in range(1, times + 1)])))
 
 
 def once(task: tuple[Run, int]) -> Repeated:
-    """Drives a Run's road once with a disturbance; ``task`` is the Run and the number of the disturbance.
-
-    A drive that ends with a DriverError or a SimulationError counts as failed. After a SimulatorError, the
-    drive is repeated.
-
-    Raises:
-        UsageError: the driver or the simulator cannot be loaded.
-        GivenUpError: the simulator failed three times in a row.
-    """
+    """Drives a Run's road once with the disturbance of a number. A DriverError or a SimulationError counts as
+    a failure; after a SimulatorError, the drive is repeated."""
     run, number = task
     disturbance = disturbance_of(run.seed, number)
     losses: LostDrives[int] = LostDrives()

@@ -15,17 +15,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.brief.element import Elements
-from roadgpt.campaign.acquisition import Predictions, is_far, select, spread_out, stacked
-from roadgpt.campaign.archive import Archive
+from roadgpt.campaign.archive import Archive, Predictions, is_far, select, spread_out, stacked
 from roadgpt.campaign.behaviour import DRIVEN
 from roadgpt.campaign.boundary_pairs import paired
-from roadgpt.campaign.departure import FEWEST_FAILURES, DepartureModel
 from roadgpt.campaign.model import GOALS, Cell, Goal, Pool, Proposal, Result
 from roadgpt.campaign.search import SearchGenerator, is_usable
-from roadgpt.campaign.sketch import Sketch, candidate_of, sketch, sketch_of
-from roadgpt.campaign.surrogate import FEWEST, MOST, TREES, Surrogate, target_of
-from roadgpt.campaign.surrogate_features import NAMES, STEERING, hazard_of
-from roadgpt.campaign.variation import NUMERIC, Candidate, Kind, VariationTask
+from roadgpt.campaign.surrogate import (
+    FEWEST,
+    FEWEST_FAILURES,
+    MOST,
+    NAMES,
+    STEERING,
+    TREES,
+    DepartureModel,
+    Surrogate,
+    hazard_of,
+    target_of,
+)
+from roadgpt.campaign.variation import (
+    NUMERIC,
+    Candidate,
+    Kind,
+    Sketch,
+    VariationTask,
+    candidate_of,
+    sketch,
+    sketch_of,
+)
 from roadgpt.design.elements import elements_of
 from roadgpt.design.variety import PlanShape
 from roadgpt.geometry.curve import Array
@@ -133,7 +149,6 @@ class QualityDiversity(SearchGenerator):
         return elites[int(rng.integers(len(elites)))]
 
     def _chosen(self, sketches: Sequence[Sketch], n: int) -> list[Sketch]:
-        """Returns up to n sketches, the most valuable first."""
         if not sketches:
             return []
         features = [one.surrogate_features for one in sketches]
@@ -144,7 +159,6 @@ class QualityDiversity(SearchGenerator):
         return [sketches[i] for i in select(self._goal, n, self._expected(sketches), counts)]
 
     def _expected(self, sketches: Sequence[Sketch]) -> Predictions:
-        """Returns the predictions of the surrogate's trees for sketches."""
         results = [self._results[number] for number in self._looks]
         known, fresh = self._seen(results, sketches)
         columns = (*STEERING, *range(len(NAMES), known.shape[1] - 1))

@@ -4,8 +4,7 @@ A server may not support schemas, may silently ignore them, or may reject a para
 asking for JSON: with a schema that the server enforces; as any JSON object, with the schema in the prompt; as
 plain text, from which the JSON is extracted. The provider tries these ways in turn, beginning with the
 strictest, and remembers which parameters and formats the server accepts, so that each process has to find
-this out only once. The reply is always validated.
-"""
+this out only once. The reply is always validated."""
 
 import json
 import time
@@ -15,21 +14,16 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cache
 from typing import Any
-from weakref import WeakKeyDictionary
 
 from pydantic import BaseModel
 
-from roadgpt.chat.answer import Answer, RequestError, from_chat, from_responses
+from roadgpt.chat.answer import Answer, NotReadableError, RequestError, from_chat, plain, read_as, schema_of
 from roadgpt.chat.client import ApiClient
 from roadgpt.chat.config import key_for
-from roadgpt.chat.json_schema import schema_of
-from roadgpt.chat.meter import Account, Meter, tokens_in
+from roadgpt.chat.meter import Account, has_openai_prices, tokens_in
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent, Usage
-from roadgpt.chat.prices import has_openai_prices
-from roadgpt.chat.strict_json import NotReadableError, plain, read_as
 from roadgpt.errors import ChatError, RefusedError, UnparsableError
 
-MOST_TURNS = 20  # messages that are sent along if the server stores none
 FULL = ("context_length", "context window", "too long", "maximum context")
 # after so many unusable replies in a row in one format, the server is taken not to support it
 UNUSABLE_IN_A_ROW = 2
@@ -49,18 +43,15 @@ class ServerQuirks:
 
     caps: tuple[str, ...]
     """Names that the server may use for the parameter that limits the length of a reply; the first is
-    tried first.
-    """
+    tried first."""
     response_format: ResponseFormat = ResponseFormat.SCHEMA
     takes_temperature: bool = True
     unusable: Counter[int] = field(default_factory=Counter)
     """How many replies in a row were unusable, by response format."""
-    keeps_conversations: bool = True
 
     def worked(self, response_format: ResponseFormat, refused: set[ResponseFormat]) -> None:
         """Notes that a reply in this response format was usable. If all stricter formats were rejected or
-        failed repeatedly, this one is tried first from now on.
-        """
+        failed repeatedly, this one is tried first from now on."""
         self.unusable[response_format] = 0
         above = range(self.response_format, response_format)
         if all(one in refused or self.unusable[one] >= UNUSABLE_IN_A_ROW for one in above):
@@ -68,73 +59,16 @@ class ServerQuirks:
 
 
 @cache
-def quirks_of(place: str, model: str, api: str) -> ServerQuirks:
-    """Returns what has been found out about a model on a server, for one of the server's two APIs. ``model``
-    is only a key of the cache: the models of a server may differ.
-    """
+def quirks_of(place: str, model: str) -> ServerQuirks:
+    """Returns what has been found out about a model on a server. ``model`` is only a key of the cache: the
+    models of a server may differ."""
     # OpenAI's newer models reject the old name, most other servers silently ignore the new one
     caps = ("max_completion_tokens", "max_tokens")
-    caps = caps if has_openai_prices(place) else caps[::-1]
-    return ServerQuirks(("max_output_tokens",) if api == "responses" else caps)
+    return ServerQuirks(caps if has_openai_prices(place) else caps[::-1])
 
 
 forget = quirks_of.cache_clear
 """Forgets everything about all servers, as if the process had just started."""
-
-
-class Conversation:
-    """The conversation of one campaign with a model: its most recent messages, and the conversation's id on a
-    server that stores conversations.
-    """
-
-    def __init__(self) -> None:
-        self.name: str | None = None
-        """Id of the conversation on the server."""
-        self._turns: list[Message] = []
-
-    def keep(self, messages: Sequence[Message], answer: str) -> None:
-        """Stores the messages and the answer of one successful exchange."""
-        said = [message for message in messages if message.role != "system"]
-        self._turns = [*self._turns, *said, Message(role="assistant", text=answer)][-MOST_TURNS:]
-
-    def respond(
-        self, client: ApiClient, quirks: ServerQuirks, messages: Sequence[Message], body: dict[str, Any]
-    ) -> Answer:
-        """Sends messages that continue the conversation, and returns the answer."""
-        rules = "\n\n".join(message.text for message in messages if message.role == "system")
-        asked = [message for message in messages if message.role != "system"]
-        if rules:
-            body = {**body, "instructions": rules}
-        if self.name is None and quirks.keeps_conversations:
-            self._begin(client, quirks)
-        if self.name is None:
-            asked = [*self._turns, *asked]
-        try:
-            return self._exchange(client, asked, body)
-        except RequestError as fault:
-            if self.name is None or not any(word in fault.details for word in FULL):
-                raise
-            self.name = None  # it has grown too long: start a new one
-            self._begin(client, quirks)
-            return self._exchange(client, asked, body)
-
-    def _exchange(self, client: ApiClient, asked: Sequence[Message], body: dict[str, Any]) -> Answer:
-        place = {"conversation": self.name} if self.name else {"store": False}
-        return from_responses(client.send("responses", {**body, "input": _input(asked), **place}))
-
-    def _begin(self, client: ApiClient, quirks: ServerQuirks) -> None:
-        try:
-            name = client.send("conversations", {}).get("id")
-        except RequestError as fault:
-            if fault.status not in (400, 403, 404, 405, 422, 501):
-                raise
-            name = None
-        self.name = name if isinstance(name, str) and name else None
-        quirks.keeps_conversations = self.name is not None
-
-
-def _input(messages: Sequence[Message]) -> list[dict[str, str]]:
-    return [{"role": message.role, "content": message.text} for message in messages]
 
 
 ABOUT_FORMAT = ("response_format", "json", "schema", "grammar", "format", "structured", "guided")
@@ -150,8 +84,7 @@ class OpenAI:
         self._model = settings.model or self._only_model()
         self._settings = settings.model_copy(update={"model": self._model})
         self._account = Account(self._settings)
-        self._quirks = quirks_of(self._client.place, self._model, settings.api)
-        self._conversations: WeakKeyDictionary[Meter, Conversation] = WeakKeyDictionary()
+        self._quirks = quirks_of(self._client.place, self._model)
 
     @property
     def spent(self) -> Spent:
@@ -159,7 +92,6 @@ class OpenAI:
         return self._account.spent
 
     def _only_model(self) -> str:
-        """Returns the name of the server's only model; raises ChatError if it has several models or none."""
         advice = "say which with --model or ROADGPT_MODEL"
         try:
             names = [str(one.get("id")) for one in self._client.models() if one.get("id")]
@@ -175,8 +107,7 @@ class OpenAI:
 
         If the server may have rejected the format of a request, or the answer is not usable, the question is
         asked in the next looser format. If an answer in plain text lacks the JSON, the
-        question is asked once more in plain text.
-        """
+        question is asked once more in plain text."""
         before = self.spent
         answer, why = Answer(), ""
         way = self._quirks.response_format if schema is not None else ResponseFormat.TEXT
@@ -205,7 +136,6 @@ class OpenAI:
                 asked = [*messages, Message(role="user", text=complaint)]
             else:
                 self._quirks.worked(way, refused)
-                self._conversation().keep(messages, answer.text)
                 return self._reply(answer, data, before)
         raise UnparsableError(
             f"no answer of the model '{plain(self._model)}' can be used: {why}", answer.text
@@ -223,17 +153,11 @@ class OpenAI:
             seconds=spent.seconds,
             cost=spent.cost,
             finish=answer.finish,
-            conversation=self._conversation().name,
         )
-
-    def _conversation(self) -> Conversation:
-        """Returns the conversation of the current campaign."""
-        return self._conversations.setdefault(self._account.meter, Conversation())
 
     def _exchange(
         self, messages: Sequence[Message], schema: type[BaseModel] | None, response_format: ResponseFormat
     ) -> Answer:
-        """Sends one request and counts it."""
         form = None if schema is None else schema_of(schema)
         told = list(messages)
         if form is not None and response_format > ResponseFormat.SCHEMA:
@@ -253,15 +177,12 @@ class OpenAI:
         return answer
 
     def _sent(self, messages: Sequence[Message], body: dict[str, Any]) -> Answer:
-        """Sends one request through the API that the settings select."""
-        if self._settings.api == "responses":
-            return self._conversation().respond(self._client, self._quirks, messages, body)
-        return from_chat(self._client.send("chat.completions", {**body, "messages": _input(messages)}))
+        said = [{"role": message.role, "content": message.text} for message in messages]
+        return from_chat(self._client.send({**body, "messages": said}))
 
     def _body(
         self, form: dict[str, Any] | None, response_format: ResponseFormat, room: int
     ) -> dict[str, Any]:
-        """Returns everything in a request except the messages."""
         quirks = self._quirks
         body: dict[str, Any] = {"model": self._model}
         if quirks.caps:
@@ -272,9 +193,6 @@ class OpenAI:
             return body
         is_schema = response_format == ResponseFormat.SCHEMA
         named: dict[str, Any] = {"name": "answer", "schema": form, "strict": True}
-        if self._settings.api == "responses":
-            kind = {"type": "json_schema", **named} if is_schema else {"type": "json_object"}
-            return {**body, "text": {"format": kind}}
         kind = {"type": "json_schema", "json_schema": named} if is_schema else {"type": "json_object"}
         return {**body, "response_format": kind}
 
@@ -304,8 +222,7 @@ def _is_about_format(fault: RequestError) -> bool:
 
 def _data(answer: Answer, schema: type[BaseModel] | None) -> BaseModel | None:
     """Returns the validated answer; None if no schema was given. Raises RefusedError if the model declined to
-    answer, and NotReadableError if the answer is blank or does not fit the schema.
-    """
+    answer, and NotReadableError if the answer is blank or does not fit the schema."""
     if answer.refusal is not None:
         told = plain(answer.refusal, 160) or "no reason given"
         raise RefusedError(f"the model declined: {told}", answer.refusal)
@@ -322,7 +239,6 @@ def _data(answer: Answer, schema: type[BaseModel] | None) -> BaseModel | None:
 
 
 def _instruction(form: dict[str, Any]) -> Message:
-    """Returns a message that contains the schema, for servers that do not support schemas otherwise."""
     return Message(
         role="user",
         text="Answer with one JSON object and nothing else. It must fit this JSON schema, with every field:\n"

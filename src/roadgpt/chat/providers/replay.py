@@ -1,6 +1,5 @@
 """Returns recorded answers instead of asking a server. It needs no network and no API key, and always returns
-the same answers.
-"""
+the same answers."""
 
 from collections.abc import Sequence
 
@@ -37,14 +36,8 @@ class Replay:
         return self._account.spent
 
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
-        """Returns the answer that was recorded for this question.
-
-        Raises:
-            BudgetError: the question could exceed the limit of tokens or money.
-            ChatError: no answer to this question was recorded.
-            ReplyError: the recorded question got no usable answer; the recorded error is raised again.
-            UsageError: the recording cannot be read.
-        """
+        """Returns the answer that was recorded for this question, or raises the recorded error again. Raises
+        ChatError if no answer to it was recorded, and UsageError if the recording cannot be read."""
         self._account.meter.reply_tokens(messages, self._settings, self._settings.model or "")
         question = question_of(self._settings, messages, schema)
         kept = self._store.take(question, occasion(), self._account.meter.turns)

@@ -1,3 +1,1 @@
-"""Contains the rules of networks: each module defines one function ``inspect`` and states the source of its
-limit.
-"""
+"""Contains the rules of networks: each module defines one function ``inspect`` and states its source."""

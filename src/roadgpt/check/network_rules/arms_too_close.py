@@ -3,16 +3,14 @@
 The kerb is the largest circular arc that is tangent to the facing edges of both arms and lies inside the
 junction, before the arms begin. Its radius must be at least 1 m, the smallest that a design may ask for. Arms
 of different junctions must be at least a car's length (4.7 m) apart: along the road that joins them or, if no
-road does, in a straight line.
-"""
+road does, in a straight line."""
 
 import math
 from itertools import combinations
-from typing import NamedTuple
 
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.check.finding import Finding
-from roadgpt.check.footprint import EndPose, footprint
+from roadgpt.check.footprint import footprint
 from roadgpt.check.network_places import junction_finding, name_of
 from roadgpt.network import Network, RoadEnd, Route
 from roadgpt.network.building import edges_at
@@ -48,29 +46,20 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     return (*found, *_between_junctions(network, route))
 
 
-class _Outwards(NamedTuple):
-    """An arm, seen from its junction."""
-
-    pose: EndPose
-    left: float
-    """The offset in metres of the edge on the left when leaving the junction."""
-    right: float
-    """The offset in metres of the edge on the right when leaving the junction."""
-    heading: float
-    """The heading out of the junction in radians."""
+Outwards = tuple[float, tuple[float, float], tuple[float, float]]
+"""An arm seen from its junction: the heading out in radians, and the points (x, y) at which its left and its
+right edge begin."""
 
 
-def _room(one: _Outwards, other: _Outwards) -> float:
+def _room(one: Outwards, other: Outwards) -> float:
     """Returns the radius in metres of the largest kerb that fits between an arm and the next one
-    counter-clockwise; zero or negative if the arms overlap, infinite if they need no kerb.
-    """
-    heading, other_heading = one.heading, other.heading
+    counter-clockwise; zero or negative if the arms overlap, infinite if they need no kerb."""
+    (heading, (ax, ay), _), (other_heading, _, (bx, by)) = one, other
     gap = (other_heading - heading) % (2 * math.pi)
     if gap >= math.pi - OPPOSITE:
         return math.inf
     if gap < ROUNDING:
         return -math.inf
-    (ax, ay), (bx, by) = one.pose.beside(one.left), other.pose.beside(other.right)
     dx, dy = ax - bx, ay - by
     beyond = [
         (dx * math.sin(each) - dy * math.cos(each)) / math.sin(gap) for each in (other_heading, heading)
@@ -78,12 +67,13 @@ def _room(one: _Outwards, other: _Outwards) -> float:
     return min(beyond) * math.tan(gap / 2)
 
 
-def _outwards(network: Network, end: RoadEnd) -> _Outwards:
+def _outwards(network: Network, end: RoadEnd) -> Outwards:
     pose, member = footprint(network).ends[end], network.road(end.road)
-    left, right = edges_at(member.profile, 0.0 if end.contact == "start" else member.road.length)
     if end.contact == "start":
-        return _Outwards(pose, left, right, pose.heading)
-    return _Outwards(pose, right, left, pose.heading + math.pi)
+        left, right = edges_at(member.profile, 0.0)
+        return pose.heading, pose.beside(left), pose.beside(right)
+    right, left = edges_at(member.profile, member.road.length)
+    return pose.heading + math.pi, pose.beside(left), pose.beside(right)
 
 
 def _between_junctions(network: Network, route: Route | None) -> list[Finding]:

@@ -1,12 +1,10 @@
 """Requires all roads of a network to stay on or above the ground of BeamNG's level.
 
-The limit is that of the rule ``below_floor`` for single roads.
-"""
+The limit is that of the rule ``below_floor`` for single roads."""
 
 from roadgpt.check.finding import Finding
 from roadgpt.check.network_places import road_finding
 from roadgpt.check.rules.below_floor import low_place
-from roadgpt.geometry import GradeProfile
 from roadgpt.network import Network, Route
 from roadgpt.road import World
 
@@ -15,9 +13,6 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     """Reports the lowest place of each road that is below the ground."""
     found = []
     for member in network.roads:
-        heights = member.road.elevation
-        if isinstance(heights, GradeProfile) and not any(heights.grades) and heights.z0 > world.site.z_floor:
-            continue
         if (low := low_place(member.road, world)) is not None:
             found.append(road_finding("below_floor", route, member, *low))
     return tuple(found)

@@ -1,13 +1,13 @@
 """Requires the middle of the lane of every connecting road to have a radius of at least 5 m.
 
 A car 4.7 m long can just follow this radius: its turning circle between kerbs usually has a diameter of 11 m.
-Then its outer front wheel runs on a radius of 5.5 m, and the middle of the car on a radius of about 4.7 m.
-"""
+Then its outer front wheel runs on a radius of 5.5 m, and the middle of the car on a radius of about 4.7 m."""
 
 from collections.abc import Iterator
 
 from roadgpt.check.finding import Finding
-from roadgpt.check.lane_bends import LaneBend, bends_below, tightest_bend
+from roadgpt.check.network_measures import tightest_radius
+from roadgpt.check.network_places import bends_below
 from roadgpt.network import Junction, Network, Route
 from roadgpt.road import World
 
@@ -21,7 +21,6 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     return bends_below("connection_too_tight", network, route, LEAST, what, _lanes)
 
 
-def _lanes(network: Network, junction: Junction) -> Iterator[LaneBend | None]:
-    """Yields the tightest bend in the middle of the lane of each connecting road."""
+def _lanes(network: Network, junction: Junction) -> Iterator[float]:
     for each in junction.connections:
-        yield tightest_bend(network.road(each.road), MIDDLE)
+        yield tightest_radius(network.road(each.road), MIDDLE)

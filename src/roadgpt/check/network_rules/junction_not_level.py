@@ -3,8 +3,7 @@
 At both ends of a connecting road, the heights of road and arm must agree within 1 mm. All ends of arms at the
 junction and all points of the connecting roads must lie within 1 mm of one plane. The grade of each road
 there must agree within 0.1 % with the slope of this plane in the direction of the road. Otherwise there would
-be steps where roads overlap inside a junction.
-"""
+be steps where roads overlap inside a junction."""
 
 import math
 
@@ -46,7 +45,6 @@ def _step(network: Network, junction: Junction) -> str | None:
 
 
 def _unevenness(network: Network, junction: Junction) -> str | None:
-    """Returns what is wrong if the roads at a junction do not lie in one plane; None if they do."""
     poses = _poses(network, junction)
     if max(pose.z for pose in poses) - min(pose.z for pose in poses) <= MOST and not any(
         abs(pose.grade) > MOST_GRADE for pose in poses
@@ -66,10 +64,8 @@ def _unevenness(network: Network, junction: Junction) -> str | None:
 
 
 def _poses(network: Network, junction: Junction) -> list[EndPose]:
-    """Returns the poses of all arms at the junction and of all connecting roads at their ends.
-
-    For a connecting road that is not level, poses between its ends are included.
-    """
+    """Returns the poses of all arms at the junction and of all connecting roads at their ends and, where a
+    connecting road is not level, between them."""
     ends = footprint(network).ends
     found = [ends[arm.end] for arm in junction.arms]
     for each in junction.connections:

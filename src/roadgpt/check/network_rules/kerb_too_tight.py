@@ -3,13 +3,13 @@
 The kerb is the right edge of the connecting road on which traffic turns right from one arm to the next. With
 traffic on the left, it is the left edge of the connecting road on which traffic turns left. The smallest
 radius of the kerb is measured; clothoids make it smaller than the radius of an arc with the same ends.
-Source: Urban Street Design Guide (NACTO, 2013), corner radii: standard curb radii are 10 to 15 ft.
-"""
+Source: Urban Street Design Guide (NACTO, 2013), corner radii: standard curb radii are 10 to 15 ft."""
 
 from collections.abc import Iterator
 
 from roadgpt.check.finding import Finding
-from roadgpt.check.lane_bends import LaneBend, bends_below, tightest_bend
+from roadgpt.check.network_measures import tightest_radius
+from roadgpt.check.network_places import bends_below
 from roadgpt.network import Junction, Network, Route
 from roadgpt.road import World
 
@@ -23,10 +23,10 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     return bends_below("kerb_too_tight", network, route, LEAST, what, _kerbs)
 
 
-def _kerbs(network: Network, junction: Junction) -> Iterator[LaneBend | None]:
-    """Yields the tightest bend of each kerb of a junction; traffic must drive on the right."""
+def _kerbs(network: Network, junction: Junction) -> Iterator[float]:
+    """Yields the least radius of each kerb of a junction; traffic must drive on the right."""
     ends = [arm.end for arm in junction.arms]
     following = dict(zip(ends, [*ends[1:], *ends[:1]], strict=True))
     for each in junction.connections:
         if following.get(each.incoming) == each.outgoing:
-            yield tightest_bend(network.road(each.road), EDGE, only_right=True)
+            yield tightest_radius(network.road(each.road), EDGE, only_right=True)

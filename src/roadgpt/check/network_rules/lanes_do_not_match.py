@@ -3,8 +3,7 @@
 Where two lanes are joined, each edge of one lane must meet the same edge of the other within 1 mm. So both
 lanes have the same width, and the same heading within about a milliradian. The lanes that a connection
 names must exist.
-Source: OpenDRIVE 1.8, road linkage: linked lanes connect without gaps.
-"""
+Source: OpenDRIVE 1.8, road linkage: linked lanes connect without gaps."""
 
 import math
 from functools import lru_cache

@@ -1,8 +1,7 @@
 """Requires the carriageways of all roads of a network to lie inside the map, without touching its border.
 
 The map extends from 0 to ``map_size`` along x and y. As in the rule ``inside_map`` for single roads,
-shoulders may extend beyond it. A carriageway that comes within 11 mm of the border counts as touching it.
-"""
+shoulders may extend beyond it. A carriageway that comes within 11 mm of the border counts as touching it."""
 
 import numpy as np
 

@@ -1,13 +1,12 @@
 """Requires a lane for acceleration or deceleration beside every ramp, at least 28 m long without its taper.
 
 A car at 50 km/h covers this distance in 2 s, about the shortest duration of a lane change in traffic.
-Source: Toledo and Zohar, Modeling duration of lane changes (2007): 1 to 13 s, 4.6 s on average.
-"""
+Source: Toledo and Zohar, Modeling duration of lane changes (2007): 1 to 13 s, 4.6 s on average."""
 
 from roadgpt.brief.junction_check import LEAST_BESIDE_RAMP
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.check.finding import Finding
-from roadgpt.check.junction_measures import lengths_beside_ramp
+from roadgpt.check.network_measures import lengths_beside_ramp
 from roadgpt.check.network_places import junction_finding
 from roadgpt.network import Network, Route
 from roadgpt.road import World

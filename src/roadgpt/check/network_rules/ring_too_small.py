@@ -2,8 +2,7 @@
 
 A mouth is the junction at which an arm meets the ring. The diameter is measured on the pieces of the ring: it
 is twice the sum of the radius of the reference line and the width of the lanes outside this line.
-Source: Merkblatt für die Anlage von Kreisverkehren (FGSV, 2006): mini roundabouts have 13 m to 22 m.
-"""
+Source: Merkblatt für die Anlage von Kreisverkehren (FGSV, 2006): mini roundabouts have 13 m to 22 m."""
 
 import math
 
@@ -61,9 +60,8 @@ def _turning(network: Network, ring: Roundabout) -> float:
 
 def _overlaps(network: Network, ring: Roundabout) -> bool:
     """Returns whether two roads of a roundabout overlap, apart from roads of the same mouth."""
+    ring_of = network.roundabout_of.get
     return any(
-        network.roundabout_of.get(each.one.id) is ring
-        and network.roundabout_of.get(each.other.id) is ring
-        and each.area > OVERLAP
-        for each in footprint(network).overlaps
+        ring_of(one.id) is ring and ring_of(other.id) is ring and area > OVERLAP
+        for one, other, area, *_ in footprint(network).overlaps
     )

@@ -1,8 +1,7 @@
 """Requires crests and dips to cause a vertical acceleration of the car of at most 3 m/s^2.
 
 The limit and the expected speed are those of the rule for single roads. The route is checked as one road, so
-the turns at its junctions limit the speed. On every other road the car starts from rest.
-"""
+the turns at its junctions limit the speed. On every other road the car starts from rest."""
 
 from roadgpt.check.finding import Finding
 from roadgpt.check.network_places import road_finding

@@ -2,15 +2,14 @@
 
 A road must be at least as long as the car, 4.7 m. The first road of a route needs 4.85 m, because the middle
 of the car starts 2.5 m along it. The last road needs 8 m, because the car has arrived 8 m before its end. The
-limit for the whole route is that of the SBFT competition.
-"""
+limit for the whole route is that of the SBFT competition."""
 
 from roadgpt.check.finding import Finding
 from roadgpt.check.network_places import road_finding
 from roadgpt.check.rules.too_short import shorter_than_allowed, without_room
 from roadgpt.network import Network, Route
 from roadgpt.road import World
-from roadgpt.road.ends import GOAL, LEAST, START
+from roadgpt.road.road import GOAL, SHORTEST_DRIVE, START
 
 CAR = 4.7  # m, length of the tested car
 
@@ -20,7 +19,7 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     found = []
     least = {}
     if route is not None:
-        if route.length <= LEAST:
+        if route.length <= SHORTEST_DRIVE:
             return (without_room(route.length),)
         if route.length <= world.limits.min_length:
             found.append(shorter_than_allowed(route.length, world))

@@ -1,8 +1,7 @@
 """Requires turns with a radius of at least 14.326 m (47 ft) on roads outside junctions and roundabouts.
 
 This is the limit of the SBFT competition, as in the rule for single roads. Connecting roads may be tighter:
-see ``connection_too_tight``.
-"""
+see ``connection_too_tight``."""
 
 from roadgpt.check.finding import Finding
 from roadgpt.check.network_places import road_finding

@@ -2,8 +2,7 @@
 
 A lane that ends at a junction without a connection would be a trap for traffic, and a lane that no connection
 reaches would stay empty. In a network of several roads, each road must meet a junction or another road.
-Source: OpenDRIVE 1.8, junctions: connections describe all ways through a junction.
-"""
+Source: OpenDRIVE 1.8, junctions: connections describe all ways through a junction."""
 
 from roadgpt.check.finding import Finding
 from roadgpt.check.network_places import junction_finding, road_finding
@@ -12,9 +11,7 @@ from roadgpt.road import World
 
 
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
-    """Reports each lane that lacks a connection at its junction, and each road that meets neither a junction
-    nor another road.
-    """
+    """Reports each lane that lacks a connection at its junction, and each road that meets no other."""
     found = []
     for junction in network.junctions:
         left = {(each.incoming, lane) for each in junction.connections for lane, *_ in each.lanes}

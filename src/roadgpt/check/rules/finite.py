@@ -18,10 +18,8 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def missing_number(road: Road) -> tuple[float | None, str] | None:
-    """Returns the first station in metres where a quantity is not finite, and a text that names the quantity;
-    None if all quantities are finite. If several are not finite, only the first in the order x, y, z,
-    heading, curvature, grade is reported. The station is None if the length of the road is not finite.
-    """
+    """Returns the first station in metres where a quantity is not finite, and a text that names the first
+    such quantity; None if all are finite. The station is None if the length of the road is not finite."""
     if not np.isfinite(road.length):
         return None, "the length of the road is not a number"
     with np.errstate(invalid="ignore", over="ignore"):  # such values are found below

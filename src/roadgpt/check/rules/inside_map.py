@@ -4,8 +4,7 @@ The map extends from 0 to ``map_size`` along x and y. Source: two checks of the 
 into the map, and no part of it touches the border) and one of the SBFT competition. The competition's code
 accepts some roads far outside the map, because of an operator precedence error; this rule rejects them. Near
 the border, the competition's spline is checked as well, in both driving directions, because this spline may
-run up to a metre beyond the end of the road.
-"""
+run up to a metre beyond the end of the road."""
 
 import numpy as np
 

@@ -6,8 +6,7 @@ half the road width. Without folds, quads that are closer together along the roa
 tightest radius cannot overlap (Schur's comparison theorem), so only quads farther apart are compared. The
 curved edge of the road bulges slightly beyond the straight edges of the quads, so the gap between two quads
 must be more than twice this bulge. Where quads nearly touch, the competition's own quads are checked as well,
-in both driving directions, because the competition's spline may run up to a metre beyond the last point.
-"""
+in both driving directions, because the competition's spline may run up to a metre beyond the last point."""
 
 import numpy as np
 
@@ -32,8 +31,7 @@ def overlap_with_itself(road: Road, world: World) -> tuple[tuple[int, str] | Non
     """Returns three values: the index of the first sample at which the road folds or overlaps an earlier
     part, and what is wrong there (None: nothing is wrong); the index of the sample that is nearest to an
     earlier part (0 if the road folds, or no parts are close); and the metres between these two parts. The
-    metres are 0 if the road folds or overlaps itself, and may be infinite above ``SPLINE_REACH``.
-    """
+    metres are 0 if the road folds or overlaps itself, and may be infinite above ``SPLINE_REACH``."""
     samples = road.sample()
     offsets = world.profile_of(road).edges(samples.s)
     quads = quads_of(*sides(samples, offsets))

@@ -1,8 +1,7 @@
 """Requires 2 to 500 control points; consecutive control points must not coincide in plan.
 
 Source: the SBFT competition's limits on ``road_points``. Its spline cannot pass through the same point twice
-in a row.
-"""
+in a row."""
 
 import numpy as np
 

@@ -3,8 +3,7 @@
 The requirements are given as ranges in an Outline. They are compared with what ``check.measures`` measures on
 the centre line of the road. Additional straights are allowed. If the description leaves a count open ("at
 least three right turns, then a hairpin"), the turns of the road are assigned to the requested groups so that
-as few turns as possible violate a requirement.
-"""
+as few turns as possible violate a requirement."""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -14,7 +13,7 @@ from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import COUNTS, NO_TURN, ROAD, WHOLE_SLOPES
 from roadgpt.check.finding import Finding
-from roadgpt.check.matching import Complaint, fits, sequence_complaints, turn_complaints
+from roadgpt.check.matching import Complaint, fits, likeness_complaints, sequence_complaints, turn_complaints
 from roadgpt.check.measures import LEVEL, Measures, measure
 from roadgpt.road import Road, World
 
@@ -24,8 +23,11 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
     if brief is None:
         return ()
     asked = outline(brief, world.site.map_size)
-    broken = complaints(measure(road.centreline(), asked.widest), asked)
-    return tuple(_finding(road, complaint) for complaint in broken)
+    found = []
+    for broken in complaints(measure(road.centreline(), asked.widest), asked):
+        x, y = (None, None) if broken.s is None else road.at(min(broken.s, road.length))[:2].tolist()
+        found.append(Finding("promises", broken.sentence, broken.s, x, y))
+    return tuple(found)
 
 
 def complaints(found: Measures, asked: Outline) -> list[Complaint]:
@@ -34,8 +36,6 @@ def complaints(found: Measures, asked: Outline) -> list[Complaint]:
     if len(found.turns) in asked.turns:
         out += sequence_complaints(found, asked)
         if asked.alike:
-            from roadgpt.check.likeness import likeness_complaints
-
             out += likeness_complaints(found, asked)
     for number, turn in enumerate(found.turns, 1):
         out += turn_complaints(number, turn, asked.each_turn)
@@ -46,13 +46,6 @@ def complaints(found: Measures, asked: Outline) -> list[Complaint]:
             text = f"asked for {row.asked.format(span)}, has {row.measured.format(value)}"
             out.append(Complaint(text, on_heights=row.on_heights))
     return out + list(_ends(found, asked))
-
-
-def _finding(road: Road, complaint: Complaint) -> Finding:
-    if complaint.s is None:
-        return Finding("promises", complaint.sentence)
-    x, y, _ = (float(v) for v in road.at(min(complaint.s, road.length)))
-    return Finding("promises", complaint.sentence, complaint.s, x, y)
 
 
 def _counts(found: Measures, asked: Outline) -> Iterator[Complaint]:

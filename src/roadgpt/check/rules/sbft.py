@@ -1,7 +1,6 @@
 """Requires the road to pass the SBFT competition's validator, which ``roadgpt.check.sbft`` reproduces.
 
-A route through junctions never passes: the competition tests single roads.
-"""
+A route through junctions never passes: the competition tests single roads."""
 
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding

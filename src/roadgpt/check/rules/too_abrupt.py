@@ -5,22 +5,64 @@ vertical acceleration is v^2 / R. Where the description asks for a crest or a di
 are allowed; beyond that, the wheels would lose contact with the road.
 
 v is the speed expected at this place: the car starts from rest, respects the speed limit and slows down only
-for bends (``road.speed_profile.expected_speed``). Sources: ``docs/decisions/0028-vertical-radii.md``.
-"""
+for bends (``road.speed_profile.expected_speed``). Sources: ``docs/decisions/0028-vertical-radii.md``."""
 
 import numpy as np
 
 from roadgpt.brief.model import Brief
-from roadgpt.check.bumps import bumps_asked
+from roadgpt.brief.normal import BUMPS
+from roadgpt.brief.outline import outline
 from roadgpt.check.extremes import vertical_bends
 from roadgpt.check.finding import Finding, findings_at
+from roadgpt.check.measures import measure
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import GRAVITY, expected_speed
 
+CURVE = 30.0  # m by which a parabola may reach from its straight into the turns at its ends
 MOST = 3.0  # m/s^2
 STEP = 1.0  # m between the stations at which the expected speed is computed
 ROUNDING = 1e-3  # of the limit
+
+
+def asks_for_bumps(brief: Brief | None) -> bool:
+    """Returns whether the description asks for a crest, a dip or a hump anywhere."""
+    if brief is None:
+        return False
+    return any(clause.kind in BUMPS for clause in (*brief.clauses, brief.starts, brief.ends) if clause)
+
+
+def bumps_asked(road: Road, brief: Brief | None) -> list[tuple[float, float]]:
+    """Returns the start and end stations, in metres, of the parts of a road where a crest, a dip or a hump is
+    requested.
+
+    A part reaches from one turn to the next, or to an end of the road, and 30 m into the turns beside it. If
+    the description does not fix the number of turns before a crest, dip or hump, all parts are returned."""
+    if brief is None or not asks_for_bumps(brief):
+        return []
+    found = measure(road.centreline())
+    begins = [0.0, *(turn.end - CURVE for turn in found.turns)]
+    ends = [*(turn.start + CURVE for turn in found.turns), road.length]
+    gaps = list(zip(begins, ends, strict=True))
+    wanted: set[int] = set()
+    if brief.starts and brief.starts.kind in BUMPS:
+        wanted.add(0)
+    if brief.ends and brief.ends.kind in BUMPS:
+        wanted.add(len(gaps) - 1)
+    for index, clause in enumerate(brief.clauses):
+        if clause.kind in BUMPS:
+            number = _turns_before(brief, index)
+            wanted |= set(range(len(gaps))) if number is None else {min(number, len(gaps) - 1)}
+    return [gaps[number] for number in sorted(wanted)]
+
+
+def _turns_before(brief: Brief, index: int) -> int | None:
+    """Returns the number of turns before the clause at ``index``; None if the Brief leaves it open."""
+    if not outline(brief).names_all_turns:
+        return None
+    before = outline(brief.model_copy(update={"clauses": brief.clauses[:index]})).groups
+    counts = [(group.lo, group.hi) for group in before if group.feature.kind == "turn"]
+    return sum(lo for lo, _ in counts) if all(lo == hi for lo, hi in counts) else None
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
@@ -30,8 +72,7 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 def abrupt_place(road: Road, brief: Brief | None, world: World) -> tuple[float, str] | None:
     """Returns the station in metres of the crest or dip that exceeds its limit by the largest factor, and
-    what is wrong there; None if no crest or dip exceeds its limit.
-    """
+    what is wrong there; None if there is none."""
     begin, end, bend = vertical_bends(road)
     suspects = np.flatnonzero(np.abs(bend) * world.limits.speed_limit**2 > MOST * (1 + ROUNDING))
     if not suspects.size:
@@ -43,7 +84,8 @@ def abrupt_place(road: Road, brief: Brief | None, world: World) -> tuple[float, 
     if felt.max() <= MOST * (1 + ROUNDING):
         return None
     middle = (begin[suspects] + end[suspects]) / 2
-    most = np.where(_inside(middle, bumps_asked(road, brief)), GRAVITY, MOST)
+    spans = bumps_asked(road, brief)
+    most = np.array([GRAVITY if any(a <= s <= b for a, b in spans) else MOST for s in middle.tolist()])
     worst = int((felt / most).argmax())
     if felt[worst] <= most[worst] * (1 + ROUNDING):
         return None
@@ -54,13 +96,6 @@ def abrupt_place(road: Road, brief: Brief | None, world: World) -> tuple[float, 
 def _fastest(s: Array, speed: Array, begin: float, end: float) -> float:
     inner = speed[(s > begin) & (s < end)]
     return float(max(np.interp([begin, end], s, speed).max(), inner.max(initial=0.0)))
-
-
-def _inside(s: Array, spans: list[tuple[float, float]]) -> Array:
-    out = np.zeros(s.shape, bool)
-    for first, last in spans:
-        out |= (s >= first) & (s <= last)
-    return out
 
 
 def _said(bend: float, speed: float, most: float) -> str:

@@ -8,7 +8,7 @@ from roadgpt.check.finding import Finding
 from roadgpt.check.sbft import measured_length
 from roadgpt.geometry import interpolate
 from roadgpt.road import Road, World
-from roadgpt.road.ends import GOAL, LEAST, START
+from roadgpt.road.road import GOAL, SHORTEST_DRIVE, START
 
 DOUBT = 1.0  # m: if the road is longer by this much, SBFT's measure agrees
 
@@ -16,7 +16,7 @@ DOUBT = 1.0  # m: if the road is longer by this much, SBFT's measure agrees
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the length of the road if it is too short."""
     length = road.length
-    if length <= LEAST:
+    if length <= SHORTEST_DRIVE:
         return (without_room(length),)
     if length > world.limits.min_length + DOUBT:
         return ()

@@ -1,8 +1,7 @@
 """Requires grades of at most 15 %, uphill and downhill, at every place and over every 10 m.
 
 The limit is that of the prompt in the RoadGPT thesis. The code of the thesis checked only uphill grades,
-averaged over blocks of ten nodes, so it accepted a road with a downhill grade of 60 %.
-"""
+averaged over blocks of ten nodes, so it accepted a road with a downhill grade of 60 %."""
 
 import numpy as np
 
@@ -21,10 +20,8 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def steep_place(road: Road, world: World) -> tuple[float, str] | None:
-    """Returns the station in metres where the road is too steep, and what is wrong; None if the rule is met.
-    The station is the middle of the steepest 10 m or, if their mean grade satisfies the limit, the steepest
-    point.
-    """
+    """Returns the middle of the steepest 10 m or, if their mean grade satisfies the limit, the station of the
+    steepest point, and what is wrong there; None if the rule is met."""
     for (s, grade), over in ((_over_a_window(road), f" over {WINDOW:.0f} m"), (steepest(road), "")):
         if abs(grade) > world.limits.max_grade + ROUNDING:
             way = "uphill" if grade > 0 else "downhill"

@@ -1,8 +1,7 @@
 """Requires all turns to have a radius of at least 14.326 m (47 ft), the limit of the SBFT competition.
 
 The radius is measured twice: on the curve of the road, and as in the competition, where circles are drawn
-through nodes of the competition's spline. That spline cuts corners between control points.
-"""
+through nodes of the competition's spline. That spline cuts corners between control points."""
 
 from roadgpt.brief.model import Brief
 from roadgpt.check.extremes import tightest
@@ -30,9 +29,8 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def tight_place(road: Road, world: World) -> tuple[float, str] | None:
-    """Returns the station in metres where the curve of the road is tightest, and what is wrong there; None if
-    the curve is nowhere too tight.
-    """
+    """Returns the station in metres where the curve of the road is tightest, and what is wrong there, if it
+    is."""
     s, bend = tightest(road)
     if abs(bend) * world.limits.min_radius <= 1 + ROUNDING:
         return None

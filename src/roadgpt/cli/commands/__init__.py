@@ -1,1 +1,1 @@
-"""One command per file, each called ``command``; ``roadgpt.cli.command_table`` lists them."""
+"""The commands, in one module for each heading of ``roadgpt --help``; ``roadgpt.cli.app`` lists them."""

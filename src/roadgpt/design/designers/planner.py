@@ -1,8 +1,7 @@
 """The default designer: finds roads, routes through junctions, and maps by random drafts.
 
 See ``design.road_search`` for roads, and ``design.network_draft`` for routes and maps; the latter is imported
-only where it is used.
-"""
+only where it is used."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -29,16 +28,9 @@ class Planner:
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> "AnyDesign":
-        """Returns a valid Design that meets the Brief; a NetworkDesign or a MapDesign for a network.
-
-        The road differs from the earlier designs as far as possible; for networks, these are ignored. Only
-        the number of notes matters, because this number changes the seed.
-
-        Raises:
-            DesignError: no draft was accepted; the message says which requirement failed, and what to do.
-            BriefError: a junction cannot meet its requirements.
-            UsageError: the World has lanes or banked bends that a map of roads cannot have.
-        """
+        """Returns a valid Design that meets the Brief; a NetworkDesign or a MapDesign for a network. The road
+        differs from the earlier designs as far as possible; for networks, these are ignored. Only the number
+        of notes matters, because this number changes the seed. For errors see ``roadgpt.draft``."""
         rng = np.random.default_rng([seed, len(notes)])
         if brief.is_of_network:
             from roadgpt.design.network_draft import draft_network

@@ -12,8 +12,7 @@ this designer does the following:
   decides;
 * the program begins with 5 m of level road, which is kept, and shifts the start by (5, 5), which is omitted.
 
-The thesis' program passed answers, which were Python dictionaries, to ``eval``; here answers are JSON.
-"""
+The thesis' program passed answers, which were Python dictionaries, to ``eval``; here answers are JSON."""
 
 from collections.abc import Sequence
 from importlib.resources import files
@@ -21,8 +20,8 @@ from importlib.resources import files
 from roadgpt.brief.model import Brief
 from roadgpt.brief.sentence import sentence
 from roadgpt.chat import Chat, ChatSettings, Message, UnparsableError, configured, open_chat
-from roadgpt.chat.strict_json import NotReadableError, read_object
-from roadgpt.design.report import DesignReport
+from roadgpt.chat.answer import NotReadableError, read_object
+from roadgpt.design import DesignReport
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Geometry, World, build, read_design
 
@@ -46,11 +45,7 @@ class ThesisDesigner:
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> Design:
         """Returns the Design that the model answers with; ``notes``, ``earlier`` and ``seed`` are not used.
-
-        Raises:
-            ReplyError: the answer is not a design.
-            ChatError: the model could not be asked.
-        """
+        Raises ReplyError if the answer is not a design, and ChatError if the model could not be asked."""
         self.report = None
         chat = self._chat = self._chat or open_chat(self._settings)
         before = chat.spent
@@ -78,6 +73,5 @@ class ThesisDesigner:
 
 
 def _rules(world: World) -> str:
-    """Returns the system prompt with the limits of ``world`` filled in."""
     text = files("roadgpt.design.designers").joinpath(RULES).read_text(encoding="utf-8")
     return text.format(bound=f"{0.8 * world.site.map_size:g}", floor=f"{world.site.z_floor:g}")

@@ -7,8 +7,7 @@ Changes that cannot be made at once go through the second line one after the oth
 Design with the road that was built from it, the findings of the rules, and measurements.
 Turns and straights are those that ``check.measures`` finds on the finished road. They are numbered as on the
 road before the edit. Elements that the request does not name keep all their values, but the road as a whole
-may be shifted or rotated, so that it stays inside the map.
-"""
+may be shifted or rotated, so that it stays inside the map."""
 
 from collections.abc import Sequence
 from contextlib import suppress
@@ -17,17 +16,22 @@ from typing import NamedTuple
 from roadgpt.brief.change import EditRequest, checked_request, other_readings, read_request
 from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.change.request import OF_SLOPE, Change
-from roadgpt.brief.readers.model.confidence import DOUBT
+from roadgpt.brief.readers.model.trained import DOUBT
 from roadgpt.brief.words import SURFACES
 from roadgpt.chat import ChatSettings
 from roadgpt.design.differences import grades_changed, sentences
-from roadgpt.design.edit.candidates import candidates_of, sentence_of
-from roadgpt.design.edit.heights import with_final_heights
-from roadgpt.design.edit.opposites import settled
-from roadgpt.design.edit.placing import PlacedChange, placed
-from roadgpt.design.edit.reordering import RENAMED
+from roadgpt.design.edit.candidates import RENAMED, candidates_of, sentence_of
+from roadgpt.design.edit.places import placed
 from roadgpt.design.edit.search import made
-from roadgpt.design.edit.stages import carried_over, directions, renamed, stages, unchanged
+from roadgpt.design.edit.stages import (
+    carried_over,
+    directions,
+    renamed,
+    settled,
+    stages,
+    unchanged,
+    with_final_heights,
+)
 from roadgpt.design.road_elements import elements_on_road
 from roadgpt.errors import EditError, IdleEditError, UnclearPlaceError
 from roadgpt.road import Design, Geometry, Site, World
@@ -40,14 +44,10 @@ class Edited(NamedTuple):
 
     design: Design
     changes: tuple[str, ...]
-    unused: tuple[str, ...] = ()
-    """Words of the request that were not understood."""
-    confidence: float = 1.0
-    """Estimated probability that the request was read correctly."""
-    other: str = ""
-    """The plan of another reading that is likely; empty if there is none."""
-    world: World = World()
-    """The World before the edit, or one with a larger map if the changed road needs it."""
+    unused: tuple[str, ...] = ()  # words of the request that were not understood
+    confidence: float = 1.0  # estimated probability that the request was read correctly
+    other: str = ""  # the plan of another reading that is likely; empty if there is none
+    world: World = World()  # the World before the edit, or one with a larger map if the changed road needs it
 
 
 def edit(
@@ -57,21 +57,13 @@ def edit(
     geometry: Geometry = "arcs",
     chat: ChatSettings | None = None,
 ) -> Edited:
-    """Returns the Design, changed as the words ask.
+    """Returns the Design, changed as the words ask: the text of a change request, or the EditRequest read
+    from it.
 
-    Args:
-        design: the Design before the edit; this value itself is not changed.
-        words: the text of a change request, or the EditRequest read from it.
-        world: size of the map, and limits that the rules check, such as the steepest grade. A map of the
-            usual size grows if the changed road needs it.
-        geometry: the kind of geometry that the road is built with.
-        chat: settings of the language model that reads the words; None for RoadGPT's own networks.
-
-    Raises:
-        EditError: the words cannot be read, name something that is not on the road, or ask for something that
-            no valid road can have; the message gives the reason.
-        ChatError: the language model could not be asked.
-    """
+    A map of the usual size grows if the changed road needs it. ``chat`` are the settings of the language
+    model that reads the words; None for RoadGPT's own networks. Raises EditError if the words cannot be read,
+    name something that is not on the road, or ask for something that no valid road can have, and ChatError if
+    the language model could not be asked."""
     request = read_request(words, chat) if isinstance(words, str) else words
     try:
         return _edited(design, checked_request(request), world, geometry)
@@ -83,12 +75,10 @@ def edit(
 
 
 def _may_be_other(request: EditRequest, error: EditError) -> bool:
-    """Returns whether a request that this road cannot have may be meant as its next likely readings.
-
-    That is so if the first reading is doubtful. If the road is as asked already, or has several such places,
-    it is so if the next reading asks for the same kinds of changes: "the descent" of a road that falls all
-    the way is the whole road.
-    """
+    """Returns whether a request that this road cannot have may be meant as its next likely readings. That is
+    so if the first reading is doubtful. If the road is as asked already, or has several such places, it is so
+    if the next reading asks for the same kinds of changes: "the descent" of a road that falls all the way is
+    the whole road."""
     if request.confidence < DOUBT:
         return True
     if not request.others or not isinstance(error, IdleEditError | UnclearPlaceError):
@@ -106,7 +96,6 @@ def _instead(error: EditError, request: EditRequest, made: Edited) -> Edited:
 
 
 def _edited(design: Design, request: EditRequest, world: World, geometry: Geometry) -> Edited:
-    """Returns the Design with the changes of a request that was read."""
     if len(request.changes) > MOST_CHANGES:
         raise EditError(
             f"{len(request.changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer"
@@ -140,8 +129,7 @@ def _in_one_direction(
     design: Design, changes: Sequence[Change], world: World, geometry: Geometry, may_grow: bool
 ) -> tuple[Design | None, World, list[str]]:
     """Returns the Design with changes that name their places on the same road, its World, and what to say;
-    None instead of the Design if the road is so already.
-    """
+    None instead of the Design if the road is so already."""
     elements, found = elements_on_road(design, geometry)
     asked = placed(changes, elements)
     once = settled(asked)
@@ -177,14 +165,10 @@ def _in_one_direction(
         *(
             f"'{each.change.words}' is asked for twice and done once"
             for each in asked
-            if not _is_in(each, once)
+            if all(each.change is not other.change for other in once)
         ),
     ]
     return road.design, world, told
-
-
-def _is_in(placed: PlacedChange, changes: Sequence[PlacedChange]) -> bool:
-    return any(placed.change is each.change for each in changes)
 
 
 __all__ = ["EditRequest", "Edited", "edit", "read_request"]

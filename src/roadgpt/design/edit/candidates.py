@@ -3,22 +3,23 @@
 A request without a number ('sharper') allows wide ranges. If the request gives a value, such as the angle of
 a turn, only other values, such as the radius, may vary. A further candidate aims at a smaller change, has
 wider ranges, or lets more elements change.
-"""
 
-from collections.abc import Iterable, Sequence
+Changes of one element must agree: each sets only what its own change is about. Alone, "tighter" keeps the
+angle of a turn, and "sharper" its radius. In one request they must not."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import inf
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from roadgpt.brief.change.request import REORDERS, Change
+from roadgpt.brief.change.request import REORDERS, Change, What
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.ranges import Range
-from roadgpt.brief.words import KINDS
+from roadgpt.brief.words import KINDS, LEAST_STRAIGHT
 from roadgpt.check.measures import Measures, way
-from roadgpt.design.edit.agreement import agreed
 from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
-from roadgpt.design.edit.lengths import length_steps, road_length_candidates
-from roadgpt.design.edit.placing import PlacedChange, is_beyond
-from roadgpt.design.edit.reordering import Reverse, move_of, reordering_sentence, swap_of
+from roadgpt.design.edit.places import PlacedChange, is_beyond, straights, turns
 from roadgpt.design.edit.slopes import (
     climb_step,
     hill_candidates,
@@ -34,6 +35,7 @@ from roadgpt.design.edit.steps import (
     EditCandidate,
     EditStep,
     Mirror,
+    RoadLength,
     Wanted,
 )
 from roadgpt.design.elements import straight
@@ -41,6 +43,25 @@ from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
+YIELDS: Mapping[What, Mapping[str, frozenset[What]]] = {
+    "angle": {"radius": frozenset({"radius", "shape"})},
+    "radius": {"degrees": frozenset({"angle", "shape"})},
+    "shape": {"radius": frozenset({"radius"})},
+    "side": {"degrees": frozenset({"angle", "shape"}), "radius": frozenset({"radius", "shape"})},
+    "mirror": {"degrees": frozenset({"angle", "shape"}), "radius": frozenset({"radius", "shape"})},
+}
+"""For each change, the values that its steps set beside its own, and the changes that have these values as
+their own; where an element has such a change, the step leaves the value to it."""
+LEAST_SEEN = 0.03  # of a value: a smaller change is hardly seen
+NEAR = 0.02  # of a limit: what a value at the limit may miss
+VALUES: Mapping[What, str] = {"angle": "degrees", "radius": "radius", "length": "length"}
+LONGER, SHORTER = 1.4, 0.65  # shares of a length
+ROAD_LONGER, ROAD_SHORTER = 1.3, 0.75  # shares of the length of a road
+SEEN = 10.6  # m: the shortest straight that is seen
+KEPT = 17.5  # m that remain of each straight when the road is shortened
+ROAD_SLACK = 0.02  # of the length of a road
+REVERSED = "the road leads from its former end to its former start; its parts are named as before"
+RENAMED = "what follows names the parts as they come in the new direction"
 SHARPER, GENTLER = (1.25, 0.75), (0.75, 1.33)  # shares of angle and radius to aim at
 TIGHTER, WIDER = 0.7, 1.4  # shares of the radius
 FLIPPED = Range(0.65, 1.25)  # shares of angle and radius that a turn may have when it goes the other way
@@ -50,11 +71,248 @@ LEAST_ANGLE = 13.0  # degrees: a turn of a smaller angle would not be seen
 MOST_ANGLE = 210.0
 
 
+def agreed(
+    changes: Sequence[PlacedChange], ways: Sequence[tuple[EditCandidate, ...]]
+) -> list[tuple[EditCandidate, ...]]:
+    """Returns the candidates of all changes, with steps that leave other values to the other changes of the
+    same element, and stay within its limits ("tighter, but at least 25 m")."""
+    asked = defaultdict[str, list[Change]](list)
+    for placed in changes:
+        for element in placed.elements:
+            asked[element.name].append(placed.change)
+
+    def own(step: EditStep, placed: PlacedChange) -> EditStep:
+        if not isinstance(step, Adjust):
+            return step
+        change, is_one_of_several = placed.change, len(placed.elements) > 1
+        others = [other for other in asked[step.element.name] if other is not change]
+        step = _yielding(step, change, others)
+        return _within_limits(step, change, others, is_one_of_several) if _is_open(change) else step
+
+    return [
+        tuple(tuple(own(step, placed) for step in way) for way in its)
+        for placed, its in zip(changes, ways, strict=True)
+    ]
+
+
+def _is_open(change: Change) -> bool:
+    """Returns whether a change gives only a direction, such as "tighter", and no number."""
+    return change.more != 0 and change.by is None
+
+
+def _yielding(step: Adjust, change: Change, others: Sequence[Change]) -> Adjust:
+    whats = {other.what for other in others}
+    owned = YIELDS.get(change.what, {})
+    left: dict[str, Any] = {name: None for name in owned if not whats.isdisjoint(owned[name])}
+    # of a hairpin the angle is its own; of a gentle or sharp turn another change may set it
+    if change.what == "shape" and change.kind is None and "angle" in whats:
+        left["degrees"] = None
+    degrees, seen = step.degrees, step.element.seen
+    if change.what == "angle" and _is_open(change) and "radius" in left and degrees and seen:
+        # alone, a small change of angle may become one of the radius
+        left["degrees"] = Wanted.towards(seen.degrees, degrees.aim)
+    return replace(step, **left)
+
+
+def _within_limits(step: Adjust, change: Change, others: Sequence[Change], is_one_of_several: bool) -> Adjust:
+    """Returns the step of a change without a number ("tighter") with its value inside the limits that other
+    changes set, or at the limit if that is a smaller change than usual. A value that is at the limit already
+    stays, if other elements change as well; otherwise the step is unchanged, and breaks the limit."""
+    name = VALUES.get(change.what, "")
+    wanted: Wanted | None = getattr(step, name, None)
+    bounds = {
+        side: [other.to for other in others if (other.what, other.bound) == (change.what, side) and other.to]
+        for side in (1, -1)
+    }
+    if wanted is None or not (bounds[1] or bounds[-1]):
+        return step
+    low, high = max([wanted.room.lo, *bounds[1]]), min([wanted.room.hi, *bounds[-1]])
+    if low <= high:
+        aim = min(max(wanted.aim, low), high)
+        return _with(step, name, Wanted(aim, Range(low, high)))
+    now = getattr(step.element.seen, name)
+    limit = low if change.more < 0 else high
+    change_left = (limit / now - 1) * change.more
+    if change_left > LEAST_SEEN:
+        return _with(step, name, Wanted.near(limit, NEAR * limit))
+    is_there = is_one_of_several and change_left >= -NEAR
+    return _with(step, name, Wanted.near(now, NEAR * now)) if is_there else step
+
+
+def _with(step: Adjust, name: str, wanted: Wanted) -> Adjust:
+    values: dict[str, Any] = {name: wanted}
+    return replace(step, **values)
+
+
+def length_steps(change: Change, element: RoadElement, world: World) -> list[EditStep]:
+    """Returns the step that gives one turn or straight another length."""
+    seen = element.seen
+    before = seen.length if seen else element.length
+    aim = change.aim(before)
+    share = 1 + ((LONGER if change.more > 0 else SHORTER) - 1) * change.dose
+    wished = before * share if aim is None else aim
+    if element.is_turn:
+        assert seen is not None
+        tight = world.limits.design_radius
+        if seen.radius * wished / before >= tight:
+            wanted = Wanted.near(wished, 0.06 * wished) if aim is not None else Wanted.towards(before, wished)
+            return [Adjust(element, Wanted.near(seen.degrees, 2.0), None, wanted)]
+        share = max(wished / before / (tight / seen.radius), 0.3)  # then it also turns less far
+        return [Adjust(element, Wanted.near(seen.degrees * share, 4.0), Wanted.near(tight, 0.12 * tight))]
+    if aim is None:
+        wished = max(wished, before + 15 if change.more > 0 else 0.0, min(SEEN + 1, before))
+        room = Wanted.towards(before, wished).room
+        room = Range(max(min(room.lo, wished - 0.5), LEAST_STRAIGHT), max(room.hi, wished + 0.5))
+        return [Adjust(element, length=Wanted(wished, room))]
+    if wished < SEEN - 0.6:
+        raise EditError(
+            f"a straight of {max(wished, 0):.0f} m is not seen as one; ask for 10 m or more, or remove it"
+        )
+    return [Adjust(element, length=Wanted.near(max(wished, SEEN), max(1.0, 0.02 * wished)))]
+
+
+def road_length_candidates(
+    change: Change, elements: Sequence[RoadElement], world: World
+) -> tuple[EditCandidate, ...]:
+    """Returns candidates that change the road's length by its straights alone, or by its turns as well."""
+    own = sum(element.length for element in elements)
+    aim = change.aim(own)
+    if aim is None:
+        aim = own * (1 + ((ROAD_LONGER if change.more > 0 else ROAD_SHORTER) - 1) * change.dose)
+    if aim < world.limits.min_length:
+        raise EditError(f"a road of {aim:.0f} m is too short; ask for {world.limits.min_length:g} m or more")
+    slack = max(2.0, ROAD_SLACK * aim)
+    whole = RoadLength(Range(aim - slack, aim + slack))
+    lengths = [(e, e.seen.length) for e in elements if not e.is_turn and e.seen is not None]
+    spare = [length if aim > own else max(length - KEPT, 0.0) for _, length in lengths]
+    share = (aim - own) / max(sum(spare), 1e-9)
+    straights: list[EditStep] = [
+        Adjust(element, length=Wanted(length + share * part, Range(SEEN)))
+        for (element, length), part in zip(lengths, spare, strict=True)
+    ]
+    everything: list[EditStep] = [
+        Adjust(element, length=Wanted(now, Range(SEEN))) for element, now in lengths
+    ]
+    for seen, element in ((e.seen, e) for e in elements if e.is_turn):
+        assert seen is not None
+        radius = Range(min(world.limits.design_radius, seen.radius), max(WIDEST, seen.radius))
+        everything.append(Adjust(element, Wanted.near(seen.degrees, 2.0), Wanted(seen.radius, radius)))
+    can = sum(spare) and share > -1
+    return ((*straights, whole), (*everything, whole)) if can else ((*everything, whole),)
+
+
+@dataclass(frozen=True, slots=True)
+class Reverse:
+    """Reverses the whole road: climbs become falls, and left turns become right turns."""
+
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
+        """Returns the elements from the last to the first, each reversed."""
+        return tuple(
+            element.with_segments(
+                segment.model_copy(update={"incline": 0.0 - segment.incline})
+                for segment in reversed(element.segments)
+            )
+            for element in map(RoadElement.mirrored, reversed(elements))
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Swap:
+    """Lets two elements change places; each keeps its length, angle, radius, side and grade."""
+
+    one: str
+    other: str
+
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
+        """Returns the elements in their new order."""
+        by_name = {element.name: element for element in elements}
+        places = {self.one: by_name[self.other], self.other: by_name[self.one]}
+        return tuple(places.get(element.name, element) for element in elements)
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """Moves turns to another place among the turns; each keeps its angle, radius, side and grade. The
+    straights between them stay where they are."""
+
+    names: tuple[str, ...]
+    after: str  # the name of the turn behind which the moved turns come; empty for the beginning of the road
+
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
+        """Returns the elements in their new order."""
+        turns = [element for element in elements if element.is_turn]
+        moved = [turn for turn in turns if turn.name in self.names]
+        others = [turn for turn in turns if turn.name not in self.names]
+        names = [turn.name for turn in others]
+        index = names.index(self.after) + 1 if self.after else 0
+        order = iter((*others[:index], *moved, *others[index:]))
+        return tuple(next(order) if element.is_turn else element for element in elements)
+
+
+def swap_of(chosen: Sequence[RoadElement]) -> Swap:
+    """Returns the step that lets two turns, or two straights, change places."""
+    if len(chosen) != 2 or chosen[0].is_turn != chosen[1].is_turn:
+        raise EditError(
+            "two turns, or two straights, can change places; name two, for example: swap turns 1 and 3"
+        )
+    return Swap(chosen[0].name, chosen[1].name)
+
+
+def move_of(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate, ...]:
+    """Returns the candidate that moves turns to another place among the turns; none if already there."""
+    moved = [element.name for element in placed.elements]
+    place = placed.change.place
+    if place is None or not all(element.is_turn for element in placed.elements):
+        raise EditError(f"'{placed.change.words}' moves a straight; only turns can be moved")
+    before = _turn_names(elements)
+    others = [name for name in before if name not in moved]
+    at = {element.name: index for index, element in enumerate(elements)}
+    match place.how:
+        case "start":
+            index = 0
+        case "end":
+            index = len(others)
+        case "middle":
+            index = len(others) // 2
+        case how:
+            marks = (*placed.marks, *([placed.stop] if placed.stop else []))
+            if any(mark.name in moved for mark in marks):
+                raise EditError(f"'{placed.change.words}' moves a turn next to itself; name another place")
+            mark = at[placed.marks[0 if how == "before" else -1].name]
+            if placed.stop and at[placed.stop.name] <= mark:
+                raise EditError(f"'{placed.change.words}' names its places the other way round")
+            index = sum(at[name] < mark + (how != "before") for name in others)
+    if (*others[:index], *moved, *others[index:]) == before:
+        return ()
+    return ((Move(tuple(moved), others[index - 1] if index else ""),),)
+
+
+def reordering_sentence(placed: PlacedChange, elements: RoadElements) -> str:
+    """Returns a sentence on a change that only reorders elements."""
+    match placed.change.what:
+        case "reverse":
+            return REVERSED
+        case "move":
+            names = _turn_names(elements)
+            numbers = [str(names.index(element.name) + 1) for element in placed.elements]
+            moved = f"turn {numbers[0]} has" if len(numbers) == 1 else f"turns {' and '.join(numbers)} have"
+            return f"{moved} moved; the turns are named as before"
+        case _:
+            is_of_turns = placed.elements[0].is_turn
+            alike = turns(elements) if is_of_turns else straights(elements)
+            one, other = (alike.index(element) + 1 for element in placed.elements)
+            noun = "turn" if is_of_turns else "straight"
+            return f"{noun} {one} and {noun} {other} have changed places; they are named as before"
+
+
+def _turn_names(elements: Sequence[RoadElement]) -> tuple[str, ...]:
+    return tuple(element.name for element in turns(elements))
+
+
 class ChangeCandidates(NamedTuple):
     """The ways in which one change of a request can be made."""
 
-    placed: PlacedChange
-    """The change, and the elements that it refers to."""
+    placed: PlacedChange  # the change, and the elements that it refers to
     ways: tuple[EditCandidate, ...]
     """All candidates, the preferred one first; none if the road already is as requested."""
 
@@ -71,12 +329,7 @@ def candidates_of(
 
     ``first`` is the number of the first change in the request; names of new elements contain these numbers.
     If the road already is as one change asks, other changes of the same property leave the elements of that
-    change alone: "everything uphill, the first straight level" keeps a first straight that is level.
-
-    Raises:
-        EditError: no road can have the requested values, or a change of a stretch of the road would alter a
-            part of this stretch that already is as another change asks.
-    """
+    change alone: "everything uphill, the first straight level" keeps a first straight that is level."""
     sides = _sides_after(changes, elements)
     ways = [
         _ways(placed, elements, found, world, number, sides) for number, placed in enumerate(changes, first)
@@ -91,10 +344,8 @@ def candidates_of(
 
 def sentence_of(asked: PlacedChange, before: RoadElements, placed: PlacedChange, now: RoadElements) -> str:
     """Returns what a change does to the road, if measurements alone would not tell; else an empty string.
-
     ``asked`` is the change on the road before the edit, with the elements ``before``; ``placed`` is the same
-    change on the road to which it is made, with the elements ``now``.
-    """
+    change on the road to which it is made, with the elements ``now``."""
     if asked.change.is_hill:
         return hill_sentence(placed, now)
     return reordering_sentence(asked, before) if asked.change.what in (*REORDERS, "reverse") else ""
@@ -139,11 +390,6 @@ def _ways(
 def _change_candidates(
     change: Change, elements: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[EditCandidate, ...]:
-    """Returns all candidates for a change of values; ``found`` are the measurements of the whole road.
-
-    Raises:
-        EditError: No road can have the requested values.
-    """
     is_road = change.is_of_road
     if change.bound and change.what == "length" and is_road:
         elements = elements if change.is_outside(found.length) else []
@@ -177,11 +423,7 @@ def _change_candidates(
 
 
 def _out_of_turn(elements: Sequence[RoadElement]) -> list[RoadElement]:
-    """Returns the turns that have to change their sides so that all alternate between left and right.
-
-    Raises:
-        EditError: There are no turns.
-    """
+    """Returns the turns that have to change their sides so that all alternate between left and right."""
     turns = [element for element in elements if element.is_turn]
     if not turns:
         raise EditError("there is no turn at that place; name another one")
@@ -205,8 +447,7 @@ def _sides_after(changes: Sequence[PlacedChange], elements: RoadElements) -> lis
 
 def _together(ways: Iterable[Sequence[EditStep]]) -> tuple[EditCandidate, ...]:
     """Returns one candidate of the first steps of all elements, one of their second steps, and so on; the
-    second alternative to a single Adjust is its milder version.
-    """
+    second alternative to a single Adjust is its milder version."""
     rows = [list(steps) for steps in ways if steps]
     for row in rows:
         if len(row) == 1 and isinstance(row[0], Adjust):
@@ -277,8 +518,7 @@ def _bent_to(change: Change, element: RoadElement, d: float, r: float, aim: floa
 
 def _shaped(change: Change, element: RoadElement, d: float, r: float, least: float) -> list[EditStep]:
     """Returns the step that makes a turn of ``d`` degrees and radius ``r`` a hairpin, sharp or gentle; none
-    if it already is.
-    """
+    if it already is."""
     if change.kind in ("hairpin", "u_turn", "switchback"):
         angles = KINDS[change.kind].degrees or Range()
         if d in angles and r <= 34 and not (change.sharpness == "sharp" and r > 20):
@@ -305,9 +545,8 @@ def _shaped(change: Change, element: RoadElement, d: float, r: float, least: flo
 
 
 def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
-    """Returns a candidate that mirrors each element, whose angle and radius may change where room is short;
-    none if there are no elements.
-    """
+    """Returns a candidate that mirrors each element, whose angle and radius may change where room is
+    short."""
     if not elements:
         return ()
     steps: list[EditStep] = [Mirror(frozenset(element.name for element in elements))]

@@ -10,7 +10,7 @@ from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES
-from roadgpt.design.edit.placing import PlacedChange
+from roadgpt.design.edit.places import PlacedChange
 from roadgpt.design.edit.slopes import AIMS
 from roadgpt.design.edit.steps import (
     HIDDEN,
@@ -39,8 +39,7 @@ LEAD = 17.0  # m before the first turn and behind the last
 NEW_STRAIGHT = 40.0  # m, length of a new straight if the request gives none
 SPARE = (0.0, 20.0)
 """Additional metres of straight road before and after a new turn; the second value is tried if the first does
-not lead to a valid road, for example because the road would meet itself.
-"""
+not lead to a valid road, for example because the road would meet itself."""
 TRANSITION_SHARE = 0.22  # of the arc
 PREFERRED = {
     "": (60.0, 25.0),
@@ -71,8 +70,7 @@ class Insert:
     elements: RoadElements
     split: int | None = None
     """Number of segments of the element ``before`` that stay in front of the new elements. ``HALVED`` splits
-    the longest segment in half; None does not split the element.
-    """
+    the longest segment in half; None does not split the element."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements in driving order, with the new ones inserted."""
@@ -97,19 +95,9 @@ class Insert:
 def insertion_candidates(
     placed: PlacedChange, elements: RoadElements, world: World, number: int, sides: Sequence[Side | None]
 ) -> tuple[EditCandidate, ...]:
-    """Returns all candidates that add what a change asks for.
-
-    Args:
-        placed: the change, and where on the road it is.
-        elements: the road before the edit.
-        world: the limits that the rules check.
-        number: number of the change in the request; the names of new elements contain it.
-        sides: the sides of the elements once other changes of the request have turned some of them.
-
-    Raises:
-        EditError: the place does not exist, turns of this kind or number cannot be added, or no turn or
-            straight can have the requested values.
-    """
+    """Returns all candidates that add what a change asks for. ``number`` is that of the change in the
+    request; the names of new elements contain it. ``sides`` are the sides of the elements once other changes
+    of the request have turned some of them."""
     change = placed.change
     if change.count > MOST_NEW:
         raise EditError(f"{change.count} turns at once are too many to add; add {MOST_NEW} or fewer")
@@ -134,8 +122,7 @@ def _with_side(element: RoadElement, side: Side | None) -> RoadElement:
 
 def _place(placed: PlacedChange, elements: RoadElements) -> tuple[int, list[int | None]]:
     """Returns the index of the element before which to insert, and the ways to split it, as in
-    ``Insert.split``; at the end of the road, the index is the number of elements.
-    """
+    ``Insert.split``; at the end of the road, the index is the number of elements."""
     place, mark, stop = placed.change.place, placed.marks, placed.stop
     how = place.how if place else "end"
     if how == "end":
@@ -172,8 +159,7 @@ def _place(placed: PlacedChange, elements: RoadElements) -> tuple[int, list[int 
 
 def _middle(elements: RoadElements) -> tuple[int, int]:
     """Returns the index of the gap nearest to the road's middle, and where to split it, as in
-    ``Insert.split``.
-    """
+    ``Insert.split``."""
     whole, places = sum(element.length for element in elements), list[tuple[float, int, int]]()
     for number, (element, at) in enumerate(with_stations(elements)):
         if not element.is_turn and element.segments:
@@ -211,10 +197,8 @@ def _shape(change: Change, world: World) -> tuple[Wanted, Wanted]:
 
 
 def _sides(change: Change, before: RoadElements) -> list[list[Side]]:
-    """Returns the sequences of sides to try for the new turns behind the elements ``before``.
-
-    If no side is requested, the first sequence begins opposite to the turn before, the second on its side.
-    """
+    """Returns the sequences of sides to try for the new turns behind the elements ``before``. If no side is
+    requested, the first sequence begins opposite to the turn before, the second on its side."""
     count = change.count * (2 if change.kind in ("s_bend", "chicane") else 1)
     alternates = change.kind in ("s_bend", "chicane") or (count > 1 and change.side is None)
     last: Side = next((element.side for element in reversed(before) if element.side), "right")
@@ -265,8 +249,7 @@ def _new_turns(
 
 def without_spare_tail(elements: RoadElements) -> RoadElements:
     """Returns the elements without the straight behind a new turn at the end of the road, if the same request
-    adds a straight there; that one is then measured by itself, between the turn and the end.
-    """
+    adds a straight there; that one is then measured by itself, between the turn and the end."""
     if len(elements) < 2:
         return elements
     *front, tail, last = elements
@@ -337,11 +320,7 @@ def _straight_ways(
 
 def removal_candidates(gone: Sequence[RoadElement], elements: RoadElements) -> tuple[EditCandidate, ...]:
     """Returns all candidates that remove the elements ``gone``; one of them leaves short straights in the
-    places of removed turns.
-
-    Raises:
-        EditError: No element would be left.
-    """
+    places of removed turns."""
     if len(gone) == len([b for b in elements if b.segments]):
         raise EditError("then no road would be left; remove fewer")
     return tuple(tuple(_without(element, elements, filler) for element in gone) for filler in FILLERS)

@@ -6,8 +6,7 @@ preferred candidates come first. The steps of the candidates are applied to the 
 requested; all other elements are frozen. If that fails and the geometry is ``arcs``, the other elements may
 change as well. The start moves if the road is reversed or mirrored, or if elements are added in front of it.
 If the road would leave the map, the road is shifted or rotated. If that is not enough, a map of the usual
-size grows; on any other map, elements that the request does not name change.
-"""
+size grows; on any other map, elements that the request does not name change."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -21,10 +20,9 @@ from roadgpt.brief.model import Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import LEAST_STRAIGHT
-from roadgpt.design.edit.candidates import ChangeCandidates
+from roadgpt.design.edit.candidates import ChangeCandidates, Reverse
 from roadgpt.design.edit.insertion import without_spare_tail
-from roadgpt.design.edit.placing import is_beyond
-from roadgpt.design.edit.reordering import Reverse
+from roadgpt.design.edit.places import is_beyond
 from roadgpt.design.edit.slopes import SlopeOfAll
 from roadgpt.design.edit.steps import SEPARATE, EditStep, Mirror, RoadLength
 from roadgpt.design.fit import Look, Requirements, fit
@@ -61,14 +59,10 @@ def made(
     geometry: Geometry,
     may_grow: bool,
 ) -> tuple[Look, Design]:
-    """Returns the road with all changes, and a design in which only the elements named in them changed.
-
-    A change without candidates is not needed; ``elements`` are those of the road before the stage, and
-    ``may_grow`` says whether the map may become larger.
-
-    Raises:
-        EditError: The road already is as requested, or no valid road has the requested changes.
-    """
+    """Returns the road with all changes, and a design in which only the elements named in them changed. A
+    change without candidates is not needed; ``elements`` are those of the road before the stage, and
+    ``may_grow`` says whether the map may become larger. Raises EditError if the road already is as requested,
+    or no valid road has the requested changes."""
     needed = [each for each in changes if each.ways]
     idle = [each for each in changes if not each.ways]
     if not needed:
@@ -85,11 +79,7 @@ def made(
 def _refuse_broken_limits(
     idle: Sequence[ChangeCandidates], needed: Sequence[ChangeCandidates], road: Look, geometry: Geometry
 ) -> None:
-    """Checks that limits which the road kept before the edit are kept after it.
-
-    Raises:
-        EditError: another change of the request breaks such a limit.
-    """
+    """Raises EditError if a change breaks a limit that the road kept before the edit."""
     for limit in idle:
         own = {element.name for element in limit.placed.elements}
         for other in needed:
@@ -110,13 +100,8 @@ def _fitted(
     geometry: Geometry,
     may_grow: bool,
 ) -> tuple[Look, Design]:
-    """Returns the road with all changes, and its design before other elements had to change.
-
-    If the map has no room for it, the map grows if it may; only otherwise do other elements change.
-
-    Raises:
-        EditError: no valid road was found; the message says what was wrong with the first one tried.
-    """
+    """Returns the road with all changes, and its design before other elements had to change. If the map has
+    no room for it, the map grows if it may; only otherwise do other elements change."""
     drafts, objection = _drafts(design, elements, changes, world, geometry)
     if may_grow and drafts and drafts[-1].objection:
         drafts += _on_larger_map(drafts, world)
@@ -138,8 +123,7 @@ def _drafts(
     geometry: Geometry,
 ) -> tuple[list[Look], str]:
     """Returns the roads of combinations of candidates, up to the first one that is valid and as requested,
-    and what was wrong with the first one tried; elements that the request does not name are frozen.
-    """
+    and what was wrong with the first one tried; elements that the request does not name are frozen."""
     objection, drafts = "", list[Look]()
     for steps in islice(_combined(changes), MOST_TRIALS):
         try:
@@ -205,11 +189,6 @@ def _combined(changes: Sequence[ChangeCandidates]) -> Iterator[tuple[EditStep, .
 
 
 def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) -> RoadElements:
-    """Returns the elements after all steps.
-
-    Raises:
-        UsageError: The road would have no segment, or too many.
-    """
     after = elements
     for step in sorted(steps, key=_rank):
         after = step.apply(after, world)
@@ -224,9 +203,7 @@ def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) ->
 
 def _rank(step: EditStep) -> tuple[int, float]:
     """Returns the order of a step: what changes more of the road comes first, so that a part keeps its own.
-
-    Stations are those of the road before the edit, so steps that have any come before changes of length.
-    """
+    Stations are those of the road before the edit, so steps that have any come before changes of length."""
     if not isinstance(step, SlopeOfAll):
         return 2, 0.0
     if step.stretch is None:
@@ -235,10 +212,8 @@ def _rank(step: EditStep) -> tuple[int, float]:
 
 
 def _with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
-    """Returns the elements, with straights inserted between turns to the same side that are too close.
-
-    No straight is inserted if the two turns already followed each other, to the same sides, before the edit.
-    """
+    """Returns the elements, with straights inserted between turns to the same side that are too close, unless
+    the two already followed each other, to the same sides, before the edit."""
     known = {_pair(one, other) for one, other in pairwise(b for b in before if b.is_turn)}
     out: list[RoadElement] = []
     last: RoadElement | None = None
@@ -262,11 +237,9 @@ def _pair(one: RoadElement, other: RoadElement) -> tuple[str, Side | None, str, 
 def _started(
     design: Design, after: RoadElements, before: RoadElements, world: World, steps: Sequence[EditStep]
 ) -> Design:
-    """Returns the design with the segments of the elements after the steps.
-
-    A reversed road starts where the road ended, and heads the opposite way. If elements were added at the
-    start, the start moves so that the rest of the road stays where it was.
-    """
+    """Returns the design with the segments of the elements after the steps. A reversed road starts where the
+    road ended, and heads the opposite way. If elements were added at the start, the start moves so that the
+    rest of the road stays where it was."""
     segments = joined(after)
     if Reverse() in steps:
         road = build(design)

@@ -11,9 +11,15 @@ from roadgpt.brief.change.request import HILLS, Change, Steepness, Way
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import PERCENT_SLACK
 from roadgpt.check.measures import Measures, way
-from roadgpt.design.edit.placing import LEAST_FOR_HILL, PlacedChange, too_short_for_hill
+from roadgpt.design.edit.places import (
+    LEAST_FOR_HILL,
+    PlacedChange,
+    RoadStretch,
+    pieces,
+    too_short_for_hill,
+    within,
+)
 from roadgpt.design.edit.steps import OFF_STEEPEST, Adjust, EditCandidate, EditStep, Wanted
-from roadgpt.design.edit.stretches import RoadStretch, pieces, within
 from roadgpt.design.road_elements import RoadElement, RoadElements, with_inclines, with_stations
 from roadgpt.errors import EditError
 from roadgpt.road import World
@@ -47,20 +53,15 @@ AIMS: dict[Steepness | None, SlopeAim] = {
 
 @dataclass(frozen=True, slots=True)
 class SlopeOfAll:
-    """Changes the incline of each segment of several elements; no incline exceeds what the rules allow.
-
-    The size of an incline i becomes |i| * ``times`` + ``more`` percent, limited by ``least`` and ``most``.
-    """
+    """Changes the incline of each segment of several elements; no incline exceeds what the rules allow. The
+    size of an incline i becomes |i| * ``times`` + ``more`` percent, limited by ``least`` and ``most``."""
 
     names: frozenset[str]
     times: float = 1.0
     more: float = 0.0
-    least: float = -inf
-    """Lower limit of the size of the new incline."""
-    most: float = inf
-    """Upper limit of the size of the new incline."""
-    sign: int = 0
-    """1 for uphill, -1 for downhill, 0 if each segment keeps its sign."""
+    least: float = -inf  # lower limit of the size of the new incline
+    most: float = inf  # upper limit of the size of the new incline
+    sign: int = 0  # 1 for uphill, -1 for downhill, 0 if each segment keeps its sign
     only: Way | None = None
     """The slope that segments must have before the step in order to change; None: all segments change."""
     stretch: RoadStretch | None = None
@@ -93,8 +94,7 @@ def slope_candidates(
     change: Change, elements: Sequence[RoadElement], is_of_parts: bool, world: World
 ) -> tuple[EditCandidate, ...]:
     """Returns the candidates that change the slopes of many elements at once. If ``is_of_parts``, only
-    segments with the slope that the target names (climbing, falling or level) change.
-    """
+    segments with the slope that the target names (climbing, falling or level) change."""
     is_bounded = bool(change.bound and elements)
     steps = [_bounded(change, elements)] if is_bounded else _slopes(change, elements, world)
     if is_of_parts:
@@ -104,8 +104,7 @@ def slope_candidates(
 
 def _only_parts(change: Change, step: SlopeOfAll) -> SlopeOfAll:
     """Returns the step for segments that climb, fall or are level, as the target says; they continue to do
-    so, unless the change names another direction.
-    """
+    so, unless the change names another direction."""
     assert change.target is not None
     sign = step.sign
     if change.way is None and change.target.way != "flat":
@@ -116,11 +115,7 @@ def _only_parts(change: Change, step: SlopeOfAll) -> SlopeOfAll:
 def stretch_candidates(
     change: Change, elements: RoadElements, stretch: RoadStretch, world: World
 ) -> tuple[EditCandidate, ...]:
-    """Returns the candidates that change the grades or the climb of one stretch of the road.
-
-    Raises:
-        EditError: as for ``climb_step``, or the grade is steeper than the rules allow.
-    """
+    """Returns the candidates that change the grades or the climb of one stretch of the road."""
     parts = within(elements, stretch)
     if change.what == "climb":
         steps = [climb_step(change, parts, world)]
@@ -143,13 +138,9 @@ def _bounded(change: Change, elements: Sequence[RoadElement]) -> SlopeOfAll:
 
 
 def slope_steps(change: Change, element: RoadElement, found: Measures, world: World) -> list[EditStep]:
-    """Returns alternative steps, each of which gives one turn or straight another grade.
-
-    There are none if the element already has this grade.
-
-    Raises:
-        EditError: the grade is steeper than the rules allow, or cannot become steeper.
-    """
+    """Returns alternative steps, each of which gives one turn or straight another grade; none if the element
+    already has this grade. Raises EditError if the grade is steeper than the rules allow, or cannot become
+    steeper."""
     now = element.seen.grade if element.seen else element.incline
     limit = 100 * world.limits.max_grade
     sign = change.sign or (1 if now >= LEVEL else -1 if now <= -LEVEL else 0)
@@ -200,11 +191,7 @@ def _graded(element: RoadElement, sign: int, aim: float, *rooms: Range) -> list[
 
 
 def _slopes(change: Change, elements: Sequence[RoadElement], world: World) -> list[SlopeOfAll]:
-    """Returns alternative steps that change the grades of many elements; none if they are as requested.
-
-    Raises:
-        EditError: the grade is steeper than the rules allow.
-    """
+    """Returns alternative steps that change the grades of many elements; none if they are as requested."""
     names = frozenset(element.name for element in elements)
     limit = 100 * world.limits.max_grade
     sign = change.sign
@@ -235,15 +222,9 @@ def _slopes(change: Change, elements: Sequence[RoadElement], world: World) -> li
 
 
 def climb_step(change: Change, elements: Sequence[RoadElement], world: World) -> SlopeOfAll:
-    """Returns the step that changes how many metres some elements climb in total.
-
-    The grades are scaled if all segments already climb (or fall) as required and none becomes too steep.
-    Otherwise the grades become equal.
-
-    Raises:
-        EditError: the change gives no climb in metres or only a limit, the required grade is steeper than the
-            rules allow, or the elements have no length.
-    """
+    """Returns the step that changes how many metres some elements climb in total. The grades are scaled if
+    all segments already climb (or fall) as required and none becomes too steep. Otherwise the grades become
+    equal."""
     length = sum(element.length for element in elements)
     if not length:  # a spline bends before and behind its turns
         raise EditError(f"'{change.words}' names a part that has no length of its own; name another one")
@@ -264,11 +245,7 @@ def climb_step(change: Change, elements: Sequence[RoadElement], world: World) ->
 
 def hill_candidates(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate, ...]:
     """Returns the candidates that put one crest or dip on the straight that a change refers to; the road's
-    length and its plan stay the same.
-
-    Raises:
-        EditError: the straight is too short or bends.
-    """
+    length and its plan stay the same."""
     (where,) = placed.elements
     if where.length < LEAST_FOR_HILL or any(segment.turn_degrees for segment in where.segments):
         raise EditError(too_short_for_hill(placed.change, f"; there are {where.length:.0f} m"))
@@ -287,25 +264,14 @@ def hill_sentence(placed: PlacedChange, elements: RoadElements) -> str:
     return f"a {placed.change.kind} of {2 * half:.0f} m is new, its middle at {middle:.0f} m"
 
 
-class Hill(NamedTuple):
-    """Where a new crest or dip is."""
-
-    middle: float
-    """Station of its middle in metres."""
-    half: float
-    """Metres from its beginning to its middle."""
-
-
-def _hill_of(placed: PlacedChange, elements: RoadElements) -> Hill:
-    """Returns the place of a new crest or dip.
-
-    It lies in the middle of the straight or, if the change asks for the middle of the road, as near to that
-    as the straight allows.
-    """
+def _hill_of(placed: PlacedChange, elements: RoadElements) -> tuple[float, float]:
+    """Returns the station of the middle of a new crest or dip, and the metres from its beginning to its
+    middle. It lies in the middle of the straight or, if the change asks
+    for the middle of the road, as near to that as the straight allows."""
     (where,), place = placed.elements, placed.change.place
     start = sum(element.length for element in elements[: elements.index(where)])
     middle = start + where.length / 2
     if place and place.how == "middle":
         whole = sum(element.length for element in elements)
         middle = min(max(whole / 2, start + LEAST_FOR_HILL / 2), start + where.length - LEAST_FOR_HILL / 2)
-    return Hill(middle, min(LONGEST_HALF, middle - start, start + where.length - middle))
+    return middle, min(LONGEST_HALF, middle - start, start + where.length - middle)

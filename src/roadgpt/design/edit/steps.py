@@ -2,8 +2,7 @@
 
 A step sets the desired values of elements, and stores in ``RoadElement.asked`` the ranges in which the
 measured values must lie. ``design.fit`` then adjusts the elements that have a requirement, if the road would
-violate a rule, or if measured values lie outside these ranges.
-"""
+violate a rule, or if measured values lie outside these ranges."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -43,8 +42,7 @@ class Wanted(NamedTuple):
 
     def nearer_to(self, now: float) -> "Wanted":
         """Returns the same range with a new aim: halfway between the old aim and the value in the range that
-        is nearest to ``now``.
-        """
+        is nearest to ``now``."""
         return Wanted((self.aim + min(max(now, self.room.lo), self.room.hi)) / 2, self.room)
 
     @classmethod
@@ -68,21 +66,17 @@ class Wanted(NamedTuple):
 @dataclass(frozen=True, slots=True)
 class Adjust:
     """Gives one element new values. The ranges of these values become the requirement of the element. A field
-    that is None leaves its value unchanged.
-    """
+    that is None leaves its value unchanged."""
 
     element: RoadElement
     degrees: Wanted | None = None
     radius: Wanted | None = None
     length: Wanted | None = None
-    grade: Wanted | None = None
-    """The mean grade in percent."""
+    grade: Wanted | None = None  # the mean grade in percent
 
     def milder(self) -> "Adjust":
-        """Returns the same step with aims nearer to the present measurements of the element.
-
-        The aim of the grade and all ranges stay the same.
-        """
+        """Returns the same step with aims nearer to the present measurements of the element. The aim of the
+        grade and all ranges stay the same."""
         seen = self.element.seen
         if seen is None:
             return self
@@ -118,10 +112,8 @@ class Adjust:
         return replace(now, asked=both(now.asked, asked) if now.asked else asked)
 
     def _bent(self, now: RoadElement) -> RoadElement:
-        """Returns the turn with scaled angles, lengths and radii.
-
-        It is split into more segments if one would turn by more than 70 degrees.
-        """
+        """Returns the turn with scaled angles, lengths and radii, split into more segments if one would turn
+        by more than 70 degrees."""
         before, seen = self.element, self.element.seen
         assert seen is not None
         turn = abs(now.degrees)
@@ -142,8 +134,7 @@ class Adjust:
 @dataclass(frozen=True, slots=True)
 class RoadLength:
     """Requires the length of the whole road, in metres, to lie in a range; other steps decide which elements
-    may change for this.
-    """
+    may change for this."""
 
     room: Range
 
@@ -156,8 +147,7 @@ class RoadLength:
 class Mirror:
     """Mirrors some elements, or the whole road."""
 
-    names: frozenset[str] | None = None
-    """Names of the elements to mirror; None for all elements."""
+    names: frozenset[str] | None = None  # names of the elements to mirror; None for all elements
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements, with the named ones mirrored."""
@@ -167,8 +157,7 @@ class Mirror:
 @dataclass(frozen=True, slots=True)
 class Become:
     """Replaces an element by a gap (an element that is no turn) with these segments; without segments,
-    removes the element.
-    """
+    removes the element."""
 
     element: RoadElement
     segments: Sequence[Segment] = ()

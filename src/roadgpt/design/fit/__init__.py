@@ -4,8 +4,7 @@
 
 An edit first freezes every element that the request does not name: the element's lengths, turns and radii
 stay exactly as they are. Only if no valid road is found that way, all elements are free. The road as a whole
-may be shifted or rotated, so that it stays inside the map.
-"""
+may be shifted or rotated, so that it stays inside the map."""
 
 from collections.abc import Collection
 from math import ceil, inf
@@ -15,13 +14,12 @@ import numpy as np
 from roadgpt import check
 from roadgpt.check.extremes import lowest
 from roadgpt.check.rules.below_floor import ROUNDING
+from roadgpt.design.elements import ABOVE_GROUND
 from roadgpt.design.fit.grades import graded
-from roadgpt.design.fit.limits import MARGINS, TIGHT, aim_of
 from roadgpt.design.fit.look import Look, Requirements
-from roadgpt.design.fit.solver import least_change
+from roadgpt.design.fit.solver import MARGINS, TIGHT, aim_of, least_change
 from roadgpt.design.layout import moved_onto_map
 from roadgpt.design.road_elements import RoadElements, with_segments
-from roadgpt.design.writing import ABOVE_GROUND
 from roadgpt.road import Design, build
 
 CENTIMETRE = 100.0  # per metre: heights are written in centimetres
@@ -37,20 +35,11 @@ def fit(
 ) -> Look:
     """Finds a road that meets all requirements and differs from the design as little as possible.
 
-    Args:
-        design: The road after the steps of an edit and then ``graded``.
-        elements: The turns and straights of the road in driving order, each with its requirement; together
-            they contain all segments of the design.
-        requirements: The other requirements for the road.
-        frozen: Names of the elements whose lengths, turns and radii stay as they are.
-
-    Returns:
-        A Look at that road, with an empty ``objection``. If no such road was found, a Look at the design,
-        moved inside the map if possible.
-
-    Raises:
-        UsageError: No road can be built from these segments.
-    """
+    ``design`` is the road after the steps of an edit and then ``graded``, and ``elements`` are its turns and
+    straights in driving order, each with its requirement. ``frozen`` are the names of the elements whose
+    lengths, turns and radii stay as they are. Returns a Look at that road, with an empty ``objection``; if no
+    such road was found, a Look at the design, moved inside the map if possible. Raises UsageError if no road
+    can be built from these segments."""
     world, outline, before = requirements.world, requirements.outline, requirements.before
     first = look(design, elements, requirements)
     free = np.array([element.name not in frozen for element in elements for _ in element.segments])
@@ -77,11 +66,9 @@ def fit(
 
 
 def look(design: Design, elements: RoadElements, requirements: Requirements) -> Look:
-    """Builds and checks the road of a design, and returns a Look at it.
-
-    The elements of the Look are ``elements`` with the segments of the design. If the road is not inside the
-    map and above the ground, it is moved there if possible.
-    """
+    """Builds and checks the road of a design, and returns a Look at it. The elements of the Look are
+    ``elements`` with the segments of the design. If the road is not inside the map and above the ground, it
+    is moved there if possible."""
     world, geometry = requirements.world, requirements.geometry
     elements = with_segments(elements, design.segments)
     road = world.lay(build(design, geometry))
@@ -103,8 +90,7 @@ def look(design: Design, elements: RoadElements, requirements: Requirements) -> 
 
 def _restored(mended: Look, first: Look) -> Look:
     """Returns a repaired road, which meets all rules and requirements, with changed values set back to the
-    proposed ones where it then still meets them.
-    """
+    proposed ones where it then still meets them."""
     trials: list[tuple[float, int, str]] = []
     pairs = zip(first.design.segments, mended.design.segments, strict=True)
     for index, (one, other) in enumerate(pairs):

@@ -8,8 +8,7 @@ changed instead.
 
 In a proposal, every turn must be measured with the slope that was proposed or is required. All inclines may
 change, as long as each still climbs, falls or is level. In an edited road, only the inclines of
-elements with a required grade may change; parabolas are added where two slopes newly meet.
-"""
+elements with a required grade may change; parabolas are added where two slopes newly meet."""
 
 from math import inf
 from typing import NamedTuple
@@ -58,10 +57,8 @@ class _Slopes(NamedTuple):
     elements: RoadElements
     accepted: tuple[Range | None, ...]
     """Mean grades of each element that may be measured; None if the element is not measured."""
-    aims: tuple[Range, ...]
-    """Mean grades to aim at for each element; they lie inside those that are accepted."""
-    bounds: tuple[Range, ...]
-    """Inclines that each segment may have."""
+    aims: tuple[Range, ...]  # mean grades to aim at for each element; they lie inside those that are accepted
+    bounds: tuple[Range, ...]  # inclines that each segment may have
 
     def within_bounds(self, grades: Array) -> Array:
         """Returns the inclines of all segments, limited to those that are possible."""
@@ -69,8 +66,7 @@ class _Slopes(NamedTuple):
 
     def missing(self, found: Measures) -> Array:
         """Returns, for each segment, the percentage points by which the measured grade of its element must
-        change to reach the aim, ``(n,)``; 0 if the grade is accepted.
-        """
+        change to reach the aim, ``(n,)``; 0 if the grade is accepted."""
         out = np.zeros(len(self.bounds))
         if not shows_turns(found, self.elements):
             return out
@@ -99,8 +95,7 @@ def graded(
 
     If all such designs violate the rule ``too_abrupt``, the last of them is returned. If no design has the
     required grades, the first one tried is returned. The plan and the start stay the same. ``before`` is the
-    road before an edit, and None for a proposal.
-    """
+    road before an edit, and None for a proposal."""
     slopes = _slopes_of_edit(elements, world) if before else _slopes_of_proposal(elements, outline, world)
     lengths, inclines = [s.distance for s in design.segments], [s.incline for s in design.segments]
     start = slopes.within_bounds(np.array(inclines))

@@ -1,6 +1,5 @@
 """Defines what is required of a road, and the class Look: a design together with the road built from it. A
-Look says what is wrong with the road.
-"""
+Look says what is wrong with the road."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,14 +19,11 @@ from roadgpt.road import Design, Geometry, Road, World
 class Requirements(NamedTuple):
     """The requirements for a road, in addition to those for each of its elements."""
 
-    world: World
-    """The size of the map, and the limits that the rules check."""
-    outline: Outline = Outline(groups=(), turns=Range())
-    """Requirements for the whole road; none by default."""
+    world: World  # the size of the map, and the limits that the rules check
+    outline: Outline = Outline(groups=(), turns=Range())  # requirements for the whole road; none by default
     before: Design | None = None
     """The road before an edit; the parabolas between its slopes are kept. With None, they are chosen
-    anew, and each turn must be measured with the slope that it has in the design.
-    """
+    anew, and each turn must be measured with the slope that it has in the design."""
     geometry: Geometry = "arcs"
 
 
@@ -35,8 +31,7 @@ class Requirements(NamedTuple):
 class Look:
     """A design with the road that was built from it, the findings of the rules, and measurements."""
 
-    design: Design
-    """The design, moved inside the map and above the ground if necessary."""
+    design: Design  # the design, moved inside the map and above the ground if necessary
     elements: RoadElements
     road: Road
     findings: tuple[check.Finding, ...]
@@ -60,8 +55,7 @@ class Look:
     @cached_property
     def objection(self) -> str:
         """A sentence that says which rule or requirement the road does not meet; empty if it meets all of
-        them.
-        """
+        them."""
         if self.findings:
             return self.findings[0].sentence
         if not self.has_turns:

@@ -1,23 +1,54 @@
-"""Finds the smallest change to the lengths and turns of a plan that meets all limits. Main function:
-``least_change``.
+"""Finds the smallest change to the lengths and turns of a plan that meets all limits. Main functions:
+``aim_of``, ``least_change``.
+
+The limits are rows of a matrix: a . lengths + b . |turns| <= c, all in metres. A minimum radius can be
+written as such a limit: if a segment turns by ``turn`` radians over ``length`` metres, and its maximum
+curvature is ``peak`` times its mean curvature, its minimum radius is length / (peak * turn). The plan is a
+polyline that follows its lengths and turns:
+
+    step m of segment i:   z += d_i / steps_i * exp(1j * (heading + turns before i + share_m * turn_i))
+
+``share_m`` is the fraction of the segment's turn that is completed at that step. It is taken from the built
+curve, and kept while lengths and turns change a little.
 
 The objective is a weighted sum of squared relative changes. Its weights make a few larger changes cost no
 more than many small ones. For each limit that is exceeded, the squared excess in metres is added as a
 penalty, whose weight grows from round to round. Each step solves for all free lengths, all free turns and the
-place on the map at once (Levenberg-Marquardt).
-"""
+place on the map at once (Levenberg-Marquardt)."""
 
-from math import ceil, floor, radians
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+from math import ceil, floor, inf, radians
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from roadgpt.design.fit.limits import Aim
+from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.ranges import Range
+from roadgpt.check.measures import LEAST_TURN, MeasuredFeature
+from roadgpt.design.fit.look import Look
 from roadgpt.design.layout import neighbours
+from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.geometry import PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.nearness import Complex, Indices, meeting
-from roadgpt.road import Segment
+from roadgpt.geometry.pieces import joined
+from roadgpt.road import Segment, World
+from roadgpt.road.builder import pieces_of
+from roadgpt.road.design import MAX_TURN
 
+SPACING = 2.0  # m between points of the polyline, about
+MOST_POINTS = 500  # of a polyline, about
+FADES = 3.0, 2.0  # m by which a straight, or a turn, may be measured shorter than it is written
+LEAST_TRANSITION = 0.1  # share of a turning segment to which each of its clothoids may be shortened
+METRES_PER_RADIAN = 30.0  # weight of a missing radian relative to a missing metre
+SHARE_KEPT = 0.2  # of every length and turn: less would not be the segment that was proposed
+CLEARLY = 260.0  # m: largest radius of a turn that must be seen as one (measurements have a limit of 300)
+SLIGHT_BEND = 9.0  # degrees: a bend that was proposed too slight for a turn stays below this
+WIDTH_KEPT_OFF = 0.2  # of a promised range, at either end, besides the margin of promises
+ANGLE_MARGIN = 0.4  # degrees, off what was promised
 LENGTH_WEIGHT, TURN_WEIGHT = 1.0, 1.4  # of a relative change
 LEAST_TURN_COUNTED = radians(15)  # changes of slighter turns are taken as relative to this
 SPARSE = 2  # steps between the points that are held apart
@@ -34,44 +65,298 @@ SHORTEST_TRANSITION = 0.1  # m
 STARTS = (1.0, 0.8, 0.6, 0.45, 0.3, 0.2)  # shares of all free turns where the search starts
 
 
-class Solution(NamedTuple):
-    """The lengths and turns that were found, the cost of the change, and how far limits are exceeded."""
+class Margins(NamedTuple):
+    """Distances that a repaired road keeps from the limits of the rules."""
 
-    lengths: Array
-    """Length of each segment in metres."""
-    turns: Array
-    """Turning angle of each segment in radians, left positive."""
-    cost: float
-    broken: float
-    """Largest amount in metres by which a limit is exceeded."""
-    steps: int
-    """Number of solver steps that were taken."""
+    radius: float = 1.045
+    """Factor by which the smallest radius that the rules allow is multiplied, because the competition's
+    spline cuts corners."""
+    seen: float = 12.0  # smallest angle of a turn, in degrees
+    apart: float = 15.5  # smallest distance between two successive turns that go the same way, in metres
+    clear: float = 1.1  # distance in metres between two parts of the road, in addition to its width
+    edge: float = 0.6  # distance in metres between the road and the border of the map
+    promise: float = 0.04
+    """Margin inside a required range of lengths or radii, as a fraction of each bound of the range."""
+
+
+TIGHT = Margins(1.03, 12.0, 14.0, 0.5, 0.3, 0.02)
+"""Margins of an edited road. Most of the road stays as it is, and it may lie close to the limits."""
+MARGINS = (Margins(), Margins(1.07, 13.5, 18.0, 1.5, 1.0, 0.1), Margins(1.12, 15.0, 22.0, 2.5, 1.5, 0.2))
+
+
+class PlanPolyline(NamedTuple):
+    """A plan as a polyline."""
+
+    owner: NDArray[np.intp]  # index of the segment to which each step of the polyline belongs, ``(k,)``
+    share: Array
+    """Fraction (0 to 1) of its segment's turn that is completed in the middle of each step, ``(k,)``."""
+    peak: Array  # ratio of the largest to the mean curvature of each segment; 0 for straights
+
+    def walk(self, lengths: Array, turns: Array, heading: float) -> tuple[Complex, Complex]:
+        """Returns the points ``(k + 1,)`` of the polyline as x + iy, starting at the origin, and its steps
+        ``(k,)``, for these lengths and turns of the segments, in metres and radians."""
+        count = np.bincount(self.owner, minlength=len(lengths))
+        before = np.concatenate([[0.0], np.cumsum(turns)[:-1]])
+        angle = heading + before[self.owner] + self.share * turns[self.owner]
+        steps = (lengths / count)[self.owner] * np.exp(1j * angle)
+        return np.concatenate([[0j], np.cumsum(steps)]), steps
+
+    def slopes(self, lengths: Array, steps: Complex) -> tuple[Complex, Complex]:
+        """Returns the derivatives of all points with respect to each length and each turn, ``(k + 1, n)``
+        each."""
+        n, k = len(lengths), len(steps)
+        own = self.owner[:, None] == np.arange(n)
+        behind = np.where(own, self.share[:, None], self.owner[:, None] > np.arange(n))
+        by_length, by_turn = np.zeros((k + 1, n), complex), np.zeros((k + 1, n), complex)
+        np.cumsum(own * (steps[:, None] / lengths), axis=0, out=by_length[1:])
+        np.cumsum(1j * behind * steps[:, None], axis=0, out=by_turn[1:])
+        return by_length, by_turn
+
+
+def polyline_of(segments: Sequence[Segment]) -> PlanPolyline:
+    """Returns the polyline of the plan that is built from these segments."""
+    pieces = pieces_of(segments)
+    curve = PieceCurve(0.0, 0.0, 0.0, joined(pieces))
+    step = max(SPACING, curve.length / MOST_POINTS)
+    owner, share, peak = list[int](), list[Array](), np.zeros(len(segments))
+    at, first = 0.0, 0
+    for index, segment in enumerate(segments):
+        steps = max(2, round(segment.distance / step))
+        owner += [index] * steps
+        middles = at + segment.distance * (np.arange(steps) + 0.5) / steps
+        turn = np.radians(segment.turn_degrees)
+        if abs(turn) < 1e-9:
+            share.append(np.zeros(steps))
+            first += 1
+        else:
+            entry = curve.heading(np.array([at]))
+            share.append((curve.heading(middles) - entry) / turn)
+            bent = max(max(abs(p.k0), abs(p.k1)) for p in pieces[first : first + 5] if p.length > 1e-9)
+            peak[index] = bent * segment.distance / abs(turn)
+            first += 5
+        at += segment.distance
+    return PlanPolyline(np.array(owner), np.concatenate(share), peak)
+
+
+class Aim(NamedTuple):
+    """The lengths and turns that a plan should have, and the limits that it must meet."""
+
+    lengths: Array  # length of each segment in metres
+    turns: Array  # turning angle of each segment in radians, left positive
+    free: NDArray[np.bool_]
+    """Whether the length and the turn of each segment may change; the others are constants."""
+    proposed: tuple[Segment, ...]  # the segments as proposed, with these lengths and turns
+    figure: PlanPolyline
+    rows: Array  # matrix of the limits of lengths and turns, ``(m, 2 n)``
+    most: Array  # right-hand sides of the limits, ``(m,)``
+    world: World
+    margins: Margins
+
+
+def aim_of(
+    first: Look,
+    last: Look,
+    now: tuple[Segment, ...] | None,
+    free: NDArray[np.bool_],
+    margins: Margins,
+) -> Aim:
+    """Returns the lengths and turns that a plan should have, and all limits for them.
+
+    ``first`` is the road as it was proposed, and ``last`` the last road that was tried, which shows how much
+    measured values differ from written ones. ``now`` are the segments found so far, which show where each
+    segment turns; None if there are none yet. ``free`` says whether the length and the turn of each segment
+    may change, ``(n,)``."""
+    world, outline = first.requirements.world, first.requirements.outline
+    proposed = first.design.segments
+    lengths = np.array([s.distance for s in proposed])
+    turns = np.radians([s.turn_degrees for s in proposed])
+    figure = polyline_of(now or proposed)
+    rows, most = _limits_of(proposed, _as_written(first, last), figure.peak, outline, world, margins)
+    return Aim(lengths, turns, free, proposed, figure, rows, most, world, margins)
+
+
+def _as_written(first: Look, last: Look) -> RoadElements:
+    """Returns the elements, with required measured values converted to the values to write in the design."""
+    figure = polyline_of(last.design.segments)
+    seen = last.seen if last.has_turns else (None,) * len(last.elements)
+    return tuple(
+        replace(element, asked=_shifted(element.asked, now, feature, figure))
+        if element.asked and element.segments
+        else replace(element, asked=None)
+        for element, now, feature in zip(first.elements, last.elements, seen, strict=True)
+    )
+
+
+def _shifted(asked: Feature, now: RoadElement, seen: MeasuredFeature | None, figure: PlanPolyline) -> Feature:
+    """Returns a feature's ranges of measured values, converted to ranges of the values to write."""
+    degrees, radius, length = asked.degrees, asked.radius, asked.length
+    if seen is None:
+        if length and length.lo > 0:
+            length = Range(length.lo + FADES[bool(now.degrees)], length.hi)
+        return replace(asked, length=length)
+    if length:
+        more = now.length - seen.length
+        length = Range(length.lo + more, length.hi + more)
+    if degrees:
+        more = abs(now.degrees) - seen.degrees
+        most = MAX_TURN * len(now.segments)
+        degrees = Range(degrees.lo + more, min(degrees.hi + more, max(most, abs(now.degrees))))
+    if radius:
+        tightest = min(
+            segment.distance / max(figure.peak[i], 1.0) / radians(abs(segment.turn_degrees))
+            for i, segment in zip(now.members, now.segments, strict=True)
+            if segment.turn_degrees
+        )
+        radius = Range(radius.lo * tightest / seen.radius, radius.hi * tightest / seen.radius)
+    return replace(asked, degrees=degrees, radius=radius, length=length)
+
+
+class _Rows:
+    """Collects limits as rows of a matrix."""
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self.rows: list[Array] = []
+        self.most: list[float] = []
+
+    def add(self, lengths: dict[int, float], turns: dict[int, float], most: float) -> None:
+        """Adds the limit ``lengths . d + turns . |t| <= most``."""
+        row = np.zeros(2 * self.count)
+        for index, factor in lengths.items():
+            row[index] += factor
+        for index, factor in turns.items():
+            row[self.count + index] += factor
+        self.rows.append(row)
+        self.most.append(most)
+
+    def within(self, members: Sequence[int], span: Range | None) -> None:
+        """Adds the limits of the total length of some segments, in metres."""
+        if span and span.lo > 0:
+            self.add(dict.fromkeys(members, -1.0), {}, -span.lo)
+        if span and span.hi < inf:
+            self.add(dict.fromkeys(members, 1.0), {}, span.hi)
+
+    def turned(self, members: Sequence[int], span: Range | None) -> None:
+        """Adds the limits of the total turning angle of some segments, in degrees."""
+        if span and span.lo > 0:
+            self.add({}, dict.fromkeys(members, -METRES_PER_RADIAN), -METRES_PER_RADIAN * radians(span.lo))
+        if span and span.hi < inf:
+            self.add({}, dict.fromkeys(members, METRES_PER_RADIAN), METRES_PER_RADIAN * radians(span.hi))
+
+    def done(self) -> tuple[Array, Array]:
+        """Returns the matrix ``(m, 2 n)`` and the right-hand side ``(m,)``."""
+        return np.array(self.rows).reshape(-1, 2 * self.count), np.array(self.most)
+
+
+def _limits_of(
+    segments: Sequence[Segment],
+    elements: Sequence[RoadElement],
+    peak: Array,
+    outline: Outline,
+    world: World,
+    margins: Margins,
+) -> tuple[Array, Array]:
+    """Returns all limits of lengths and turns as a matrix ``(m, 2 n)`` and a right-hand side ``(m,)``;
+    ``peak`` is the ratio of maximum to mean curvature of each of the ``n`` segments."""
+    rows = _Rows(len(segments))
+    radius = world.limits.min_radius * margins.radius
+    shortest = 1 / (1 - LEAST_TRANSITION)
+    for index, segment in enumerate(segments):
+        rows.add({index: -1.0}, {}, -SHARE_KEPT * segment.distance)
+        if segment.turn_degrees:
+            turn = abs(radians(segment.turn_degrees))
+            rows.add({}, {index: -METRES_PER_RADIAN}, -METRES_PER_RADIAN * SHARE_KEPT * turn)
+            rows.add({index: -1.0}, {index: radius * min(peak[index], shortest)}, 0.0)
+    for element in elements:
+        _seen(rows, element, peak, margins)
+        if element.asked:
+            _wish(rows, element, element.asked, peak, margins)
+    _separate(rows, elements, margins)
+    whole = range(len(segments))
+    rows.within(whole, Range(world.limits.min_length + 2.0))
+    if outline.length:
+        rows.within(whole, _drawn_in(outline.length, margins.promise / 4))
+    if outline.turning:
+        turning = [i for i, segment in enumerate(segments) if segment.turn_degrees]
+        rows.turned(turning, _drawn_in(outline.turning, margins.promise / 4))
+    return rows.done()
+
+
+def _seen(rows: _Rows, element: RoadElement, peak: Array, margins: Margins) -> None:
+    """Adds limits so that a turn is still measured as one turn, and a slight bend is still not measured."""
+    members = list(element.members)
+    if not element.degrees:
+        return
+    if not element.is_turn:
+        rows.turned(members, Range(0, max(SLIGHT_BEND, abs(element.degrees))))
+        return
+    least = LEAST_TURN + 0.4 * (margins.seen - LEAST_TURN)  # for a turn proposed with a small angle
+    rows.turned(members, Range(max(min(abs(element.degrees), margins.seen), least)))
+    bends = [abs(segment.turn_degrees) / segment.distance for segment in element.segments]
+    tightest = members[bends.index(max(bends))]
+    for index in {*members[1:-1], tightest}:
+        bent = peak[index] if index == tightest else 1.0
+        rows.add({index: 1.0}, {index: -bent * CLEARLY}, 0.0)
+
+
+def _wish(rows: _Rows, element: RoadElement, wish: Feature, peak: Array, margins: Margins) -> None:
+    members = list(element.members)
+    length = _drawn_in(wish.length, margins.promise) if wish.length else None
+    rows.within(members, length)
+    if not element.degrees:
+        return
+    if wish.degrees:
+        rows.turned(members, wish.degrees.drawn_in(ANGLE_MARGIN, 0.2))
+    if wish.radius:
+        radius = _drawn_in(wish.radius, margins.promise)
+        for index in members:
+            if radius.lo > 0:
+                rows.add({index: -1.0}, {index: radius.lo * max(peak[index], 1.0)}, 0.0)
+        if radius.hi < inf:
+            tightest = max(members, key=lambda i: peak[i])
+            rows.add({tightest: 1.0}, {tightest: -radius.hi * max(peak[tightest], 1.0)}, 0.0)
+
+
+def _drawn_in(span: Range, share: float) -> Range:
+    """Returns a range narrowed at both ends by ``share`` of each bound, limited to a part of its width."""
+    most = min(WIDTH_KEPT_OFF + share, 0.4) * (span.hi - span.lo)
+    low = span.lo + min(share * abs(span.lo), most) if span.lo > -inf else span.lo
+    return Range(low, span.hi - min(share * span.hi, most) if span.hi < inf else inf)
+
+
+def _separate(rows: _Rows, elements: Sequence[RoadElement], margins: Margins) -> None:
+    """Keeps two turns that go the same way far enough apart to be measured as two."""
+    turns = [element for element in elements if element.is_turn]
+    for one, other in pairwise(turns):
+        if one.side == other.side:
+            rows.within(range(one.members.stop, other.first), Range(margins.apart))
 
 
 def least_change(aim: Aim) -> tuple[Segment, ...] | None:
     """Returns the segments with the cheapest change that was found; None if no change meets the limits.
-
-    Limits that concern only frozen segments are ignored.
-    """
+    Limits that concern only frozen segments are ignored."""
     concerned = (aim.rows[:, np.tile(aim.free, 2)] != 0).any(axis=1)
     aim = aim._replace(rows=aim.rows[concerned], most=aim.most[concerned])
-    found: list[Solution] = []
+    found: list[tuple[float, Array, Array]] = []
     work = 0
     for share in STARTS:
-        one = _descended(aim, share)
-        work += one.steps * len(aim.figure.owner) ** 2
-        if work > MOST_WORK:
-            found += [one] if one.broken <= BROKEN else []
+        cost, lengths, turns, broken, steps = _descended(aim, share)
+        work += steps * len(aim.figure.owner) ** 2
+        if broken <= BROKEN:
+            found.append((cost, lengths, turns))
+        if work > MOST_WORK or len(found) == 2:
             break
-        if one.broken <= BROKEN:
-            found.append(one)
-            if (share == 1.0 and one.cost < CHEAP * len(aim.lengths)) or len(found) == 2:
-                break
-    best = min(found, key=lambda one: one.cost, default=None)
-    return None if best is None else _written(aim, best.lengths, best.turns)
+        if broken <= BROKEN and share == 1.0 and cost < CHEAP * len(aim.lengths):
+            break
+    if not found:
+        return None
+    _, lengths, turns = min(found, key=lambda one: one[0])
+    return _written(aim, lengths, turns)
 
 
-def _descended(aim: Aim, share: float) -> Solution:
+def _descended(aim: Aim, share: float) -> tuple[float, Array, Array, float, int]:
+    """Returns the cost of a change, the lengths in metres and the turns in radians of all segments, the
+    largest amount in metres by which a limit is exceeded, and the number of steps of the solver."""
     n = len(aim.lengths)
     hands = np.where(aim.turns < 0, -1.0, 1.0)
     start = np.concatenate([aim.lengths, np.where(aim.free, share, 1.0) * np.abs(aim.turns), [0.0, 0.0, 0.0]])
@@ -87,9 +372,8 @@ def _descended(aim: Aim, share: float) -> Solution:
         weights = np.sqrt(FEW / (change + FEW))
     change = units * (v[: 2 * n] - _proposed(aim))
     broken, _ = _misses(aim, hands, v, with_slopes=False)
-    return Solution(
-        v[:n], hands * v[n : 2 * n], float(change @ change), float(broken.max(initial=0.0)), steps
-    )
+    most = float(broken.max(initial=0.0))
+    return float(change @ change), v[:n], hands * v[n : 2 * n], most, steps
 
 
 def _proposed(aim: Aim) -> Array:
@@ -103,11 +387,9 @@ def _units(aim: Aim) -> Array:
 
 
 def _laid(aim: Aim, v: Array, hands: Array) -> Array:
-    """Returns the first heading tried at which the road fits on the map, and the start that centres it there.
-
-    If it fits at none, the heading with the smallest bounding box is returned. If the search always began at
-    heading 0, a straight road would be shortened, because a small rotation by itself gains nothing.
-    """
+    """Returns the first heading tried at which the road fits on the map, or else that with the smallest
+    bounding box, and the start that centres it there. If the search always began at heading 0, a straight
+    road would be shortened, because a small rotation by itself gains nothing."""
     n = len(aim.lengths)
     z, _ = aim.figure.walk(v[:n], hands * v[n : 2 * n], 0.0)
     turned = np.exp(1j * HEADINGS)[:, None] * z
@@ -194,11 +476,9 @@ def _misses(aim: Aim, hands: Array, v: Array, with_slopes: bool = True) -> tuple
 
 
 def _meeting(z: Complex, lengths: Array, aim: Aim) -> tuple[Indices, Indices]:
-    """Returns pairs of points that lie nearer to each other than the road may come to itself.
-
-    Only every second point is compared. Points with no free segment between them are left out, because their
-    distance cannot change.
-    """
+    """Returns pairs of points that lie nearer to each other than the road may come to itself. Only every
+    second point is compared. Points with no free segment between them are left out, because their distance
+    cannot change."""
     owner = aim.figure.owner
     count = np.bincount(owner, minlength=len(lengths))
     s = np.concatenate([[0.0], np.cumsum((lengths / count)[owner])])[::SPARSE]
@@ -210,11 +490,9 @@ def _meeting(z: Complex, lengths: Array, aim: Aim) -> tuple[Indices, Indices]:
 
 
 def _written(aim: Aim, lengths: Array, turns: Array) -> tuple[Segment, ...]:
-    """Returns the segments with new lengths and turns, rounded.
-
-    Radii are scaled accordingly. A radius that becomes too small is removed together with its transition, and
-    a transition that becomes too long is shortened.
-    """
+    """Returns the segments with new lengths and turns, rounded. Radii are scaled accordingly. A radius that
+    becomes too small is removed together with its transition, and a transition that becomes too long is
+    shortened."""
     tightest = aim.world.limits.min_radius * aim.margins.radius
     out = []
     for segment, length, turn, may_change in zip(aim.proposed, lengths, turns, aim.free, strict=True):

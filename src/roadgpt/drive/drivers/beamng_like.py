@@ -67,8 +67,7 @@ class BeamngLike:
             traffic on the left. On a one-way road, the inner wheels keep the same distance from the inner
             edge. With None the driver ignores the edges and may fall off.
         assumed_friction: friction that the driver plans for; None for the friction of the world.
-        wheelbase: wheelbase in metres.
-    """
+        wheelbase: wheelbase in metres."""
 
     name = "beamng_like"
 
@@ -104,8 +103,7 @@ class BeamngLike:
     def bend(self, road: "Road", world: "World") -> FloatArray:
         """Returns the curvature of the lane's middle in 1/m at ``stations(road)``, shape ``(n,)``.
 
-        The curvature is smoothed over 10 m, so that short bends vanish.
-        """
+        The curvature is smoothed over 10 m, so that short bends vanish."""
         s = stations(road)
         bend = road.curvature(s)
         stretch = np.maximum(1 - world.profile_of(road).middle(s) * bend, TIGHTEST)
@@ -114,8 +112,7 @@ class BeamngLike:
     def offsets(self, road: "Road", world: "World") -> FloatArray:
         """Returns the offsets of the planned line at ``stations(road)``, shape ``(n,)``.
 
-        They are in metres to the left of the road's centre line.
-        """
+        They are in metres to the left of the road's centre line."""
         s, bend, profile = stations(road), self.bend(road, world), world.profile_of(road)
         middle = profile.middle(s)
         cut = self.cut * (world.limits.speed_limit / USUAL) ** self.eagerness
@@ -138,8 +135,7 @@ class BeamngLike:
         return kept
 
     def _joined(self, s: FloatArray) -> FloatArray:
-        """Returns, for each station, which share (0..1) of the lateral move from the lane's middle, where the
-        car starts, to the planned line is complete."""
+        """Returns which share (0..1) of the move from the lane's middle to the planned line is complete."""
         share = np.clip(s / self.joining, 0.0, 1.0) if self.joining > 0 else np.ones_like(s)
         return np.asarray(share * share * (3 - 2 * share), float)
 

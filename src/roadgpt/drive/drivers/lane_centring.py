@@ -1,6 +1,5 @@
 """A driver under test that steers as production lane centring does, and slows down for the bends that its
-camera sees.
-"""
+camera sees."""
 
 import math
 from collections import deque
@@ -58,8 +57,7 @@ class LaneCentring:
         headway: time in which an error is corrected, in seconds.
         nearest: shortest distance in which an error is corrected, in metres.
         drift: offset to the outside of a bend per curvature of the lane, in m^2.
-        wheelbase: wheelbase in metres.
-    """
+        wheelbase: wheelbase in metres."""
 
     name = "lane_centring"
 
@@ -98,8 +96,7 @@ class LaneCentring:
     def steer(self, view: View) -> Command:
         """Steers by the image of ``lag`` seconds ago, and drives as fast as the bends in sight allow.
 
-        Near junctions, the person at the wheel steers and drives instead.
-        """
+        Near junctions, the person at the wheel steers and drives instead."""
         command = self._centred(view)
         is_near = any(first <= view.s <= last for first, last in self._by_person)
         self._is_person = is_near or (self._is_person and view.speed > self._speed)
@@ -107,7 +104,6 @@ class LaneCentring:
         return self._person.steer(view) if self._is_person else command
 
     def _centred(self, view: View) -> Command:
-        """Returns what the lane centring and the cruise control do."""
         if self._steps % EVERY == 0:
             self._look(view)
         self._steps += 1
@@ -125,10 +121,8 @@ class LaneCentring:
         )
 
     def _look(self, view: View) -> None:
-        """Looks along the lane, and sets the curvature to steer and the speed to drive.
-
-        Where the camera sees nothing of the lane, both stay as they were.
-        """
+        """Sets the curvature to steer and the speed to drive; both stay where the camera sees nothing of the
+        lane."""
         seen = self._speeds_in_sight(view)
         if seen:
             self._speed = min(self._speed_limit, *seen)

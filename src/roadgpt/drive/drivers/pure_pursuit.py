@@ -24,8 +24,7 @@ class PurePursuit:
         risk: planned lateral acceleration in bends, in g; at most 0.95 times the friction.
         headway: time in seconds in which the car would reach the point that it steers towards.
         nearest: smallest distance to the point that it steers towards, in metres.
-        wheelbase: wheelbase in metres.
-    """
+        wheelbase: wheelbase in metres."""
 
     name = "pure_pursuit"
 

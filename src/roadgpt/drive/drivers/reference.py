@@ -40,8 +40,7 @@ class Reference:
             distance is ``ahead + headway * speed``.
         headway: increase with speed of the distance to the point ahead, in metres per m/s.
         lag: steering delay in seconds. The driver steers for the curvature that the car will reach after this
-            delay.
-    """
+            delay."""
 
     name = "reference"
 

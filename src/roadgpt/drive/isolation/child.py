@@ -1,79 +1,40 @@
-"""Main loop of a driver's own process: creates the driver, passes views to it, and undoes the driver's
-changes to the process.
+"""Main loop of a driver's own process: creates one driver after another, and passes views to it.
 
 Nothing in this process interrupts a slow driver: if it takes too long, RoadGPT ends this process. The driver
 may therefore use alarms, signals and threads as it likes.
 """
 
-import faulthandler
 import json
 import os
 import pickle
 import signal
 import sys
 import threading
-import time
 import traceback
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from roadgpt.children import private_streams
+from roadgpt import children
 from roadgpt.drive.camera_sensor import camera_of
 from roadgpt.drive.driver_files import DriverFiles
 from roadgpt.drive.driver_guard import DriverGuard
-from roadgpt.drive.isolation import protocol
 from roadgpt.drive.loading import load_driver
 from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.view import View
 from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import Road, World  # now, and not while the driver's time counts
 
-LOOK = 1.0  # s between two checks that the parent process still exists
-ALONE = 90.0  # s without these checks, while compiled code blocks Python; longer than a driver may take
 STATION = View._fields.index("s")
 MOST_SAID, MOST_TRACE = 4_000, 40_000  # characters of an error's message and traceback
-
-
-class _InitialState:
-    """The parts of the process state that a driver may change, as they were before the first driver."""
-
-    def __init__(self) -> None:
-        self._handlers = {
-            number: signal.getsignal(number)
-            for number in signal.valid_signals()
-            if signal.getsignal(number) is not None
-        }
-        self._streams = sys.stdin, sys.stdout, sys.stderr
-        os.umask(mask := os.umask(0o022))
-        self._mask = mask
-        self._threads = threading.active_count()
-
-    def restore(self, folder: str, environment: dict[str, str], path: list[str]) -> None:
-        """Restores the state, with the working folder, environment and module path of RoadGPT's process."""
-        if hasattr(signal, "setitimer"):
-            signal.setitimer(signal.ITIMER_REAL, 0)
-        for number, handler in self._handlers.items():
-            if signal.getsignal(number) != handler:
-                with suppress(OSError, ValueError):
-                    signal.signal(number, handler)
-        sys.stdin, sys.stdout, sys.stderr = self._streams
-        os.umask(self._mask)
-        os.chdir(folder)
-        os.environ.clear()
-        os.environ.update(environment)
-        sys.path[:] = path
-
-    def is_alone(self) -> bool:
-        """Returns whether the driver has left no thread behind."""
-        return threading.active_count() <= self._threads
 
 
 class _DriverHost:
     """Holds one driver at a time; its methods answer the requests of the same names."""
 
     def __init__(self) -> None:
-        self._start = _InitialState()
+        os.umask(mask := os.umask(0o022))
+        self._mask, self._threads = mask, threading.active_count()
         self._files: Any = None
         self._guard: Any = None
         self._road: Any = None
@@ -81,10 +42,13 @@ class _DriverHost:
         self._picture: Any = None
         self._outlook: Any = None
 
-    def make(self, spec: str, *surroundings: Any) -> dict[str, Any]:
-        """Creates a driver; ``surroundings`` are the folder, environment and module path of RoadGPT's
-        process."""
-        self._start.restore(*surroundings)
+    def make(self, spec: str, folder: str, environment: dict[str, str], path: list[str]) -> dict[str, Any]:
+        """Creates a driver, in the folder and with the environment and module path of RoadGPT's process."""
+        os.umask(self._mask)
+        os.chdir(folder)
+        os.environ.clear()
+        os.environ.update(environment)
+        sys.path[:] = path
         self._files = self._files or DriverFiles(spec)  # a process serves one spec alone
         self._files.begin()
         driver = load_driver(spec)
@@ -120,7 +84,7 @@ class _DriverHost:
     def forget(self) -> None:
         """Discards the driver; if it has left threads running, ends the process."""
         self._guard = self._road = self._world = self._picture = self._outlook = None
-        if not self._start.is_alone():
+        if threading.active_count() > self._threads:
             os._exit(0)
 
 
@@ -128,17 +92,16 @@ def main() -> None:
     """Answers the requests of RoadGPT's process until that process closes the connection."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the asking process handles Ctrl-C and ends this one
     sys.dont_write_bytecode = True  # else a quick edit goes unnoticed
-    heard, said = private_streams()
-    up, down = said.fileno(), heard.fileno()
-    threading.Thread(target=_stay_while, args=(os.getppid(),), daemon=True).start()
+    heard, said = children.private_streams()
+    children.ends_with_parent()
     with suppress(OSError):
         # If memory runs out, the system ends this process first.
         Path("/proc/self/oom_score_adj").write_text("1000", "ascii")
     host = _DriverHost()
     while True:
         try:
-            what, *given = pickle.loads(protocol.receive(down))  # noqa: S301 - ours
-        except (EOFError, OSError):
+            what, *given = pickle.load(heard)  # noqa: S301 - ours
+        except (EOFError, OSError, pickle.UnpicklingError):
             _leave()
         if what == "forget":
             host.forget()
@@ -151,7 +114,8 @@ def main() -> None:
             what_failed = f"the driver raised {type(error).__name__}: {error}".rstrip(": ")
             answer = _failed(error, what_failed, is_users=what == "make")
         try:
-            protocol.send(up, json.dumps(answer).encode())
+            said.write(json.dumps(answer).encode() + b"\n")
+            said.flush()
         except OSError:
             _leave()
 
@@ -166,13 +130,4 @@ def _leave() -> None:
     for stream in (sys.stdout, sys.stderr):
         with suppress(Exception):
             stream.flush()
-    os._exit(0)
-
-
-def _stay_while(parent: int) -> None:
-    """Ends this process when its parent has ended, even if compiled code prevents Python from running."""
-    nothing = Path(os.devnull).open("w", encoding="ascii")  # noqa: SIM115 - as long as the process lives
-    while os.getppid() == parent:
-        faulthandler.dump_traceback_later(ALONE, exit=True, file=nothing)
-        time.sleep(LOOK)
     os._exit(0)

@@ -1,5 +1,9 @@
 """Manages the processes in which drivers run: sends requests to them, limits their time and memory, ends
-them, and keeps them for reuse."""
+them, and keeps them for reuse.
+
+RoadGPT sends requests as pickles. A driver's process answers with a line of JSON, which can be read without
+running the driver's code.
+"""
 
 import json
 import os
@@ -14,13 +18,12 @@ from typing import Any
 
 from roadgpt import children
 from roadgpt.drive.driver_files import WRITTEN, folder_of
-from roadgpt.drive.isolation import protocol
 from roadgpt.reading import digest
 
 TICK = 0.2  # s between two checks of the clock and the memory
 SHARE = 0.5  # of the machine's memory that a driver may take
 MOST_IDLE = 4  # maximum number of idle processes that are kept for later drivers
-BEGIN = 60.0  # s within which a new process must be ready
+MOST = 1 << 24  # bytes, the longest answer
 
 
 class GoneError(Exception):
@@ -40,7 +43,7 @@ class DriverProcess:
         self._process = children.python("roadgpt.drive.isolation.child", stderr=None)
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        self._down, self._up = self._process.stdin.fileno(), self._process.stdout.fileno()
+        self._down, self._up = self._process.stdin, self._process.stdout
         self._due: float | None = None
         self._why, self._is_late = "", False
         self._most = memory_limit()
@@ -64,8 +67,8 @@ class DriverProcess:
         """
         self._due = time.monotonic() + seconds
         try:
-            protocol.send(self._down, pickle.dumps((what, *given)))
-            answer: dict[str, Any] = dict(json.loads(protocol.receive(self._up, protocol.MOST)))
+            self._send(what, *given)
+            answer: dict[str, Any] = dict(json.loads(self._up.readline(MOST)))
         except (OSError, EOFError, ValueError, TypeError, RecursionError):
             self.end()
             status = children.ending(self._process.returncode)
@@ -79,7 +82,11 @@ class DriverProcess:
     def forget(self) -> None:
         """Tells the process to discard its driver, without waiting for it."""
         with suppress(OSError):
-            protocol.send(self._down, pickle.dumps(("forget",)))
+            self._send("forget")
+
+    def _send(self, *request: Any) -> None:
+        pickle.dump(request, self._down, pickle.HIGHEST_PROTOCOL)
+        self._down.flush()
 
     def end(self) -> None:
         """Ends the process immediately."""

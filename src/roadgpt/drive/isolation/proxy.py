@@ -11,7 +11,6 @@ import numpy as np
 
 from roadgpt.drive.driver_files import WRITTEN, folder_of
 from roadgpt.drive.driver_guard import BEFORE_START, ONE_ANSWER, RemoteDriverError
-from roadgpt.drive.isolation import protocol
 from roadgpt.drive.isolation.process import DriverProcess, GoneError, give_back, take
 from roadgpt.drive.loading import absolute_spec
 from roadgpt.drive.view import CameraSpec, Command, View
@@ -37,9 +36,6 @@ class IsolatedDriver:
     def __init__(self, spec: str, limit: float = BEFORE_START) -> None:
         """Creates the driver in another process; ``files`` has the digests of the files that the driver uses
         until its ``start`` ends, by their names (see ``drive.driver_files``).
-
-        Raises:
-            PartError, UsageError, DriverError: as for ``isolation.driver_of``.
         """
         self._road: Road | None = None
         self._world: World | None = None
@@ -87,26 +83,17 @@ class IsolatedDriver:
         return self._process.files
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
-        """Sends the road to the driver and calls its ``start``.
-
-        Raises:
-            DriverError: the driver raised an exception, hung or ended its process.
-        """
+        """Sends the road to the driver and calls its ``start``."""
         self._show(road, world)
         self._note(self._process, self._asked(BEFORE_START, 0.0, "start", seed)["files"])
 
     def steer(self, view: View) -> Command:
-        """Returns the driver's command.
-
-        Raises:
-            DriverError: the driver raised an exception, hung or ended its process, or its answer is not a
-                command.
-        """
+        """Returns the driver's command."""
         if view.road is not self._road or view.world is not self._world:
             self._show(view.road, view.world)
         image = view.image
         if image is not None and image is self._picture:
-            image = protocol.SAME_PICTURE
+            image = "same"
         elif image is not None:
             self._picture, image = image, np.array(image, np.uint8)
         answer = self._asked(ONE_ANSWER, view.time, "steer", view[:9], view[11:15], image)

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from roadgpt.errors import ExportError
-from roadgpt.export.finite import finite
-from roadgpt.export.poses import Poses
+from roadgpt.export.ego import Poses
+from roadgpt.export.markup import finite
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
@@ -84,8 +84,7 @@ def _heights(road: Road, points: Array, t: float) -> Array:
 def _header(
     length: float, step: float, points: Array, headings: Array, right: float, left: float
 ) -> list[str]:
-    """Returns the header: lines of text that define the reference line, the surface's width, and the columns
-    of a cross-section."""
+    """Returns the lines that define the reference line, the surface's width, and the columns of a row."""
     end = points[0, :2] + step * np.array([np.cos(headings).sum(), np.sin(headings).sum()])
     numbers = {
         "start_u": 0.0,
@@ -138,8 +137,7 @@ def _headings(points: list[list[float]], step: float) -> list[float]:
 
 def _across(headings: Array, step: float, profile: Profile, length: float) -> tuple[float, float]:
     """Returns how far lanes and shoulders reach to the right and left, as offsets in metres, reduced to what
-    the tightest bend allows. Raises ExportError if not even the lanes have room there.
-    """
+    the tightest bend allows."""
     turns = np.abs(wrap_angle(np.diff(headings)))
     place = step * int(turns.argmax()) if len(turns) else 0.0
     room = ROOM * step / math.sin(min(float(turns.max(initial=1e-12)), math.pi / 2))
@@ -153,5 +151,4 @@ def _across(headings: Array, step: float, profile: Profile, length: float) -> tu
 
 
 def _field(value: float) -> str:
-    """Returns a number in twenty characters."""
     return f"{value:20.12e}"

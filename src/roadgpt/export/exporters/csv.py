@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from roadgpt.export.finite import finite
-from roadgpt.export.poses import Poses
+from roadgpt.export.ego import Poses
+from roadgpt.export.markup import finite
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
 

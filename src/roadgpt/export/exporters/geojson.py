@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from roadgpt.export.finite import finite
+from roadgpt.export.ego import Poses
 from roadgpt.export.georeference import degrees
-from roadgpt.export.poses import Poses
+from roadgpt.export.markup import finite
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Route, has_no_route
 from roadgpt.road import Road, World

@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from roadgpt.brief.junctions import Control
+from roadgpt.export.ego import Poses
 from roadgpt.export.georeference import degrees
 from roadgpt.export.lanelets import LaneletBound, lanelets_of, leading_to
 from roadgpt.export.markup import XmlElement
-from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Arm, Junction, Network, Route
 from roadgpt.network.markings import line_to_stop_at, place_of_sign
@@ -58,9 +58,6 @@ def document(road: Road, world: World) -> XmlElement:
     """Returns the XML document of the map.
 
     Bounds may point against the direction of traffic; programs that read Lanelet2 maps detect this.
-
-    Raises:
-        ExportError: The road has a number that is not finite.
     """
     map_ = _MapBuilder(f"{world.limits.speed_limit * 3.6:.6g} km/h")
     lanelets = sorted(lanelets_of(road, world), key=lambda each: (each.road, each.section, each.lane))
@@ -84,8 +81,6 @@ def document(road: Road, world: World) -> XmlElement:
 
 
 class _MapBuilder:
-    """Collects nodes, ways, lanelets and traffic rules, each with its own number as id."""
-
     def __init__(self, limit: str) -> None:
         self.nodes: list[XmlElement] = []
         self.ways: list[XmlElement] = []
@@ -131,8 +126,7 @@ class _MapBuilder:
         return number
 
     def _add_nodes(self, points: Array) -> list[int]:
-        """Adds nodes and returns their ids. Positions are in degrees, and also in metres, for programs that
-        read local_x and local_y."""
+        """Adds nodes at degrees, and also in metres, for programs that read local_x and local_y."""
         longitude, latitude = degrees(points[:, 0] / UTM_SCALE, points[:, 1] / UTM_SCALE)
         numbers = [next(self._numbers) for _ in points]
         for number, lon, lat, (x, y, z) in zip(
@@ -153,11 +147,8 @@ class _MapBuilder:
         self.lanelets[id_] = _tagged(lanelet, kind | rules)
 
     def signal(self, network: Network, junction: Junction, arm: Arm, incoming: list[int]) -> None:
-        """Adds the sign or light of an arm, with its stop line if it has one, as a traffic rule.
-
-        ``incoming`` holds the ids in ``lanelets_of`` of the lanelets for which the rule holds: they lead from
-        the arm into the junction.
-        """
+        """Adds the sign or light of an arm, with its stop line if it has one, as a traffic rule for the
+        lanelets with the ids ``incoming`` in ``lanelets_of``."""
         member, heading = network.road(arm.end.road), arm.direction + pi
         foot = member.road.at(*place_of_sign(member, arm.end.contact)) + (0.0, 0.0, SIGN_HEIGHT)
         to_left = np.array([-sin(heading), cos(heading), 0.0]) * SIGN_WIDTH / 2  # as drivers see it
@@ -179,7 +170,6 @@ class _MapBuilder:
 
 
 def _cell(point: Array) -> Cell:
-    """Returns the cell of a grid in plan view in which a point lies."""
     return int(np.floor(point[0])), int(np.floor(point[1]))
 
 

@@ -14,10 +14,9 @@ from statistics import mean
 import numpy as np
 from shapely.geometry import LineString
 
-from roadgpt.export.ego import CAR, SpeedProfile, calm_profile, goal_of, on_the_ground, start_of
+from roadgpt.export.ego import CAR, Poses, SpeedProfile, calm_profile, goal_of, on_the_ground, start_of
 from roadgpt.export.exporters.opendrive import ROAD, OpenDrive
 from roadgpt.export.markup import Value, XmlElement
-from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
 from roadgpt.road import Road, World
@@ -96,7 +95,6 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
 
 
 def _on_route(route: Route, s: float) -> XmlElement:
-    """Returns the position in the lane of a route at a station of the route."""
     number = min(max(bisect_right(route.starts, s) - 1, 0), len(route.legs) - 1)
     leg = route.legs[number]
     first = next(n for n in range(number, -1, -1) if n == 0 or route.legs[n - 1].road != leg.road)
@@ -107,7 +105,6 @@ def _on_route(route: Route, s: float) -> XmlElement:
 
 
 def _of_ego(condition: XmlElement) -> XmlElement:
-    """Returns a condition for the car."""
     out = XmlElement("ByEntityCondition")
     out.add("TriggeringEntities", {"triggeringEntitiesRule": "any"}).add("EntityRef", {"entityRef": EGO})
     return out.extended(condition)
@@ -149,7 +146,7 @@ def _drives_off(ground: Array) -> int:
 
 
 def _frame(world: World, map_: str, description: str) -> tuple[XmlElement, XmlElement, XmlElement]:
-    """Returns the document, and its elements for the car's initial actions and for the story."""
+    """Returns the document, and its elements for the car's first actions and for the story."""
     root = XmlElement("OpenSCENARIO")
     header: dict[str, Value] = {
         "revMajor": 1,
@@ -186,8 +183,8 @@ def _vehicle() -> XmlElement:
 
 
 def _act(story: XmlElement, name: str, begin: float = 0.0) -> XmlElement:
-    """Adds to the story an empty private action of the car, which starts ``begin`` seconds after the start of
-    the simulation, and returns the action."""
+    """Adds to the story an empty private action of the car, ``begin`` seconds after the start, and returns
+    it."""
     act = story.add("Act", {"name": f"{name} act"})
     group = act.add("ManeuverGroup", {"name": f"{name} group", "maximumExecutionCount": 1})
     group.add("Actors", {"selectTriggeringEntities": "false"}).add("EntityRef", {"entityRef": EGO})
@@ -233,8 +230,7 @@ def _speed(target: float) -> XmlElement:
 
 
 def _profile(profile: SpeedProfile) -> XmlElement:
-    """Returns the action that follows the planned speeds over time, simplified to few entries that stay
-    within KEPT of the plan."""
+    """Returns the action that follows the planned speeds, with few entries, within KEPT of the plan."""
     graph = LineString(np.column_stack([profile.time, profile.speed])).simplify(KEPT)
     time, speed = np.array(graph.coords).T
     out = XmlElement("LongitudinalAction")

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from roadgpt.export.finite import finite
-from roadgpt.export.poses import Poses
+from roadgpt.export.ego import Poses
+from roadgpt.export.markup import finite
 from roadgpt.road import Road, World
 from roadgpt.road.road import CONTROL_SPACING
 

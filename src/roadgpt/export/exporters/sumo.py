@@ -17,9 +17,8 @@ import numpy as np
 
 from roadgpt.errors import ExportError
 from roadgpt.export.edges import line, stations
-from roadgpt.export.ego import CAR, PULL, calm_speeds
+from roadgpt.export.ego import CAR, PULL, Poses, calm_speeds
 from roadgpt.export.markup import Value, XmlElement, number
-from roadgpt.export.poses import Poses
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
@@ -156,10 +155,8 @@ def _edges(shape: Array, road: Road, world: World, limits: Sequence[SpeedZone]) 
 
 
 def _widths(road: Road, profile: Profile) -> tuple[list[float], list[float]]:
-    """Returns the mean widths in metres of the driving lanes, from the centre line outwards.
-
-    The first list is for the lanes in the direction of the road, the second one for the oncoming lanes.
-    """
+    """Returns the mean widths in metres of the lanes along the road and of the oncoming ones, each from the
+    centre line outwards."""
     forward, backward = profile.count
     s = road.sample().s
     sides = profile.right[:forward], profile.left[:backward]

@@ -1,6 +1,6 @@
 """Defines the Page and its parts."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -10,12 +10,9 @@ Raw = str | int | float | None
 class TableCell(NamedTuple):
     """One cell of a table, or one piece of a line of text, such as a link."""
 
-    value: Raw
-    """The value that is written into CSV files."""
-    text: str
-    """The text that people read."""
-    href: str = ""
-    """Relative address of the cell's link; empty for no link."""
+    value: Raw  # the value that is written into CSV files
+    text: str  # the text that people read
+    href: str = ""  # relative address of the cell's link; empty for no link
 
 
 def cell(value: Raw, text: str | None = None, href: str = "") -> TableCell:
@@ -34,15 +31,12 @@ def linked(text: str, href: str) -> TableCell:
 class Table:
     """A table with caption and column heads."""
 
-    name: str
-    """Name of the table's files: letters, digits and '-'."""
+    name: str  # name of the table's files: letters, digits and '-'
     caption: str
     heads: Sequence[str]
     rows: Sequence[Sequence[TableCell]]
-    note: str = ""
-    """Small text below the table."""
-    has_total: bool = False
-    """Whether the last row holds totals."""
+    note: str = ""  # small text below the table
+    has_total: bool = False  # whether the last row holds totals
 
     def columns_with_numbers(self) -> list[bool]:
         """Returns for each column whether it has numbers."""
@@ -106,16 +100,14 @@ class Section:
 
 @dataclass(frozen=True)
 class Page:
-    """The content of a report, which ``write`` writes as HTML, Markdown, CSV and LaTeX."""
+    """The content of a report, which ``write`` writes as HTML, CSV and LaTeX."""
 
     title: str
-    summary: Sequence[Line]
-    """The main results in about five lines."""
+    summary: Sequence[Line]  # the main results in about five lines
     sections: Sequence[Section]
     card: Mapping[str, str] = field(default_factory=dict)
     """How the page was made: seeds, versions, and the command that repeats it."""
-    lead: str = ""
-    """One line under the title."""
+    lead: str = ""  # one line under the title
 
     def facts(self) -> list[tuple[str, str]]:
         """Returns the entries of ``card``; values of names that begin with "command" are ShellCommands."""
@@ -137,19 +129,3 @@ def _tables(blocks: Sequence[Block]) -> list[Table]:
         elif isinstance(block, Details):
             found += _tables(block.blocks)
     return found
-
-
-def spelled(
-    line: Line,
-    words: Callable[[str], str],
-    command: Callable[[str], str],
-    link: Callable[[TableCell], str],
-) -> str:
-    """Returns a line in a markup language; ``words``, ``command`` and ``link`` each write a kind of piece."""
-
-    def written(piece: str | TableCell) -> str:
-        if isinstance(piece, ShellCommand):  # before str, which it is, too
-            return command(piece)
-        return words(piece) if isinstance(piece, str) else link(piece)
-
-    return "".join(map(written, (line,) if isinstance(line, str) else line))

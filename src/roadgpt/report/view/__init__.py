@@ -2,8 +2,7 @@
 
 The page needs no server and no network: it contains its scripts, styles and data, and its content security
 policy forbids requests. The scripts are in ``page/`` and are joined in the order of SCRIPTS; three.js is in
-``three/``, with its licence.
-"""
+``three/``, with its licence."""
 
 import html
 import json
@@ -14,8 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from roadgpt.errors import RoadGPTError, UsageError, explained
-from roadgpt.report.view.scene import scene
-from roadgpt.report.view.scenery import scenery
+from roadgpt.report.view.scene import scene, scenery
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
 
@@ -43,20 +41,14 @@ SCRIPTS = (
 
 
 def page(runs: Sequence[Run]) -> str:
-    """Returns the whole page, to be written as UTF-8; the same Runs give the same text.
-
-    Raises:
-        UsageError: there is no Run or more than two, a Run has no road, or one of its numbers is not finite.
-    """
+    """Returns the whole page, to be written as UTF-8; the same Runs give the same text."""
     if not 1 <= len(runs) <= MOST:
         raise UsageError(f"a page shows one road or two side by side; {len(runs)} are given")
     return page_of([scene(run) for run in runs])
 
 
 def page_of(scenes: Sequence[Mapping[str, Any]]) -> str:
-    """Returns the page for one or two scenes made by ``scene``; empty parts of a scene are not shown. Raises
-    UsageError as ``embedded`` does.
-    """
+    """Returns the page for one or two scenes made by ``scene``; empty parts of a scene are not shown."""
     title = " and ".join(dict.fromkeys(each["title"] for each in scenes))
     parts = {
         "TITLE": html.escape(title.encode("ascii", "xmlcharrefreplace").decode()).replace("&amp;#", "&#"),
@@ -72,12 +64,7 @@ def page_of(scenes: Sequence[Mapping[str, Any]]) -> str:
 
 
 def write(runs: Sequence[Run], path: Path | str) -> Path:
-    """Writes the page into a file, which is replaced if it exists, and returns the path.
-
-    Raises:
-        UsageError: as for ``page``.
-        RoadGPTError: the file cannot be written.
-    """
+    """Writes the page into a file, which is replaced if it exists, and returns the path."""
     path = Path(path)
     text = page(runs)
     with explained(RoadGPTError, f"cannot write {path}", "name another file with --out"):
@@ -87,11 +74,7 @@ def write(runs: Sequence[Run], path: Path | str) -> Path:
 
 
 def embedded(data: object) -> str:
-    """Returns data as JSON that is safe inside a script element: ASCII without ``<``, ``>`` and ``&``.
-
-    Raises:
-        UsageError: a number is not finite.
-    """
+    """Returns data as JSON that is safe inside a script element: ASCII without ``<``, ``>`` and ``&``."""
     try:
         text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"), sort_keys=True)
     except ValueError as error:

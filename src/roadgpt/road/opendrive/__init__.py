@@ -1,19 +1,14 @@
 """Reads roads from ASAM OpenDRIVE files, versions 1.1 to 1.8. Main function: ``read_opendrive``.
 
-tree        reads the XML with limits on its size and without entities; selects one road of the file
-geometries  evaluates lines, arcs, spirals, poly3 and paramPoly3
-records     sorts the records of the road by their stations
-lanes       reads the lane sections; the inner edge of the driving lanes becomes the centre line of the Road
-profile     joins the lanes of all sections, reads their road marks, and selects the driven lane
-stated      reads what lanes state along the road: speed limits, friction
-line        computes the plan curve: unchanged where possible, otherwise clothoids through poses 1 m apart
-joins       finds places where elements do not meet exactly, and bridges them
-heights     reads the elevation, and converts it to the stations of the Road
-cubic_rows  sums and clips piecewise cubic functions of the station, such as lane widths
-left_out    lists the contents of the file that a Road cannot represent
-"""
+tree     reads the XML within limits and without entities; selects one road; sorts its records by station
+lanes    reads the lane sections; the inner edge of the driving lanes becomes the centre line of the Road
+profile  joins the lanes of all sections, reads what they state along the road, and selects the driven lane
+line     computes the plan curve: unchanged where possible, otherwise clothoids through poses 1 m apart
+heights  reads the elevation, and converts it to the stations of the Road"""
 
 import math
+from collections import Counter
+from collections.abc import Container, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -23,20 +18,32 @@ import numpy as np
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, SplineCurve
 from roadgpt.geometry.curve import Array
-from roadgpt.road.moving import reversed_cubics, reversed_road
-from roadgpt.road.opendrive.cubic_rows import closed
-from roadgpt.road.opendrive.geometries import GeometryElement, reference_line
 from roadgpt.road.opendrive.heights import carried_over, edge_heights, elevation, jumps, plain
-from roadgpt.road.opendrive.joins import KINK, SampledLine, misses, turns_back
 from roadgpt.road.opendrive.lanes import NEAR, Lanes, read_lanes
-from roadgpt.road.opendrive.left_out import left_out
-from roadgpt.road.opendrive.line import exact, fitted, lies_on_the_line, walk
-from roadgpt.road.opendrive.profile import Carry, FileProfile, checked, read_profile
-from roadgpt.road.opendrive.records import in_order
-from roadgpt.road.opendrive.stated import friction, speed_limit
-from roadgpt.road.opendrive.tree import Choice, read_tree
-from roadgpt.road.profile import Profile
-from roadgpt.road.road import Road, check_length
+from roadgpt.road.opendrive.line import (
+    KINK,
+    GeometryElement,
+    SampledLine,
+    exact,
+    fitted,
+    lies_on_the_line,
+    misses,
+    reference_line,
+    turns_back,
+    walk,
+)
+from roadgpt.road.opendrive.profile import (
+    Carry,
+    FileProfile,
+    checked,
+    closed,
+    friction,
+    read_profile,
+    speed_limit,
+)
+from roadgpt.road.opendrive.tree import Choice, in_order, number, read_tree
+from roadgpt.road.profile import LINE, Profile
+from roadgpt.road.road import Road, check_length, reversed_cubics, reversed_road
 from roadgpt.road.world import World
 
 __all__ = ["ImportedRoad", "read_opendrive"]
@@ -46,6 +53,11 @@ CLOSEST = 0.5  # m between such nodes
 MOST_SPANS = 3  # spans that a remark lists
 MOST_STATIONS = 10_000  # pairs of corresponding stations in the file and on the Road, for interpolation
 PLACES = 1_000  # stations at which the spline is compared with the line, and at which widths are sampled
+UNREAD = ("color", "direction", "dynamicLaneDirection", "dynamicLaneType", "level", "roadWorks", "roughness",
+          "singleSide", "weight")  # fmt: skip
+USUAL = ("", "false", "standard", "white")  # values of these attributes that are not reported, like 0
+PLAIN = ("none", "solid", "broken", "solid solid")  # types of road marks that are painted as they are
+BROAD = 0.2  # m; a wider line is reported
 
 
 @dataclass(frozen=True)
@@ -53,31 +65,22 @@ class ImportedRoad:
     """A road that was read from an OpenDRIVE file, with its lane width, speed limit and friction."""
 
     road: Road
-    """The road.
-
-    Its ``profile`` is None if the file describes a cross-section like the default one of a World: one lane in
-    each direction, both of the same constant width, with shoulders of equal constant width and the default
-    markings.
-    """
+    """The road. Its ``profile`` is None if the file describes a cross-section like the default one of a
+    World: one lane in each direction, both of the same constant width, with shoulders of equal constant width
+    and the default markings."""
     id: str
     name: str
-    lane_width: float
-    """Width of the driven lane in metres; the median if it varies."""
-    shoulder: float
-    """Width in metres of the shoulder on the right; the median if it varies."""
+    lane_width: float  # width of the driven lane in metres; the median if it varies
+    shoulder: float  # width in metres of the shoulder on the right; the median if it varies
     speed_limit: float | None
     """Speed limit in m/s, limited to 5 to 300 km/h; None if the file gives no speed limit."""
-    friction: float | None
-    """Friction coefficient of the driven lane, up to 2; None if the file gives none."""
-    remarks: tuple[str, ...]
-    """Sentences about contents of the file that were changed, replaced or left out."""
+    friction: float | None  # friction coefficient of the driven lane, up to 2; None if the file gives none
+    remarks: tuple[str, ...]  # sentences about contents of the file that were changed, replaced or left out
 
     def world(self, base: World) -> World:
-        """Returns ``base`` with the lane width, shoulder, speed limit and friction of this road.
-
-        A speed limit or friction that the file does not state is taken from ``base``. If ``road.profile`` is
-        not None, it defines the lanes and shoulders, and ``base`` keeps its lane width and shoulder.
-        """
+        """Returns ``base`` with the lane width, shoulder, speed limit and friction of this road. A speed
+        limit or friction that the file does not state is taken from ``base``. If ``road.profile`` is not
+        None, it defines the lanes and shoulders, and ``base`` keeps its lane width and shoulder."""
         return base.changed(**self.world_values)
 
     @property
@@ -101,8 +104,7 @@ def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
 
     Raises:
         UsageError: The file cannot be read or is too large, there is no such road, or an element is unknown
-            or invalid; the message names the element.
-    """
+            or invalid; the message names the element."""
     try:
         choice = read_tree(Path(path), road)
     except UsageError as error:
@@ -153,8 +155,6 @@ def _imported(choice: Choice, id_: str, is_our_choice: bool) -> ImportedRoad:
 
 
 def _carried(own: FileProfile, carry: Carry, length: float, is_reversed: bool) -> Profile:
-    """Returns the cross-section over the stations of a road of this length."""
-
     def width(cubics: CubicProfile) -> CubicProfile:
         moved = carry(cubics)
         return checked(closed((reversed_cubics(moved, length) if is_reversed else moved).rows, length))
@@ -169,7 +169,7 @@ def _carried(own: FileProfile, carry: Carry, length: float, is_reversed: bool) -
 
 
 def _grown(node: Element, line: list[GeometryElement], lanes: Lanes) -> tuple[Road, Carry, list[str]]:
-    """Returns the road without its cross-section, and a remark for each thing changed."""
+    """Returns the road without its cross-section, the conversion of cubics to its stations, and remarks."""
     heights, length = elevation(node), line[-1].s + line[-1].length
     step = jumps(heights, length)
     remarks = [step] if step else []
@@ -207,7 +207,6 @@ def _grown(node: Element, line: list[GeometryElement], lanes: Lanes) -> tuple[Ro
 
 
 def _away(found: SampledLine, road: Road) -> float:
-    """Returns the largest distance in metres between sampled places of the file's line and the road."""
     beside = found.poses[np.abs(found.kinks) > KINK, :2]
     some = [each[:: max(1, len(each) // PLACES)] for each in (beside, found.ends, found.poses[:, :2])]
     return float(np.abs(road.locate(*np.concatenate(some).T)[1]).max())
@@ -226,7 +225,6 @@ def _rounded(found: SampledLine, heights: Array) -> tuple[Road, Array]:
 
 
 def _driven_otherwise(node: Element, lanes: Lanes) -> list[str]:
-    """Returns a sentence for each way in which traffic in the file differs from traffic on the Road."""
     remarks = []
     spans = lanes.stretches()
     if spans[0][0] > NEAR or spans[-1][1] < lanes.length - NEAR or len(spans) > 1:
@@ -236,3 +234,47 @@ def _driven_otherwise(node: Element, lanes: Lanes) -> list[str]:
     if node.get("rule") == "LHT":
         remarks.append("it is made for left-hand traffic, and is driven on the right here")
     return remarks
+
+
+def left_out(choice: Choice, profile: FileProfile) -> str | None:
+    """Returns a sentence that lists the contents of the file that are left out; None if none are."""
+    parts = [*_parts(choice, profile)]
+    return f"left out: {', '.join(parts)}" if parts else None
+
+
+def _parts(choice: Choice, profile: FileProfile) -> Iterator[str]:
+    road = choice.road
+    kinds = _further_lanes(road, profile.used())
+    if kinds:
+        each = ", ".join(f"{count} {kind or 'without a type'}" for kind, count in sorted(kinds.items()))
+        yield f"{_many(kinds.total(), 'further lane')} ({each})"
+    for what, count in sorted(choice.passed.items()):
+        yield _many(count, what)
+    if road.get("junction", "-1") not in ("-1", ""):
+        yield f"junction {road.attrib['junction'][:40]}"
+    nodes = [*road.iter()]
+    if any(node.find("width") is not None and node.find("border") is not None for node in nodes):
+        yield "borders of lanes that have widths"
+    for name in UNREAD:
+        if any(node.get(name, "").strip("0.") not in USUAL for node in nodes):
+            yield f"the attribute {name}"
+    marks = [*road.iter("roadMark")]
+    others = {mark.get("type", "none")[:20] for mark in marks} - {*PLAIN}
+    if others:
+        yield f"what road marks of type {', '.join(sorted(others))} look like"
+    if any(number(mark, "width", LINE) > BROAD for mark in marks):
+        yield "the width of broad road marks"
+    if choice.header:
+        yield " and ".join(f"<{tag}>" for tag in sorted(choice.header)) + " of the map"
+
+
+def _further_lanes(road: Element, used: Container[int]) -> Counter[str]:
+    """Counts the lanes that are not in the profile; a lane in several sections counts once."""
+    sides = [road.findall(f"lanes/laneSection/{side}/lane") for side in ("left", "right")]
+    lanes = [lane for side in sides for lane in side if id(lane) not in used]
+    found = {(number(lane, "id"), lane.get("type", "")) for lane in lanes}
+    return Counter(kind[:20] for _, kind in found if kind != "none")
+
+
+def _many(count: int, what: str) -> str:
+    return f"{count:,} {what}{'s' * (count != 1 and what[-1] != '>')}"

@@ -8,7 +8,7 @@ import numpy as np
 from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile, shifted
 from roadgpt.geometry.curve import Array
 from roadgpt.road.opendrive.lanes import Lanes
-from roadgpt.road.opendrive.numbers import cubics
+from roadgpt.road.opendrive.tree import cubics
 
 SAME = 1e-9  # m, and as a ratio: heights and grades closer than this are treated as equal
 CLOSE = 1e-6  # m between the starts of two cubics
@@ -51,8 +51,7 @@ def jumps(profile: CubicProfile, length: float) -> str | None:
 def edge_heights(heights: CubicProfile, lanes: Lanes) -> CubicProfile:
     """Returns the heights of the inner edge of the driving lanes, as functions of the station in the file.
     ``heights`` are those of the reference line. The edge has other heights than this line only where the road
-    has superelevation and the edge lies beside this line.
-    """
+    has superelevation and the edge lies beside this line."""
     if lanes.angle is None or not any(any(cubic) for cubic in lanes.angle.coefficients):
         return heights
     even = np.linspace(0.0, lanes.length, max(2, round(lanes.length / APART) + 1))
@@ -72,11 +71,8 @@ def edge_heights(heights: CubicProfile, lanes: Lanes) -> CubicProfile:
 
 
 def _edge_height(heights: CubicProfile, lanes: Lanes, s: Array) -> tuple[Array, Array]:
-    """Returns the height of the edge and its change per metre.
-
-    With superelevation e and grade g, the edge at offset t lies t sin e / cos(atan g) above the reference
-    line.
-    """
+    """Returns the height of the edge and its change per metre. With superelevation e and grade g, the edge at
+    offset t lies t sin e / cos(atan g) above the reference line."""
     assert lanes.angle is not None
     t, slope = lanes.edge_on_surface(s)
     angle, grade = lanes.angle.height(s), heights.grade(s)
@@ -93,8 +89,7 @@ def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfi
     stations differ where the centre line is longer or shorter than the reference line.
 
     ``s`` are increasing stations of the file in metres, ``stations`` the corresponding stations of the Road.
-    In between, the conversion is linear.
-    """
+    In between, the conversion is linear."""
     cuts = np.array(profile.stations)
     behind = np.clip(np.searchsorted(s, cuts), 1, len(s) - 1)
     apart = np.minimum(cuts - s[behind - 1], s[behind] - cuts)

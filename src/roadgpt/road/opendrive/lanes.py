@@ -2,8 +2,7 @@
 
 The driven side is the right-hand side, or the left-hand side if driving lanes cover more than twice as much
 length there. The inner edge of the innermost driving lane on the driven side becomes the centre line of the
-Road.
-"""
+Road."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -14,8 +13,7 @@ import numpy as np
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
-from roadgpt.road.opendrive.numbers import cubics, number
-from roadgpt.road.opendrive.tree import DRIVING
+from roadgpt.road.opendrive.tree import DRIVING, cubics, number
 
 BESIDE = ("shoulder", "border")
 EDGES = ("width", "border")  # elements of a lane that state its outer edge
@@ -26,9 +24,7 @@ MOST_ACROSS = 200  # lanes on one side of a section
 
 @dataclass(frozen=True)
 class LaneElement:
-    """One lane of a lane section. The file gives either its width or its ``border``, the offset of its
-    outer edge.
-    """
+    """One lane of a section, with either its width or its ``border``, the offset of its outer edge."""
 
     node: Element
     kind: str
@@ -41,14 +37,10 @@ class LaneSection:
     """One lane section, with its lanes on both sides, ordered from the inside out."""
 
     s: float
-    lanes: tuple[LaneElement, ...]
-    """The lanes on the driven side."""
-    others: tuple[LaneElement, ...]
-    """The lanes on the side opposite to the driven side."""
-    centre: tuple[Element, ...]
-    """Lane 0, if there is one."""
-    first: int
-    """Index in ``lanes`` of the innermost driving lane; ``len(lanes)`` if there is none."""
+    lanes: tuple[LaneElement, ...]  # the lanes on the driven side
+    others: tuple[LaneElement, ...]  # the lanes on the side opposite to the driven side
+    centre: tuple[Element, ...]  # lane 0, if there is one
+    first: int  # index in ``lanes`` of the innermost driving lane; ``len(lanes)`` if there is none
 
     @property
     def is_driven(self) -> bool:
@@ -68,8 +60,7 @@ class Span(NamedTuple):
 class Lanes:
     """The lane sections of a road."""
 
-    side: int
-    """-1 if the driven side is to the right of the reference line, 1 if it is to the left."""
+    side: int  # -1 if the driven side is to the right of the reference line, 1 if it is to the left
     sections: tuple[LaneSection, ...]
     offset: CubicProfile | None
     angle: CubicProfile | None
@@ -77,10 +68,8 @@ class Lanes:
     length: float
 
     def edge(self, s: Array) -> tuple[Array, Array]:
-        """Returns offset and slope of the inner edge of the driving lanes at stations ``s``.
-
-        The offset is in metres to the left of the reference line and is measured in plan; the slope is its
-        change per metre.
+        """Returns offset and slope of the inner edge of the driving lanes at stations ``s``. The offset is in
+        metres to the left of the reference line and is measured in plan; the slope is its change per metre.
         """
         t, slope = self.edge_on_surface(s)
         if self.angle is None:
@@ -89,9 +78,7 @@ class Lanes:
         return t * cos, slope * cos - t * sin * self.angle.grade(s)
 
     def edge_on_surface(self, s: Array) -> tuple[Array, Array]:
-        """Returns offset and slope of the inner edge as ``edge`` does, but measured along the inclined
-        road surface.
-        """
+        """Returns offset and slope as ``edge`` does, but measured along the inclined road surface."""
         t, slope = _both(self.offset, s)
         starts = np.array([section.s for section in self.sections])
         index = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(starts) - 1)
@@ -137,9 +124,7 @@ class Lanes:
         ]
 
     def stretches(self) -> list[tuple[float, float]]:
-        """Returns the first and last station in metres of each continuous stretch of road with a driving
-        lane.
-        """
+        """Returns the first and last station in metres of each continuous stretch with a driving lane."""
         found: list[tuple[float, float]] = []
         for _, start, end in self.spans():
             joins = bool(found) and start - found[-1][1] < NEAR
@@ -149,8 +134,7 @@ class Lanes:
 
 def read_lanes(road: Element, length: float) -> Lanes:
     """Returns the lane sections of a road that is ``length`` metres long. Raises UsageError if it has no
-    driving lane.
-    """
+    driving lane."""
     nodes = road.findall("lanes/laneSection")
     if not nodes:
         raise UsageError("it has no lane section; add <lanes>")

@@ -1,20 +1,25 @@
 """Reads one road from an OpenDRIVE file, skips the rest of the file, and is safe against malicious XML.
 
 A file with a DOCTYPE is refused, so that no XML entities can be declared, fetched or expanded. Limits on file
-size, number of elements, depth and tag length bound the time and memory that reading takes.
-"""
+size, number of elements, depth and tag length bound the time and memory that reading takes."""
 
-from collections import Counter
-from collections.abc import Mapping
+import math
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from xml.etree.ElementTree import Element
 from xml.parsers import expat
 
 from roadgpt.errors import UsageError
+from roadgpt.geometry import CubicProfile
+from roadgpt.geometry.elevation import Cubic
 from roadgpt.reading import opened
-from roadgpt.road.opendrive.numbers import NUMBER
 
+NUMBER = re.compile(r"\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*")
+LARGEST_NUMBER = 1e12  # of any number; beyond it, sums are no longer exact to a metre
 LARGEST = 50_000_000  # bytes; the largest public maps have 20 MB
 TOO_LARGE = f"it is larger than {LARGEST // 1_000_000} MB; cut out the roads that you need"
 MOST_ELEMENTS = 500_000
@@ -48,6 +53,50 @@ IN_HEADER = ("geoReference", "offset")
 OURS = "RoadGPT"  # vendor of files that RoadGPT wrote: their georeference has no meaning
 RAMPS = ("entry", "exit", "onRamp", "offRamp", "connectingRamp", "mwyEntry", "mwyExit")
 DRIVING = ("driving", "bidirectional", "slipLane", *RAMPS)
+OF_ROAD = ("type", "planView/geometry", "elevationProfile/elevation", "lateralProfile/superelevation",
+           "lanes/laneOffset", "lanes/laneSection")  # fmt: skip
+"""The records that RoadGPT reads; ``s`` is their station."""
+OF_LANE = ("width", "border", "roadMark", "material", "speed")
+"""The records of a lane that RoadGPT reads; ``sOffset`` is their distance from the start of its section."""
+CUBICS = ("elevation", "superelevation", "laneOffset", "width", "border")
+END = 1e-6  # m; a record this close to the end is at the end
+MERGED = 0.1  # m; the length of a road may differ by this much from that of its line
+
+
+def number(node: Element, name: str, missing: float | None = None) -> float:
+    """Returns an attribute of an element as a finite number; ``missing`` if there is no such attribute. If
+    ``missing`` is None, the attribute is required. Raises UsageError if a required attribute is missing, or
+    if the attribute is not a number, not finite, or has an absolute value above 1e12."""
+    text = node.get(name)
+    if text is None:
+        if missing is None:
+            raise UsageError(f"a <{node.tag}> has no {name}; add it")
+        return missing
+    if not NUMBER.fullmatch(text) or len(text) > 400:
+        raise UsageError(f"in a <{node.tag}>, {name} is '{text[:40]}', which is not a number; correct it")
+    value = float(text)
+    if not math.isfinite(value) or abs(value) > LARGEST_NUMBER:
+        raise UsageError(f"in a <{node.tag}>, {name} is {text[:40]}, which is too large; correct it")
+    return value
+
+
+def cubics(nodes: Iterable[Element], station: str, start: float = 0.0) -> CubicProfile | None:
+    """Returns the cubic polynomials that the elements define by a, b, c and d; None if there are no elements.
+
+    The station of a cubic is its attribute named ``station``, plus ``start`` metres; stations ascend. Each
+    cubic applies from its station to that of the next cubic. Before the first station, the value is that at
+    the first station."""
+    kept: dict[float, Cubic] = {}
+    for node in nodes:
+        a, b, c, d = (number(node, name, None if name == "a" else 0.0) for name in "abcd")
+        kept[start + number(node, station, 0.0)] = (a, b, c, d)
+    if not kept:
+        return None
+    stations = list(kept)
+    if stations[0] > start:
+        first = kept[stations[0]][0]
+        kept = {start: (first, 0.0, 0.0, 0.0), **kept}
+    return CubicProfile(tuple(kept), tuple(kept.values()))
 
 
 @dataclass(frozen=True)
@@ -55,14 +104,12 @@ class Choice:
     """The road that was selected from a file, and information about the other contents of the file."""
 
     road: Element
-    others: tuple[str, ...]
-    """Ids of all roads in the file."""
+    others: tuple[str, ...]  # ids of all roads in the file
     passed: Mapping[str, int]
     """Number of skipped elements of the road for each type of element, such as objects and signals."""
     header: frozenset[str]
     """Names of the header elements (``geoReference``, ``offset``) that the file contains and that are
-    skipped.
-    """
+    skipped."""
 
 
 def read_tree(path: Path, wanted: str | None) -> Choice:
@@ -176,3 +223,50 @@ class _RoadSelector:
         _, road, passed = self.best
         header = set() if OURS in self.header else self.header
         return Choice(road, tuple(self.ids), passed, frozenset(header))
+
+
+def in_order(road: Element) -> list[str]:
+    """Sorts the records of a road in place, and removes those that begin beyond its end. Returns a sentence
+    for each kind of record that was not in order, had several at one station, begins late, or begins beyond
+    the end, and for a wrong length. Raises UsageError if a station is not a number."""
+    line = road.findall("planView/geometry")
+    end = max((number(each, "s") + abs(number(each, "length")) for each in line), default=0.0)
+    told = defaultdict[str, list[str]](list)
+    for path in OF_ROAD if line else ():
+        _sort(road, path, "s", (0.0, end), "", told)
+    sections = road.findall("lanes/laneSection")
+    starts = [number(section, "s") for section in sections]
+    for section, part in zip(sections, pairwise([*starts, end]), strict=True):
+        for lane in section.findall("*/lane"):
+            for tag in OF_LANE:
+                _sort(lane, tag, "sOffset", part, f" of lane {lane.get('id', '?')[:10]}", told)
+    if abs((said := number(road, "length", end)) - end) > MERGED:
+        told[f"its length is said to be {said:g} m, and that of its line is taken"] = [f"{end:g} m"]
+    firsts = (f"{len(at)} times, first at {at[0]}" if len(at) > 1 else f"at {at[0]}" for at in told.values())
+    return [f"{what} ({where})" for what, where in zip(told, firsts, strict=True)]
+
+
+def _sort(
+    holder: Element, path: str, station: str, part: tuple[float, float], of: str, told: dict[str, list[str]]
+) -> None:
+    """Sorts the records of one list. ``part`` is the part of the road that they are for, in metres."""
+    (start, end), (above, _, tag) = part, path.rpartition("/")
+    found = [(start + number(node, station, 0.0), node) for node in holder.findall(path)]
+    ordered = sorted(found, key=lambda each: each[0])
+    kept = [each for each in ordered if each[0] <= end + END] or ordered[: tag in CUBICS]
+    back = [then for (s, _), (then, _) in pairwise(found) if then < s]
+    twice = [s for (s, _), (then, _) in pairwise(kept) if s == then and tag != "geometry"]
+    late = [s for s, _ in kept[:1] if tag in CUBICS and s > start + END]
+    beyond = [s for s, _ in ordered[len(kept) :]]
+    for what, stations in (
+        (f"its <{tag}> records are not in the order of their {station}, and are sorted", back),
+        (f"several <{tag}> begin at one place, and the last one is taken", twice),
+        (f"its first <{tag}> begins late, and its value there is taken for what comes before", late),
+        (f"a <{tag}> begins beyond the end of what it is for, and has no effect", beyond),
+    ):
+        if stations:
+            told[what] += [f"s = {s:g} m{of}" for s in stations]
+    parents = holder.findall(above or ".")
+    for parent in reversed(parents):
+        parent[:] = [node for node in parent if node.tag != tag]
+        parent.extend(node for _, node in kept if parent is parents[0])

@@ -1,23 +1,63 @@
 """The network behind the model reader: two ONNX graphs, run by onnxruntime on one core."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Self
 
 import numpy as np
 import numpy.typing as npt
 
+from roadgpt.brief.readers.model.grammar import END, Evidence, PlanAutomaton
 from roadgpt.brief.readers.model.onnx_runtime import onnxruntime
-from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
-from roadgpt.brief.readers.model.plan_numbers import Evidence
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, REFUSALS, TOKENS
-from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.errors import PartError
 from roadgpt.reading import read_text
+
+UNKNOWN_PIECE = "[UNK]"
+LONGEST = 40  # letters; anything longer is not split
+WINDOW = 126
+"""The largest number of pieces of a text that are read, without the special pieces at its two ends."""
+
+
+class WordPieces:
+    """Splits words into the pieces of a vocabulary; the number of a piece is its index in the vocabulary."""
+
+    def __init__(self, pieces: Sequence[str]) -> None:
+        self.number = {piece: index for index, piece in enumerate(pieces)}
+        self._split = lru_cache(maxsize=4096)(self._pieces)
+
+    def encode(self, words: Iterable[str]) -> tuple[list[int], list[int]]:
+        """Returns the numbers of all pieces, and for each piece the index of its word (-1 for the special end
+        pieces).
+        """
+        numbers, of_word = [self.number["[CLS]"]], [-1]
+        for index, word in enumerate(words):
+            for piece in self._split(word):
+                if len(numbers) <= WINDOW:
+                    numbers.append(piece)
+                    of_word.append(index)
+        return [*numbers, self.number["[SEP]"]], [*of_word, -1]
+
+    def _pieces(self, word: str) -> tuple[int, ...]:
+        if word in self.number:
+            return (self.number[word],)
+        out: list[int] = []
+        start = 0
+        while start < len(word) <= LONGEST:
+            for end in range(len(word), start, -1):
+                piece = ("##" if start else "") + word[start:end]
+                if piece in self.number:
+                    out.append(self.number[piece])
+                    start = end
+                    break
+            else:
+                break
+        return tuple(out) if out and start == len(word) else (self.number[UNKNOWN_PIECE],)
+
 
 Array = npt.NDArray[np.float32]
 Numbers = npt.NDArray[np.int64]
@@ -122,23 +162,20 @@ class NeuralNetwork:
         across = self._encoder.run(None, {"pieces": pieces})[0]
         seen = np.where(pieces == 0, np.float32(-1e4), np.float32(0))[:, None, None, :]
         own = np.repeat(_nothing(across[:, :, :1]), len(rows), axis=2)
-        writer: PlanAutomaton | None = WrittenPlan.of(allowed).writer
+        writer = WrittenPlan.of(allowed).writer
         last = START
         logs, leads = list[Array](), list[Array]()
         for place, word in enumerate((*tokens, END)):
             token = np.full((len(rows), 1), last)
             scores, own = self._scored(token, place, own, across, seen)
             last = NUMBER_OF[word]
-            if writer and last not in writer.allowed():  # a mirrored plan may have another order
-                writer = None
-            may = writer.allowed() if writer else range(len(TOKENS))
+            may = writer.allowed()
             chances = np.stack([_log_chances(row, may) for row in scores])
             logs.append(chances[:, last])
             others = chances.copy()
             others[:, last] = -np.inf
             leads.append(chances[:, last] - np.maximum(others.max(axis=1), LEAST))
-            if writer:
-                writer.push(word)
+            writer.push(word)
         return np.stack(logs, axis=1), np.stack(leads, axis=1)
 
     def write(
@@ -146,25 +183,19 @@ class NeuralNetwork:
         across: Array,
         text: SlottedText,
         refuse_from: float,
-        barred: Sequence[str],
-    ) -> tuple[tuple[WrittenPlan, ...], float]:
-        """Returns the likeliest plans for a description, best first, from a beam search, and the probability
-        of a refusal as the first token.
-
-        No plan begins with a token of ``barred``; for ``refuse_from`` see ``scored_plans``.
+    ) -> tuple[WrittenPlan, ...]:
+        """Returns the likeliest plans for a description, best first, from a beam search; for ``refuse_from``
+        see ``scored_plans``.
         """
         drafts, done = [WrittenPlan.of(text)], list[WrittenPlan]()
-        own, refusal = _nothing(across), 0.0
+        own = _nothing(across)
         for place in range(MOST_TOKENS):
             scores, own = self._step(drafts, place, own, across)
             logs = np.stack(
                 [_log_chances(row, d.writer.allowed()) for row, d in zip(scores, drafts, strict=True)]
             )
-            if place == 0:
-                refusal = float(np.exp(logs[0, REFUSED]).sum())
-                if refusal < refuse_from:
-                    logs[0] = _without_refusals(logs[0])
-                logs[0, [NUMBER_OF[word] for word in barred]] = -np.inf
+            if place == 0 and np.exp(logs[0, REFUSED]).sum() < refuse_from:
+                logs[0] = _without_refusals(logs[0])
             total = logs + np.array([[sum(draft.log_chances)] for draft in drafts], dtype=np.float32)
             likeliest = np.argsort(total, axis=None)[::-1][: 2 * WIDTH]
             longer, rows = list[WrittenPlan](), list[int]()
@@ -181,7 +212,7 @@ class NeuralNetwork:
             ):
                 break
             drafts, own = longer, own[:, :, rows]
-        return tuple(sorted(done or drafts, key=lambda draft: -draft.score)), refusal
+        return tuple(sorted(done or drafts, key=lambda draft: -draft.score))
 
     def refusal(self, text: SlottedText) -> float:
         """Returns the probability that the network writes a refusal as the first token."""
@@ -252,7 +283,7 @@ def _session(path: Path) -> onnxruntime.InferenceSession:
     except Exception as error:  # onnxruntime has 15 kinds, with no other base in common
         raise PartError(
             f"'{path}' cannot be loaded: it is damaged, or a file beside it is missing; copy the "
-            "whole folder again, or make it with 'roadgpt learn export'"
+            "whole folder again, or let a training write it"
         ) from error
 
 

@@ -7,9 +7,7 @@ road ("no junctions, please"): the networks decide.
 
 import re
 
-from roadgpt.brief.readers.model.denial import says
-from roadgpt.brief.readers.model.slots import SlottedText
-from roadgpt.brief.readers.model.word_set import word_set
+from roadgpt.brief.readers.model.number_words import word_set
 
 TOLD_ON_ROUTES = frozenset(
     ["junction", "crossroads", "roundabout", "merge", "exit", "lane_change", "traffic_light", "sign", "lanes"]
@@ -96,28 +94,8 @@ COMPANIONS = word_set(
 )
 """Words that add nothing to another word beside them, such as "junction" in "T-junction" or "arms" in "four
 arms": the plan stays the same without these words."""
-ONLY_A_MAP = re.compile(
-    r"\b(?:map only|(?:only|just) (?:a|the) map|maps? (?:without|with no) (?:a |any )?routes?|"
-    r"nur (?:eine |die )?karte|karten? ohne (?:route|strecke)|"
-    r"carte sans (?:itineraire|parcours|trajet|route)|(?:seulement|juste) (?:une|la) carte|"
-    r"mapa sin (?:ruta|recorrido|itinerario)|solo (?:un|el) mapa|"
-    r"mappa senza (?:percorso|itinerario)|solo (?:una|la) mappa)\b"
-)
-EIGHT = re.compile(r"\b(?:acht|huit|ocho|otto)\b(?= \w+[sni]\b)")
-"""The number 8 before a plural; the networks read these words themselves."""
 
 
 def may_tell_a_route(words: str) -> bool:
     """Returns whether a description has a word that may mention junctions, ramps, lanes or maps."""
     return TELLING.search(words) is not None
-
-
-def asks_for_map(text: SlottedText) -> bool:
-    """Returns whether a description says that it wants a map without a route."""
-    return says(ONLY_A_MAP, said_of(text))
-
-
-def said_of(text: SlottedText) -> str:
-    """Returns the words in lower case without accents, with small numbers as figures."""
-    said = " ".join(word.text for word in text.words)
-    return EIGHT.sub("8", said)

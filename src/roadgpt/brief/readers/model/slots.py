@@ -10,47 +10,441 @@ percent.
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import radians, tan
 
-from roadgpt.brief.readers.model.measures import (
-    Number,
-    as_grade,
-    is_count,
-    share_units,
-    take_unit,
-    take_unit_of_all,
-    unit_at,
-)
-from roadgpt.brief.readers.model.numerals import (
+from roadgpt.brief.readers.model.number_words import (
+    AMBIGUOUS,
+    COUNTED,
+    FUNCTION_WORDS,
+    JOINTS,
+    LEFT,
     LONGEST,
+    MILLIONS,
+    ONE_TURN,
+    ONES,
+    ORDINALS,
+    RATIO,
+    RIGHT,
+    SETS,
+    SHARE_FILLERS,
+    SHARES,
     SIZES,
+    TIMES,
+    UNITS,
+    VAGUE_SETS,
+    Unit,
     begins_number,
     number_word,
     numbers_in_words,
     plain,
+    word_set,
 )
-from roadgpt.brief.readers.model.tolerances import tolerances_first, with_tolerances
-from roadgpt.brief.readers.model.unit_fractions import (
-    FAR,
-    one_with_decimals,
-    take_share,
-    unit_fraction,
-    whole_and_share,
-    with_decimals,
+
+LARGEST_SEEN = 20
+"""The largest number without a unit that remains as digits in the text for the model. Larger ones become
+slots."""
+LAST_TURN = 9  # a number up to this one behind "turn" says which turn
+SIDES = LEFT | RIGHT | {"g", "d", "i", "der", "sn", "ds"}
+"""Words for left and right, and their abbreviations that occur only before numbers, as in "G90"."""
+RADIUS = frozenset(
+    ["radius", "radii", "rad", "halbmesser", "radien", "rayon", "rayons", "ray", "radio", "radios", "raggio"]
+    + ["raggi"]
 )
-from roadgpt.brief.readers.model.units import (
-    AMBIGUOUS,
-    FUNCTION_WORDS,
-    MILLIONS,
-    ONES,
-    ORDINALS,
-    RATIO,
-    SETS,
-    SHARE_FILLERS,
-    SHARES,
-    VAGUE_SETS,
-    Unit,
+LEADING_TO = word_set(
+    "= : . of is about around roughly approximately approx ca circa von etwa rund ungefahr de environ unos",
+    "aproximadamente di",
 )
+"""What can stand between a word for a radius and its number."""
+STEEPEST = 45.0  # degrees: anything steeper is a turn, or nonsense that the network refuses itself
+SLOPES = word_set(
+    "slope slopes grade grades gradient gradients incline inclines inclination climb ascent ascents",
+    "descent descents rise decline steigung gefalle anstieg neigung pente pentes montee descente",
+    "pendiente pendientes subida bajada inclinacion pendenza pendenze salita discesa inclinazione",
+)
+SLOPING = word_set(
+    "climbs climbing rises rising ascends ascending descends descending drops dropping falls falling",
+    "uphill downhill steigt steigend fallt fallend bergauf bergab monte descend sube baja sale scende",
+)
+BETWEEN = word_set(
+    "of at is are : = by with an angle angled about around roughly von mit um de d ' di con del der"
+)
+TURNING = COUNTED | ONE_TURN | LEFT | RIGHT | {"heading"}
+SKIPPED = frozenset(["-", "of", "to", "the", "nach", "a", "la", "vers"])
+MOST_BETWEEN = 4
+"""How many of the words in BETWEEN may separate the slope from its number."""
+
+
+@dataclass(slots=True)
+class Number:
+    """A number, its position in the text, and its unit."""
+
+    value: float
+    first: int
+    last: int  # index of its last word, unit included
+    unit: Unit = ""
+    is_bare: bool = True
+    factor: float = 1.0
+    spread: float = 0
+    """Tolerance: 1 for "four turns, plus or minus one", which accepts 3 to 5 turns. For a measure, the
+    tolerance has the unit of the value."""
+
+
+def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
+    """Returns the unit that begins at token ``at``; None if no unit begins there.
+
+    Returns three values: the corresponding unit in plans (such as metres), the factor that converts to it,
+    and how many words the unit takes up in the text.
+    """
+    for size in (2, 1):
+        found = UNITS.get(tuple(tokens[at : at + size]))
+        if found:
+            unit, factor = found
+            over, time = [*tokens[at + size : at + size + 2], "", ""][:2]
+            if unit == "metres" and over == "/" and time in TIMES:
+                return "kmh", 1.0, size + 2  # a speed
+            if tokens[at] in ("km", "kilometers") and list(tokens[at + 1 : at + 3]) in (
+                ["per", "hour"],
+                ["an", "hour"],
+            ):
+                return "kmh", 1.0, size + 2
+            return unit, factor, size
+    return None
+
+
+def take_unit(number: Number, tokens: list[str]) -> None:
+    """Assigns to a number the unit that follows it, and converts its value to metres, percent or degrees."""
+    if number.unit:
+        return
+    at = number.last + 1
+    for skip in (0, 1):
+        if skip and (at >= len(tokens) or tokens[at] not in ("-", "'")):
+            break
+        found = unit_at(tokens, at + skip)
+        if found and not (tokens[at + skip] in ("º", "a", "e") and number.value < 10):
+            unit, factor, size = found
+            number.value, number.unit = round(number.value * factor, 1), unit
+            number.spread *= factor
+            number.last, number.is_bare, number.factor = at + skip + size - 1, False, factor
+            return
+    number.value = round(number.value, 1)
+
+
+def share_units(numbers: list[Number], tokens: list[str]) -> None:
+    """Assigns to "40" in "40 to 60 metres" the unit of "60"; works backwards, so that it also handles longer
+    lists.
+    """
+    is_shared = False
+    for one, other in zip(numbers[-2::-1], numbers[:0:-1], strict=False):
+        was_shared, is_shared = is_shared, False
+        between = tokens[one.last + 1 : other.first]
+        while between and between[-1] in ("about", "than", "de", "di", "maximal", "another"):
+            between = between[:-1]
+        if one.unit or not other.unit or not 1 <= len(between) <= 2 or is_radius(tokens, one):
+            continue
+        before = tokens[one.first - 1] if one.first > 0 else ""
+        if before in SIDES or (before in ONE_TURN and one.value <= LAST_TURN):
+            continue  # "L90 - 40 m" is an angle and a length, "turn 2 to 20 m" the second turn
+        if any(token not in JOINTS for token in between) or (between == [","] and one.value < LARGEST_SEEN):
+            continue
+        if len(between) == 2 and between[0] == "," and between[1] not in ("or", "and", "to"):
+            continue
+        if between == [","] and not was_shared:
+            continue  # "radius 40, 5 % up" lists two wishes, "40, 50 and 60 m" three lengths
+        one.value, one.unit = round(one.value * other.factor, 1), other.unit
+        one.is_bare, one.factor, is_shared = False, other.factor, True
+
+
+def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
+    """Treats numbers without a unit, except counts, as feet or yards if the description says so, as in
+    "lengths in feet: 250 straight".
+    """
+    factors = {UNITS.get((unit,), ("", 0.0)) for word, unit in pairwise(tokens) if word in ("in", "en")}
+    sizes = [factor for unit, factor in factors if unit == "metres" and factor < 1.0]
+    if len(sizes) != 1 or any(number.unit == "metres" for number in numbers):
+        return
+    for number in numbers:
+        is_after_side = number.first > 0 and tokens[number.first - 1] in SIDES
+        if number.is_bare and not is_count(tokens, number) and not is_after_side:
+            number.value, number.unit = round(number.value * sizes[0], 1), "metres"
+            number.is_bare, number.factor = False, sizes[0]
+
+
+def is_count(tokens: Sequence[str], number: Number) -> bool:
+    """Returns True if the number may be a count: whole, not too large, and not a radius."""
+    return (
+        number.value <= LARGEST_SEEN and number.value == int(number.value) and not is_radius(tokens, number)
+    )
+
+
+def is_radius(tokens: Sequence[str], number: Number) -> bool:
+    """Returns True if the number is 10 or more and follows "R" or a word for a radius, as in "R15"."""
+    at = number.first - 1
+    while at >= 0 and tokens[at] in LEADING_TO:
+        at -= 1
+    return number.value >= 10 and at >= 0 and (tokens[at] == "r" or tokens[at] in RADIUS)
+
+
+def as_grade(number: Number, tokens: Sequence[str]) -> None:
+    """Converts degrees to percent if the words next to the number show that it is a slope.
+
+    Only a number close to a word for a slope is a slope; "climbs 30 degrees to the left" remains a turn.
+    """
+    if number.unit == "degrees" and number.value <= STEEPEST and _is_tilt(number, tokens):
+        number.value, number.unit = round(100 * tan(radians(number.value)), 1), "percent"
+
+
+def _is_tilt(number: Number, tokens: Sequence[str]) -> bool:
+    after = [token for token in tokens[number.last + 1 : number.last + 5] if token not in SKIPPED]
+    if after and after[0] in SLOPES:
+        return not TURNING.intersection(after[1:2])
+    if TURNING.intersection(after[:2]):
+        return False
+    at = number.first - 1
+    while at >= 0 and tokens[at] in BETWEEN and number.first - 1 - at < MOST_BETWEEN:
+        at -= 1
+    if at < 0:
+        return False
+    # "climb 40 degrees" says too little: it may climb and turn
+    return at < number.first - 1 and tokens[at] in SLOPES | SLOPING
+
+
+FAR = 100
+"""A unit of this many metres or more, without a number, means one unit, as in "mile and a half"."""
+DENOMINATORS = ("2", "3", "4", "5", "8", "10")
+"""What may stand below the stroke of a fraction of a unit: "3/4 mile"."""
+SHARE = re.compile(r"0[.,]\d+")
+"""A share of a unit in decimals: "0.3 of a mile"."""
+WHOLE_AND = frozenset({"-", "and", "und", "et", "y", "e"})
+"""Words between a whole number and a fraction: "1 and 1/2 miles"."""
+GERMAN_HALF = re.compile(r"(ander|\w*?)(?:ein|und|t)?(halb|viertel)(tausend)?")
+"""A German number with its fraction in one word: "zweieinhalb", "dreieinviertel"."""
+OF_A_CIRCLE = frozenset(
+    {"circle", "loop", "kreis", "kehre", "drehung", "cercle", "tour", "boucle", "vuelta", "circulo", "giro"}
+    | {"cerchio", "hour", "minute", "hora", "ora", "heure", "stunde", "-"}
+)
+"""Words that show that a fraction is no part of the unit before it: "two kilometres and a half turn"."""
+POINTS = frozenset({"point", "komma", "virgule", "coma", "virgola"})
+"""The words between a whole number and its decimals."""
+MOST_WORDS = 3
+"""The largest number of words that decimals have; a hyphen counts as a word."""
+
+
+def unit_fraction(tokens: list[str], at: int) -> Number | None:
+    """Reads "3/4 mile", "1 1/2 miles" and "0.3 of a mile"."""
+    if SHARE.fullmatch(tokens[at]) and tokens[at + 1 : at + 2] == ["of"]:
+        return _of_unit(float(tokens[at].replace(",", ".")), tokens, at, at)
+    is_number_of_turn = at > 0 and tokens[at - 1] in ONE_TURN | COUNTED
+    for first in (at + 1, at + 2) if tokens[at].isdecimal() and not is_number_of_turn else ():
+        share = _share(tokens, first)
+        is_joined = first == at + 1 or WHOLE_AND.issuperset(tokens[at + 1 : at + 2])
+        if share and is_joined and tokens[first + 3 : first + 4] != ["-"]:
+            return _of_unit(int(tokens[at]) + share, tokens, at, first + 2)
+    share = _share(tokens, at)
+    return _of_unit(share, tokens, at, at + 2) if share else None
+
+
+def _share(tokens: list[str], at: int) -> float | None:
+    """Returns the value of a fraction such as "3/4" at this place; None if there is none."""
+    above, stroke, below = (*tokens[at : at + 3], "", "", "")[:3]
+    is_fraction = stroke == "/" and above.isdecimal() and below in DENOMINATORS
+    return int(above) / int(below) if is_fraction else None
+
+
+def _of_unit(value: float, tokens: list[str], at: int, last: int) -> Number | None:
+    """Returns a number from token ``at`` to ``last`` and the words before its unit, a length.
+
+    None if no unit follows, or if it is a fraction of a unit as small as a metre: "turns 3/4 m wide".
+    """
+    while tokens[last + 1 : last + 2] and tokens[last + 1] in SHARE_FILLERS:
+        last += 1
+    unit = unit_at(tokens, last + 1)
+    is_small = unit is not None and unit[1] < FAR and (value < 1 or last - at < 3)
+    return None if unit is None or unit[0] != "metres" or is_small else Number(value, at, last, "", False)
+
+
+def whole_and_share(tokens: list[str], at: int) -> Number | None:
+    """Reads "two and a half kilometres", "three and a quarter miles", "zweieinhalb Kilometer" and "one and a
+    half thousand metres".
+    """
+    value = _german_half(tokens[at])
+    if value is not None:
+        return _before_unit(value, tokens, at, at)
+    whole = float(tokens[at]) if tokens[at].isdecimal() else float(number_word(tokens[at]))
+    whole = 1.0 if tokens[at] in ONES else whole
+    if not whole or tokens[at + 1 : at + 2] == [] or tokens[at + 1] not in WHOLE_AND - {"-"}:
+        return None
+    share, last = _share_in_words(tokens, at + 2)
+    return _before_unit(whole + share, tokens, at, last) if share else None
+
+
+def take_share(number: Number, tokens: list[str]) -> None:
+    """Adds to "two kilometres" the half of a kilometre in "two kilometres and a half"."""
+    joint = tokens[number.last + 1 : number.last + 2]
+    if number.unit != "metres" or number.factor < FAR or not joint or joint[0] not in WHOLE_AND - {"-"}:
+        return
+    share, last = _share_in_words(tokens, number.last + 2)
+    behind = [token for token in tokens[last + 1 :] if token not in SHARE_FILLERS - {"-"}][:1]
+    if not share or (behind and (behind[0] in OF_A_CIRCLE | ONE_TURN | COUNTED or unit_at(behind, 0))):
+        return
+    number.value, number.last = round(number.value + share * number.factor, 1), last
+
+
+def _share_in_words(tokens: list[str], at: int) -> tuple[float, int]:
+    many, place = 1, at
+    if tokens[at : at + 1] and (tokens[at] in ONES or number_word(tokens[at]) == 3):  # three quarters
+        many, place = (1 if tokens[at] in ONES else 3), at + 1
+    share = SHARES.get(tokens[place], 0.0) if place < len(tokens) else 0.0
+    return (many * share, place) if many * share < 1 else (0.0, place)
+
+
+def _german_half(word: str) -> float | None:
+    """Returns the value of "zweieinhalb", "anderthalb" or "dreieinhalbtausend"; None for any other word."""
+    found = GERMAN_HALF.fullmatch(word)
+    if found is None:
+        return None
+    whole, share, thousand = found.groups()
+    many = {"ander": 1, "ein": 1}.get(whole) or number_word(whole)
+    if not many or (whole == "ander" and share != "halb"):
+        return None
+    if share == "viertel" and "ein" not in word.removeprefix(whole):
+        value = many / 4 if many == 3 else 0.0  # "dreiviertel" is 3/4
+    else:
+        value = many + (0.5 if share == "halb" else 0.25)
+    return value * (1000 if thousand else 1) or None
+
+
+def _before_unit(value: float, tokens: list[str], at: int, last: int) -> Number | None:
+    """Returns a number from token ``at`` to ``last``, or to "thousand" behind it; None if no unit follows."""
+    size = SIZES.get(tokens[last + 1], 1) if tokens[last + 1 : last + 2] else 1
+    last += size > 1
+    while tokens[last + 1 : last + 2] and tokens[last + 1] in SHARE_FILLERS - {"-"}:
+        last += 1
+    return Number(value * size, at, last, "", False) if unit_at(tokens, last + 1) else None
+
+
+def with_decimals(number: Number, tokens: Sequence[str]) -> Number:
+    """Returns a number with the decimals that follow in words; unchanged without decimals and a unit."""
+    if not number.is_bare or number.unit or number.value != int(number.value):
+        return number
+    if tokens[number.last + 1 : number.last + 2] == [] or tokens[number.last + 1] not in POINTS:
+        return number
+    decimals, key = "", tuple[str, ...]()
+    last = end = number.last + 1
+    for word in tokens[number.last + 2 : number.last + 2 + MOST_WORDS]:
+        end += 1
+        key += (word,) if word != "-" else ()
+        digits = "".join("1" if each in ONES else _decimals_of((each,)) for each in key)
+        both = _decimals_of(key)
+        if len(both) == 2 or (len(digits) == len(key) > 0):  # "vingt-cinq", or "two five"
+            decimals, last = both if len(both) == 2 else digits, end
+    if not decimals or unit_at(tokens, last + 1) is None:  # "point one a dip point two a left"
+        return number
+    return replace(number, value=float(f"{number.value:.0f}.{decimals}"), last=last)
+
+
+def one_with_decimals(tokens: Sequence[str], at: int) -> Number | None:
+    """Reads "one point five" and "due virgola cinque": "one" and "due" are numbers only with decimals."""
+    value = 1 if tokens[at] in ONES else number_word(tokens[at])
+    found = with_decimals(Number(float(value), at, at), tokens) if value else None
+    return found if found is not None and found.last > at else None
+
+
+def _decimals_of(key: tuple[str, ...]) -> str:
+    return str(next(iter(numbers_in_words(key).values()), ""))
+
+
+PLUS_MINUS = frozenset(
+    tuple(sign.split())
+    for sign in (
+        *("±", "+ / -", "+ -", "+ or -", "plus or minus", "plus / minus", "plus minus", "give or take"),
+        *("plus oder minus", "plus ou moins", "mas o menos", "mas menos", "piu o meno", "piu meno"),
+        *("a tolerance of", "tolerance"),
+    )
+)
+OPENING = frozenset([",", "(", "-"])
+LONGEST_SIGN = 4
+"""The number of words of the longest expression for "plus or minus", including a bracket before it."""
+
+
+def tolerances_first(said: Sequence[str]) -> list[str]:
+    """Moves a noun behind a tolerance: "five turns, give or take 1" becomes "five, give or take 1 turns"."""
+    words = [*said]
+    tokens = [plain(word) for word in words]
+    for at in range(1, len(words) - 2):
+        if tokens[at] not in COUNTED:
+            continue
+        for last in range(at + 2, min(at + 2 + LONGEST_SIGN, len(words))):
+            if _is_tolerance(tokens[at + 1 : last]) and _is_count(tokens, last):
+                last += "(" in tokens[at:last] and tokens[last + 1 : last + 2] == [")"]
+                words[at : last + 1] = [*words[at + 1 : last + 1], words[at]]
+                return words
+    return words
+
+
+def _is_count(tokens: Sequence[str], at: int) -> bool:
+    token = tokens[at]
+    return (token.isdecimal() or token in ONES or numbers_in_words((token,)) != {}) and not unit_at(
+        tokens, at + 1
+    )
+
+
+def with_tolerances(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Number]:
+    """Removes the numbers that are tolerances; the number that has the tolerance keeps it as ``spread``."""
+    out: list[Number] = []
+    for number in numbers:
+        if out and _is_tolerance(tokens[out[-1].last + 1 : number.first]) and number.value < out[-1].value:
+            _take(out[-1], number, tokens)
+        else:
+            out.append(number)
+    for number in out:
+        _take_one(number, tokens)
+    return out
+
+
+def _take_one(number: Number, tokens: Sequence[str]) -> None:
+    """Sets the tolerance of a count to 1 if the text gives the tolerance as a word such as "one" or "eine".
+
+    Such words are not read as numbers elsewhere, since they are mostly articles.
+    """
+    if not (number.is_bare and is_count(tokens, number)) or number.spread:
+        return
+    for place in range(number.last + 1, min(number.last + 2 + LONGEST_SIGN, len(tokens))):
+        if tokens[place] in ONES and _is_tolerance(tokens[number.last + 1 : place]):
+            number.spread, number.last = 1, place
+            return
+
+
+def _is_tolerance(between: Sequence[str]) -> bool:
+    words = [*between]
+    while words and words[0] in OPENING:
+        words = words[1:]
+    return tuple(words) in PLUS_MINUS
+
+
+def _take(number: Number, tolerance: Number, tokens: Sequence[str]) -> None:
+    both_counts = number.is_bare and tolerance.is_bare and is_count(tokens, number)
+    if number.is_bare and tolerance.unit in ("metres", "degrees"):
+        number.value = round(number.value * tolerance.factor, 1)
+        number.unit, number.is_bare = tolerance.unit, False
+    if not both_counts:
+        number.spread = _in_unit_of(number, tolerance)
+    elif tolerance.value == int(tolerance.value):
+        number.spread = tolerance.value
+    is_open = "(" in tokens[number.last + 1 : tolerance.first]
+    closes = tolerance.last + 1 < len(tokens) and tokens[tolerance.last + 1] == ")"
+    number.last = tolerance.last + (is_open and closes)
+
+
+def _in_unit_of(number: Number, tolerance: Number) -> float:
+    """Returns the tolerance of a measure in the unit of its value; a percentage of a length is one of it."""
+    if tolerance.unit == number.unit:
+        return tolerance.value
+    if tolerance.unit == "percent":
+        return number.value * tolerance.value / 100
+    return tolerance.value * number.factor if tolerance.is_bare else 0
+
 
 SLOTS = 12
 """The largest number of slots in one description; the values of further numbers are lost."""

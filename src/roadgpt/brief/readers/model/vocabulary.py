@@ -4,31 +4,120 @@ turn x3 left; straight len=91.4 | up        ->  turn x 3 left ; straight len= [1
 """
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
-from roadgpt.brief.plan import with_halfway
-from roadgpt.brief.readers.model.computed_numbers import KEYS as COMPUTED_KEYS
-from roadgpt.brief.readers.model.computed_numbers import ONE, Compared, computed, with_values
-from roadgpt.brief.readers.model.measures import LARGEST_SEEN
-from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot
+from roadgpt.brief.readers.model.slots import LARGEST_SEEN, SLOTS, NumberSlot
+
+MULTIPLES = ("2", "0.5", "3", "1.5", "0.333", "4", "0.25", "0.75", "0.667", "2.5", "1.333", "1.25")
+"""The factors of one slot, the usual ones first."""
+KEYS = frozenset(["deg=", "r=", "len=", "pct=", "climb="])
+"""The keys of plans whose numbers may be computed."""
+ONE = frozenset(["pct=", "climb="])
+"""The keys of numbers that may differ by 1 from another number without a figure: "a percent steeper"."""
+STEPS = ("2", "3", "4", "5", "6", "7", "8")
+"""How often a difference can be added or subtracted, if more than once."""
+SIGNS = ("+", "-")
+MULTIPLE = re.compile(
+    r"\b(?:"
+    r"twice|thrice|doubl|tripl|quadrupl|half|halv|third|quarter|times|fold\b"
+    r"|as (?:much|far|long|large|big)|\w*halb|haelfte|halft|doppelt|zweimal|dreimal|viermal"
+    r"|\w+fach|mal\b|drittel|viertel|anderthalb|nochmal|fois|moiti|demi|tiers|quart|mitad"
+    r"|medi[oa]|dobl|veces|tercer|terci|cuart|doppi|divis|dimezz|meta\b|mezz|volte|terz"
+    r")"
+)
+"""Words that can give a number as a multiple of another number, in texts without accents."""
+DIFFERENCE = re.compile(
+    r"[+=]|\b(?:"
+    r"more|less|fewer|further|farther|add|plus|minus|off|each|every|step|increas|decreas|grow"
+    r"|shrink|drop|gain|by|than|next|together|sum|both|on top|extra"
+    r"|(?:long|short|wid|tight|larg|small|bigg|steep|gentl|flatt|high|low|sharp|great|strong)er"
+    r"|mehr|weniger|jede|je\b|jeweils|zunehm|abnehm|wachs|dazu|zusatzlich|ansteig|aufsteig"
+    r"|schritt|um\b|als|zusammen"
+    r"|(?:lang|kurz|eng|weit|gross|klein|steil|flach|hoh|nied\w*|sanft|scharf|stark|schwach)er\w*"
+    r"|moins|chaque|augment|diminu|croi|ajout|ensemble|reuni|somme|mas|menos|cada|aument"
+    r"|disminu|crec|junt|piu|meno|ogni|ciascun|cresc|diminui|aggiung|insieme|cale|cala|punt"
+    r"|scend|partir|bout"
+    r")"
+)
+"""Words that can give a number by its difference from another number, in texts without accents."""
+SHAPE = re.compile(
+    r"(?:"
+    r"right.angle|square|quarter|half.(?:circle|turn)|viertelkreis|cuarto de|quart de"
+    r"|quarto di|recht\w* wink|rechtwink|halbkreis|angles? droits?|equerre"
+    r"|demi.(?:cercle|tour)|angul\w+ rect|semic|media vuelta|angol\w rett|mezzo giro"
+    r")"
+)
+"""Words for an angle of 90 or 180 degrees."""
+ROUND = ("90", "180")
+DIGITS = re.compile(r"(?<![\w.])\d+(?![\w.])")
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """Whether a text may give numbers relative to other numbers: by a factor, or by a difference."""
+
+    by_factor: bool = False
+    by_difference: bool = False
+    plain: frozenset[str] = frozenset()
+    """Numbers that the text has without a unit, or as a word for an angle; they are not computed."""
+
+    @classmethod
+    def of(cls, text: str) -> "Compared":
+        """Returns what the words of a text allow; the text must be in lower case and without accents."""
+        plain = frozenset([*DIGITS.findall(text), *(ROUND if SHAPE.search(text) else ())])
+        return cls(MULTIPLE.search(text) is not None, DIFFERENCE.search(text) is not None, plain)
+
+
+def with_values(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> list[str]:
+    """Returns the tokens of a plan, with the value in place of each sum and each multiple of slots."""
+    rest = list(tokens)
+    out: list[str] = []
+    at, is_amount = 0, False
+    while at < len(rest):
+        made = _value_at(rest, at, slots) if is_amount else None
+        goes_on = is_amount and (rest[at] in ("..", "-") or _is_number(rest[at], slots))
+        is_amount = rest[at] in KEYS or goes_on
+        out.append(rest[at] if made is None else f"{made[0]:.1f}".removesuffix(".0"))
+        at = at + 1 if made is None else made[1]
+    return out
+
+
+def _value_at(tokens: Sequence[str], at: int, slots: Sequence[NumberSlot]) -> tuple[float, int] | None:
+    """Returns the value of the sum or multiple that begins at a token, and the index behind it."""
+    behind = tokens[at + 1 : at + 3]
+    if len(behind) < 2 or not _is_number(tokens[at], slots):
+        return None
+    base, (sign, other) = value_of(tokens[at], slots), behind
+    if sign == "x":
+        return base * exact_factor(other), at + 3
+    if sign not in SIGNS or not _is_number(other, slots):
+        return None
+    is_repeated = tokens[at + 3 : at + 4] == ["x"] and at + 4 < len(tokens)
+    times = float(tokens[at + 4]) if is_repeated else 1.0
+    return base + times * value_of(other, slots) * (1 if sign == "+" else -1), at + (5 if is_repeated else 3)
+
+
+def _is_number(token: str, slots: Sequence[NumberSlot]) -> bool:
+    return token.isdecimal() or (token[:1] == "[" and int(token[1:-1]) <= len(slots))
+
+
+def value_of(token: str, slots: Sequence[NumberSlot]) -> float:
+    """Returns the value of a number or a slot, such as "[1]", in a plan."""
+    return float(token) if token.isdecimal() else slots[int(token[1:-1]) - 1].value
+
+
+def exact_factor(factor: str) -> float:
+    """Returns the factor of a token; "0.333" is a third."""
+    return round(float(factor) * 12) / 12
+
 
 REFUSALS = ("!nonsense", "!contradiction", "!impossible", "!unclear")
 # The weights know these words by their positions, so the order here is fixed and differs from the Brief's.
 KINDS = [
-    "straight",
-    "crest",
-    "dip",
-    "turn",
-    "hairpin",
-    "switchback",
-    "u_turn",
-    "s_bend",
-    "chicane",
-    "slalom",
-    "serpentine",
-    "zigzag",
-    "winding",
-]
+    "straight", "crest", "dip", "turn", "hairpin", "switchback", "u_turn", "s_bend", "chicane", "slalom",
+    "serpentine", "zigzag", "winding",
+]  # fmt: skip
 SIDES = ["left", "right"]
 SHARPNESS = ["gentle", "sweeping", "sharp"]
 SIZES = ["long", "short"]
@@ -114,109 +203,14 @@ plan that needs one.
 TOKENS: tuple[str, ...] = tuple(dict.fromkeys([*OF_ROADS, *NETWORKS]))
 """All tokens. The weights know the tokens by their positions, so new tokens are added at the end."""
 NUMBER_OF = {token: index for index, token in enumerate(TOKENS)}
-PIECE = re.compile(
-    r"//|\|\||![a-z]+|(?:left|right)(?:\+(?:right|straight))+|[a-z_]+\(|[a-z_]+=|x(?=-?[\d.])|half[12]|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|):,=+]|-(?=\d)"
-)
 WAYS = re.compile(r"(?<=route=)(?:left|right|straight)(?:[+ ](?:left|right|straight))*")
 """The ways of a route through a map. As tokens they follow each other without a "+"."""
-LISTED = re.compile(r",(?=\s*-?\d)")
-"""A comma between numbers of a list; it has no token, so the numbers directly follow each other."""
-NUMERIC = re.compile(r"-?\d+(?:\.\d+)?")
 UNIT_OF = {
     "deg=": "degrees", "angle=": "degrees", "r=": "metres", "d=": "metres",
     "len=": "metres", "taper=": "metres", "climb=": "metres",
     "turning=": "degrees", "pct=": "percent", "steepest=": "percent", **MEASURED,
 }  # fmt: skip
 """The unit of the number after a key; numbers after other keys are counts."""
-CLOSE = 0.0051
-"""A factor is taken for a number in the text, or for a usual factor, if it differs by less than this."""
-
-
-def tokens_of(plan: str, slots: Sequence[NumberSlot], compared: Compared | None = None) -> list[str] | None:
-    """Returns the tokens of a plan; None if the plan has a number for which there is neither a slot nor a
-    token. Without ``compared``, no number is computed from others.
-    """
-    out: list[str] = []
-    key = ""
-    taken: dict[int, str] = {}
-    known = compared.plain if compared else frozenset()
-    line = WAYS.sub(lambda ways: ways[0].replace("+", " "), with_halfway(plan))
-    for piece in PIECE.findall(LISTED.sub(" ", line)):
-        if NUMERIC.fullmatch(piece):
-            if out[-1] == "x" and key in MEASURED:
-                found = _factor_tokens(float(piece), slots)
-                out.pop()
-            else:
-                is_count = out[-1] in ("x", *NOUNS, *KINDS, *NUMBERS)
-                found = _number_tokens(piece, "" if is_count else key, slots, taken)
-                is_said = found is not None and (found[-1] in SLOT_TOKENS or found[-1] in known)
-                if compared and key in COMPUTED_KEYS and not (is_count or is_said or "roundabout" in out):
-                    sign, value = ["-"] * piece.startswith("-"), abs(float(piece))
-                    made = computed(value, _bases(key, slots, taken, known), slots, compared)
-                    found = [*sign, *made] if made else found
-            if out[-1] == "r=" and "roundabout" in out and (found is None or found[0] not in SLOT_TOKENS):
-                across = _number_tokens(f"{2 * float(piece):g}", key, slots, taken)
-                if across and across[0] in SLOT_TOKENS:  # the text gives the diameter
-                    out[-1], found = "d=", across
-            if found is None:
-                return None
-            out += found
-            continue
-        if (piece.endswith("=") and len(piece) > 1) or piece in MEASURED:
-            key = piece
-        elif piece not in ("..", "=", "+", "-", "x", *SLOPES):
-            key = ""
-        out.append(ORDER if piece in OF_ORDER else piece)
-    return out
-
-
-def _bases(
-    key: str, slots: Sequence[NumberSlot], taken: Mapping[int, str], plain: Iterable[str]
-) -> list[str]:
-    """Returns the tokens of the numbers from which a number may be computed: first those already used for the
-    same key, the last one first, then those of the same unit, then those without a unit.
-    """
-    used = [index for index in reversed(list(taken)) if taken[index] == key]
-    free = [index for index in range(len(slots)) if index not in taken]
-    alike = [index for index in free if slots[index].unit == UNIT_OF[key]]
-    bare = [index for index in free if not slots[index].unit]
-    small = sorted((number for number in plain if number in NUMBERS and number not in FIXED), key=int)
-    one = ["1"] if key in ONE and "1" not in small else []
-    return [*(SLOT_TOKENS[index] for index in (*used, *alike, *bare)), *reversed(small), *one]
-
-
-def _factor_tokens(factor: float, slots: Sequence[NumberSlot]) -> list[str] | None:
-    """Returns the tokens of a factor: a percentage or a number in the text, or a usual factor."""
-    for index, slot in enumerate(slots):
-        if slot.unit in ("percent", ""):
-            share = slot.value / 100
-            ways = {"x+": 1 + share, "x-": 1 - share, "x%": share}
-            near = next((way for way, value in ways.items() if abs(value - factor) < CLOSE), None)
-            if near and (slot.unit or slot.value > 4):
-                return [near, SLOT_TOKENS[index]]
-        if not slot.unit and abs(slot.value - factor) < CLOSE:
-            return ["x", SLOT_TOKENS[index]]
-    usual = next((word for word in FACTORS if abs(float(word) - factor) < CLOSE), None)
-    return ["x", usual] if usual else None
-
-
-def _number_tokens(
-    piece: str, key: str, slots: Sequence[NumberSlot], taken: dict[int, str]
-) -> list[str] | None:
-    sign, digits = (["-"], piece[1:]) if piece.startswith("-") else ([], piece)
-    value = float(digits)
-    fits = [index for index, slot in enumerate(slots) if abs(slot.value - value) < 0.051]
-    if key in UNIT_OF:
-        same_unit = [index for index in fits if slots[index].unit == UNIT_OF[key]]
-        bare = [index for index in fits if not slots[index].unit]
-        fits = same_unit or bare
-    else:
-        fits = [index for index in fits if not slots[index].unit]
-    free = [index for index in fits if index not in taken]
-    if fits:
-        taken[(free or fits)[0]] = key
-        return [*sign, SLOT_TOKENS[(free or fits)[0]]]
-    return [*sign, digits] if digits in NUMBERS else None
 
 
 def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:

@@ -1,11 +1,67 @@
-"""The simulator ``mujoco``.
+"""The simulator ``mujoco``: MuJoCo computes the rigid bodies, RoadGPT the tyres and the road surface.
 
 The car can be changed: ``MujocoSimulator(replace(ETK_LIKE, max_drive_acceleration=4.0))`` uses a car with
-weaker acceleration.
-"""
+weaker acceleration."""
 
+from operator import itemgetter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roadgpt.drive.camera_sensor import CameraSensor, camera_of
+from roadgpt.drive.drive import COLUMNS, Columns, Drive
+from roadgpt.drive.drive_monitor import DriveMonitor
+from roadgpt.drive.driver_guard import DriverGuard
+from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Axle, Car, Tyre
-from roadgpt.drive.simulators.mujoco.simulator import MujocoSimulator
-from roadgpt.drive.simulators.mujoco.vehicle import Vehicle, plane
+from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle, plane
+from roadgpt.drive.view import View
+from roadgpt.stopping import look
+
+if TYPE_CHECKING:
+    from roadgpt.drive import Driver
+    from roadgpt.road import Road, World
 
 __all__ = ["ETK_LIKE", "Axle", "Car", "MujocoSimulator", "Tyre", "Vehicle", "plane"]
+
+_NAMES = tuple(COLUMNS)
+_SEEN = itemgetter(
+    *map(_NAMES.index, ["x", "y", "z", "heading", "speed", "yaw_rate", "s", "t", "steer", "vx", "vy"])
+)
+
+
+class MujocoSimulator:
+    """Simulates a saloon car in steps of 2 ms; the driver returns a command every 20 ms."""
+
+    def __init__(self, car: Car = ETK_LIKE, start_offset: float = 0.0) -> None:
+        """Uses this car, which starts ``start_offset`` metres to the left of the middle of its lane."""
+        self.car, self.start_offset = car, start_offset
+
+    def simulate(
+        self, road: "Road", world: "World", driver: "Driver", seed: int, keep_driving: bool = False
+    ) -> Drive:
+        """Implements `roadgpt.drive.Simulator.simulate`; the seed is only passed to the driver, because the
+        physics uses no random numbers."""
+        guard, camera = DriverGuard(driver), camera_of(driver)
+        vehicle = Vehicle.on(road, world, self.car)
+        sensor = None if camera is None else CameraSensor(camera, road, world)
+        outlook, station = Outlook(road, world), _NAMES.index("s")
+        monitor = DriveMonitor(road, world, self.car.box, keep_driving)
+        guard.start(road, world, seed)
+        middle = float(world.profile_of(road).middle(monitor.start))
+        vehicle.put(monitor.start, middle + self.start_offset)
+        rows, step = [vehicle.row.tobytes()], 0
+        while (ended := monitor.ended(vehicle.row, step * CONTROL, vehicle.has_fallen)) is None:
+            now = vehicle.row.tolist()
+            *place, steer, vx, vy = _SEEN(now)
+            image = None if sensor is None else sensor.see(vehicle.see())
+            ahead = outlook.at(now[station])
+            here = (step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image)
+            view = View._make((*here, *ahead))
+            vehicle.move(*guard.ask(view))
+            look()
+            rows.append(vehicle.row.tobytes())
+            step += 1
+        table = np.frombuffer(b"".join(rows)).reshape(len(rows), -1)
+        columns = Columns({name: table[:, place] for place, name in enumerate(_NAMES)})
+        return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box, tuple(guard.handovers))

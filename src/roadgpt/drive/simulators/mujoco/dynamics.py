@@ -1,24 +1,20 @@
 """The inner loop: computes the forces on the car in steps of 2 ms, between MuJoCo's two half steps.
 
-The forces are passed to MuJoCo as generalised forces (``qfrc_applied``), computed with formulas written for
-this one tree of bodies. The result is the same as with forces on the wheel bodies, but takes a fraction of
-the computing time.
-"""
+The forces are those of tyres, suspension, engine, brakes, air, and of the hull on the road; ABS, traction
+control and a simple ESC stand between the driver's pedals and the wheels. The forces are passed to MuJoCo as
+generalised forces (``qfrc_applied``), computed with formulas written for this one tree of bodies. The result
+is the same as with forces on the wheel bodies, but takes a fraction of the computing time."""
 
 import math
 from typing import Any, NamedTuple
 
-from roadgpt.drive.compiled import COMPILES, call_at, inlined
+import numpy as np
+
+from roadgpt.compiled import COMPILES, call_at, inlined
 from roadgpt.drive.drive import FloatArray
-from roadgpt.drive.lane_polygon import LanePolygon
+from roadgpt.drive.lane_position import LanePolygon
 from roadgpt.drive.sampled_road import SampledRoad, locate_on, room_at
-from roadgpt.drive.simulators.mujoco.chassis_control import (
-    SLOWEST_ABS,
-    esc_torques,
-    expected_yaw_rate,
-    slip_valve,
-)
-from roadgpt.drive.simulators.mujoco.hull import hull_forces
+from roadgpt.drive.simulators.mujoco.car import Car
 from roadgpt.drive.simulators.mujoco.model import (
     BODY,
     CARRIER,
@@ -29,17 +25,31 @@ from roadgpt.drive.simulators.mujoco.model import (
     WHEEL,
 )
 from roadgpt.drive.simulators.mujoco.tyres import tyre_forces
-from roadgpt.drive.simulators.mujoco.vectors import Vector, add_force, cross, dot, normal_of, velocity_at
 
 AIR = 1.2  # kg/m^3, at 20 degrees C
 UNDER = 0.25  # m below the road's surface, beyond which a wheel has no contact any more
-
 # The car's own state beside MuJoCo's, as indices into one array ...
 STEER, THROTTLE, BRAKE, EXPECTED, STATION, SUPPORT, PAST_VX, PAST_VY = range(8)
 STATE = 8
 # ... and one row for each wheel.
 SLIP_X, SLIP_Y, ABS, TCS, AT, LOAD, FX, FY = range(8)
 WHEEL_STATE = 8
+LETS_GO = 12.0  # 1/s, maximum rate at which a valve closes
+COMES_BACK = 5.0  # 1/s, maximum rate at which it opens
+SLOWEST_ABS = 1.5  # m/s, below which wheels may lock
+SLOWEST_ESC = 5.0  # m/s, below which the ESC does nothing
+TOLERANCE = 0.06  # rad/s of yaw rate error that the ESC ignores
+TOLERANCE_SHARE = 0.10  # of the expected yaw rate, ignored on top of that
+ESC_LAG = 0.12  # s, lag of the expected yaw rate behind the steering
+ESC_MOST = 2500.0  # Nm at one wheel
+CUT = 4.0  # s/rad, share of throttle removed per yaw rate error
+FRICTION_USED = 0.95  # share of the friction that the expected yaw rate may need
+SPRING = 100e3  # N/m at each point
+DAMPER = 6e3  # Ns/m
+FRICTION = 0.5  # of sheet metal on a road of friction 1
+SMOOTH = 0.2  # m/s of sliding at which that friction is reached
+DEEP = 0.3  # m below the surface, beyond which a point has no contact any more
+Vector = tuple[float, float, float]
 
 
 call: Any = call_at if COMPILES else lambda function, model, data: function(model, data)
@@ -71,8 +81,7 @@ class Ground(NamedTuple):
     rims: FloatArray
     """Offsets of the left and the right edge of the ground in m to the left of the centre line, shape (n, 2):
     one row for each row of the table in ``sampled``."""
-    beyond: float
-    """Length in m by which the ground continues before the start and after the end of the road."""
+    beyond: float  # length in m by which the ground continues before the start and after the end of the road
     friction: float
     lane: LanePolygon
 
@@ -80,16 +89,11 @@ class Ground(NamedTuple):
 class CarState(NamedTuple):
     """The state variables of the car that MuJoCo does not store, and working memory."""
 
-    state: FloatArray
-    """State of the whole car, shape (STATE,)."""
-    wheels: FloatArray
-    """State of each wheel, shape (4, WHEEL_STATE)."""
-    hull: FloatArray
-    """Points of the hull in the body's axes, shape (n, 3), metres."""
-    box: FloatArray
-    """Corners of the car's box in plan, shape (4, 2), metres."""
-    scratch: FloatArray
-    """Working memory for clipping polygons, shape (2, 16, 2)."""
+    state: FloatArray  # state of the whole car, shape (STATE,)
+    wheels: FloatArray  # state of each wheel, shape (4, WHEEL_STATE)
+    hull: FloatArray  # points of the hull in the body's axes, shape (n, 3), metres
+    box: FloatArray  # corners of the car's box in plan, shape (4, 2), metres
+    scratch: FloatArray  # working memory for clipping polygons, shape (2, 16, 2)
 
 
 @inlined
@@ -178,12 +182,8 @@ def _hinge_angle(car: Any, axle: Any, steer: float, side: int) -> float:
 def _ground_contact(
     car: Any, ground: Ground, wheel: FloatArray, centre: FloatArray
 ) -> tuple[Vector, float, float]:
-    """Finds the ground under the centre of a wheel.
-
-    Returns:
-        The normal of the ground; the distance of the centre from it in m; the share of the tyre's width, 0
-        to 1, that has ground under it.
-    """
+    """Returns the normal of the ground under a wheel's centre, the distance of the centre from it in m, and
+    the share of the tyre's width, 0 to 1, that has ground under it."""
     sampled = ground.sampled
     s, t, height, slope, lateral, heading = locate_on(
         sampled.table, sampled.first, sampled.step, centre[0], centre[1], wheel[AT]
@@ -197,8 +197,8 @@ def _ground_contact(
 
 @inlined
 def _contact_axes(axis: Vector, normal: Vector) -> tuple[Vector, Vector, float]:
-    """Returns two unit vectors in the plane of the ground, along the wheel and to its left, and the
-    reciprocal of the camber's cosine, at most 20."""
+    """Returns unit vectors along the wheel and to its left, and the reciprocal of the camber's cosine, at
+    most 20."""
     lx, ly, lz = cross(axis, normal)
     norm = 1.0 / max(math.sqrt(lx * lx + ly * ly + lz * lz), 0.05)
     along = lx * norm, ly * norm, lz * norm
@@ -207,17 +207,16 @@ def _contact_axes(axis: Vector, normal: Vector) -> tuple[Vector, Vector, float]:
 
 @inlined
 def _wheel_load(axle: Any, share: float, depth: float, rate: float) -> float:
-    """Returns the load in N on a wheel with ground under the share ``share`` of its tyre's width; a tyre
-    cannot pull. ``depth`` is the compression of the tyre in m, and ``rate`` the speed in m/s at which the
-    contact point moves away from the ground."""
+    """Returns the load in N on a wheel: a tyre cannot pull. ``depth`` is its compression in m, and ``rate``
+    the speed in m/s at which the contact point moves away from the ground."""
     load: float = share * (axle.tyre_vertical_stiffness * depth - axle.tyre_vertical_damping * rate)
     return max(load, 0.0)
 
 
 @inlined
 def _suspension_force(i: int, mj: MujocoHandles, car: Any, axle: Any, force: Vector) -> float:
-    """Returns the force along the suspension in N: the tyre's force minus the forces of spring, damper,
-    anti-roll bar and bump stops."""
+    """Returns in N the tyre's force along the suspension without spring, damper, anti-roll bar and bump
+    stops."""
     slide, opposite = SLIDE_DOF[i], SLIDE_DOF[i + 1 - 2 * (i % 2)]
     out, other = mj.qpos[slide + 1], mj.qpos[opposite + 1]
     m = mj.xmat[BODY]
@@ -231,11 +230,8 @@ def _suspension_force(i: int, mj: MujocoHandles, car: Any, axle: Any, force: Vec
 
 @inlined
 def _set_valves(car: Any, friction: float, forward: float, wheel: FloatArray) -> None:
-    """Updates the valves of ABS and traction control.
-
-    The slip at which a tyre reaches its peak friction decreases with the road's friction, and so do the
-    thresholds. ABS and traction control are assumed to know the road's friction.
-    """
+    """Updates the valves of ABS and traction control, which are assumed to know the road's friction: the slip
+    at which a tyre reaches its peak friction decreases with it, and so do the thresholds."""
     grip = min(friction, 1.0)
     wheel[ABS] = (
         slip_valve(wheel[ABS], -wheel[SLIP_X], car.abs_slip_threshold * grip, STEP)
@@ -302,10 +298,148 @@ def _wheel(
 
 @inlined
 def _lies_low(mj: MujocoHandles, car: Any, ground: Ground, state: FloatArray) -> bool:
-    """Returns whether the underbody could touch the road."""
     sampled = ground.sampled
     x, y, z = mj.xpos[BODY, 0], mj.xpos[BODY, 1], mj.xpos[BODY, 2]
     s, _, height, _, lateral, _ = locate_on(sampled.table, sampled.first, sampled.step, x, y, state[STATION])
     state[STATION] = s
     low: bool = (z - height) / math.sqrt(1.0 + lateral * lateral) < car.cg_height - 0.6 * car.ground_clearance
     return low
+
+
+@inlined
+def slip_valve(opening: float, slip: float, limit: float, dt: float) -> float:
+    """Returns the share of the torque, 0 to 1, that ABS or traction control lets pass after a time step of
+    ``dt`` seconds. ``opening`` is the share before the step; the share decreases while ``slip`` exceeds
+    ``limit``."""
+    if limit <= 0.0:
+        return 1.0
+    rate = 20.0 * (limit - slip) / limit
+    rate = min(max(rate, -LETS_GO), COMES_BACK)
+    return min(max(opening * (1.0 + rate * dt), 0.02), 1.0)
+
+
+@inlined
+def expected_yaw_rate(
+    car: Any, friction: float, speed: float, steer: float, before: float, dt: float
+) -> float:
+    """Returns the yaw rate in rad/s that the ESC expects for the steering angle. The friction limits this yaw
+    rate, and a lag delays it; ``before`` is the value one time step earlier."""
+    wanted = speed * math.tan(steer) / (car.wheelbase + car.esc_understeer_gradient * speed * speed)
+    most = FRICTION_USED * friction * 9.81 / max(speed, 1.0)
+    wanted = min(max(wanted, -most), most)
+    now: float = before + (wanted - before) * dt / (ESC_LAG + dt)
+    return now
+
+
+@inlined
+def esc_torques(
+    car: Any, speed: float, yaw_rate: float, expected: float
+) -> tuple[float, float, float, float, float]:
+    """Returns the ESC's braking torques in Nm (left front, right front, left rear, right rear) and the share
+    of the throttle, 0 to 1, that the ESC allows."""
+    excess = yaw_rate - expected
+    beyond = abs(excess) - TOLERANCE - TOLERANCE_SHARE * abs(expected)
+    if car.esc_gain <= 0.0 or speed < SLOWEST_ESC or beyond <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 1.0
+    torque = min(car.esc_gain * beyond, ESC_MOST)
+    kept = max(1.0 - CUT * beyond, 0.0)
+    turns_left = expected > 0.0 if abs(expected) > 0.02 else yaw_rate > 0.0
+    too_far = excess > 0.0 if turns_left else excess < 0.0
+    if too_far:  # oversteer: braking the outer front wheel turns the car back
+        if turns_left:
+            return 0.0, torque, 0.0, 0.0, kept
+        return torque, 0.0, 0.0, 0.0, kept
+    if turns_left:  # understeer: braking the inner rear wheel turns the car in
+        return 0.0, 0.0, 0.5 * torque, 0.0, kept
+    return 0.0, 0.0, 0.0, 0.5 * torque, kept
+
+
+def hull_points(car: Car) -> FloatArray:
+    """Returns the hull's points in the body's axes, shape (n, 3), metres: a grid on the underbody, and the
+    roof's corners."""
+    front = car.box_offset + car.length / 2
+    floor = car.ground_clearance - car.cg_height
+    under = [
+        (x, y, floor)
+        for x in np.linspace(front - car.length, front, 5)
+        for y in np.linspace(-0.48, 0.48, 7) * car.width
+    ]
+    roof = [
+        (x, y * car.width, car.overall_height - car.cg_height) for x in (-1.3, 0.5) for y in (-0.35, 0.35)
+    ]
+    return np.array(under + roof)
+
+
+@inlined
+def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray) -> None:
+    """Adds the contact forces at the hull's points to the forces and moments on the body; moments are in
+    world axes.
+
+    They matter when wheels have left the road: the sill then rests on the road's edge, and the car slides or
+    overturns. Impacts are modelled as soft springs; their forces are not validated."""
+    sampled = ground.sampled
+    m = mj.xmat[BODY]
+    for j in range(hull.shape[0]):
+        hx, hy, hz = hull[j, 0], hull[j, 1], hull[j, 2]
+        bx = m[0] * hx + m[1] * hy + m[2] * hz
+        by = m[3] * hx + m[4] * hy + m[5] * hz
+        bz = m[6] * hx + m[7] * hy + m[8] * hz
+        px, py, pz = mj.xpos[BODY, 0] + bx, mj.xpos[BODY, 1] + by, mj.xpos[BODY, 2] + bz
+        s, t, height, slope, lateral, heading = locate_on(
+            sampled.table, sampled.first, sampled.step, px, py, station + hx
+        )
+        normal = normal_of(slope, lateral, heading)
+        nx, ny, nz = normal
+        depth = (height - pz) * nz
+        if depth <= 0.0 or depth > DEEP or room_at(ground.rims, sampled.first, sampled.step, s, t) < 0.0:
+            continue
+        if s < -ground.beyond or s > sampled.length + ground.beyond:
+            continue
+        ux, uy, uz = velocity_at(mj, BODY, (px, py, pz))
+        up = dot((ux, uy, uz), normal)
+        force = max(SPRING * depth - DAMPER * up, 0.0)
+        ux, uy, uz = ux - up * nx, uy - up * ny, uz - up * nz
+        slide = math.sqrt(ux * ux + uy * uy + uz * uz)
+        drag = -FRICTION * ground.friction * force / max(slide, SMOOTH)
+        push = force * nx + drag * ux, force * ny + drag * uy, force * nz + drag * uz
+        add_force(mj.qfrc, push, (bx, by, bz))
+
+
+@inlined
+def dot(a: Vector, b: Vector) -> float:
+    """Returns the scalar product of two vectors."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inlined
+def cross(a: Vector, b: Vector) -> Vector:
+    """Returns the vector product of two vectors."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@inlined
+def normal_of(slope: float, lateral: float, heading: float) -> Vector:
+    """Returns the unit normal of a surface from its slope along a heading and its slope to the left of that
+    heading."""
+    nz = 1.0 / math.sqrt(1.0 + slope * slope + lateral * lateral)
+    cos, sin = math.cos(heading), math.sin(heading)
+    return (lateral * sin - slope * cos) * nz, -(slope * sin + lateral * cos) * nz, nz
+
+
+@inlined
+def velocity_at(mj: Any, body: int, point: Vector) -> Vector:
+    """Returns the velocity in m/s of a point of a rigid body; ``point`` is in world coordinates."""
+    # MuJoCo stores angular and linear velocity, the latter at the centre of gravity of the whole car.
+    v = mj.cvel[body]
+    rx, ry, rz = point[0] - mj.com[BODY, 0], point[1] - mj.com[BODY, 1], point[2] - mj.com[BODY, 2]
+    return v[3] + v[1] * rz - v[2] * ry, v[4] + v[2] * rx - v[0] * rz, v[5] + v[0] * ry - v[1] * rx
+
+
+@inlined
+def add_force(qfrc: FloatArray, force: Vector, arm: Vector) -> None:
+    """Adds a force in N, and its moment about the body's centre, to the generalised forces; ``arm`` is the
+    vector in m from that centre to the point of application. The moment is in world axes."""
+    moment = cross(arm, force)
+    for k in range(3):
+        qfrc[k] += force[k]
+        qfrc[3 + k] += moment[k]

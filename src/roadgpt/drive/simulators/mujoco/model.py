@@ -3,8 +3,7 @@
     body (6) --- slide along the suspension (4) --- steering hinge (2, front) --- wheel spin (4)
 
 Springs, dampers, tyres, brakes, engine and air drag are computed in ``dynamics``; the MuJoCo model has no
-contacts and no constraints. The wheels are numbered left front, right front, left rear, right rear.
-"""
+contacts and no constraints. The wheels are numbered left front, right front, left rear, right rear."""
 
 import math
 from typing import Any

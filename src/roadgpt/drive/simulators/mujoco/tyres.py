@@ -3,13 +3,12 @@
 The model is the Magic Formula with the similarity method. The longitudinal and the lateral force each have
 a pure-slip curve. Under combined slip, the direction of the normalised slip determines how the two forces
 share the friction ellipse. Slips build up over a relaxation length. Source: H. B. Pacejka, Tyre and Vehicle
-Dynamics, 3rd ed., sections 4.3.1, 7.2 and 8.6 (low speeds).
-"""
+Dynamics, 3rd ed., sections 4.3.1, 7.2 and 8.6 (low speeds)."""
 
 import math
 from typing import Any
 
-from roadgpt.drive.compiled import inlined
+from roadgpt.compiled import inlined
 
 LOW_SPEED = 2.5  # m/s, below which a damper is added (Pacejka 8.6)
 LOW_SPEED_DAMPING = 0.75  # Ns/m per N of load
@@ -18,26 +17,22 @@ MOST_SLIP = 3.0  # normalised, limit of the slip that a standing tyre's carcass 
 
 @inlined
 def _curve(shape: float, bend: float, slip: float) -> float:
-    """Returns the value of the Magic Formula at a normalised slip; the curve has the height 1, and the slope
-    1 at the origin."""
+    """Returns the Magic Formula at a normalised slip; its height is 1, and its slope at the origin is 1."""
     b = slip / shape
     return math.sin(shape * math.atan(b - bend * (b - math.atan(b))))
 
 
 @inlined
 def _relaxed(slip: float, sliding: float, speed: float, length: float, dt: float) -> float:
-    """Returns the slip after a time step, for a sliding speed in m/s and a relaxation length in m.
-
-    Implicit integration makes the relaxation stable at every speed.
-    """
+    """Returns the slip after a time step, integrated implicitly, which is stable at every speed."""
     way = dt / length
     return (slip + way * sliding) / (1.0 + way * speed)
 
 
 @inlined
 def _peak_friction(axle: Any, friction: float, over: float, camber: float) -> tuple[float, float]:
-    """Returns the longitudinal and lateral peak friction coefficients of the tyre; ``over`` is the load above
-    the nominal load, as a share of the nominal load."""
+    """Returns longitudinal and lateral peak friction; ``over`` is the load above the nominal one, as a share
+    of it."""
     fade = max(1.0 - axle.tyre_friction_load_sensitivity * over, 0.3)
     loss = 1.0 - axle.tyre_camber_friction_loss * camber * camber
     return friction * axle.tyre_peak_friction_x * fade, friction * axle.tyre_peak_friction_y * fade * loss
@@ -58,8 +53,7 @@ def _normalised_slips(
 def _combined(
     axle: Any, most_x: float, most_y: float, nx: float, ny: float, total: float
 ) -> tuple[float, float]:
-    """Returns the forces of combined slip in the friction ellipse with the semi-axes ``most_x`` and
-    ``most_y``, in N."""
+    """Returns the forces in N in the friction ellipse with the semi-axes ``most_x`` and ``most_y``."""
     if total < 1e-9:
         return 0.0, 0.0
     curve_x = _curve(axle.tyre_shape_factor_x, axle.tyre_curvature_factor_x, total)
@@ -96,8 +90,7 @@ def tyre_forces(
         dt: length of the time step in s.
 
     Returns:
-        The force forward in N, the force to the left in N, and the new ``slip_x`` and ``slip_y``.
-    """
+        The force forward in N, the force to the left in N, and the new ``slip_x`` and ``slip_y``."""
     if load <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
     speed = abs(forward)

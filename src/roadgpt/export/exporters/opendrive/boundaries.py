@@ -10,22 +10,29 @@ is then mirrored back: the segments are followed in reverse order, with left and
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from roadgpt.brief.junctions import RAMPS
-from roadgpt.export.exporters.opendrive.paved_outline import PavedOutline
 from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Connection, Junction, Network, RoadEnd
 from roadgpt.network.building import width_at
+from roadgpt.network.paved import outline_of, paved_by, stations_of
+
+if TYPE_CHECKING:
+    from shapely import LinearRing
 
 EARLIER = 0.1  # m by which a way must bend earlier than the way along the kerb
 LEAST = 0.001  # m; a smaller distance between two edges is ignored
 STEP = 0.1  # m, approximate distance between two points of an edge
 ROUNDABOUT_WAYS = 3  # number of ways through a roundabout's junction with a two-way road
+NEAR = 0.005  # m, between the outline and the edge that it follows: both are polylines
+ROUNDING = 0.01  # m; a station this close to an end of its road is written as "start" or "end"
+SHORT = 0.02  # m; shorter pieces of the outline come from rounding and are left out
 
 
 def boundary(network: Network, junction: Junction) -> XmlElement:
@@ -92,7 +99,6 @@ def _needs_outline(junction: Junction) -> bool:
 
 
 def _by_outline(network: Network, junction: Junction) -> Iterator[BoundarySegment]:
-    """Yields the segments of a boundary that follows the outline of the paved area."""
     outline, ends = PavedOutline.of(network, junction), [arm.end for arm in junction.arms]
     for n, end in enumerate(ends):
         after = ends[(n + 1) % len(ends)]
@@ -141,23 +147,21 @@ def _between(
 def _right(
     network: Network, road: int, start: float | None = None, end: float | None = None
 ) -> BoundarySegment:
-    """Returns the segment along the right edge of a connecting road, or along a part of it between two
-    stations in metres."""
+    """Returns the segment along the right edge of a connecting road, or between two stations of it."""
     return _along(road, -len(network.road(road).profile.right), start or "start", end or "end")
 
 
 def _across(junction: Junction, end: RoadEnd) -> BoundarySegment:
-    """Returns the segment across those lanes of an arm that continue in the junction.
+    """Returns the segment across those lanes of an arm that continue in the junction, without shoulders.
 
-    Seen from inside the junction, it leads from right to left: from the lanes that lead out of the junction
-    to those that lead into it. Shoulders end at the junction.
+    Seen from inside the junction, it leads from right to left: from the lanes out of the junction to those
+    into it.
     """
     first, last = _lanes_across(junction, end)
     return BoundarySegment(end.road, (first, end.contact), (last, end.contact), is_across=True)
 
 
 def _lanes_across(junction: Junction, end: RoadEnd) -> tuple[int, int]:
-    """Returns the lanes at whose outer edges the segment across an arm begins and ends."""
     lanes = [link.incoming for each in junction.connections if each.incoming == end for link in each.lanes]
     lanes += [link.outgoing for each in junction.connections if each.outgoing == end for link in each.lanes]
     right, left = min(lanes), max(lanes)
@@ -166,7 +170,6 @@ def _lanes_across(junction: Junction, end: RoadEnd) -> tuple[int, int]:
 
 
 def _along(road: int, lane: int, start: Value, end: Value) -> BoundarySegment:
-    """Returns the segment along the outer edge of a lane of a connecting road, between two stations."""
     return BoundarySegment(road, (lane, start), (lane, end), is_across=False)
 
 
@@ -200,10 +203,8 @@ def _before(
     """Finds the way that leads farthest beyond the edge of the way ``right`` along the kerb, where both begin
     (``sense`` is 1) or end (-1).
 
-    Returns:
-        The id of the connecting road, and two distances in metres from the common end of both ways to the
-        point at which their edges cross: along the found way and along ``right``. None if no way leads beyond
-        the edge.
+    Returns the id of the connecting road, and two distances in metres from the common end of both ways to the
+    point at which their edges cross: along the found way and along ``right``.
     """
     line = _straight(network, right, sense)[0] - EARLIER
     if line <= 0:
@@ -230,11 +231,8 @@ def _straight(network: Network, way: Connection, sense: int) -> tuple[float, boo
 def _crossing(
     network: Network, way: Connection, right: Connection, sense: int
 ) -> tuple[float, float, float] | None:
-    """Returns how far a way leads beyond the edge of ``right``, and the distances to where the edges cross.
-
-    All values are in metres. None is returned if the way leads less than ``LEAST`` beyond the edge, or if the
-    edges do not cross.
-    """
+    """Returns in metres how far a way leads beyond the edge of ``right``, and the distances to where the
+    edges cross; None if it is less than ``LEAST``, or if the edges do not cross."""
     s, x, y = _edge(network, way, sense)
     s2, x2, y2 = _edge(network, right, sense)
     beyond = np.interp(x, x2, y2) - y
@@ -267,3 +265,96 @@ def _edge(network: Network, way: Connection, sense: int) -> tuple[Array, Array, 
     count = int(np.argmin(np.diff(along) > 0)) if np.any(np.diff(along) <= 0) else len(along)
     aside = dy * np.cos(heading) - dx * np.sin(heading)
     return distance[:count], along[:count], aside[:count]
+
+
+@dataclass(frozen=True)
+class Edge:
+    """One edge of a way through a junction."""
+
+    road: int
+    """The id of the connecting road."""
+    lane: int
+    """The id of the lane whose outer edge this is; 0 for the left edge of the road."""
+    s: Array
+    """Increasing stations ``(n,)`` in metres."""
+    points: Array
+    """Points ``(n, 2)`` in metres at these stations."""
+
+    def station(self, point: Array) -> float:
+        """Returns the station in metres at which the edge is nearest to a point ``(2,)``."""
+        import shapely
+
+        line = shapely.LineString(self.points)
+        along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(self.points, axis=0).T))]
+        return float(np.interp(shapely.line_locate_point(line, shapely.Point(point)), along, self.s))
+
+    def named(self, s: float) -> Value:
+        """Returns "start" or "end" for a station near an end of the road, and any other station unchanged."""
+        if s < ROUNDING:
+            return "start"
+        return "end" if s > float(self.s[-1]) - ROUNDING else s
+
+
+@dataclass(frozen=True)
+class PavedOutline:
+    """The outline of the paved area of a junction, counter-clockwise."""
+
+    ring: "LinearRing"
+    edges: tuple[Edge, ...]
+
+    @classmethod
+    def of(cls, network: Network, junction: Junction) -> "PavedOutline":
+        """Returns the outline of a junction of a network with traffic on the right."""
+        import shapely
+
+        roads = [network.road(each.road) for each in junction.connections]
+        edges = []
+        for member in roads:
+            s = stations_of(member.road)
+            left, right = member.profile.edges(s)
+            for lane, t in ((0, left), (-member.profile.count[0], right)):
+                edges.append(Edge(member.id, lane, s, member.road.at(s, t)[:, :2]))
+        paved = paved_by([member.road for member in roads])
+        return cls(shapely.LinearRing(outline_of(paved)), tuple(edges))
+
+    def between(self, start: Array, end: Array) -> Iterator[tuple[Edge, Value, Value]]:
+        """Yields the edges that the outline follows from one of its points ``(2,)`` to another.
+
+        With each edge come the stations at which the outline joins and leaves this edge, as ``Edge.named``
+        returns them. A left edge is followed from higher to lower stations.
+        """
+        import shapely
+
+        points = self._points(start, end)
+        middles = shapely.points((points[1:] + points[:-1]) / 2)
+        lines = [shapely.LineString(edge.points) for edge in self.edges]
+        away = np.array([shapely.distance(line, middles) for line in lines])
+        first, current = 0, -1
+        for n in range(len(middles)):
+            if current >= 0 and away[current, n] < NEAR:
+                continue
+            if current >= 0:
+                yield from self._part(current, points[first], points[n])
+            nearest = int(np.argmin(away[:, n]))
+            first, current = n, nearest if away[nearest, n] < NEAR else -1
+        if current >= 0:
+            yield from self._part(current, points[first], points[-1])
+
+    def _part(self, number: int, start: Array, end: Array) -> Iterator[tuple[Edge, Value, Value]]:
+        edge = self.edges[number]
+        first, last = edge.station(start), edge.station(end)
+        if abs(last - first) > SHORT:
+            yield edge, edge.named(first), edge.named(last)
+
+    def _points(self, start: Array, end: Array) -> Array:
+        """Returns the points ``(n, 2)`` of the outline from one of its points to another."""
+        import shapely
+
+        ring = np.asarray(self.ring.coords, float)
+        along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(ring, axis=0).T))][:-1]
+        first, last = (float(shapely.line_locate_point(self.ring, shapely.Point(p))) for p in (start, end))
+        length = self.ring.length
+        room = (last - first) % length
+        places = (along - first) % length
+        inside = np.flatnonzero((places > SHORT) & (places < room - SHORT))
+        return np.vstack((start, ring[:-1][inside[np.argsort(places[inside])]], end))

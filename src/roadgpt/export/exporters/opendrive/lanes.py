@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 
-from roadgpt.export.exporters.opendrive.heights import elevations, level_height, rows
+from roadgpt.export.exporters.opendrive.reference_line import elevations, level_height, rows
 from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry import CubicProfile
 from roadgpt.road import Road, World
@@ -103,7 +103,6 @@ class RoadParts:
 
     @cached_property
     def _driven_on(self) -> tuple[XmlElement, ...]:
-        """The friction and the speed limit of a lane that is driven on."""
         friction = self.world.site.friction
         surface: dict[str, Value] = {"sOffset": 0, "friction": friction, "surface": "asphalt", "roughness": 0}
         return (

@@ -1,0 +1,377 @@
+"""What executors share: jobs and their shared values, the messages and main loop of a worker process, and a
+pool of workers that may die.
+
+A pool has a thread for each worker that gives it one job after another. A worker that has ended is replaced,
+and its job runs again on another one, as soon as one is free.
+
+The parent of a worker process sends the module search paths, and then jobs; the first job prepares the
+worker. The worker sends the pickled value or error of each job. Calls and values are pickled one by one; if
+one cannot be unpickled, only its own job is lost. ``send`` and ``receive``
+connect processes that RoadGPT started on one machine. ``pickled`` and ``unpickled`` also serve the executor
+``ray``, whose workers may run on other machines of its cluster. Nothing else is read.
+"""
+
+import os
+import pickle
+import signal
+import sys
+import threading
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError, Executor, Future
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from heapq import heappop, heappush
+from itertools import count
+from pathlib import Path
+from typing import IO, Any, Generic, TypeVar
+
+from roadgpt import children
+from roadgpt.errors import RoadGPTError
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class WorkerConfig:
+    """Settings of the workers, which a campaign passes to its executor."""
+
+    workers: int
+    prepare: Callable[[], object]
+    patience: float  # longest time for one job, seconds; a worker that takes longer is treated as hanging
+    log: Path  # the file to which the output of workers is written
+    address: str = ""  # the address of the workers, for executors that connect to other machines
+
+
+class LostWorkerError(RoadGPTError):
+    """A job was given up, because each worker that ran it ended."""
+
+
+class Shared(Generic[T]):
+    """An argument of many jobs, such as a cell. The functions of jobs receive it as it is, and read its
+    ``value``. It is pickled once, and unpickled once in each worker that meets the same bytes again soon."""
+
+    def __init__(self, value: T) -> None:
+        self.value = value
+
+    @cached_property
+    def _data(self) -> bytes:
+        return pickled(self.value)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self._data,)
+
+
+@lru_cache(maxsize=256)  # blocks of designs of two cells, up to 100 MB
+def _restored(data: bytes) -> Shared[Any]:
+    return Shared(unpickled(data))
+
+
+VALUE, ERROR = "value", "error"  # how a job ended
+
+
+def main() -> None:
+    """Runs the jobs that the parent process sends, until the parent ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent hears of Ctrl-C, and ends us
+    children.ends_its_own()
+    children.ends_with_parent()
+    received, sent = children.private_streams()
+    with suppress(EOFError, OSError, pickle.UnpicklingError):
+        sys.path[:] = receive(received)
+        while True:
+            send(sent, answer(receive(received)))
+
+
+def answer(call: bytes) -> tuple[str, bytes]:
+    """Runs a job: a pickled function, its arguments and its keyword arguments; returns how the job ended, and
+    its pickled value or error."""
+    try:
+        function, args, named = unpickled(call)
+        return VALUE, pickled(function(*args, **named))
+    except Exception as error:  # whatever it is, the parent has to hear of it
+        return ERROR, portable(error)
+
+
+def portable(error: Exception) -> bytes:
+    """Returns a pickled error, or else a RuntimeError with its type and text if it cannot be pickled."""
+    try:
+        data = pickled(error)
+        unpickled(data)
+    except Exception:  # pickling may fail in any way
+        return pickled(RuntimeError(f"{type(error).__name__}: {error}"))
+    return data
+
+
+def pickled(value: Any) -> bytes:
+    """Returns a value as bytes."""
+    return pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
+
+
+def unpickled(data: bytes) -> Any:
+    """Returns the value that was pickled into these bytes."""
+    return pickle.loads(data)  # noqa: S301 - from our own process
+
+
+def send(stream: IO[bytes], message: Any) -> None:
+    """Sends a message; raises OSError if the other process has ended."""
+    pickle.dump(message, stream, pickle.HIGHEST_PROTOCOL)
+    stream.flush()
+
+
+def receive(stream: IO[bytes]) -> Any:
+    """Returns the next message; raises EOFError or UnpicklingError if the other process has ended."""
+    return pickle.load(stream)  # noqa: S301 - from our own process
+
+
+MOST_DEATHS = 3  # of workers that ran the same job; after that many, the job is to blame
+FIRST, LATER = 0, 1  # calls of ``map`` go before other jobs
+
+
+class WorkerEndedError(Exception):
+    """A worker has ended. The message says how, in words that can follow the worker's name."""
+
+    def __init__(self, how: str, is_jobs_fault: bool = True) -> None:
+        super().__init__(how)
+        self.is_jobs_fault = is_jobs_fault
+
+
+class Job(Future[Any]):
+    """A call that any worker may run, and what becomes of it."""
+
+    def __init__(self, call: tuple[Any, ...], urgency: int, number: int) -> None:
+        super().__init__()
+        self.call = call  # the function, its arguments and its keyword arguments
+        self.place = urgency, number  # jobs begin in this order; a job that runs again keeps its place
+        self.deaths = 0
+        self.worker = ""  # name of the worker that runs the job; empty if none does
+        self.begun = 0.0  # when the worker began, seconds since 1970
+
+    def __lt__(self, other: "Job") -> bool:
+        return self.place < other.place
+
+
+class Worker(ABC):
+    """A worker, as the campaign's process sees it."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name  # shown to people
+        self.is_ready = self.is_idle = False
+
+    @abstractmethod
+    def begin(self, prepare: Callable[[], object]) -> None:
+        """Prepares the worker for jobs; raises any error of ``prepare``, or WorkerEndedError."""
+
+    @abstractmethod
+    def run(self, call: bytes) -> tuple[str, bytes]:
+        """Runs a job, see ``answer``, and returns how it ended; raises WorkerEndedError."""
+
+    @abstractmethod
+    def ask_to_end(self) -> None:
+        """Asks a busy worker to end; does not wait."""
+
+    @abstractmethod
+    def kill(self) -> None:
+        """Ends a busy worker."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Ends an idle worker properly, and cleans up after one that has ended."""
+
+
+class WorkerPool(Executor, ABC):
+    """The jobs and workers of an executor; a subclass defines how a worker is started."""
+
+    printed: object = "the log"  # where people find what workers printed
+
+    def __init__(self, staff: WorkerConfig) -> None:
+        """Starts the workers."""
+        self._staff = staff
+        self._changed = threading.Condition()  # held by whoever uses what follows
+        self._waiting: list[Job] = []
+        self._workers: list[Worker] = []
+        self._is_over = False
+        self._broken: Exception | None = None
+        self._in_vain = 0  # workers that ended before they were ready, since one last became ready
+        self._jobs, self._started = count(1), count(1)
+        self._threads = [threading.Thread(target=self._serve, daemon=True) for _ in range(staff.workers)]
+        for thread in self._threads:
+            thread.start()
+
+    @abstractmethod
+    def _start(self, name: str) -> Worker:
+        """Starts a worker; raises RoadGPTError if this is impossible."""
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        """Queues a job."""
+        return self._add(LATER, fn, args, kwargs)
+
+    def map(
+        self,
+        fn: Callable[..., T],
+        *iterables: Iterable[Any],
+        timeout: float | None = None,
+        chunksize: int = 1,
+    ) -> Iterator[T]:
+        """Yields the results of calls, in order; these calls go to free workers before the jobs that wait."""
+        jobs = [self._add(FIRST, fn, args, {}) for args in zip(*iterables, strict=False)]
+        return (job.result(timeout) for job in jobs)
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Ends the workers when all jobs are done, or at once, even in the middle of a job."""
+        if cancel_futures:
+            self._stop(CancelledError())
+            busy = [worker for worker in [*self._workers] if not worker.is_idle]
+            for worker in busy:
+                worker.ask_to_end()
+            for worker in busy:
+                worker.kill()
+        with self._changed:
+            self._is_over = True
+            self._changed.notify_all()
+        for thread in self._threads if wait else ():
+            thread.join()
+
+    def _add(self, urgency: int, function: Any, args: tuple[Any, ...], named: dict[str, Any]) -> Job:
+        if self._broken is not None or self._is_over:
+            raise self._broken or RuntimeError("this executor was shut down")
+        job = Job((function, args, named), urgency, next(self._jobs))
+        self._queue(job)
+        return job
+
+    def _queue(self, job: Job) -> None:
+        with self._changed:
+            if self._broken is None:
+                heappush(self._waiting, job)
+                self._changed.notify()
+                return
+        job.set_exception(self._broken)
+
+    def _stop(self, why: Exception) -> None:
+        """Lets all jobs that no worker is running end with an error, and takes no further ones."""
+        with self._changed:
+            self._broken = self._broken or why
+            self._is_over = True
+            waiting, self._waiting = self._waiting, []
+            self._changed.notify_all()
+        for job in waiting:
+            if job.running() or job.set_running_or_notify_cancel():
+                job.set_exception(self._broken)
+
+    def _serve(self) -> None:
+        """Hires one worker after another and gives each its jobs, until all is done; runs in a thread."""
+        while (worker := self._hired()) is not None:
+            while self._run_next(worker):
+                pass
+            self._dismiss(worker)
+
+    def _hired(self) -> Worker | None:
+        while not self._is_over or self._waiting:
+            worker = None
+            try:
+                worker = self._start(f"worker {next(self._started)}")
+                with self._changed:
+                    self._workers.append(worker)
+                if self._broken is not None:  # the executor was stopped meanwhile
+                    worker.kill()
+                worker.begin(self._staff.prepare)
+                worker.is_ready, self._in_vain = True, 0
+                return worker
+            except WorkerEndedError as ended:
+                self._in_vain += 1
+                if self._in_vain >= MOST_DEATHS:
+                    sentence = f"workers end before they begin (the last one {ended})"
+                    self._stop(RoadGPTError(f"{sentence}; {self.printed} has what they printed"))
+            except Exception as error:  # whatever it is, those who wait for jobs have to hear of it
+                self._stop(error)
+            if worker is not None:
+                self._dismiss(worker)
+        return None
+
+    def _dismiss(self, worker: Worker) -> None:
+        worker.close()
+        with self._changed:
+            self._workers.remove(worker)
+
+    def _run_next(self, worker: Worker) -> bool:
+        """Waits for a job and lets the worker run it; returns False if it got none, or ended over it."""
+        job = self._next(worker)
+        if job is None:
+            return False
+        job.worker, job.begun = worker.name, time.time()
+        try:
+            kind, what = worker.run(pickled(job.call))
+        except WorkerEndedError as ended:
+            job.worker = ""
+            self._give_again(job, ended)
+            return False
+        except Exception as error:  # the call cannot be pickled, for example
+            kind, what = ERROR, portable(error)
+        job.worker = ""
+        try:
+            found = unpickled(what)
+        except Exception as error:  # an error whose class cannot be unpickled, for example
+            kind, found = ERROR, RuntimeError(f"an answer cannot be read: {error}")
+        if kind == ERROR:
+            job.set_exception(found)
+        else:
+            job.set_result(found)
+        return True
+
+    def _next(self, worker: Worker) -> Job | None:
+        with self._changed:
+            worker.is_idle = True
+            while True:
+                self._changed.wait_for(lambda: self._waiting or self._is_over)
+                if not self._waiting:
+                    return None
+                job = heappop(self._waiting)
+                if job.running() or job.set_running_or_notify_cancel():
+                    worker.is_idle = False
+                    return job
+
+    def _give_again(self, job: Job, ended: WorkerEndedError) -> None:
+        """Queues the job of a worker that has ended; gives it up if too many workers ended over it."""
+        job.deaths += ended.is_jobs_fault
+        if job.deaths < MOST_DEATHS or self._broken is not None:
+            self._queue(job)
+        else:
+            workers = f"{MOST_DEATHS} workers ended over it (the last one {ended})"
+            job.set_exception(LostWorkerError(f"given up: {workers}"))
+
+
+class InProcess(Executor):
+    """Runs each job in this process, as soon as it is submitted."""
+
+    def __init__(self, staff: WorkerConfig) -> None:
+        """Takes the settings that every executor takes, and needs none of them."""
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        """Runs the job; the Future that is returned has its result."""
+        ended: Future[T] = Future()
+        try:
+            ended.set_result(fn(*args, **kwargs))
+        except Exception as error:  # whatever it is, it is raised where the result is asked for
+            ended.set_exception(error)
+        return ended
+
+
+LOG = "workers.log"
+LONGEST_LOG = 4_000_000  # bytes; then only the end is kept
+KEPT_OF_LOG = 1_000_000  # bytes of it
+NOTE = b"[what was printed before is left out]\n"
+
+
+def shorten(log: Path) -> None:
+    """Keeps only the end of a log that has become too long, to which workers still append; a log that cannot
+    be read or written must not stop a campaign."""
+    with suppress(OSError):
+        if log.stat().st_size <= LONGEST_LOG:
+            return
+        with log.open("rb") as file:
+            file.seek(-KEPT_OF_LOG, os.SEEK_END)
+            _, _, end = file.read(KEPT_OF_LOG).partition(b"\n")
+        os.truncate(log, 0)
+        with log.open("ab") as file:
+            file.write(NOTE + end)

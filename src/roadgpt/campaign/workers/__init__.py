@@ -1,1 +1,0 @@
-"""Code that executors share, such as the queue of jobs, and a worker's main loop and messages."""

@@ -1,0 +1,123 @@
+"""Commands that judge roads: ``roadgpt check`` and ``report``."""
+
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import click
+
+from roadgpt import plugins
+from roadgpt.cli import options
+from roadgpt.cli.option import PATH, Argument, named
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.result_row import Row, row_of
+from roadgpt.cli.roads import LANES, UNREADABLE, each_road, open_page, roads_in, source_of
+from roadgpt.cli.screen import Screen
+from roadgpt.errors import command_line
+
+INVALID = 1  # exit status, so that a script can ask
+
+
+CHECK_OPTIONS = (
+    *named(options.SETUP, "rules"),
+    *named(options.WORLD, "map_size", *LANES),
+    *named(options.SETUP, "geometry"),
+    *options.SCREEN,
+)
+
+
+@click.command(cls=GroupedCommand, params=[options.ROADS, *CHECK_OPTIONS])
+def check(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **rest: Any) -> int:
+    """Check roads against the rules.
+
+    ROAD is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a table of
+    points (.csv) or OpenDRIVE (.xodr). A folder of such files, a folder of runs and a campaign stand for all
+    their roads. The exit status is 0 if all roads are valid, 1 if one is not, 2 if one cannot be read."""
+    world = options.world_of(rest)
+    roads = roads_in(files)
+    screen = Screen(len(roads), rest["as_json"], rest["quiet"], verbose)
+    each_road(roads, screen, lambda file: _checked(screen, file, rules, geometry, world))
+    outcomes = {row.test_outcome for row in screen.rows}
+    return UNREADABLE if "ERROR" in outcomes else INVALID if "INVALID" in outcomes else 0
+
+
+def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -> tuple[Row, None]:
+    from roadgpt.network import has_no_route
+    from roadgpt.run import Setup, prove
+
+    begun = time.perf_counter()
+    blueprint, world, remarks = source_of(file, world)
+    run = prove(blueprint, world=world, setup=Setup(rules=rules, geometry=geometry, drives=False))
+    row = row_of(run, file)
+    if is_only_map := run.road is not None and has_no_route(run.road):
+        remarks = (*remarks, "the map has no route, so only its roads and junctions are checked")
+    for remark in remarks:
+        screen.say(f"{file}: {remark}")
+    for sentence in row.findings[1:]:
+        screen.detail(f"{file}: also, {sentence}")
+    said = row.description if row.findings else f"valid by the rules '{rules}'"
+    length, seconds = None if is_only_map else row.length_m, time.perf_counter() - begun
+    return replace(row, description=said, length_m=length, seconds=seconds), None
+
+
+@click.command(cls=GroupedCommand, params=[Argument("folder", "DIR", kind=PATH), options.OPEN, options.JUNIT])
+def report(folder: Path, opens: bool, junit: Path | None) -> None:
+    """Write a report on a folder of runs, a campaign or a study.
+
+    DIR is the folder that roadgpt run, roadgpt campaign or roadgpt study wrote. The command writes
+    report.html and the tables as CSV and LaTeX into DIR. The page needs no network and no server, and links
+    to the runs in DIR.
+
+    \b
+    roadgpt report roadgpt-runs/an-uphill-road-with-3-turns-7 --open"""
+    page = write_report(folder)
+    if junit is not None:
+        from roadgpt.cli.junit import write_folder
+
+        write_folder(junit, folder, {})
+    click.echo(str(page))
+    if opens:
+        open_page(page)
+
+
+def write_report(folder: Path) -> Path:
+    """Writes the report on a folder of runs, a campaign or a study; returns the path of the HTML page.
+
+    A plug-in called ``reports`` is named after the file of the folders for which it writes the report."""
+    from roadgpt.campaign.folder_record import is_store
+    from roadgpt.campaign.status import status_of
+    from roadgpt.cli.repeat_commands import next_steps, of_status
+    from roadgpt.report.campaign_report import write_store_report
+    from roadgpt.report.run_report import write_run_report
+
+    for card in plugins.names("reports"):
+        if (folder / card).is_file():
+            made: Path = plugins.find("reports", card)(folder)
+            return made
+    steps = next_steps(of_status(status_of(folder)))
+    write = write_store_report if is_store(folder) else write_run_report
+    return write(folder, command_of(folder), steps)
+
+
+def command_of(folder: Path) -> str:
+    """Returns the command that repeats a campaign or a folder of runs; empty for runs without a description.
+    Options cannot express some campaigns, such as a campaign with several cells; for these, returns the
+    command that resumes the campaign."""
+    from roadgpt.campaign.folder_record import open_record
+    from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL
+    from roadgpt.cli.repeat_commands import request_words
+
+    with open_record(folder) as record:
+        cells, resume = record.cells(), record.to_resume()
+    only, n = cells[0], cells[0].budget.tests
+    if only.in_sequence and not only.request.words:
+        return ""
+    if len(cells) > 1 or not only.request.words or n is None or only.settings:
+        return resume
+    words = request_words(only.request, n, only.brief)
+    words += ["--goal", only.goal] if only.goal else []
+    if only.generator != (WITH_GOAL if only.goal else WITHOUT_GOAL):
+        words += ["--generator", only.generator]
+    words += ["--seconds", f"{only.budget.seconds:g}"] if only.budget.seconds else []
+    return command_line("run" if only.in_sequence else "campaign", *words, "--out", folder)

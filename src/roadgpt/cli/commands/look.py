@@ -1,0 +1,336 @@
+"""Commands that show roads: ``roadgpt show``, ``view``, ``film`` and ``compare``."""
+
+import json
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from roadgpt.cli import options, roads
+from roadgpt.cli.option import PATH, Argument, Heading, Option, named, picture_formats
+from roadgpt.cli.option import folder as folder_of
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.streams import warn, watched
+from roadgpt.errors import RoadGPTError, UsageError, explained
+
+if TYPE_CHECKING:
+    from roadgpt.campaign.selection import Choice
+    from roadgpt.report.film import Settings
+
+MOST = 2  # roads side by side
+SHOW_OPTIONS = (
+    Argument("folders...", "RUN...", "Name the folder of a run, a folder of runs, or a campaign."),
+    *options.CHOICES,
+    Option("--watch", "Show the progress of a campaign until it ends.", bool),
+    options.json_option("Print one JSON object for each campaign or road.", heading=Heading.OUTPUT),
+    Option("--progress", "As the earlier command 'status'.", bool, hidden=True),
+    Option("--once", "Show the progress once.", bool, hidden=True),
+)
+
+
+@click.command(cls=GroupedCommand, params=[*SHOW_OPTIONS])
+def show(
+    folders: tuple[str, ...], watch: bool, as_json: bool, progress: bool, once: bool, **rest: Any
+) -> None:
+    """Summarise a run, a folder of runs or a campaign, and print the command that repeats it.
+
+    RUN is a run, such as DIR/runs/0001 or DIR/test.0001.json; the folder DIR that holds the runs; a campaign;
+    a cell of a campaign, such as CAMPAIGN/c01; or a test of a campaign, such as CAMPAIGN/c01/17.
+
+    \b
+    roadgpt show roadgpt-runs/hairpins-7
+    roadgpt show CAMPAIGN --failures
+    roadgpt show CAMPAIGN --watch"""
+    from roadgpt.cli.summary import json_lines, progress_lines, show, watch_campaign
+
+    choice = options.choice_of(rest)
+    if (watch or progress) and choice is not None:
+        raise UsageError(
+            f"--{choice} selects roads, but --watch shows a whole campaign; leave one of them out"
+        )
+    if watch and (as_json or len(folders) > 1):
+        raise UsageError("--watch shows one campaign on the screen; leave out --json and other folders")
+    if watch:
+        watch_campaign(Path(folders[0]), once)
+        return
+    for folder in folders:
+        if progress:
+            lines = progress_lines(Path(folder), as_json)
+        else:
+            lines = json_lines(folder, choice) if as_json else iter([show(folder, choice)])
+        for line in lines:
+            click.echo(line)
+
+
+PAGE, PLOTS = "-view.html", Path("plots")  # the end of the name of a page
+VIEW_ENDINGS = (".html", ".htm")
+
+
+VIEW_OPTIONS = (
+    Argument("files...", "ROAD|RUN...", "Name a road file or the folder of a run, or two to see them side by "
+             "side."),
+    *options.CHOICES,
+    Option("--out", f"The page, or the folder for pictures. [default: ROAD{PAGE}, {PLOTS}]", PATH,
+           metavar="PATH", heading=Heading.FILES),
+    options.OPEN.but(heading=Heading.FILES),
+    Option("--format formats", "Draw pictures instead of the page: png, svg, pdf.", picture_formats,
+           metavar="FORMAT,...", heading=Heading.FILES),
+    *(options.AXES, *named(options.WORLD, "map_size"), *named(options.SETUP, "geometry"), options.QUIET),
+)  # fmt: skip
+
+
+@click.command(cls=GroupedCommand, params=[*VIEW_OPTIONS])
+@click.pass_context
+def view(
+    ctx: click.Context, /, files: tuple[str, ...], out: Path | None, opens: bool, formats: Any, axes: Any,
+    geometry: Any, quiet: bool, **rest: Any,
+) -> int | None:  # fmt: skip
+    """View a road in 3-D with a replay of its drive, or two roads side by side; or draw pictures.
+
+    ROAD is a RoadGPT design, an SBFT test, a list of points or an OpenDRIVE file. RUN is a run, such as
+    DIR/runs/0001 or DIR/test.0001.json, or a test of a campaign, such as CAMPAIGN/c01/17; its drive is shown.
+
+    Without --format, writes one page that needs no server and no network, named after the road. With
+    --format, saves pictures of each road (top view, height, curvature and grade) in a subfolder of --out.
+    Prints the names of the files.
+
+    \b
+    roadgpt view roadgpt-runs/hairpins-7/runs/0001 --open
+    roadgpt view DIR/runs/0001 DIR/runs/0002 --out compared.html
+    roadgpt view CAMPAIGN --worst --format pdf"""
+    choice, world = options.choice_of(rest), options.world_of(rest)
+    if formats:
+        if opens:
+            raise UsageError("--open is for the page; leave out --format")
+        place = folder_of(str(out)) if out is not None else PLOTS
+        from roadgpt.report import draw
+
+        def draw_one(named: roads.NamedRoad) -> None:
+            run = roads.run_of(named, world, geometry)
+            pictures = draw(run, _new_folder(place, named.stem), axes, formats)
+            if not quiet:
+                click.echo("\n".join(map(str, pictures)))
+
+        return roads.use_each(files, choice, draw_one) or None
+    if "axes" in options.typed(ctx):
+        raise UsageError("--axes is for pictures; say --format png as well")
+    shown = roads.shown_roads(files, choice, MOST, "a page")
+    out = out or Path("-and-".join(each.stem for each in shown) + PAGE)
+    roads.check_file(out, "page", Path(shown[0].stem + PAGE), VIEW_ENDINGS)
+    from roadgpt.report.view import write
+
+    page = write([roads.run_of(each, world, geometry) for each in shown], out)
+    if not quiet:
+        click.echo(str(page))
+    if opens:
+        roads.open_page(page)
+    return None
+
+
+def _new_folder(out: Path, name: str) -> Path:
+    with explained(UsageError, f"cannot make a folder in {out}", "give another one with --out"):
+        for place in (out / own for own in roads.numbered(name)):
+            with suppress(FileExistsError):
+                place.mkdir(parents=True)
+                return place
+    raise AssertionError("some number is always free")
+
+
+LONGEST = 1_000_000  # s, largest time that --seconds accepts
+FILM, FILMS = Path("roadgpt-film.mp4"), Path("films")
+FILM_ENDINGS = (".mp4", ".m4v")
+MOUNTS = {"hood": "bonnet"}  # as roadgpt.report.film calls them
+
+
+def _size(value: str) -> tuple[int, int]:
+    wide, cross, high = value.lower().partition("x")
+    if not (cross and wide.isdecimal() and high.isdecimal()):
+        raise click.BadParameter(f"'{value}' is no size; give width and height in pixels, such as 640x360")
+    return int(wide), int(high)
+
+
+def _seconds(value: str) -> tuple[float, float | None]:
+    """Converts 9 or 4:13 to start and length in seconds; without a length, it is to the end of the drive."""
+    first, colon, last = value.partition(":")
+    try:
+        begin = float(first or 0) if colon else 0.0
+        end = float(last) if colon and last else None if colon else float(first)
+    except ValueError:
+        raise click.BadParameter(
+            f"'{value}' are no seconds; give 9, or 4:13 for the 4th to the 13th"
+        ) from None
+    if not 0 <= begin <= LONGEST or (end is not None and not 0 <= end <= LONGEST):
+        raise click.BadParameter(f"'{value}' is no part of a drive; give seconds from 0 to {LONGEST:,}")
+    if end is not None and end <= begin:
+        raise click.BadParameter(f"'{value}' ends before it begins; give 9, or 4:13 for the 4th to the 13th")
+    return begin, None if end is None else end - begin
+
+
+# fmt: off
+FILM_OPTIONS = (
+    Argument("files...", "RUN [RUN]", "Name the folder of a run, or two to see them side by side."),
+    Option("--view", "Where the camera is: behind the car, on its hood, or both.",
+           click.Choice(["chase", "hood", "both"]), "chase"),
+    Option("--out", f"The film, or the folder for several films. [default: {FILM}, {FILMS}]", PATH,
+           metavar="FILM.mp4"),
+    Option("--fps", "Frames per second.", click.IntRange(1, 120), 25, metavar="NUMBER"),
+    Option("--size", "Width and height of a frame, pixels.", _size, "640x360", metavar="WxH"),
+    Option("--seconds",
+           "Film only the first N seconds, or seconds FROM to TO. [default: the whole drive]",
+           _seconds, metavar="N|FROM:TO"),
+    Option("--all is_all", "Film every road in a folder; the film of a run is saved in the run's own folder.",
+           bool),
+    *options.CHOICES,
+    *named(options.WORLD, "map_size"),
+    *named(options.SETUP, "geometry"),
+    options.QUIET,
+)
+# fmt: on
+
+
+@click.command(cls=GroupedCommand, params=[*FILM_OPTIONS])
+def film(
+    files: tuple[str, ...], view: str, out: Path | None, fps: int, size: tuple[int, int],
+    seconds: tuple[float, float | None] | None, is_all: bool, geometry: Any, quiet: bool, **rest: Any,
+) -> None:  # fmt: skip
+    """Film a drive as an MP4: from behind the car, from its hood, or both; or two drives side by side.
+
+    RUN is a run, such as DIR/runs/0001 or DIR/test.0001.json; a test of a campaign, such as CAMPAIGN/c01/17;
+    or a road file, along which the camera moves without a car. The film shows the description, the speed, the
+    position along the road and the margin, and at the end the outcome. An existing film of the same name is
+    replaced. Filming needs PyAV, in a checkout: pip install -e '.[film]'.
+
+    \b
+    roadgpt film roadgpt-runs/hairpins-7/runs/0001 --view both
+    roadgpt film DIR/runs/0001 DIR/runs/0002 --view hood --out compared.mp4
+    roadgpt film roadgpt-runs/hairpins-7 --all
+    roadgpt film CAMPAIGN --faults --out films"""
+    from roadgpt.report.film import Settings
+
+    begin, length = seconds or (0.0, None)
+    settings = Settings(*size, fps, begin, length)
+    choice = options.choice_of(rest)
+    world = options.world_of(rest)
+    if is_all or choice in ("failures", "faults"):
+        for each, film in _films(files, choice, view, out):
+            run = roads.run_of(each, world, geometry)
+            if run.road is None:
+                warn(f"{each.said} has no road to film")
+            else:
+                _make([run], film, view, settings, quiet)
+        return
+    out = out or FILM
+    roads.check_file(out, "film", FILM, FILM_ENDINGS)
+    runs = [roads.run_of(each, world, geometry) for each in roads.shown_roads(files, choice, MOST, "a film")]
+    _make(runs, out, view, settings, quiet)
+
+
+def _films(
+    files: tuple[str, ...], choice: "Choice | None", view: str, out: Path | None
+) -> Iterator[tuple[roads.NamedRoad, Path]]:
+    """Yields roads with the paths of their films; in a folder of runs, only roads that have no film yet."""
+    from roadgpt.campaign.folder_record import is_store
+    from roadgpt.campaign.selection import selection_of
+
+    first = selection_of(files[0])
+    is_of_runs = choice is None and (first is None or not is_store(first.folder))
+    if is_of_runs and (len(files) != 1 or out is not None):
+        raise UsageError("--all takes one folder of runs, and puts each film into its run")
+    if is_of_runs and first is None:
+        raise UsageError(f"{files[0]} holds no runs; give a folder that roadgpt run made")
+    place = out or FILMS
+    if not is_of_runs and (place.suffix.lower() in FILM_ENDINGS or place.is_file()):
+        raise UsageError(f"this makes several films; name a folder for them, such as --out {FILMS}")
+    for each in roads.roads_named(files, choice, takes_all=True):
+        if not is_of_runs:
+            yield each, roads.made(place) / f"{each.stem}-{view}.mp4"
+        elif not (film := Path(str(each.key), f"{view}.mp4")).exists():
+            yield each, film
+
+
+def _make(runs: list[Any], out: Path, view: str, settings: "Settings", quiet: bool) -> None:
+    from roadgpt.network import refuse_without_route
+    from roadgpt.report.film import write
+
+    for run in runs:
+        with roads.named_in_errors(run.source or run.title):
+            refuse_without_route(run.road, "filmed")
+    write(runs, out, MOUNTS.get(view, view), settings, lambda them, n: watched(them, n, "frames", quiet))
+    if not quiet:
+        click.echo(str(out))
+
+
+PICTURE = Path("compared.png")
+NAMES = {
+    "turns": "number of turns",
+    "sequence": "turns and straights in order",
+    "direction": "sides of the turns",
+    "length": "length",
+    "incline": "incline",
+    "shape": "shape from above",
+    "general": "in general",
+}
+
+
+COMPARE_OPTIONS = (
+    Argument("one", "A"),
+    Argument("other", "B"),
+    Option("--out", "The picture: .png, .svg or .pdf. An existing file is replaced.", PATH, PICTURE,
+           metavar="FILE.png"),
+    Option("--no-plot", "Draw no picture.", bool),
+    Option("--mirror", "Treat a road and its mirror image as alike.", bool),
+    options.json_option(),
+    options.AXES,
+    *named(options.WORLD, "map_size"),
+    *named(options.SETUP, "geometry"),
+)  # fmt: skip
+
+
+@click.command(cls=GroupedCommand, params=[*COMPARE_OPTIONS])
+def compare(
+    one: str, other: str, out: Path, no_plot: bool, mirror: bool, as_json: bool, axes: Any, **rest: Any
+) -> None:
+    """Measure how similar two roads are, and plot them in two panels, one above the other.
+
+    A and B are runs, tests of campaigns or road files. A similarity is a number from 0 (nothing in
+    common) to 1 (identical). Moving or rotating a road does not change the
+    similarity.
+
+    \b
+    roadgpt compare DIR/runs/0001 DIR/runs/0002
+    roadgpt compare a.json b.json --axes thesis --mirror"""
+    from roadgpt.network import refuse_without_route
+    from roadgpt.report.canvas import format_of, save
+    from roadgpt.report.pair import pair
+    from roadgpt.report.similarity import compare
+
+    if not no_plot:
+        format_of(out)
+    world = options.world_of(rest)
+    named = [roads.shown_roads([file], None, 1, "it")[0] for file in (one, other)]
+    runs = [roads.run_of(each, world, rest["geometry"]) for each in named]
+    both = [run.road for run in runs if run.road is not None]
+    if len(both) < 2:
+        missing = one if runs[0].road is None else other
+        raise UsageError(f"there is no road in {missing}; give a run that has one")
+    for file, road in zip((one, other), both, strict=True):
+        with roads.named_in_errors(file):
+            refuse_without_route(road, "compared")
+    found = compare(both[0], both[1], mirror)
+    if as_json:
+        click.echo(json.dumps({**asdict(found), "general": found.general, "duplicate": found.is_duplicate}))
+    else:
+        more = {"shape": f"  {found.metres:.1f} m apart", "incline": f"  {found.points:.1f} points apart"}
+        for name, said in NAMES.items():
+            click.echo(f"{said:<30} {getattr(found, name):5.2f}{more.get(name, '')}")
+        if found.is_duplicate:
+            click.echo("near duplicates: they are one test rather than two")
+    if not no_plot:
+        roads.check_file(out, "picture", PICTURE)
+        with explained(RoadGPTError, f"cannot write {out}", "name another file with --out"):
+            out.parent.mkdir(parents=True, exist_ok=True)
+            save(pair(runs[0], runs[1], axes), out)
+        click.echo(str(out), err=as_json)

@@ -1,0 +1,573 @@
+"""Commands that make or drive roads: ``roadgpt run``, ``read``, ``edit`` and ``drive``."""
+
+import json
+import secrets
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import redirect_stdout
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from roadgpt.cli import options
+from roadgpt.cli.option import ROADS, Argument, Heading, Option, folder, named, whole
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.result_row import Row, row_of, spending
+from roadgpt.cli.roads import UNREADABLE, each_road, made, roads_in, roads_named, source_of
+from roadgpt.cli.screen import Screen
+from roadgpt.cli.streams import crashes_go_to, warn
+from roadgpt.errors import GivenUpError, UsageError
+
+if TYPE_CHECKING:
+    from roadgpt.brief.model import Brief
+    from roadgpt.campaign import Campaign
+    from roadgpt.campaign.gate import Gate
+    from roadgpt.campaign.selection import Choice, Selection
+    from roadgpt.chat import ChatSettings
+    from roadgpt.design.edit import Edited, EditRequest
+    from roadgpt.report import Format, Scale
+    from roadgpt.road import World
+    from roadgpt.run.folder import Draw
+    from roadgpt.run.model import LostDrives, Request, Run
+
+SEEDS = 1_000_000  # random seeds are below this number, so that they are short enough to type again
+
+RUN_OPTIONS = (
+    Option("-n --roads", "Number of roads.", ROADS, 1),
+    options.seed("The same seed gives the same roads. [default: random]"),
+    options.out("Folder for the runs. [default: a new one]"),
+    options.AGAIN,
+    options.PLAN,
+    Option("--route", "For a map of roads: where the car turns at junctions, such as left,right. [default: "
+           "random]", str, "", metavar="TURN,...", heading=Heading.DESIGN, is_rare=True),
+    *options.MAKING,
+    *(*options.CHAT, *options.GATE, options.JUNIT, *options.SCREEN),
+)  # fmt: skip
+
+
+@click.command(cls=GroupedCommand, has_simulators=True, params=[options.WORDS, *RUN_OPTIONS])
+def run(words: tuple[str, ...], as_json: bool, quiet: bool, verbose: bool, **rest: Any) -> None:
+    """Make roads from a description: design, check, drive and judge them.
+
+    \b
+    roadgpt run "an uphill road with 3 turns" -n 5
+    roadgpt run "two hairpins, then a straight" -n 20 --seed 7 --friction 0.6
+    roadgpt run "a winding road" --reader chat --max-cost 0.50
+
+    \b
+    Exit status (roads finished before an error are saved in full):
+      0  every road has an outcome, even if it is FAIL, INVALID or ERROR
+      2  the description or an option cannot be used
+      3  nothing could be designed
+      4  a language model could not be used, or its token or cost limit was hit
+      6  the results do not meet --fail-on or --baseline; see --help-all"""
+    carry_out(Screen(rest["roads"], as_json, quiet, verbose), " ".join(words), **rest)
+
+
+def usual_values(words: str, roads: int, is_plan: bool = False) -> dict[str, Any]:
+    """Returns the option values of ``roadgpt run`` for a user who gives only the number of roads and a
+    description or plan (``words``). All other options have their configured or default values."""
+    parent = click.get_current_context(silent=True)
+    given = ["-n", str(roads), *(["--plan"] if is_plan else []), "--", words]
+    values = run.make_context("run", given, parent).params
+    for name in ("words", "as_json", "quiet", "verbose"):
+        values.pop(name)
+    return values
+
+
+def carry_out(
+    screen: Screen, words: str, *, roads: int, seed: int | None, out: Path | None, again: bool,
+    junit: Path | None, route: str, axes: "Scale", formats: "tuple[Format, ...]", **given: Any,
+) -> None:  # fmt: skip
+    """Interprets the description, makes its roads, and prints each road when it is finished.
+
+    The keyword arguments are the values of the options. If ``seed`` is None, the runs in ``out``
+    determine the seed; without such runs, the seed is random. An empty ``route`` means a random route."""
+    from roadgpt.campaign import campaign
+    from roadgpt.chat import Meter
+    from roadgpt.run import Setup, brief_of, seed_in
+
+    gate = screen.gate = options.gate_of(given, out)
+    world, pictures = options.world_of(given), options.pictures_of(given)
+    given["reader"] = options.reader_of(given)
+    chat = options.chat_of(given, given["reader"], given["designer"])
+    setup = Setup(drives=not given.pop("no_drive"), chat=chat, **given)
+    draw = beside(pictures, axes, formats)
+    meter = Meter.of(chat)
+    brief = brief_of(words, world, setup, meter)
+    if route:
+        from roadgpt.brief.plan import with_route  # only for maps
+
+        brief = brief.model_copy(update={"map": with_route(brief.map, route)})
+    if seed is None and out is not None:
+        seed = seed_in(out)
+    if seed is None:
+        seed = secrets.randbelow(SEEDS)
+    with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
+        work = campaign(brief, roads, seed, world, setup, out, draw, meter, again)
+    screen.request, screen.junit = work.request, junit
+    screen.say(understood(brief, work.request.world, world))
+    screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
+    crashes_go_to(work.folder)
+    screen.say(f"seed {seed}, into {work.folder}")
+    if work.is_complete:
+        screen.say(f"all {work.roads} roads are there")
+    elif work.kept:
+        screen.say(f"{len(work.kept)} roads were finished before; continuing")
+    _watch(work, pictures, screen)
+    gate.close()
+
+
+def understood(brief: "Brief", world: "World", given: "World") -> str:
+    """Returns lines: how a description was read, a warning if that is uncertain, and ``all_remarks``."""
+    from roadgpt.brief import SURE
+
+    told = f"I read this as: {reading(brief)}"
+    if brief.confidence < SURE:
+        sure = f"{100 * brief.confidence:.0f} % sure"
+        told += f"; perhaps not understood as meant ({sure}), so check it or say it in other words"
+    if brief.other:
+        from roadgpt.brief.plan import read_plan
+
+        other = reading(read_plan(brief.other))
+        told += f"\nit could also mean: {other}\n  (for that: --plan '{brief.other}')"
+    return "\n".join([told, *(f"note: {remark}" for remark in all_remarks(brief, world, given))])
+
+
+def all_remarks(brief: "Brief", world: "World", given: "World") -> tuple[str, ...]:
+    """Returns sentences on what is not built, or not as described; ``given`` is the World of the user."""
+    from roadgpt.brief import remarks
+    from roadgpt.design.room import lane_remarks, map_remark
+
+    found = remarks(brief, world.site.map_size, world.site.friction)
+    return tuple(filter(None, (*found, *lane_remarks(brief, world), map_remark(brief, given, world))))
+
+
+def reading(brief: "Brief") -> str:
+    """Returns a text that says how a description was read, and which words the reading does not use."""
+    from roadgpt.brief import sentence
+
+    said = sentence(brief).removesuffix(".")
+    told = f"{said[:1].lower()}{said[1:]}"
+    if brief.unused:
+        told += "; not used: " + ", ".join(f"'{word}'" for word in brief.unused)
+    return told
+
+
+def _watch(work: "Campaign", pictures: "tuple[Format, ...]", screen: Screen) -> None:
+    try:
+        screen.runs(work.all_runs(), work.folder)
+    except (KeyboardInterrupt, GivenUpError):
+        from roadgpt.cli.repeat_commands import to_resume
+
+        warn(f"continue with: {to_resume(work.folder)}")
+        raise
+    finally:
+        screen.close()
+        if work.meter.spent.calls:
+            screen.say(f"language model: {spending(work.meter.spent)}")
+        if screen.rows:
+            screen.say(f"tests and tables: {work.folder}")
+            if len(screen.rows) == work.roads:
+                from roadgpt.cli.repeat_commands import lines, of_rows
+
+                for line in lines(of_rows(work.request, work.brief, work.roads, screen.rows)):
+                    screen.say(line)
+            if pictures:
+                kind = pictures[0]
+                screen.say(
+                    f"pictures: {work.folder / f'overview.{kind}'} and {work.folder / 'runs'}/*/*.{kind}"
+                )
+
+
+def beside(pictures: "tuple[Format, ...]", axes: "Scale", formats: tuple[str, ...]) -> "Draw | None":
+    """Returns a function that adds pictures, and road files in these formats, to the folder of a run; None if
+    neither is wanted."""
+    draw = options.drawing_of(pictures, axes)
+    if not formats:
+        return draw
+    from roadgpt.export import exporter_of
+    from roadgpt.run.exporting import Exporting
+
+    for name in formats:
+        exporter_of(name)
+    return Exporting(formats, warn, draw)
+
+
+FEW = whole(1, 10, "the number of readings")
+LEAST = 0.01  # smallest chance of a reading that is listed
+TEMPERATURE = 1.3  # sampling temperature for the readings after the likeliest one
+
+
+READ_OPTIONS = (
+    options.PLAN,
+    *named(options.SETUP, "reader"),
+    Option("--weights", "Read with the networks of another training, from this folder.", folder),
+    *named(options.WORLD, "map_size", "friction"),
+    Option("--table as_table", "Print a row for each turn and straight.", bool),
+    options.json_option("Print the interpretation as JSON."),
+    Option("--alternatives number", "Show up to this many different interpretations.", FEW, 1),
+    *options.CHAT,
+)
+
+
+@click.command(cls=GroupedCommand, params=[options.WORDS, *READ_OPTIONS])
+def read(
+    words: tuple[str, ...], weights: Path | None, as_table: bool, as_json: bool, number: int, **rest: Any
+) -> None:
+    """Show how RoadGPT interprets a description, how confident it is, and whether the road fits on the map.
+
+    \b
+    roadgpt read "uphill, 3 turns, the last one a hairpin"
+    roadgpt read "drei Kurven, dann 80 m geradeaus bergab" --table
+    roadgpt read "a road" --alternatives 3"""
+    from roadgpt.brief import alternatives
+    from roadgpt.design.room import world_for
+    from roadgpt.run import Setup, brief_of
+
+    world, reader, text = options.world_of(rest), options.reader_of(rest), " ".join(words)
+    if weights is not None:
+        if reader != "model":
+            raise UsageError(f"--weights are of the reader model, not of {reader}; leave one of them out")
+        reader = f"model:{weights}"
+    chat = options.chat_of(rest, reader)
+    briefs: Sequence[Brief] = (brief_of(text, world, Setup(reader=reader, chat=chat)),)
+    if number > 1 and chat is None:  # a language model says what it takes for likeliest
+        briefs = alternatives(text, number, reader, world.site.map_size, TEMPERATURE)
+    if as_json:
+        found = [_as_data(brief, world_for(brief, world), world) for brief in briefs]
+        click.echo(json.dumps(found if number > 1 else found[0], indent=2, ensure_ascii=False))
+        return
+    if number > 1:
+        click.echo("\n".join(_list(briefs, as_table)))
+        return
+    click.echo(understood(briefs[0], world_for(briefs[0], world), world))
+    if as_table:
+        click.echo(_table(briefs[0]))
+
+
+def _as_data(brief: "Brief", world: "World", usual: "World") -> dict[str, object]:
+    from roadgpt.brief import SURE, sentence
+    from roadgpt.brief.plan import plan
+
+    told = {"sentence": sentence(brief), "plan": plan(brief), "confidence": brief.confidence}
+    told |= {"is_sure": brief.confidence >= SURE, "other": brief.other}
+    map_size, friction = world.site.map_size, world.site.friction
+    told |= {"map_size": map_size, "friction": friction, "remarks": all_remarks(brief, world, usual)}
+    return {**told, "unused": brief.unused, "brief": brief.model_dump(exclude_defaults=True)}
+
+
+def _list(briefs: "Sequence[Brief]", as_table: bool) -> Iterator[str]:
+    from roadgpt.brief import SURE
+
+    likely = [brief for place, brief in enumerate(briefs) if not place or brief.confidence >= LEAST]
+    whole = max(1.0, sum(brief.confidence for brief in likely))  # each is judged on its own; one is meant
+    for number, brief in enumerate(likely, 1):
+        yield f"{number}. {100 * brief.confidence / whole:3.0f} %  {reading(brief)}"
+        if as_table:
+            yield _table(brief)
+    if len(likely) == 1:
+        yield f"no other reading has a chance of {100 * LEAST:.0f} %"
+    if likely[0].confidence < SURE:
+        yield "not sure of any: if none is what you mean, say it in other words"
+
+
+def _table(brief: "Brief") -> str:
+    """Returns a table of the features in driving order, then the requirements on the whole road."""
+    from roadgpt.brief.normal import normal
+    from roadgpt.brief.sentence import clause_columns, road_words
+
+    said = normal(brief)
+    rows = [("", "what", "how")]
+    rows += [(str(number), *clause_columns(clause)) for number, clause in enumerate(said.clauses, 1)]
+    wishes = road_words(said)
+    if wishes or not said.clauses:
+        rows.append(("", "whole road", wishes or "nothing is asked of it"))
+    wide = [max(len(row[column]) for row in rows) for column in range(2)]
+    return "\n".join(f"{row[0]:>{wide[0]}}  {row[1]:<{wide[1]}}  {row[2]}".rstrip() for row in rows)
+
+
+EDIT_OPTIONS = (
+    Argument("run", "RUN", "Name the folder of a run, or the file of a design."),
+    Argument("words...", "CHANGE", 'Say what to change, such as "make the second turn sharper".'),
+    options.out("Folder for the changed road. [default: a new one]"),
+    Option("--plan is_plan", "CHANGE is a plan, such as 'turn 2: radius x0.75'.", bool),
+    Option("--reader", "What reads CHANGE: model (neural networks) or chat (a language model).",
+           click.Choice(["model", "chat"]), "model"),
+    *options.CHAT,
+    *named(options.WORLD, "map_size"),
+    *(options.DRIVER_AGAIN, options.NO_DRIVE, options.NO_PLOT, options.FORMAT),
+    *(options.json_option("Print one JSON line.", heading=Heading.OUTPUT), options.QUIET),
+)  # fmt: skip
+
+
+@click.command(cls=GroupedCommand, params=[*EDIT_OPTIONS])
+def edit(run: str, words: tuple[str, ...], as_json: bool, quiet: bool, **rest: Any) -> None:
+    """Change a road with a request in plain words.
+
+    RUN is a run, a folder that holds one run, or a file with a RoadGPT design. The changed road is written
+    into a new folder. Everything that the request does not refer to stays the same. World, driver and rules
+    are those of the run, but a map of the usual 250 m grows if the changed road needs it; --map-size applies
+    only to a design from a file.
+
+    \b
+    roadgpt edit my-roads/runs/0001 "make the second turn sharper and the end downhill"
+    roadgpt edit design.json "add a hairpin after the first turn, then remove the last straight"
+    roadgpt edit design.json --plan "turn 2: radius x0.75; end: slope down"
+
+    The exit status is 2 if the words cannot be read, refer to something that is not on the road, or ask for
+    a road that cannot be valid. In these cases nothing is written."""
+    chat, pictures = options.chat_of(rest, rest["reader"]), options.pictures_of(rest)
+    given = {"chat": chat, "pictures": pictures, "drives": not rest.pop("no_drive")}
+    edit_road(Screen(1, as_json, quiet), run, " ".join(words), options.world_of(rest), **given, **rest)
+
+
+def edit_road(
+    screen: Screen, road: str, words: str, world: "World", out: Path | None = None, reader: str = "model",
+    chat: "ChatSettings | None" = None, driver: tuple[str, ...] = (), drives: bool = True,
+    pictures: "tuple[Format, ...]" = ("png",), is_plan: bool = False,
+) -> Path:  # fmt: skip
+    """Changes a road as requested, checks and drives it, writes and prints its run, and returns its folder.
+
+    ``road`` is a run, a test of a campaign, or a file with a design; ``world`` is used only for a file.
+    ``driver`` comes from ``--driver``. Nothing is driven if ``drives`` is False or the run was not driven."""
+    from roadgpt.brief import SURE
+    from roadgpt.brief.change.plan import read_change_plan
+    from roadgpt.chat import Meter, counting
+    from roadgpt.design.edit import edit
+    from roadgpt.drive.permission import check_named_drivers, require_permission
+    from roadgpt.run import prove
+    from roadgpt.run.editing import folder_for, original_of, reject_used, write_edit
+    from roadgpt.run.execution import test_name
+
+    if out is not None:
+        reject_used(out)
+    (named,) = roads_named([road], None)
+    before, design, remarks = original_of(road, named.run() if named.run else None, world)
+    for remark in remarks:
+        screen.say(f"{road}: {remark}")
+    setup = before.request.setup
+    check_named_drivers(driver, {setup.driver}, road)
+    drives = drives and setup.drives
+    if drives:
+        require_permission(setup.driver)
+    request: str | EditRequest = words
+    if is_plan:
+        if chat is not None:
+            raise UsageError(f"--plan needs no language model; leave out --reader {reader}")
+        request = read_change_plan(words)
+    meter = Meter.of(chat)
+    try:
+        with counting(meter, "edit"):
+            made = edit(design, request, before.world, setup.geometry, chat)
+    finally:  # a language model costs money even if the change failed
+        if meter.spent.calls:
+            screen.say(f"language model: {spending(meter.spent)}")
+    setup = setup.model_copy(update={"designer": "planner", "reader": reader, "chat": chat, "drives": drives})
+    old = prove(design, before.seed, before.world, setup.model_copy(update={"drives": False}))
+    with redirect_stdout(sys.stderr):  # a user's driver may print
+        run = prove(made.design, before.seed, made.world, setup)
+    folder = folder_for(words, before.seed, out)
+    place = write_edit(run, old, words, made.changes, road, folder, options.drawing_of(pictures))
+    row = row_of(run, str(folder / test_name(1)), test_name(1))
+    if screen.as_json:
+        told = {"request": words, "of": road, "changes": made.changes, "unused": made.unused}
+        sure = {"confidence": made.confidence, "is_sure": made.confidence >= SURE, "other": made.other}
+        print(json.dumps({**told, **sure, **json.loads(row.to_json())}, ensure_ascii=False))
+    else:
+        _print_edit(screen, made, row, place, pictures)
+    return place
+
+
+def _print_edit(
+    screen: Screen, made: "Edited", row: Row, place: Path, pictures: "tuple[Format, ...]"
+) -> None:
+    from roadgpt.brief import SURE
+
+    for sentence in made.changes:
+        screen.say(sentence)
+    if made.confidence < SURE:
+        sure = f"{100 * made.confidence:.0f} % sure"
+        screen.say(f"perhaps not understood as meant ({sure}), so check it or say it in other words")
+        if made.other:
+            screen.say(f'it could also mean: --plan "{made.other}"')
+    if made.unused:
+        screen.say("not understood: " + ", ".join(f"'{word}'" for word in made.unused))
+    with screen:
+        screen.row(row)
+    screen.say(f"changed road: {place}")
+    if pictures:
+        kind = pictures[0]
+        screen.say(f"pictures: {place}/*.{kind}, and of the road as it was: {place}/before/*.{kind}")
+
+
+OF_AGAIN = (*options.CHOICES, options.NO_PLOT, options.AXES, options.FORMAT)
+DRIVE_OPTIONS = (
+    options.seed("Seed for the driver.", 1),
+    options.out("Folder for the runs. [default: none is written, or with --again CAMPAIGN/again]"),
+    *options.WORLD,
+    *named(options.SETUP, "driver", "simulator", "keep_driving", "geometry", "rules"),
+    Option("--again", "Drive tests of a campaign again.", bool, heading=Heading.AGAIN),
+    *(each.but(heading=Heading.AGAIN) for each in OF_AGAIN),
+    *(*options.GATE, options.JUNIT, *options.SCREEN),
+)
+ONLY_AGAIN = {each.field for each in OF_AGAIN}
+BOTH = {"files", "again", "driver", "out", *(each.field for each in options.GATE)}
+
+
+@click.command(cls=GroupedCommand, has_simulators=True, params=[options.ROADS, *DRIVE_OPTIONS])
+@click.pass_context
+def drive(
+    ctx: click.Context, /, files: tuple[str, ...], seed: int, again: bool, out: Path | None, axes: Any,
+    junit: Path | None, as_json: bool, quiet: bool, verbose: bool, **rest: Any,
+) -> int:  # fmt: skip
+    """Drive roads from files, or run tests of a campaign again.
+
+    ROAD is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a table of
+    points (.csv) or OpenDRIVE (.xodr). A folder of such files, a folder of runs and a campaign stand for all
+    their roads. A road that breaks a rule is driven anyway, and the broken rule is shown with the verdict. A
+    road is INVALID if it cannot be driven: it has numbers that are not finite, two points at the same place,
+    or no room for a car. With --rules sbft (see --help-all), every broken rule makes a road INVALID, as in
+    the SBFT competition. The exit status is 0 if every road could be read, and 6 if the results do not meet
+    --fail-on or --baseline.
+
+    With --again, give a campaign or a folder of runs, followed by the numbers of its tests, such as DIR 17.
+    If a campaign has several cells (combinations of settings), name the cell, too: CAMPAIGN/c02/17. Road,
+    world, driver and seed are taken from the test, so the drive should be identical byte for byte; the
+    command says so if it is not. Each test is written into a run folder of its own. To look at a test
+    without driving it again, use roadgpt show, view, film or export with CAMPAIGN/c02/17.
+
+    \b
+    roadgpt drive my_road.json --friction 0.6
+    roadgpt drive --again roadgpt-runs/an-uphill-road-with-3-turns-7 17"""
+    _refuse_mixture(ctx, again)
+
+    choice, pictures = options.choice_of(rest), options.pictures_of(rest)
+    gate = options.gate_of(rest, out)
+    if again:
+        drivers = [rest["driver"]] if "driver" in options.typed(ctx) else []
+        drive_again(files, choice, out, drivers, axes, pictures, gate)
+        return 0
+    from roadgpt.run import Request, Setup, check_parts
+    from roadgpt.run.editing import reject_used
+    from roadgpt.run.model import LostDrives
+
+    if out is not None:
+        reject_used(out)
+    world = options.world_of(rest)
+    setup = Setup(**rest)
+    with redirect_stdout(sys.stderr):
+        check_parts(setup, world)  # reports a missing driver before any road is read
+    asked = Request(seed=seed, world=world, setup=setup)
+    roads = roads_in(files)
+    screen = Screen(len(roads), as_json, quiet, verbose)
+    screen.request, screen.junit, screen.gate = asked, junit, gate
+    losses: LostDrives[str] = LostDrives()
+    each_road(roads, screen, lambda file: _driven(screen, file, asked, losses, out))
+    gate.close()
+    return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0
+
+
+def _refuse_mixture(ctx: click.Context, again: bool) -> None:
+    for parameter in ctx.command.params:
+        if parameter.name in options.typed(ctx) - BOTH and again != (parameter.name in ONLY_AGAIN):
+            flag = parameter.opts[0]
+            raise UsageError(
+                f"a test keeps its world and its seed; leave out {flag} with --again"
+                if again
+                else f"{flag} is for tests of a campaign, which are driven with --again; leave it out for a "
+                "road from a file"
+            )
+
+
+def _driven(
+    screen: Screen, file: str, asked: "Request", losses: "LostDrives[str]", out: Path | None
+) -> "tuple[Row, Run]":
+    from roadgpt.run import prove, write_run
+
+    blueprint, world, remarks = source_of(file, asked.world)
+    for remark in remarks:
+        screen.say(f"{file}: {remark}")
+    with redirect_stdout(sys.stderr):  # what a user's driver prints is no row
+        is_strict = asked.setup.rules == "strict"
+        at = len(screen.rows) + 1
+        run = prove(blueprint, asked.seed, world, asked.setup, at, despite_findings=is_strict)
+    screen.detail(f"{file}: {run.description}")
+    for finding in run.findings:
+        screen.detail(f"{file}: finding: {finding.sentence}")
+    if losses.count(file, run.is_lost):
+        raise losses.given_up(
+            run.description, f"see to it and drive the roads from {losses.lost[0]} on again"
+        )
+    if out is not None:
+        write_run(run, made(out))
+    return row_of(run, file), run
+
+
+AGAIN = "again"  # folder in that of the tests
+
+
+def drive_again(
+    names: Sequence[str], choice: "Choice | None", out: Path | None, drivers: Sequence[str], axes: "Scale",
+    formats: "tuple[Format, ...]", gate: "Gate",
+) -> None:  # fmt: skip
+    """Repeats tests, writes a run folder for each, and warns if a result differs from the recorded one.
+
+    The names are a folder and numbers of tests in this folder, or single tests like CAMPAIGN/c02/17.
+    Without ``out``, the run folders are written into ``again`` in the folder of the tests. ``drivers`` are
+    those that the user gave with ``--driver``. No pictures are drawn without ``formats``."""
+    from roadgpt.campaign.folder_record import is_same, run_again, setups_of
+    from roadgpt.campaign.model import NumberedTest
+    from roadgpt.chat.answer import plain
+    from roadgpt.drive.permission import check_named_drivers
+    from roadgpt.run import write_run
+    from roadgpt.run.atomic import refuse_links
+
+    tests = _named(names, choice)
+    for folder_ in {place.folder for place in tests}:
+        check_named_drivers(drivers, {setup.driver for setup in setups_of(folder_)}, folder_)
+    draw = options.drawing_of(formats, axes)
+    for place in tests:
+        cell, number = place.cell, place.number or 0
+        run, result = run_again(place.folder, cell, number)
+        home = (out or place.folder / AGAIN) / cell
+        refuse_links(*([home.parent] if home.parent.name == AGAIN else []), home)
+        written = write_run(run, made(home), draw)
+        name = NumberedTest(cell, number)
+        worse = gate.add(place.said, run)
+        told = f"{plain(run.description, 300)}  worse: {worse}" if worse else plain(run.description, 300)
+        click.echo(f"{run.outcome:<8} {name}  {written}  {told}")
+        if not is_same(run, result):
+            said = f"{result.outcome} before ({plain(result.description, 300)})"
+            changed = "its driver, RoadGPT or the machine has changed: compare the versions that show prints"
+            warn(f"test {name} was {said}; {changed}")
+    if gate.remark:
+        click.echo(gate.remark)
+    gate.close()
+
+
+def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":
+    """Returns the tests that the names refer to; a number refers to a test in the folder that is named
+    first."""
+    from roadgpt.campaign.record import no_tests
+    from roadgpt.campaign.selection import chosen, selection_of
+    from roadgpt.chat.answer import plain
+
+    first = selection_of(names[0])
+    if first is None:
+        raise no_tests(Path(names[0]))
+    if first.number is None and choice is None and len(names) == 1:
+        raise UsageError(
+            f"say which tests of {first.said}: their numbers, such as 17 or c02/17, or --worst, --faults or "
+            "--failures"
+        )
+    out = [] if first.number is None and choice is None else chosen(first, choice)
+    for name in names[1:]:
+        place = selection_of(f"{first.folder}/{name}") or selection_of(name)
+        if place is None or (place.number is None and choice is None):
+            raise UsageError(f"'{plain(name, 40)}' is not a test; give its number, such as 17 or c02/17")
+        out += chosen(place, choice)
+    if not out:
+        raise UsageError(f"{first.said} has no test for --{choice}")
+    return out

@@ -1,0 +1,457 @@
+"""Commands of campaigns: ``roadgpt campaign``, ``resume`` and ``faults``."""
+
+import os
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import redirect_stdout
+from functools import partial
+from itertools import chain
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+
+from roadgpt.cli import options
+from roadgpt.cli.commands.evaluate import write_report
+from roadgpt.cli.commands.make import beside, understood
+from roadgpt.cli.option import (
+    PATH,
+    Argument,
+    Heading,
+    Option,
+    driver_guard,
+    drivers,
+    folder,
+    measure,
+    named,
+    whole,
+)
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.streams import progress, resumable, watched
+from roadgpt.errors import UsageError, command_line
+
+if TYPE_CHECKING:
+    from roadgpt.campaign.faults.fault import Faults
+    from roadgpt.campaign.faults.fault_log import FailureAnalysis, FailureDrawing
+    from roadgpt.campaign.model import NumberedTest
+    from roadgpt.campaign.plan import Plan
+    from roadgpt.chat import ChatSettings
+    from roadgpt.report import Scale
+    from roadgpt.run import Draw
+
+REPEAT = 10  # disturbed drives of each fault, unless the user gives another number
+DRIVES = whole(1, 1000, "drives")
+
+MINIMISE = "For each fault, also find the simplest road on which it still occurs"
+DISTURB = "Number of further drives for each fault, with small disturbances"
+GROUPS = (
+    "Analyse each group of similar failures on its own, without finding out which groups are one fault. This "
+    "saves up to 16 drives for each failure that is tried."
+)
+_failures = partial(Option, heading=Heading.FAILURES)
+FAULT_OPTIONS = (
+    _failures("--faults", "At the end, analyse the failures as 'roadgpt faults' does.", bool),
+    _failures("--minimise", f"{MINIMISE}; implies --faults.", bool),
+    _failures("--repeat", f"{DISTURB}; implies --faults. [default: {REPEAT}]", DRIVES),
+    _failures("--groups", f"{GROUPS} Implies --faults.", bool),
+)
+
+
+class AnalysisOptions(NamedTuple):
+    """Values of the options with which ``roadgpt faults`` analyses failures."""
+
+    repeat: int = REPEAT
+    minimise: bool = False
+    workers: int = 1
+    formats: tuple[str, ...] = ("png",)  # without any, no pictures are drawn
+    quiet: bool = False
+    groups: bool = False
+    top: int | None = None  # failures that are written into a folder for a paper
+    is_apart: bool = False  # standard output is reserved for JSON
+
+    def say(self, text: str, is_news: bool = False) -> None:
+        """Prints a text unless ``quiet``; progress messages (``is_news``) go to standard error."""
+        if not self.quiet:
+            click.echo(text, err=is_news or self.is_apart)
+
+
+def analyse_failures(place: Path, look: AnalysisOptions) -> None:
+    """Finds and prints the distinct faults of a folder of runs or a campaign, with an analysis of each."""
+    from roadgpt.campaign.faults.fault import faults_in
+    from roadgpt.campaign.faults.fault_log import FAILURES, instructive, write_tables, write_top
+    from roadgpt.campaign.faults.remedy import FOLDER
+    from roadgpt.campaign.folder_record import open_record, setups_of
+    from roadgpt.cli.repeat_commands import typed_words
+    from roadgpt.run.model import permissions
+    from roadgpt.run.versions import versions_now
+
+    found = faults_in(place)
+    if not found.failures:
+        look.say("no road failed, so there is no fault to analyse")
+        return
+    with open_record(place) as record:
+        asked = ((cell.request, cell.generator) for cell in record.cells())
+        record.refuse_changed(versions_now(asked))  # the user is asked for permission here, not in workers
+    go_on = command_line("faults", place, *permissions(setups_of(place)), *typed_words(faults))
+    with resumable(f"finished work is kept; continue with: {go_on}"):
+        found = _tested(place, found, look)
+        look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
+        looked = _analysed(place, [(each.number, each.names) for each in found.them], look)
+        top = instructive(found.them, looked, look.top or 0)
+        tops = _analysed(place, [(at, (name,)) for at, (_, name) in enumerate(top)], look)
+    table = write_tables(found, looked, place)
+    look.say("\n".join(_summary(place, found, looked)))
+    look.say(f"tables: {table} and {table.with_name(FAILURES)}")
+    if look.formats:
+        cells = sorted({fault.typical[0].name.cell for fault in found.them})
+        drawn = (f"{place / FOLDER / cell}/*.{kind}" for cell in cells for kind in look.formats)
+        look.say(f"pictures: {', '.join(drawn)}")
+    if top:
+        from roadgpt.report.birds_eye import draw_fault
+
+        folder = write_top(place, [(fault, tops[at]) for at, (fault, _) in enumerate(top)], draw_fault)
+        look.say(f"the {len(top)} most instructive failures, for a paper: {folder}")
+
+
+def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
+    """Tries small changes on failures of all groups until it is known which groups are one fault; returns
+    the faults."""
+    from roadgpt.campaign.executors.processes import unordered_map
+    from roadgpt.campaign.faults.fault import faults_in
+    from roadgpt.campaign.faults.remedy import try_remedies
+    from roadgpt.campaign.workers import LOG
+
+    done, rounds = 0, 0
+    with progress("failures", None, look.quiet) as tell:
+        while found.to_test and not look.groups:
+            rounds, total, later = rounds + 1, done + found.to_come, found.to_come - len(found.to_test)
+            more = f", about {later:,} more in later rounds" * (later > 0)
+            what = f"trying small changes on {len(found.to_test):,} of them{more}"
+            look.say(f"{found.sentence}; round {rounds}: {what}", is_news=True)
+            for _ in unordered_map(partial(try_remedies, place), found.to_test, look.workers, place / LOG):
+                done += 1
+                tell(done, total=total)
+            found = faults_in(place)
+    return found
+
+
+def _analysed(
+    place: Path, what: "Sequence[tuple[int, Sequence[NumberedTest]]]", look: AnalysisOptions
+) -> "dict[int, FailureAnalysis]":
+    """Analyses one of the named failures under each number; returns the analyses by number."""
+    from roadgpt.campaign.executors.processes import unordered_map
+    from roadgpt.campaign.faults.fault_log import AnalysisTask, analyse
+    from roadgpt.campaign.workers import LOG
+
+    draw: FailureDrawing | None = None
+    if look.formats:
+        from roadgpt.report.birds_eye import draw_fault as draw
+    tasks = [
+        AnalysisTask(place, number, tuple(names), look.repeat, look.minimise, draw, look.formats)
+        for number, names in what
+    ]
+    steps = unordered_map(analyse, tasks, look.workers, place / LOG)
+    return dict(watched(steps, len(tasks), "faults", look.quiet))
+
+
+def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis]") -> Iterator[str]:
+    """Yields two rows for each fault: its failures, how often it fails again, why a typical test failed, and
+    the small change with which the failures disappear."""
+    from roadgpt.plural import plural
+    from roadgpt.run.folder import is_run
+
+    wide = max([len("test"), *(len(str(its.name)) for its in looked.values())])
+    yield f"{'fault':>5} {'failures':>8} {'again':>7}  {'test':<{wide}}  why"
+    for fault in found.them:
+        its = looked[fault.number]
+        again = f"{its.stability.failed}/{len(its.stability.drives)}"
+        name = f"{its.name!s:<{wide}}"
+        yield f"{fault.number:>5} {len(fault.members):>8,} {again:>7}  {name}  {its.reason.sentence}"
+        alone = "it belongs to no fault" if found.is_tested else "no small changes were tried"
+        removed = f"disappears with {fault.removed_by}" if fault.remedy else f"a group; {alone}"
+        yield f"{'':>{wide + 26}}{removed}"
+        if its.simplest:
+            yield f"{'':>{wide + 26}}simplest: {its.simplest}"
+    stable = sum(its.stability.is_stable for its in looked.values())
+    yield found.headline
+    what = plural(len(found.them), "fault" if found.distinct else "group")
+    yield f"{stable:,} of {what} fail again in at least half of the drives"
+    if looked:
+        one = place if is_run(place) else f"{place}/{looked[1].name}"
+        yield f"look at one: {command_line('view', one)}"
+
+
+# fmt: off
+FAULTS_OPTIONS = (
+    Option("--repeat", f"{DISTURB}.", DRIVES, REPEAT),
+    Option("--minimise", f"{MINIMISE}.", bool),
+    Option("--groups", GROUPS, bool),
+    Option("--top", "Also write the N most instructive failures into a folder for a paper: different faults "
+           "first, then different places.", whole(1, 100, "failures")),
+    Option("-j workers", "Number of failures analysed in parallel.", whole(1, 256, "processes"), 1),
+    *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
+)
+# fmt: on
+
+
+@click.command(
+    cls=GroupedCommand, has_simulators=True, params=[Argument("place", "DIR", kind=folder), *FAULTS_OPTIONS]
+)
+def faults(place: Path, driver: tuple[str, ...], **rest: Any) -> None:
+    """Group the failures of a folder of runs or a campaign into distinct faults, and find why each occurs.
+
+    Failures form a group if the 60 m of road around the lane departures are alike. Some failures of each
+    group are driven with small changes, such as a 15 % larger radius of the bend. If the failures of several
+    groups disappear with the same change, these groups are one fault. Further failures of the fault are then
+    driven with this change; a failure that still occurs with it no longer counts as part of the fault. The
+    most typical failure of each fault is driven again several times with slightly varied friction, start
+    position and perception delay; the share of drives that fail again is reported. DIR/faults gets a
+    picture and a sentence for each fault, faults.csv with a line per fault, and failures.csv with a line per
+    failure.
+    Finished work is not repeated, so Ctrl-C loses nothing.
+
+    \b
+    roadgpt faults roadgpt-runs/hairpins-7
+    roadgpt faults roadgpt-runs/hairpins-7 --repeat 30 --minimise -j 2"""
+    from roadgpt.campaign.folder_record import setups_of
+    from roadgpt.drive.permission import check_named_drivers
+
+    check_named_drivers(driver, {setup.driver for setup in setups_of(place)}, place)
+    analyse_failures(place, AnalysisOptions(formats=options.pictures_of(rest), **rest))
+
+
+MOST_TESTS = 10_000_000
+TESTS = whole(1, MOST_TESTS, "the number of tests")
+SECONDS = measure(0, 1e8, "s", above=True)
+BESIDE_A_FILE = {
+    "words", "out", "again", "workers", "executor", "address", "drivers", "faults", "minimise", "repeat",
+    "groups", "junit", "as_json", "quiet", *(each.field for each in options.GATE),
+}  # fmt: skip
+
+
+# fmt: off
+CAMPAIGN_OPTIONS = (
+    Argument("words...", "DESCRIPTION|FILE.toml",
+             'Say what roads: roadgpt campaign "a winding road" --goal failures -n 200'),
+    Option("-n --tests", "Number of tests.", TESTS),
+    Option("--goal", "What to search for: failures, coverage (roads as diverse as possible), hardest (least "
+           "margin), boundary (just between PASS and FAIL). [default: no search]",
+           click.Choice(["failures", "coverage", "hardest", "boundary"])),
+    Option("--generator", "Test generator. [default: 'quality_diversity' with --goal, else 'words', which "
+           "does not search]"),
+    Option("--seconds", "Start no more tests after this many seconds.", SECONDS),
+    options.seed("The same seed gives the same table.", 0),
+    options.out("Folder for the campaign. [default: a new one]"),
+    options.AGAIN,
+    *options.WORKERS,
+    *(options.PLAN, *named(options.SETUP, "reader", "designer")),
+    Option("--driver --drivers drivers", "Name of a driver, or FILE.py:CLASS; for more drivers, repeat the "
+           "option or separate them by commas. If FILE.toml lists a driver file, RoadGPT runs it only if you "
+           "name it here, too.", drivers, ("lane_centring",), multiple=True, heading=Heading.DRIVE,
+           table="run", guard=driver_guard, callback=lambda _, __, given: tuple(chain.from_iterable(given))),
+    Option("--paired", "Compare the drivers on the same roads at the end, in a report.", bool,
+           heading=Heading.DRIVE),
+    *named(options.SETUP, "simulator", "keep_driving"),
+    *options.WORLD,
+    *named(options.SETUP, "geometry", "rules"),
+    *(options.NO_DRIVE, *options.CHAT, *FAULT_OPTIONS, *options.GATE, options.JUNIT),
+    *(options.json_option("Print one JSON object at the end.", heading=Heading.OUTPUT), options.QUIET),
+)
+# fmt: on
+
+
+@click.command(cls=GroupedCommand, has_simulators=True, params=[*CAMPAIGN_OPTIONS])
+@click.pass_context
+def campaign(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **given: Any) -> None:
+    """Search for roads that a driver fails on, or make thousands of roads.
+
+    Give a description, or a FILE.toml that lists prompts, designers, drivers, simulators and seeds; each
+    combination is then a cell with tests of its own. A campaign can be resumed after Ctrl-C, a crash or a
+    power cut. The table of results depends neither on interruptions nor on the number of workers.
+
+    \b
+    roadgpt campaign "an uphill road with 3 turns" --goal failures -n 200 -j 2 --seed 7
+    roadgpt campaign study.toml -j 16 --out study
+    roadgpt show study --watch"""
+    from roadgpt import plugins
+    from roadgpt.campaign.lifecycle import begin
+    from roadgpt.run.atomic import to_bytes
+    from roadgpt.run.folder import new_folder
+
+    text = to_bytes(" ".join(words)).decode()  # what a broken terminal put into it becomes an escape
+    plan = _filed(ctx, Path(text), given) if text.endswith(".toml") else _described(text, given)
+    plan.check()
+    plugins.find("executors", given["executor"])
+    if out is None:
+        out = new_folder(Path(text).stem if text.endswith(".toml") else text, plan.seeds[0])
+    given["gate"] = options.gate_of(given, out)
+    with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
+        was_there = begin(plan, out, given.pop("again"))
+    if not given["quiet"] and not given["as_json"]:
+        _tell(out, plan, was_there)
+    work_to_the_end(out, given)
+
+
+def work_to_the_end(
+    folder: Path, given: dict[str, Any], chat: "ChatSettings | None" = None, draw: "Draw | None" = None
+) -> None:
+    """Runs the remaining tests of a campaign or a folder of runs and prints the results.
+
+    ``given`` holds the gate, which decides last, and the values of the options, which can request a JUnit
+    file and an analysis of the failures. ``chat`` has the settings of the language model if the user changed
+    a limit. ``draw`` adds pictures and road files to a folder of runs."""
+    from roadgpt.campaign.folder_record import is_store
+    from roadgpt.campaign.lifecycle import work
+    from roadgpt.campaign.record import Record
+    from roadgpt.cli.summary import watch
+
+    again = given.get("again", False)
+    steps = work(folder, given["workers"], given["executor"], given["address"], chat, draw, again)
+    watch(folder, steps, given["as_json"], given["quiet"], given["gate"])
+    if given["junit"] is not None:
+        from roadgpt.cli.junit import write_folder
+
+        write_folder(given["junit"], folder, given["gate"].worse)
+    if is_store(folder):
+        with Record.opened(folder) as record:
+            if record.plan().paired:
+                from roadgpt.report.chapters.same_roads import compared
+
+                page = write_report(folder)
+                if not given["quiet"]:
+                    click.echo("\n".join([*compared(record), f"report: {page}"]), err=given["as_json"])
+    if any(given[name] for name in ("faults", "minimise", "repeat", "groups")):
+        here = min(given["workers"], os.cpu_count() or 1)  # the campaign's workers may be on other machines
+        look = AnalysisOptions(given["repeat"] or REPEAT, given["minimise"], here, quiet=given["quiet"])
+        analyse_failures(folder, look._replace(groups=given["groups"], is_apart=given["as_json"]))
+    given["gate"].close()
+
+
+def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
+    """Returns the plan in a file."""
+    from roadgpt.campaign.plan import read_plan
+    from roadgpt.chat.config import Layer, configured
+    from roadgpt.drive.permission import check_named_drivers
+
+    typed = options.typed(ctx)
+    wrong = typed - BESIDE_A_FILE - {flag.field for flag in options.CHAT}
+    for parameter in ctx.command.params:
+        if parameter.name in wrong:
+            raise UsageError(f"{parameter.opts[0]} cannot be given with {path}; write it into the file")
+    written = read_plan(path)
+    check_named_drivers(rest["drivers"] if "drivers" in typed else (), {*written.plan.drivers}, path)
+    if not written.plan.asks_a_model:
+        return written.plan
+    chat = configured(options.chat_values(rest), Layer(str(path), written.chat))
+    return written.plan.model_copy(update={"chat": chat})
+
+
+def _described(text: str, rest: dict[str, Any]) -> "Plan":
+    from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL, CellBudget
+    from roadgpt.campaign.plan import Plan
+
+    goal, seconds, tests = rest["goal"], rest["seconds"], rest["tests"]
+    rest["reader"] = options.reader_of(rest)
+    world = options.world_of(rest)
+    chat = options.chat_of(rest, rest["reader"], rest["designer"])
+    return Plan(
+        prompts=(text,),
+        designers=(rest["designer"],),
+        drivers=tuple(rest["drivers"]),
+        simulators=(rest["simulator"],),
+        generators=(rest["generator"] or (WITH_GOAL if goal else WITHOUT_GOAL),),
+        seeds=(rest["seed"],),
+        goal=goal,
+        budget=CellBudget(tests=tests, seconds=seconds),
+        reader=rest["reader"],
+        rules=rest["rules"],
+        geometry=rest["geometry"],
+        keep_driving=rest["keep_driving"],
+        drives=not rest["no_drive"],
+        paired=rest["paired"],
+        world=world,
+        chat=chat,
+    )
+
+
+def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
+    """Prints how the description is read, how many cells there are, and the folder."""
+    from roadgpt.campaign.record import Record
+    from roadgpt.design.room import world_remarks
+
+    with Record.opened(out) as record:
+        cells = record.cells()
+    briefs = {cell.request.words: (cell.brief, cell.request.world) for cell in cells if cell.brief}
+    for words, (brief, world) in briefs.items():
+        if len(plan.prompts) == 1:
+            click.echo(understood(brief, world, plan.world))
+            continue
+        for said in world_remarks(brief, plan.world, world):
+            click.echo(f"note: {words}: {said}")
+    if len(cells) > 1:
+        what = "the same roads for each driver" if plan.paired else "each with tests of its own"
+        click.echo(f"{len(cells):,} cells, {what}")
+    click.echo(f"{'resuming in' if was_there else 'into'} {out}")
+
+
+RESUME_OPTIONS = (
+    Argument("folder", "DIR", "Name the folder of a campaign or of runs, as 'roadgpt campaign' or "
+             "'roadgpt run' printed it.", PATH),
+    *(*options.WORKERS, *named(options.CHAT, "max_tokens", "max_cost"), options.DRIVER_AGAIN),
+    Option("--base-url", "Address of the server. Repeat it here if the campaign used one: for safety, your "
+           "API key is not sent to an address just because a folder refers to it.", heading=Heading.MODEL),
+    *(*FAULT_OPTIONS, *options.GATE),
+    options.AGAIN,
+    options.AXES,
+    options.JUNIT,
+    options.json_option("Print one JSON object at the end.", heading=Heading.OUTPUT),
+    options.QUIET,
+)  # fmt: skip
+
+
+@click.command(cls=GroupedCommand, has_simulators=True, params=[*RESUME_OPTIONS])
+def resume(folder: Path, driver: tuple[str, ...], base_url: str | None, axes: "Scale", **rest: Any) -> None:
+    """Continue a campaign or a run that was interrupted.
+
+    DIR is a folder that 'roadgpt campaign' or 'roadgpt run' wrote. Tests that had not finished are repeated.
+    The tests and tables are the same as without the interruption, whatever the number of workers. If DIR
+    was written by 'roadgpt run', the remaining roads are made one at a time, with the same kinds of pictures
+    and road files as the finished ones.
+
+    \b
+    roadgpt resume roadgpt-runs/an-uphill-road-with-3-turns-7 -j 2"""
+    from roadgpt.campaign.folder_record import open_record
+    from roadgpt.chat.config import trust_server
+    from roadgpt.drive.permission import check_named_drivers
+
+    rest["gate"] = options.gate_of(rest, folder)
+    with open_record(folder) as record:
+        cells = record.cells()
+    chat = next((cell.request.setup.chat for cell in cells if cell.request.setup.chat), None)
+    check_named_drivers(driver, {cell.request.setup.driver for cell in cells}, folder)
+    if base_url is not None:
+        trust_server(base_url, chat.base_url if chat else None, folder)
+    limits = {name: rest[name] for name in ("max_tokens", "max_cost") if rest[name] is not None}
+    if limits and chat is None:
+        raise UsageError(f"--max-tokens and --max-cost limit a language model, and {folder} asks none")
+    changed = chat.model_copy(update=limits) if limits and chat else None
+    work_to_the_end(folder, rest, changed, _as_before(folder, axes) if cells[0].in_sequence else None)
+
+
+def _as_before(folder: Path, axes: "Scale") -> "Draw | None":
+    """Returns a function that gives a run the same kinds of pictures and road files as the finished runs of a
+    folder have."""
+    from roadgpt import plugins
+    from roadgpt.report import FORMATS
+    from roadgpt.run.exporting import NAME
+    from roadgpt.run.folder import RUNS
+
+    names = {path.name for path in folder.glob(f"{RUNS}/*/*")}
+    if "road.json" not in names:
+        return beside(("png",), axes, ())
+    pictures = tuple(kind for kind in FORMATS if f"birds_eye.{kind}" in names)
+    formats: tuple[str, ...] = ()
+    if any(name.startswith(NAME) and name != "road.json" for name in names):
+        every = plugins.names("exporters")
+        formats = tuple(each for each in every if NAME + plugins.find("exporters", each).suffix in names)
+    return beside(pictures, axes, formats)

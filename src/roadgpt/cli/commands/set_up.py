@@ -1,0 +1,253 @@
+"""Commands on this installation: ``roadgpt config`` and ``doctor``."""
+
+import inspect
+import json
+import platform
+import re
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import click
+
+from roadgpt import __version__, plugins
+from roadgpt.cli import options
+from roadgpt.cli.option import Option
+from roadgpt.cli.option_groups import CommandGroup
+from roadgpt.cli.streams import warn
+from roadgpt.errors import PartError, RoadGPTError
+
+
+class InstalledPlugin(NamedTuple):
+    """An installed plug-in: its kind (such as readers), the package that provides it, and what it does."""
+
+    shelf: str
+    name: str
+    origin: str
+    about: str
+    works: bool
+
+
+def installed() -> list[InstalledPlugin]:
+    """Returns every installed plug-in; if a plug-in cannot be loaded, its description gives the reason."""
+    found = []
+    for shelf in plugins.KINDS:
+        for name in plugins.names(shelf):
+            try:
+                about, works = _first_sentence(plugins.find(shelf, name)), True
+            except PartError as error:
+                about, works = str(error), False
+            found.append(InstalledPlugin(shelf, name, plugins.origin(shelf, name), about, works))
+    return found
+
+
+def _first_sentence(part: Any) -> str:
+    text = inspect.getdoc(part) or inspect.getdoc(inspect.getmodule(part)) or "It has no description."
+    paragraph = " ".join(text.strip().split("\n\n")[0].replace("``", "").split())
+    return re.split(r"(?<=[.;:]) ", paragraph)[0].rstrip(".;:")
+
+
+@click.group(cls=CommandGroup)
+def config() -> None:
+    """Show all settings and where each comes from; list plug-ins."""
+
+
+@config.command(
+    params=[
+        Option("--origin with_origin", "With --json: also print where each setting comes from.", bool),
+        options.json_option(),
+        *options.CHAT,
+    ]
+)
+def show(with_origin: bool, as_json: bool, **values: Any) -> None:
+    """Show all settings that options, environment variables or files can set, and where each comes from.
+
+    An option on the command line takes precedence; then an environment variable, such as ROADGPT_FRICTION;
+    then the file .env in this folder; then roadgpt.toml in this folder; then roadgpt/config.toml in the
+    configuration folder of your user account. The tables of the TOML files are [run], [world], [chat] and
+    [beamng]. API keys are masked.
+
+    A folder may come from somebody else. For safety, .env and roadgpt.toml cannot name a driver's file, a
+    program, a server that gets your API key, or a plug-in that asks a language model."""
+    from roadgpt.chat.config import unknown_variables
+
+    shown = [*_of_options(), *_of_chat(values)]
+    if as_json:
+        told = {
+            name: {"value": value, "origin": origin} if with_origin else value
+            for _, name, value, origin in shown
+        }
+        click.echo(json.dumps(told, indent=2))
+        return
+    wide = max(len(name) for _, name, _, _ in shown)
+    far = max(len(_text(value)) for _, _, value, _ in shown)
+    for under in dict.fromkeys(table for table, _, _, _ in shown):
+        click.secho(f"[{under}]", bold=True)
+        for table, name, value, origin in shown:
+            if table == under:
+                click.echo(f"{name:<{wide}}  {_text(value):<{far}}  {origin}")
+    for name in unknown_variables({option.variable for option in options.settable()}):
+        warn(f"{name} is not a setting; the settings are listed above")
+
+
+def _text(value: Any) -> str:
+    return "-" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _of_options() -> Iterator[tuple[str, str, Any, str]]:
+    """Yields table, name, value and origin of all settings but those of language models."""
+    context = click.Context(click.Command(None), resilient_parsing=True)
+    layers = options.layers()
+    for option in options.settable():
+        setting = option.found(layers)
+        value = option.converted(context, setting) if setting else option.get_default(context)
+        if isinstance(value, tuple):
+            value = ",".join(",".join(each) if isinstance(each, tuple) else str(each) for each in value)
+        elif not isinstance(value, int | float):
+            value = str(value) if isinstance(value, str | Path) else None
+        yield option.table, option.setting_name, value, setting.origin if setting else "default"
+
+
+def _of_chat(values: dict[str, Any]) -> Iterator[tuple[str, str, Any, str]]:
+    """Yields the settings of language models, and the masked key of their server."""
+    from roadgpt.chat.config import key_for, settings_from, settings_with_origin
+
+    found = settings_with_origin(options.chat_values(values))
+    settings = settings_from(found)
+    for name, setting in found.items():
+        yield "chat", name, getattr(settings, name), setting.origin
+    key = key_for(settings.base_url)
+    yield "chat", "api_key", str(key) if key else None, key.origin if key else "nowhere"
+
+
+@config.command("plugins", params=[options.json_option("Print one JSON list.")])
+def plugins_command(as_json: bool) -> None:
+    """List the plug-ins: readers, designers, rules, exporters, simulators, drivers and others.
+
+    Each line shows the name to use in options, the package that provides the plug-in, and what it does."""
+    parts = installed()
+    if as_json:
+        click.echo(json.dumps([part._asdict() for part in parts], indent=2))
+        return
+    wide = max(len(part.name) for part in parts)
+    for shelf in plugins.KINDS:
+        click.secho(shelf, bold=True)
+        for part in parts:
+            if part.shelf == shelf:
+                line = f"  {part.name:<{wide}}  {part.origin:<16}  {part.about}"
+                click.secho(line, fg=None if part.works else "red")
+
+
+LIBRARIES = ("numpy", "scipy", "numba", "mujoco-core", "matplotlib", "shapely", "pydantic", "click", "rich")
+TEST_ROAD = [[40.0, 100.0], [60.0, 100.0], [80.0, 100.0]]  # m; a straight, driven in a few seconds
+
+
+class CheckResult(NamedTuple):
+    """The result of one check of the installation."""
+
+    about: str
+    is_fine: bool
+    sentence: str
+
+
+def examined() -> Iterator[CheckResult]:
+    """Runs all checks and yields the result of each; a failed check is a result, not an exception."""
+    from roadgpt.chat.client import diagnose
+
+    yield CheckResult("roadgpt", True, f"{__version__} in {Path(__file__).resolve().parents[2]}")
+    fits = sys.version_info >= (3, 11)
+    yield CheckResult("Python", fits, f"{platform.python_version()} on {platform.platform()}")
+    for name in LIBRARIES:
+        yield _tried(name, partial(_library, name))
+    try:
+        parts = installed()
+    except RoadGPTError as error:
+        yield CheckResult("plug-ins", False, str(error))
+    else:
+        broken = [part for part in parts if not part.works]
+        for part in broken:
+            yield CheckResult(f"{part.shelf}: {part.name}", False, part.about)
+        told = f"{len(parts) - len(broken)} of {len(parts)} can be used (roadgpt config plugins)"
+        yield CheckResult("parts", not broken, told)
+    yield _tried("model", diagnose)  # fine if none is configured
+    yield _tried("numba", _numba)
+    yield _tried("test drive", _drive)
+    for place in (Path.cwd(), Path(tempfile.gettempdir())):
+        yield _tried(f"folder {place}", partial(_writable, place))
+
+
+def _tried(about: str, look: Callable[[], str]) -> CheckResult:
+    try:
+        return CheckResult(about, True, look())
+    except RoadGPTError as error:
+        return CheckResult(about, False, str(error))
+    except Exception as error:
+        return CheckResult(about, False, f"{type(error).__name__}: {error}")
+
+
+def _library(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        raise RoadGPTError(f"is missing: python -m pip install {name}") from None
+
+
+def _numba() -> str:
+    from roadgpt.compiled import COMPILES, WHY_NOT
+
+    return "compiles the inner loop" if COMPILES else f"is not used ({WHY_NOT}): drives work, but far slower"
+
+
+def _drive() -> str:
+    from roadgpt.drive import simulate
+    from roadgpt.road import Road, World
+    from roadgpt.verdict import judge
+
+    road, world = Road.through(TEST_ROAD), World()
+    simulate(road, world, "reference")  # compiles
+    begun = time.perf_counter()
+    drive = simulate(road, world, "reference")
+    took = time.perf_counter() - begun
+    verdict = judge(road, drive, world)
+    if not verdict.kept:
+        raise RoadGPTError(f"the car left a straight road ({verdict.description}); please report this")
+    return f"{drive.duration:.1f} s simulated in {took:.2f} s, {drive.duration / took:.0f} times real time"
+
+
+def _writable(folder: Path) -> str:
+    with tempfile.TemporaryFile(dir=folder):
+        return "can be written to"
+
+
+@click.group(
+    cls=CommandGroup, invoke_without_command=True, params=[options.json_option("Print one JSON list.")]
+)
+@click.pass_context
+def doctor(ctx: click.Context, /, as_json: bool) -> None:
+    """Check this installation: versions, plug-ins, compiler, a test drive, folders.
+
+    The exit status is 0 if no check finds a problem."""
+    if ctx.invoked_subcommand is not None:
+        return
+    answers = []
+    for answer in examined():
+        answers.append(answer)
+        if not as_json:
+            mark = click.style("ok     ", fg="green") if answer.is_fine else click.style("PROBLEM", fg="red")
+            click.echo(f"{mark}  {answer.about:<14} {answer.sentence}")
+    if as_json:
+        click.echo(json.dumps([answer._asdict() for answer in answers], indent=2))
+    problems = sum(not answer.is_fine for answer in answers)
+    if problems:
+        raise RoadGPTError(f"{problems} of {len(answers)} checks found a problem; see those marked above")
+    if not as_json:
+        click.echo("all is well")
+
+
+for name in plugins.names("checks"):
+    doctor.add_command(plugins.find("checks", name), name)

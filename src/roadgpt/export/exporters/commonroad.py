@@ -1,0 +1,282 @@
+"""Exports roads and networks as CommonRoad scenarios (XML 2020a): lanelets, speed limit, signs, lights and
+intersections, and the task to reach the end.
+
+Source: CommonRoad, Documentation of the XML Format, version 2020a. The format can hold heights, but
+CommonRoad's planners, road boundaries and plots fail if points have heights (commonroad-io 2024.3), so no
+heights are written.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from math import degrees
+from pathlib import Path
+
+import numpy as np
+
+from roadgpt.brief.junctions import SIDE, Control, Way, side_of
+from roadgpt.export.ego import Poses, calm_speed, start_of
+from roadgpt.export.georeference import LATITUDE, LONGITUDE
+from roadgpt.export.lanelets import ONLY, Lanelet, lanelets_of, leading_to
+from roadgpt.export.markup import XmlElement, number
+from roadgpt.geometry import wrap_angle
+from roadgpt.geometry.curve import Array
+from roadgpt.network import Arm, Connection, Junction, Network, Route
+from roadgpt.network.markings import gives_way_to_ring, line_to_stop_at, place_of_sign
+from roadgpt.road import Road, World
+from roadgpt.road.profile import Marking
+
+STEP = 0.1  # s
+PATIENCE = 2.0  # times the duration of a calm drive to the end
+NOWHERE = -999  # GeoNames' number for no place
+MARKS: Mapping[Marking, str] = {"solid": "solid", "broken": "dashed", "none": "no_marking", "double": "solid"}
+SPEED_LIMIT = "274"  # number of the sign in Germany and in Zamunda, CommonRoad's fictional country
+SIGNS: dict[Control, str] = {"yield": "205", "stop": "206", "priority": "306"}
+LINES: dict[Control, str] = {"yield": "dashed", "stop": "solid", "lights": "solid"}
+"""Type of the line at the end of an arm, by the sign or light of the arm."""
+GREEN = 1000  # time steps; duration of the only phase of a light
+ORDER: tuple[Way, ...] = ("right", "straight", "left")
+
+
+class Crossings:
+    """Creates the CommonRoad elements of a network's junctions."""
+
+    def __init__(self, network: Network, lanelets: Sequence[Lanelet], first_free: int) -> None:
+        """Prepares the elements for all lanelets of a network; ``first_free`` is the first id for signs,
+        lights and intersections."""
+        self.network, self.first_free = network, first_free
+        self.road_of = {each.id: each.road for each in lanelets}
+        self.arms = [
+            (junction, arm, incoming)
+            for junction in network.junctions
+            for arm in junction.arms
+            if (incoming := leading_to(lanelets, network, arm.end))
+        ]
+
+    @cached_property
+    def _signed(self) -> dict[int, tuple[int, Junction, Arm]]:
+        """The id of the sign or light of each lanelet that has one, with its junction and its arm."""
+        signed = [each for each in self.arms if each[1].control != "none"]
+        return {
+            lanelet.id: (self.first_free + n, junction, arm)
+            for n, (junction, arm, incoming) in enumerate(signed)
+            for lanelet in incoming
+        }
+
+    def line_of(self, lanelet: int) -> Iterator[XmlElement]:
+        """Yields the element ``stopLine`` of a lanelet on which traffic stops or gives way; nothing for any
+        other lanelet.
+
+        Where traffic gives way to a roundabout, the element has no points, which means that the line is at
+        the end of the lanelet.
+        """
+        if lanelet not in self._signed:
+            return
+        _, junction, arm = self._signed[lanelet]
+        line = line_to_stop_at(self.network, junction, arm)
+        if line is None:
+            return
+        out = XmlElement("stopLine")
+        if not gives_way_to_ring(self.network, junction, arm):
+            out.extended(*(point_element(each) for each in np.round(line[:, :2], 4).tolist()))
+        out.add("lineMarking", raw=LINES[arm.control])
+        yield out
+
+    def references(self, lanelet: int) -> Iterator[XmlElement]:
+        """Yields the element by which a lanelet refers to its sign or light; nothing if there is neither."""
+        if lanelet in self._signed:
+            id_, _, arm = self._signed[lanelet]
+            name = "trafficLightRef" if arm.control == "lights" else "trafficSignRef"
+            yield XmlElement(name, {"ref": id_})
+
+    def elements(self) -> Iterator[XmlElement]:
+        """Yields the signs, the lights and the intersections, in the order that the format requires."""
+        placed = [(arm, self._signed[own[0].id][0]) for _, arm, own in self.arms if own[0].id in self._signed]
+        yield from (self._sign(arm, id_) for arm, id_ in placed if arm.control != "lights")
+        yield from (self._light(arm, id_) for arm, id_ in placed if arm.control == "lights")
+        free = self.first_free + len(placed)
+        for junction in self.network.junctions:
+            own = [(arm, incoming) for each, arm, incoming in self.arms if each is junction]
+            made = XmlElement("intersection", {"id": free})
+            for n, (arm, incoming) in enumerate(own, 1):
+                made.extended(self._way_in(junction, arm, incoming, free + n))
+            yield made
+            free += len(own) + 1
+
+    def _way_in(self, junction: Junction, arm: Arm, incoming: Sequence[Lanelet], id_: int) -> XmlElement:
+        out = XmlElement("incoming", {"id": id_})
+        for lanelet in incoming:
+            out.add("incomingLanelet", {"ref": lanelet.id})
+        to: dict[Way, list[int]] = {side: [] for side in ORDER}
+        ways = [each for each in junction.connections if each.incoming == arm.end]
+        sides = {each.road: self._side(junction, each) for each in ways}
+        for lanelet in incoming:
+            for id_ in lanelet.after:
+                to[sides[self.road_of[id_]]].append(id_)
+        for side in ORDER:
+            for id_ in to[side]:
+                out.add(f"successors{side.capitalize()}", {"ref": id_})
+        return out
+
+    def _side(self, junction: Junction, way: Connection) -> Way:
+        """Returns the side to which a connection leads.
+
+        A connection that stays on the ring of a roundabout leads straight on. At a diverge, a connection that
+        turns by more than 1 degree leads to the side of this turn.
+        """
+        ring = self.network.roundabout_of.get(junction.id)
+        if ring is not None and {way.incoming.road, way.outgoing.road} <= {*ring.ring}:
+            return "straight"
+        road = self.network.road(way.road).road
+        turn = degrees(float(road.heading(road.length) - road.heading(0.0)))
+        return side_of(turn * SIDE if junction.kind == "diverge" and abs(turn) > 1 else turn)
+
+    def _place(self, arm: Arm) -> XmlElement:
+        member = self.network.road(arm.end.road)
+        s, t = place_of_sign(member, arm.end.contact)
+        x, y = member.road.at(s, t)[:2].tolist()
+        return XmlElement("position").extended(point_element((round(x, 4), round(y, 4))))
+
+    def _sign(self, arm: Arm, id_: int) -> XmlElement:
+        out = XmlElement("trafficSign", {"id": id_})
+        out.add("trafficSignElement").add("trafficSignID", raw=SIGNS[arm.control])
+        out.extended(self._place(arm)).add("virtual", raw="false")
+        return out
+
+    def _light(self, arm: Arm, id_: int) -> XmlElement:
+        out = XmlElement("trafficLight", {"id": id_})
+        cycle = XmlElement("cycle")
+        phase = cycle.add("cycleElement")
+        phase.add("duration", raw=str(GREEN))
+        phase.add("color", raw="green")
+        out.extended(cycle, self._place(arm))
+        out.add("direction", raw="all")
+        out.add("active", raw="true")
+        return out
+
+
+class CommonRoad:
+    """CommonRoad scenario 2020a: lanelets in plan view, a speed limit, and the task to drive to the end."""
+
+    name = "commonroad"
+    suffix = ".cr.xml"
+    holds_junctions = True
+    needs_route = True
+    lacks = ("heights", "superelevation")
+
+    def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
+        """Writes the scenario.
+
+        ``poses`` is ignored, because CommonRoad stores drives in a separate solution format.
+        """
+        path.write_bytes(document(road, world).to_text().encode())
+
+
+def document(road: Road, world: World) -> XmlElement:
+    """Returns the XML document: lanelets, signs, lights, intersections and planning problem.
+
+    Lanelets are numbered road by road and lane by lane: first the lanes in the direction of the road, from
+    the centre line outwards, then the oncoming lanes.
+    """
+    lanelets = lanelets_of(road, world)
+    sign = len(lanelets) + 1
+    root = XmlElement(
+        "commonRoad",
+        {
+            "timeStepSize": STEP,
+            "commonRoadVersion": "2020a",
+            "author": "RoadGPT",
+            "affiliation": "RoadGPT",
+            "source": "generated",
+            "benchmarkID": "ZAM_RoadGPT-1_1_T-1",
+            "date": "2026-01-01",  # fixed, so that the same road gives the same bytes
+        },
+    )
+    location = root.add("location")
+    location.add("geoNameId", raw=str(NOWHERE))
+    location.add("gpsLatitude", raw=number(LATITUDE))
+    location.add("gpsLongitude", raw=number(LONGITUDE))
+    root.add("scenarioTags").add("rural")
+    junctions = Crossings(road.network, lanelets, sign + 2) if isinstance(road, Route) else None
+    for each in lanelets:
+        root.extended(_lanelet(each, sign, junctions))
+    edges = world.profile_of(road).edges(0.0)
+    side = edges.left if world.profile_of(road).left_hand else edges.right
+    root.extended(_limit(sign, road.at(0.0, side), world))
+    if junctions is not None:
+        root.extended(*junctions.elements())
+    root.extended(_problem(sign + 1, road, world, _goal(road, world, lanelets)))
+    return root
+
+
+def _goal(road: Road, world: World, lanelets: Sequence[Lanelet]) -> int:
+    """Returns the id of the last lanelet of the lane that the tested car drives."""
+    if isinstance(road, Route):
+        number, lane = road.legs[-1]
+    else:
+        profile = world.profile_of(road)
+        number, lane = ONLY, profile.along_ids[profile.driven]
+    return [each.id for each in lanelets if (each.road, each.lane) == (number, lane)][-1]
+
+
+def _lanelet(lanelet: Lanelet, sign: int, junctions: Crossings | None) -> XmlElement:
+    """Returns a lanelet, with left and right as seen by drivers; ``sign`` is the id of the speed limit."""
+    out = XmlElement("lanelet", {"id": lanelet.id})
+    for name, bound in (("leftBound", lanelet.left), ("rightBound", lanelet.right)):
+        element = out.add(name)
+        for point in bound.points[:: 1 if lanelet.is_along else -1, :2].tolist():
+            element.extended(point_element(point))
+        element.add("lineMarking", raw=MARKS[bound.marking])
+    for name, others in (("predecessor", lanelet.before), ("successor", lanelet.after)):
+        for other in others:
+            out.add(name, {"ref": other})
+    for name, neighbour in zip(("adjacentLeft", "adjacentRight"), lanelet.beside, strict=True):
+        if neighbour is not None:
+            id_, is_same = neighbour
+            out.add(name, {"ref": id_, "drivingDir": "same" if is_same else "opposite"})
+    if junctions is not None:
+        out.extended(*junctions.line_of(lanelet.id))
+    out.add("laneletType", raw="country")
+    out.add("userOneWay", raw="vehicle")
+    out.add("trafficSignRef", {"ref": sign})
+    if junctions is not None:
+        out.extended(*junctions.references(lanelet.id))
+    return out
+
+
+def _limit(id_: int, place: Array, world: World) -> XmlElement:
+    out = XmlElement("trafficSign", {"id": id_})
+    told = out.add("trafficSignElement")
+    told.add("trafficSignID", raw=SPEED_LIMIT)
+    told.add("additionalValue", raw=number(round(world.limits.speed_limit, 6)))
+    out.add("position").extended(point_element(place[:2].tolist()))
+    out.add("virtual", raw="true")
+    return out
+
+
+def _problem(id_: int, road: Road, world: World, goal: int) -> XmlElement:
+    """Returns the planning problem: to drive from rest to the last lanelet. The time limit is 10 s plus twice
+    the time that a calm driver needs for the road at constant speed."""
+    start = start_of(road)
+    place = np.round(road.at(start, world.profile_of(road).middle(start)), 6)
+    out = XmlElement("planningProblem", {"id": id_})
+    state = out.add("initialState")
+    state.add("position").extended(point_element(place[:2].tolist()))
+    heading = float(np.round(wrap_angle(road.heading(start)), 9))
+    values = {"orientation": heading, "time": 0, "velocity": 0, "yawRate": 0, "slipAngle": 0}
+    for name, value in values.items():
+        state.add(name).add("exact", raw=number(value))
+    state = out.add("goalState")
+    time = state.add("time")
+    time.add("intervalStart", raw="0")
+    steps = int(np.ceil((PATIENCE * road.length / calm_speed(road, world) + 10.0) / STEP))
+    time.add("intervalEnd", raw=str(steps))
+    state.add("position").add("lanelet", {"ref": goal})
+    return out
+
+
+def point_element(values: Sequence[float]) -> XmlElement:
+    """Returns the element ``point`` with x and y in metres."""
+    out = XmlElement("point")
+    for name, value in zip("xy", values, strict=True):
+        out.add(name, raw=number(value))
+    return out

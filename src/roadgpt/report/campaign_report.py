@@ -1,0 +1,422 @@
+"""Writes the report of a campaign. SQL queries count the tests in the campaign's database, so that a
+report on a million tests needs little memory."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.campaign.behaviour import BOUNDS
+from roadgpt.campaign.boundary_pairs import BoundaryPair, pairs_of, weightiest
+from roadgpt.campaign.faults.fault import faults_in
+from roadgpt.campaign.model import Result
+from roadgpt.campaign.record import Record
+from roadgpt.campaign.status import CellStatus, Status, status_of
+from roadgpt.design.elements import elements_of
+from roadgpt.errors import command_line
+from roadgpt.plural import plural
+from roadgpt.report.chapters.faults import Steps, fault_summaries, faults, headline, what_to_try
+from roadgpt.report.chapters.roads import CELLS, MAPS, feature_map
+from roadgpt.report.chapters.same_roads import compared, same_roads
+from roadgpt.report.chapters.validity import outside_sentences, outside_table, passed_tests
+from roadgpt.report.chapters.wording import (
+    decimal,
+    drawn_share,
+    driver_names,
+    interval_cell,
+    near_and_far,
+    p_value,
+    percent,
+    row,
+    share_cells,
+    share_of,
+)
+from roadgpt.report.page import write
+from roadgpt.report.page.charts import bars, forest, lines
+from roadgpt.report.page.model import Block, Figure, Page, Section, Table, TableCell, cell, linked
+from roadgpt.report.statistics import chi_squared, wilson
+from roadgpt.run import Request
+
+COMPARED = 2000  # failures, evenly spread, that are grouped before they are tested; this takes seconds
+MOST_CELLS = 12  # whose curves and shares are drawn
+TABLES = ("results.csv", "cells.csv")
+NAMED = 30  # failures, and pairs of roads of a campaign with one cell, that are shown one by one
+STEPS = 200  # of a curve
+SAMPLE = 100_000  # tests whose features are read, evenly spread
+MARGINS = (-2.0, 2.0, 0.1)  # m: from, to, width of a bar; what lies beyond is in the outermost
+MOST_SEARCHED = (
+    1000  # tests of all cells in which pairs are searched; tests half-way between two others come first
+)
+FEW_PAIRS = 10  # pairs that are shown per cell for a campaign with several cells
+NEAR = (
+    "tests.number IN (SELECT number FROM tests JOIN details USING (cell, number) WHERE tests.cell = ? "
+    "AND outcome IN ('PASS', 'FAIL') ORDER BY origin LIKE 'between %' DESC, number DESC LIMIT ?)"
+)
+EXPLAINED = (
+    "Distance: the root of the summed squares of all differences, where 10 m of a straight, 2 m of a radius "
+    "or a clothoid, 10 degrees of a turn and 1 % of a grade are 1 each. Each road stands in one pair."
+)
+
+
+def write_store_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
+    """Writes the report of a campaign into its folder and returns the path of the HTML page. It shows
+    ``command``, which repeats the campaign, and ``next_steps``, what to try if no test failed."""
+    status = status_of(folder)
+    with Record.opened(folder) as record:
+        page = _page(folder, record, status, command, next_steps)
+    return write(page, folder)
+
+
+def _page(folder: Path, record: Record, status: Status, command: str, next_steps: Steps) -> Page:
+    first, is_paired = record.cell(record.names()[0]).request, record.plan().paired
+    goes_on = first.setup.keep_driving  # whether cars drive on after they have left their lane
+    fields = [c for c in status.cells if c.done]
+    words = list(dict.fromkeys(c.words for c in status.cells if c.words))
+    title = words[0] if len(words) == 1 else f"A campaign of {plural(len(status.cells), 'cell')}"
+    lead = f"{status.done:,} tests in {plural(len(status.cells), 'cell')}"
+    lead += "" if status.is_finished else "; the campaign is unfinished"
+    found = faults_in(folder, COMPARED)
+    summaries = fault_summaries(folder, found)
+    pairs = nearest(record, [each for each in fields if each.goal == "boundary"][:MOST_CELLS])
+    gallery, covered = faults(folder, found, summaries), coverage(record, status.done)
+    sections = [same_roads(folder, record)] if is_paired else []
+    sections += [gallery] if gallery else []
+    sections += [Section("Feature map", covered)] if covered else []
+    sections += what_to_try(next_steps)
+    sections.append(Section("Outcomes", _outcomes(record, status, fields, is_paired)))
+    if any(_driven(each)[1] for each in fields):
+        sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS], goes_on)))
+        near: list[Block] = [*outside_table(passed_tests(record)), margins(record, goes_on)]
+        sections.append(Section("How near to failing", near))
+    sections += [Section("At the boundary", boundary(folder, pairs))] if pairs else []
+    summary = compared(record) if is_paired else []
+    summary += headline(found, summaries) if _driven(status)[1] else []
+    summary += [*_summary(record, first, status, fields), *nearest_sentence(pairs)]
+    return Page(title, summary, sections, _card(command, record, status), lead)
+
+
+def _summary(record: Record, first: Request, status: Status, cells: Sequence[CellStatus]) -> list[str]:
+    counts, (failed, driven) = status.outcomes, _driven(status)
+    told = ", ".join(f"{number:,} {outcome}" for outcome, number in sorted(counts.items()))
+    out = [f"{status.done:,} tests: {told or 'nothing yet'}."]
+    if driven:
+        out.append(f"The car failed on {share_of(failed, driven)} of the roads that were driven.")
+        if other := sum(cell.handed_over for cell in status.cells):
+            out.append(f"On {other:,} of them the driver had handed over: they are not its failures.")
+        best = max(cells, key=_failing)
+        if len(cells) > 1:
+            out.append(f"Most fail in {best.name}: {percent(_failing(best))} of its driven roads.")
+        out += outside_sentences(passed_tests(record), first.world)
+        farthest = _least(record, "FAIL") if first.setup.keep_driving else None
+        out += near_and_far(_least(record, "PASS"), farthest)
+    out += [sentence for each in cells if (sentence := each.remark)]
+    wrong = counts.get("INVALID", 0) + counts.get("ERROR", 0)
+    out.append(f"Of all tests {share_of(wrong, status.done)} were invalid or ended in an error.")
+    if status.seconds:
+        out.append(f"It took {status.seconds:,.0f} s, {status.done / status.seconds:.1f} tests a second.")
+    return out
+
+
+def _least(record: Record, outcome: str) -> tuple[float, str] | None:
+    found = record.query(
+        "SELECT margin, cell, number FROM tests WHERE outcome = ? AND margin IS NOT NULL "
+        "ORDER BY margin, cell, number LIMIT 1",
+        (outcome,),
+    )
+    return (found[0][0], f"test {found[0][1]}/{found[0][2]}") if found else None
+
+
+def _driven(of: Status | CellStatus) -> tuple[int, int]:
+    """Returns the number of roads on which the car failed, and of all driven roads."""
+    failed = of.outcomes.get("FAIL", 0)
+    return failed, failed + of.outcomes.get("PASS", 0)
+
+
+def _failing(of: CellStatus) -> float:
+    failed, driven = _driven(of)
+    return failed / driven if driven else 0.0
+
+
+def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus], is_paired: bool) -> list[Block]:
+    seconds = dict(record.query("SELECT name, seconds FROM cells"))
+    names = driver_names(each.driver for each in status.cells)
+    differing, note = _what_differs(status.cells, names)
+    rows: list[list[TableCell]] = []
+    for each in status.cells:
+        failed, driven = _driven(each)
+        about = _about(each, names)
+        invalid, errors = (each.outcomes.get(name, 0) for name in ("INVALID", "ERROR"))
+        rows.append(
+            row(
+                each.name,
+                *(about[head] for head in differing),
+                each.done,
+                invalid,
+                errors,
+                *share_cells(failed, driven)[:3],
+                interval_cell(wilson(failed, driven)) if driven else None,
+                decimal(each.least_margin),
+                decimal(seconds.get(each.name), 0),
+            )
+        )
+    heads = ["cell", *differing, "tests", "invalid", "error", "failed", "driven", "share", "Wilson 95 %",
+             "nearest when kept, m", "s"]  # fmt: skip
+    blocks: list[Block] = [Table("outcomes", "Outcomes, cell by cell", heads, rows, note)]
+    if len(cells) > 1 and not is_paired:  # its test is for roads that are not the same
+        found = chi_squared([[failed, driven - failed] for failed, driven in map(_driven, cells)])
+        blocks.append(
+            f"Do cells differ in how many roads fail? χ² = {found.statistic:.2f} with {found.freedom} "
+            f"degrees of freedom, {p_value(found.p)}, Cramér's V = {found.cramers_v:.2f}."
+            + ("" if found.is_sound or not found.freedom else " Expected counts are small.")
+        )
+    if len(cells) > 1:
+        blocks.append(_forest(cells[:MOST_CELLS], names))
+    beside = [linked(name, name) for name in TABLES if (record.folder / name).is_file()]
+    if beside:
+        between = " and " if len(beside) > 1 else ""
+        blocks.append(["Every test stands in ", beside[0], between, *beside[1:], "."])
+    return blocks
+
+
+def _about(of: CellStatus, names: Mapping[str, str]) -> dict[str, str]:
+    return {
+        "description": of.words or "roads that were given",
+        "generator": of.generator,
+        "driver": names[of.driver],
+        "oracle": of.oracle,
+        "seed": str(of.seed),
+        "friction": f"{of.friction:g}",
+    }
+
+
+def _what_differs(cells: Sequence[CellStatus], names: Mapping[str, str]) -> tuple[list[str], str]:
+    every = [_about(each, names) for each in cells]
+    differing = [head for head in every[0] if len({about[head] for about in every}) > 1]
+    same = [
+        f"{head} “{text}”" if head == "description" else f"{head} {text}"
+        for head, text in every[0].items()
+        if head not in differing
+    ]
+    whose = "In all cells: " if len(cells) > 1 else f"{cells[0].name}: "
+    return differing, whose + ", ".join(same) + "." if same else ""
+
+
+def _forest(cells: Sequence[CellStatus], names: Mapping[str, str]) -> Figure:
+    groups = []
+    for each in cells:
+        failed, driven = _driven(each)
+        if driven:
+            share = drawn_share(0, failed, driven, f"{failed:,} of {driven:,}")
+            groups.append((f"{each.name} · {each.generator} · {names[each.driver]}", [share]))
+    caption = "Share of driven roads on which the car failed, with Wilson's 95 % intervals."
+    return Figure("failed", caption, forest(groups, ["failed"], caption))
+
+
+def _card(command: str, record: Record, status: Status) -> dict[str, str]:
+    recorded = (record.versions(driver) for driver in {each.driver: None for each in status.cells})
+    versions = (", ".join(f"{name} {its}" for name, its in each.items()) for each in recorded)
+    seeds = sorted({each.seed for each in status.cells})
+    return {
+        **({"command": command} if command else {}),
+        "seeds": ", ".join(map(str, seeds[:20])),
+        "tests": f"{status.done:,}",
+        "language models": f"{status.tokens:,} tokens, {status.cost_usd:.4f} USD"
+        if status.tokens
+        else "none",
+        "versions": "; ".join(dict.fromkeys(versions)),
+    }
+
+
+def failures(
+    folder: Path, record: Record, cells: Sequence[CellStatus], drives_on: bool = False
+) -> list[Block]:
+    """Returns a chart of failures over the number of tests, one line for each of ``cells``, a table of
+    causes, and one of failures: the worst if cars drive on after they have left their lane, or the first."""
+    blocks: list[Block] = [_curves(record, cells), _causes(record, drives_on)]
+    order = "margin IS NULL, margin, cell, number" if drives_on else "cell, number"
+    some = record.query(
+        "SELECT cell, number, margin, max_oob, cause, side, at_s, description FROM "  # noqa: S608 - our words
+        f"(SELECT * FROM tests WHERE outcome = 'FAIL' ORDER BY {order} LIMIT ?) JOIN details "
+        f"USING (cell, number) ORDER BY {order}",
+        (NAMED,),
+    )
+    rows = [
+        row(
+            cell(f"{name}/{number}", href=again(folder, name, number)),
+            *_how_far(margin, outside, drives_on),
+            cause or "",
+            side or "",
+            decimal(at_s, 0),
+            says or "",
+        )
+        for name, number, margin, outside, cause, side, at_s, says in some
+    ]
+    if rows:
+        note = f"To see one: {command_line('view', f'{folder}/{rows[0][0].value}')}"
+        heads = ["test", *_far_heads(drives_on), "cause", "side", "at, m", "what happened"]
+        ((every,),) = record.query("SELECT count(*) FROM tests WHERE outcome = 'FAIL'")
+        blocks.append(Table("failures", _caption(len(rows), every, drives_on), heads, rows, note))
+    return blocks
+
+
+def _caption(shown: int, every: int, drives_on: bool) -> str:
+    if every == 1:
+        return "The one failure"
+    if shown == every:
+        return f"All {every} failures" + (", the worst first" if drives_on else "")
+    return (
+        f"The {shown} worst of {every:,} failures"
+        if drives_on
+        else f"The first {shown} of {every:,} failures"
+    )
+
+
+def again(folder: Path, name: str, number: int) -> str:
+    """Returns the path of the picture of a test that was driven again; empty if there is none."""
+    place = f"again/{name}/runs/{number:04d}/birds_eye.png"
+    return place if (folder / place).is_file() else ""
+
+
+def _curves(record: Record, cells: Sequence[CellStatus]) -> Figure:
+    curves = []
+    for each in cells:
+        width = max(1, -(-each.asked // STEPS))
+        found = record.query(
+            "SELECT (number - 1) / ?, sum(outcome = 'FAIL') FROM tests WHERE cell = ? AND outcome IS NOT "
+            "NULL GROUP BY 1 ORDER BY 1",
+            (width, each.name),
+        )
+        at = np.array([0, *((step + 1) * width for step, _ in found)], float)
+        at[-1] = min(at[-1], each.asked) if len(at) > 1 else at[-1]
+        curves.append((each.name, at, np.cumsum([0, *(failed for _, failed in found)])))
+    caption = "Failures found over the tests of each cell, in the order in which they were asked for."
+    return Figure("found", caption, lines(curves, "tests", "failures found", caption))
+
+
+def _far_heads(drives_on: bool) -> list[str]:
+    return ["outside at most", *(["farthest out, m"] if drives_on else [])]
+
+
+def _how_far(margin: float | None, outside: float | None, drives_on: bool) -> list[TableCell]:
+    share = cell(None) if outside is None else cell(round(outside, 4), percent(outside, 0))
+    far = None if margin is None or margin >= 0 else -margin
+    return [share, *([decimal(far)] if drives_on else [])]
+
+
+def _causes(record: Record, drives_on: bool) -> Table:
+    found = record.query(
+        "SELECT cause, side, count(*), min(margin), max(max_oob) FROM tests WHERE outcome = 'FAIL' "
+        "GROUP BY 1, 2 ORDER BY 3 DESC, 1, 2"
+    )
+    rows = [
+        row(cause or "other", side or "–", count, *_how_far(least, outside, drives_on))
+        for cause, side, count, least, outside in found
+    ]
+    return Table("causes", "How the car failed", ["cause", "side", "tests", *_far_heads(drives_on)], rows)
+
+
+def margins(record: Record, drives_on: bool = False) -> Figure:
+    """Returns a histogram of the margins of all tests, in metres. A margin is the smallest sideways shift
+    that would have made the car fail; it is negative if the car left its lane or fell."""
+    low, high, width = MARGINS
+    n = round((high - low) / width)
+    found: Mapping[int, int] = dict(
+        record.query(
+            "SELECT CAST((max(min(margin, ?), ?) - ?) / ? AS INTEGER), count(*) FROM tests "
+            "WHERE margin IS NOT NULL GROUP BY 1",
+            (high - width / 2, low, low, width),
+        )
+    )
+    counts = [found.get(step, 0) for step in range(n)]
+    caption = (
+        "Margins: how far sideways the car still was from failing where it came closest; negative where it "
+        "failed. The outermost bars hold what lies beyond."
+    )
+    if not drives_on:
+        caption += (
+            " A drive ends where the car leaves its lane, so such failures lie within centimetres of 0."
+        )
+    edges = np.linspace(low, high, n + 1)
+    return Figure("margins", caption, bars(edges, counts, "margin, m", "tests", caption, 0.0))
+
+
+def coverage(record: Record, done: int) -> list[Block]:
+    """Returns feature maps of all tests, or of every n-th test if more than SAMPLE are done."""
+    known = {*record.feature_names()}
+    every = max(1, -(-done // SAMPLE))
+    part = f" of every {every:,}th test" if every > 1 else ""
+    blocks: list[Block] = []
+    for pair in MAPS:
+        if {*pair} <= known:
+            caption = f"Tests{part} by {pair[0]} and {pair[1]}: {{}} are filled."
+            blocks += feature_map("map", _map(record, *pair, every), pair, BOUNDS, "tests", caption)
+    return blocks
+
+
+def _map(record: Record, across: str, upwards: str, every: int) -> NDArray[np.float64]:
+    (x0, x1), (y0, y1) = BOUNDS[across], BOUNDS[upwards]
+    rows = record.query(
+        "SELECT CAST((x - ?) * ? AS INTEGER), CAST((y - ?) * ? AS INTEGER), count(*) FROM "
+        "(SELECT json_extract(features, ?) AS x, json_extract(features, ?) AS y FROM details "
+        "WHERE number % ? = 0 AND features IS NOT NULL) WHERE x IS NOT NULL AND y IS NOT NULL GROUP BY 1, 2",
+        (x0, CELLS / (x1 - x0), y0, CELLS / (y1 - y0), f"$.{across}", f"$.{upwards}", every),
+    )
+    out = np.zeros((CELLS, CELLS))
+    for column, line, count in rows:
+        out[min(max(line, 0), CELLS - 1), min(max(column, 0), CELLS - 1)] += count
+    return out
+
+
+Side = tuple[str, BoundaryPair, Result, Result]
+"""Two similar roads from one campaign cell (one combination of prompt, designer, driver and so on): the cell,
+the pair, the test that passed and the test that failed."""
+
+
+def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
+    """Returns the pairs of a passed and a failed test that differ least, as ``campaign.boundary_pairs``
+    measures it: up to NAMED for one cell, otherwise up to FEW_PAIRS per cell."""
+    out = []
+    for each in cells:
+        some = (each.name, MOST_SEARCHED // len(cells))
+        results = {result.number: result for result in record.results(each.name, NEAR, some)}
+        for pair in pairs_of([*results.values()])[: NAMED if len(cells) == 1 else FEW_PAIRS]:
+            out.append((each.name, pair, results[pair.kept], results[pair.lost]))
+    return out
+
+
+def nearest_sentence(pairs: Sequence[Side]) -> list[str]:
+    """Returns a sentence for the summary on the pair of roads that differ least, if there is one."""
+    if not pairs:
+        return []
+    cell_name, best, *_ = min(pairs, key=lambda side: side[1].distance)
+    return [
+        f"Nearest to each other on either side of the boundary are tests {cell_name}/{best.kept}, where "
+        f"the car kept its lane, and {cell_name}/{best.lost}, where it did not: "
+        f"their distance, as told below, is {best.distance:.2f}."
+    ]
+
+
+def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
+    """Returns a table of pairs of roads, with the largest difference of each pair, if there are any."""
+    if not pairs:
+        return []
+    rows = [_row(folder, *side) for side in pairs]
+    name, first, *_ = pairs[0]
+    names = [f"{folder}/{name}/{at}" for at in (first.kept, first.lost)]
+    note = f"{EXPLAINED} To see a pair: {command_line('view', *names)}"
+    heads = ["kept", "margin, m", "lost", "at, m", "distance", "what differs most, kept then lost"]
+    return [Table("pairs", "Nearest pairs of a road that was kept and one that was lost", heads, rows, note)]
+
+
+def _row(folder: Path, name: str, pair: BoundaryPair, kept: Result, lost: Result) -> list[TableCell]:
+    assert kept.plain_design is not None
+    assert lost.plain_design is not None
+    return row(
+        cell(f"{name}/{pair.kept}", href=again(folder, name, pair.kept)),
+        decimal(kept.margin),
+        cell(f"{name}/{pair.lost}", href=again(folder, name, pair.lost)),
+        decimal(lost.at_s, 0),
+        decimal(pair.distance),
+        weightiest(elements_of(kept.plain_design.segments), elements_of(lost.plain_design.segments)),
+    )

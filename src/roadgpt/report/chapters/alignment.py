@@ -1,0 +1,100 @@
+"""Makes the section on alignment: how many roads meet their descriptions, criterion by criterion."""
+
+from collections.abc import Sequence
+
+from roadgpt.check.truth import ASKED, CRITERIA
+from roadgpt.report.chapters.roads import named_roads
+from roadgpt.report.chapters.wording import drawn_share, folded, interval_cell, row, share_cell
+from roadgpt.report.page.charts import forest
+from roadgpt.report.page.model import Block, Figure, Section, Table, TableCell, cell
+from roadgpt.report.road_record import RoadRecord, StudyPartRecord
+from roadgpt.report.statistics import bootstrap, wilson
+
+Parts = Sequence[StudyPartRecord]
+
+
+def alignment(parts: Parts, designers: Sequence[str]) -> Section:
+    """Returns the section on alignment: the percentage of roads that meet each criterion, in total and by
+    prompt, and a list of roads that miss a requirement."""
+    some = [designer for designer in designers if any(part.roads for part in _of(parts, designer))]
+    prompts = [part.part.prompt for part in _of(parts, designers[0])]
+    known = sum(prompt.truth is not None for prompt in prompts)
+    truth = (
+        "The truth of every prompt was written down by people."
+        if known == len(prompts)
+        else "Nobody wrote down a truth, so roads are checked against what the reader read."
+        if not known
+        else f"For {known} of {len(prompts)} prompts people wrote down a truth; for the others it is what "
+        "the reader read."
+    )
+    blocks: list[Block] = [
+        "Each requirement is measured on the finished road alone: turns, straights and grades of its centre "
+        f"line. {truth}"
+    ]
+    if some:
+        blocks += [_by_criterion(parts, some), _pooled(parts, some)]
+    blocks += [_by_prompt(_of(parts, designer), designer) for designer in some]
+    broken = folded("Roads that break a requirement", named_roads(parts, _broken))
+    return Section("Alignment with the words", [*blocks, *broken])
+
+
+def _of(parts: Parts, designer: str) -> list[StudyPartRecord]:
+    return [part for part in parts if part.designer == designer]
+
+
+def _by_criterion(parts: Parts, designers: Sequence[str]) -> Figure:
+    groups = []
+    for criterion in CRITERIA:
+        rows = []
+        for series, designer in enumerate(designers):
+            good = [kept for part in _of(parts, designer) for kept in part.kept(criterion)]
+            if good:
+                rows.append(drawn_share(series, sum(good), len(good)))
+        if rows:
+            groups.append((ASKED[criterion], rows))
+    caption = "Roads that keep what was asked for, by criterion; lines are Wilson's 95 % intervals."
+    return Figure("alignment", caption, forest(groups, list(designers), caption))
+
+
+def _pooled(parts: Parts, designers: Sequence[str]) -> Table:
+    rows: list[list[TableCell]] = []
+    for designer in designers:
+        for criterion in CRITERIA:
+            asking = [kept for part in _of(parts, designer) if (kept := part.kept(criterion))]
+            if not asking:
+                continue
+            good, every = sum(map(sum, asking)), sum(map(len, asking))
+            mean, resampled = bootstrap(asking)
+            by_prompt = interval_cell(resampled) if 0 < good < every and len(asking) > 1 else None
+            shares = [share_cell(mean), interval_cell(wilson(good, every)), by_prompt]
+            rows.append(row(designer, ASKED[criterion], len(asking), good, every, *shares))
+    heads = [
+        "made by", "criterion", "prompts", "kept", "roads", "share", "Wilson 95 %", "by prompt 95 %",
+    ]  # fmt: skip
+    note = (
+        "Roads of one prompt are alike, so Wilson's interval is for these prompts only; "
+        "the last column, a bootstrap that resamples whole prompts, is for other prompts like them. It is "
+        "undefined if all or none are kept."
+    )
+    return Table("alignment", "What was asked for and kept, by criterion", heads, rows, note)
+
+
+def _by_prompt(parts: Parts, designer: str) -> Table:
+    rows = []
+    for part in parts:
+        every = [part.kept(criterion) for criterion in CRITERIA]
+        shares = [
+            share_cell(sum(good) / len(good), f"{sum(good)} of {len(good)}") if good else None
+            for good in every
+        ]
+        words = cell(part.words, href=part.overview if part.roads else "")
+        rows.append(row(part.part.prompt.id, words, *shares, part.problem or ""))
+    caption = f"{designer}: roads that keep the words, prompt by prompt"
+    return Table(f"alignment-{designer}", caption, ["id", "prompt", *CRITERIA, "remark"], rows)
+
+
+def _broken(road: RoadRecord) -> str:
+    """Returns the criteria that a road does not meet; "general" only if there is no other."""
+    wrong = [criterion for criterion, good in road.kept.items() if not good]
+    names = [ASKED[criterion] for criterion in wrong if criterion != "general"]
+    return ", ".join(names or wrong)

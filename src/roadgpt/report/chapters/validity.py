@@ -1,0 +1,337 @@
+"""Makes the sections on validity by each rule set and on lane departures, and tells how far outside its lane
+the car was in tests that it passed."""
+
+import textwrap
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from roadgpt.campaign.record import Record
+from roadgpt.plural import plural
+from roadgpt.report.chapters.roads import named_roads
+from roadgpt.report.chapters.wording import (
+    SHARE_HEADS,
+    decimal,
+    drawn_share,
+    folded,
+    p_value,
+    row,
+    share_cell,
+    share_cells,
+    share_of,
+)
+from roadgpt.report.page.charts import forest
+from roadgpt.report.page.model import Block, Details, Figure, Section, Table, TableCell, cell
+from roadgpt.report.road_record import RoadRecord, StudyPartRecord
+from roadgpt.report.statistics import LEVEL, ChiSquared, chi_squared, exact, trend
+from roadgpt.road import World
+from roadgpt.verdict import SEVERITIES, Severity, percent
+from roadgpt.verdict.verdict import MOSTLY, PARTLY
+
+
+class Passed(NamedTuple):
+    """The passed tests that have the same grade of ``verdict.severity``, such as "partly outside": their
+    number, and the largest share and distance by which the car was outside its lane."""
+
+    severity: Severity
+    tests: int
+    share: float  # largest fraction of the car's bounding box outside its lane, 0 to 1
+    beyond: float  # largest distance of the car beyond the lane marking, metres
+
+
+def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
+    """Groups the passed roads of a study by how far outside its lane the car was."""
+    kept = [road.verdict for road in roads if road.outcome == "PASS" and road.verdict is not None]
+    found = []
+    for name in SEVERITIES:
+        own = [verdict for verdict in kept if verdict.severity == name]
+        share = max((verdict.max_oob for verdict in own), default=0.0)
+        found.append(Passed(name, len(own), share, max((verdict.beyond for verdict in own), default=0.0)))
+    return found
+
+
+def passed_tests(record: Record) -> list[Passed]:
+    """Groups the passed tests in a campaign's database by how far outside its lane the car was."""
+    rows = record.query(
+        "SELECT (max_oob > ?) + (max_oob > ?), count(*), max(max_oob), max(beyond) FROM tests "
+        "WHERE outcome = 'PASS' AND max_oob IS NOT NULL GROUP BY 1",
+        (PARTLY, MOSTLY),
+    )
+    there = {SEVERITIES[at]: rest for at, *rest in rows}
+    return [Passed(name, *there.get(name, (0, 0.0, 0.0))) for name in SEVERITIES]
+
+
+def outside_sentences(found: Sequence[Passed], world: World) -> list[str]:
+    """Returns a sentence for the summary on how far the car was outside its lane, if any test passed."""
+    inside, partly, mostly = found
+    every = sum(each.tests for each in found)
+    if not every:
+        return []
+    if inside.tests == every and not inside.share:
+        return [f"On all {every:,} roads that it passed, the car was never outside its lane."]
+    beyond = f", {max(each.beyond for each in found):.2f} m beyond the marking"
+    tolerance = f"the tolerance of {percent(world.limits.oob_tolerance)}"
+    within = "without a lane departure" if world.limits.lane_departure else f"within {tolerance}"
+    most = f"{percent(max(each.share for each in found))} of the car{beyond}"
+    return [
+        f"Of {plural(every, 'road')} that the car passed, it was partly outside its lane on "
+        f"{share_of(partly.tests, every)} and mostly outside on {share_of(mostly.tests, every)}, {within}: "
+        f"at most {most}."
+    ]
+
+
+def outside_table(found: Sequence[Passed]) -> list[Table]:
+    """Returns a table of how far outside its lane the car was in passed tests; empty if no test passed."""
+    every = sum(each.tests for each in found)
+    if not every:
+        return []
+    rows = [
+        row(
+            each.severity,
+            each.tests,
+            share_cell(each.tests / every),
+            share_cell(each.share, percent(each.share)) if each.tests else None,
+            decimal(each.beyond if each.tests else None),
+        )
+        for each in found
+    ]
+    heads = ["where the car was", "passed", "share", "outside at most", "beyond the marking, m"]
+    note = "Partly: more than 10 % of the car was outside its lane, up to half; mostly: more than half."
+    caption = "How far outside its lane the car was where it passed"
+    return [Table("outside", caption, heads, rows, note)]
+
+
+MOST_DRAWN = 12  # prompts in a figure; if there are more, they are shown as one
+ALL = "all prompts"
+LONGEST = 66  # letters of a prompt in a figure
+
+Parts = Sequence[StudyPartRecord]
+
+
+class Count(NamedTuple):
+    """The number of roads of one prompt that have a property, such as being valid."""
+
+    prompt: str
+    hits: int  # number of roads with the property
+    total: int  # number of all roads of the prompt, with and without the property
+    href: str = ""  # address of the picture or table of these roads; empty for no link
+
+
+class Source(NamedTuple):
+    """The counts of one designer, or of the thesis, with one Count for each prompt."""
+
+    name: str
+    counts: tuple[Count, ...]
+    slug: str  # name of the designer or of the thesis, as it is used in file names
+
+    @property
+    def hits(self) -> int:
+        """Number of roads that have the property, summed over all prompts."""
+        return sum(count.hits for count in self.counts)
+
+    @property
+    def total(self) -> int:
+        """Number of all roads, summed over all prompts."""
+        return sum(count.total for count in self.counts)
+
+    @property
+    def share(self) -> str:
+        """The number of roads that have the property and their share, as text."""
+        return share_of(self.hits, self.total)
+
+    def table(self) -> list[list[int]]:
+        """Returns the contingency table ``(prompts, 2)``: roads with the property, and without it."""
+        return [[count.hits, count.total - count.hits] for count in self.counts]
+
+
+class Kind(NamedTuple):
+    """What is counted: a property of RoadRecord, such as "is_valid", and its name in files and in reports."""
+
+    which: str
+    slug: str = ""
+    name: str = ""  # name of the rule set; empty for drives
+    of: str = ""  # property of the roads that are counted in the total, such as "is_driven"; empty: all roads
+
+
+STRICT = Kind("is_valid", "strict", "strict rules")
+SOUND = Kind("is_sound", "sound", "strict rules but for the words")
+SBFT = Kind("is_sbft", "sbft", "SBFT rules")
+KINDS = (STRICT, SOUND, SBFT)
+LEFT = Kind("has_left", of="is_driven")
+
+NAME = "RoadGPT's thesis"
+ROADS = 100  # of every prompt
+LONG = "a road going uphill for 2 turns, followed by a straight downhill segment, ending in a left turn"
+THESIS = {"a road": (88, 1), "an uphill road with 3 turns": (57, 2), LONG: (37, 5)}
+"""For each prompt, in the order of the thesis' table 6.1: the number of valid roads among 100, and the number
+of these valid roads on which the car left its lane."""
+THESIS_VALID = Source(
+    f"{NAME}, its own checks",
+    tuple(Count(prompt, valid, ROADS) for prompt, (valid, _) in THESIS.items()),
+    "thesis",
+)
+THESIS_LEFT = Source(
+    NAME, tuple(Count(prompt, left, valid) for prompt, (valid, left) in THESIS.items()), "thesis"
+)
+
+
+def chi_squared_blocks(source: Source, hit: str, miss: str, name: str) -> list[Block]:
+    """Returns a table and a paragraph with the test results. The table has the counts in the columns ``hit``
+    and ``miss``, the expected counts, and the chi-squared terms."""
+    found = chi_squared(source.table())
+    return [_table(source, found, hit, miss, name), _verdict(source, found, hit, miss)]
+
+
+def _table(source: Source, found: ChiSquared, hit: str, miss: str, name: str) -> Table:
+    heads = ["prompt", hit, miss, "total"]
+    heads += [f"expected {each}" for each in (hit, miss)] + [f"(o − e)²/e {each}" for each in (hit, miss)]
+    rows: list[Sequence[TableCell]] = []
+    for count, expected, terms in zip(source.counts, found.expected, found.terms, strict=True):
+        own = row(cell(count.hits, href=count.href), count.total - count.hits, count.total)
+        rows.append(row(count.prompt, *own, *map(decimal, (*expected.tolist(), *terms.tolist()))))
+    sums = [source.hits, source.total - source.hits, source.total]
+    blank = cell(None, "")
+    rows.append(row("total", *sums, blank, blank, cell(None, "χ² ="), decimal(found.statistic)))
+    return Table(name, f"{source.name}: {hit} by prompt, and chi-squared term by term", heads, rows, "", True)
+
+
+def _verdict(source: Source, found: ChiSquared, hit: str, miss: str) -> str:
+    if not source.total:
+        return f"{source.name}: no roads to count."
+    if not found.freedom and 0 < source.hits < source.total:
+        return f"{source.name}: only one prompt has roads to count, so there is nothing to compare it with."
+    if not found.freedom:
+        every = f"all roads are {hit if source.hits else miss}"
+        return (
+            f"{source.name}: {every}, so no prompt differs from another: chi-squared is 0 with no degrees of "
+            "freedom, Cramér's V is 0, and the exact test gives p = 1. The "
+            "intervals show what the true shares may be."
+        )
+    counted = exact(source.table())
+    how = f"drawn {counted.tables:,} times from a seed" if counted.is_drawn else "counted out"
+    z, p_of_trend = trend([count.hits for count in source.counts], [count.total for count in source.counts])
+    against = "exceeds" if found.statistic > found.critical else "does not exceed"
+    sound = (
+        "Cochran's rule on expected counts holds."
+        if found.is_sound
+        else f"Expected counts are small (least {found.expected[found.expected > 0].min():.2f}): Cochran's "
+        "rule is broken, and the exact test decides."
+    )
+    p = found.p if found.is_sound else counted.p
+    end = "the prompt makes a difference" if p < LEVEL else "no difference between prompts is shown"
+    return (
+        f"{source.name}: χ² = {found.statistic:.2f} with {found.freedom} degrees of freedom {against} the "
+        f"critical value {found.critical:.2f} at the {100 * LEVEL:.0f} % level ({p_value(found.p)}); "
+        f"Cramér's V = {found.cramers_v:.2f}. Exact test ({how}): {p_value(counted.p)}. "
+        f"Trend in the order of the table (Cochran-Armitage): z = {z:.2f}, {p_value(p_of_trend)}. "
+        f"{sound} So {end}."
+    ).replace("z = -", "z = −")
+
+
+def of_thesis(parts: Parts) -> list[StudyPartRecord]:
+    """Returns the study parts with prompts for which the thesis gives results."""
+    return [part for part in parts if part.words in THESIS]
+
+
+def source_of(designer: str, parts: Parts, kind: Kind) -> Source:
+    """Returns, for each prompt, how many roads of one designer have the property of a Kind."""
+    counts = []
+    for part in parts:
+        if part.designer == designer and part.roads:
+            total = part.count(kind.of) if kind.of else len(part.roads)
+            counts.append(Count(part.words, part.count(kind.which), total, part.overview))
+    name = ", ".join(filter(None, (designer, kind.name)))
+    slug = "-".join(filter(None, (designer, kind.slug)))
+    return Source(name, tuple(counts), slug)
+
+
+def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
+    """Returns the section on validity by each rule set. With ``has_baseline``, only prompts of the thesis are
+    counted, beside the thesis' numbers."""
+    told = of_thesis(parts) if has_baseline else list(parts)
+    every = [source_of(designer, told, kind) for designer in designers for kind in KINDS]
+    every = [source for source in every if source.counts] + ([THESIS_VALID] if has_baseline else [])
+    blocks: list[Block] = [
+        "Strict rules: inside the map, no overlap, radius and slope within limits, and every requirement of "
+        "the words kept. But for the words: the same without these requirements, which the thesis did not "
+        "check. SBFT rules: what the validator of the SBFT tool competition says, quirks included."
+    ]
+    blocks += [_forest("validity", "valid", every), _shares("validity", "valid", every)]
+    missing = dict.fromkeys(f"{part.designer}: {part.problem}" for part in parts if part.problem)
+    blocks += [f"Roads are missing: {sentence}." for sentence in missing]
+    if has_baseline:
+        blocks += [_beside(source) for source in every if source.slug.endswith("-strict")]
+    others: list[Block] = []
+    for source in every:
+        if len(source.counts) > 1:
+            into = others if source.slug.endswith(("-sound", "-sbft")) else blocks
+            into += chi_squared_blocks(source, "valid", "invalid", f"validity-{source.slug}")
+    blocks += [Details("The same by the other rules", others)] if others else []
+    return Section("Validity", [*blocks, *folded("Invalid roads", named_roads(parts, _why))])
+
+
+def departures(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
+    """Returns the section on lane departures on valid roads; ``has_baseline`` is as in ``validity``."""
+    told = of_thesis(parts) if has_baseline else list(parts)
+    every = [source_of(designer, told, LEFT) for designer in designers]
+    every = [source for source in every if source.total]
+    blocks: list[Block] = [] if every else ["These roads were not driven."]
+    every += [THESIS_LEFT] if has_baseline else []
+    if every:
+        blocks += [
+            "Drives on which the car left its lane, on roads that are valid by the strict rules"
+            f"{' (in the thesis: by its own checks)' if has_baseline else ''}.",
+            _forest("departures", "left", every),
+            _shares("departures", "left", every),
+        ]
+    for source in every:
+        if len(source.counts) > 1:
+            blocks += chi_squared_blocks(source, "left", "kept", f"departures-{source.slug}")
+    blocks += outside_table(passed_roads([road for part in parts for road in part.roads]))
+    left = named_roads(parts, lambda road: road.says if road.has_left else "")
+    return Section("Leaving the lane", [*blocks, *folded("Drives that left", left)])
+
+
+def _why(road: RoadRecord) -> str:
+    sbft = f"; SBFT: {road.sbft_says}" if road.sbft_says else ""
+    return "" if road.is_valid else road.says + sbft
+
+
+def _beside(source: Source) -> str:
+    table = [[each.hits, each.total - each.hits] for each in (source, THESIS_VALID)]
+    return (
+        f"{source.name}: {source.share} against {THESIS_VALID.share} of {NAME}; Fisher's exact test "
+        f"{p_value(exact(table).p)}. The rules differ, and ours are stricter."
+    )
+
+
+def _forest(name: str, hit: str, every: Sequence[Source]) -> Figure:
+    prompts = list(dict.fromkeys(count.prompt for source in every for count in source.counts))
+    if len(prompts) > MOST_DRAWN:
+        prompts = [ALL]
+        every = [s._replace(counts=(Count(ALL, s.hits, s.total),)) for s in every]
+    groups = [
+        (
+            textwrap.shorten(prompt, LONGEST, placeholder=" …"),
+            [
+                drawn_share(series, count.hits, count.total)
+                for series, source in enumerate(every)
+                for count in source.counts
+                if count.prompt == prompt and count.total
+            ],
+        )
+        for prompt in prompts
+    ]
+    caption = f"Share of roads {'that are valid' if hit == 'valid' else 'on which the car left its lane'}"
+    caption += ", by prompt; dots are shares, lines Wilson's 95 % intervals."
+    return Figure(name, caption, forest(groups, [source.name for source in every], caption))
+
+
+def _shares(name: str, hit: str, every: Sequence[Source]) -> Table:
+    rows: list[list[TableCell]] = []
+    for source in every:
+        for count in source.counts:
+            rows.append(row(count.prompt, source.name, *share_cells(count.hits, count.total, count.href)))
+        if len(source.counts) > 1:
+            rows.append(row("all of these", source.name, *share_cells(source.hits, source.total)))
+    heads = ["prompt", "made by", hit, *SHARE_HEADS]
+    return Table(f"{name}-shares", f"Shares: {hit}, with intervals", heads, rows)

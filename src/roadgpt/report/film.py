@@ -1,0 +1,489 @@
+"""Makes films of one or two drives, from behind the car or from a hood camera. Main function: ``film_of``.
+
+The frames depend only on the Run and the settings. Threads draw the frames, and PyAV encodes them."""
+
+import math
+import os
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import closing
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from itertools import islice
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+import numpy as np
+from matplotlib.colors import to_rgb
+from matplotlib.font_manager import FontProperties, findfont, get_font
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+from roadgpt.errors import RoadGPTError, UsageError, explained, to_install
+from roadgpt.export.ego import CAR, calm_speed, goal_of, start_of
+from roadgpt.geometry.curve import Array
+from roadgpt.network import refuse_without_route
+from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, POINTS, SEVERE, VERMILLION, fitted, outcome_of
+from roadgpt.road import Road, World
+from roadgpt.run import Run
+from roadgpt.run.atomic import whole_file
+from roadgpt.scene import Camera, Mount, Pose, Scene
+from roadgpt.verdict import percent, severity
+from roadgpt.verdict.oracle import margins
+
+COLUMNS = ("x", "y", "z", "heading", "pitch", "roll", "steer", "speed", "brake")
+STEP = 0.02  # s, time step of a trip along a road that was not driven
+TURN_LAG, TILT_LAG = 0.30, 0.45  # s by which the camera behind the car lags behind its heading and pitch
+STEEPEST = 0.35  # rad, largest pitch of the camera behind the car, even if the car tumbles
+LONGEST = 3600.0  # s
+
+
+Readout = tuple[float, float, float | None, float]
+"""The numbers that a picture displays: the speed in m/s; the distance along the road in metres; the margin in
+metres by which the car could be shifted sideways before it fails, None without a drive; and the share of the
+car that is outside its lane."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trip:
+    """The motion of car and camera; arrays have shape ``(n,)``, one value for each of ``n`` ascending
+    times."""
+
+    time: Array
+    columns: dict[str, Array]
+    """The quantities named in COLUMNS, and ``wheel``, the angle by which the wheels have rolled, rad."""
+    followed: dict[str, Array]  # ``heading`` and ``pitch`` of the camera behind the car, rad
+    s: Array
+    margin: Array | None
+    outside: Array | None  # share of the car that is outside its lane
+
+    @classmethod
+    def of(cls, run: Run) -> "Trip":
+        """Returns the motion of a Run's drive, or of a camera along its road at a calm speed."""
+        if run.road is None:
+            raise UsageError(f"there is no road to film: {run.description}")
+        if run.drive is None:
+            time, columns, s = _ride(run.road, run.world)
+            margin = outside = None
+        else:
+            drive = run.drive
+            if len(drive) < 2 or not all(np.isfinite(column).all() for column in drive.columns.values()):
+                raise UsageError("the drive has no motion that could be filmed; drive the road again")
+            columns = {name: np.asarray(drive[name]) for name in COLUMNS}
+            rolled = np.r_[0.0, np.cumsum(drive["vx"][1:] * np.diff(drive["time"]))]
+            columns["wheel"] = rolled / (CAR.wheel / 2)
+            margin = margins(run.road, drive, run.world)
+            time, s, outside = drive["time"], drive["s"], drive["outside"]
+        columns["heading"] = np.unwrap(columns["heading"])
+        step = float(np.median(np.diff(time)))
+        pitch = np.clip(columns["pitch"], -STEEPEST, STEEPEST)
+        followed = {
+            "heading": _lagging(columns["heading"], step / TURN_LAG),
+            "pitch": _lagging(pitch, step / TILT_LAG),
+        }
+        return cls(time, columns, followed, s, margin, outside)
+
+    @property
+    def duration(self) -> float:
+        """Duration in seconds."""
+        return float(self.time[-1])
+
+    def car(self, time: float) -> Pose:
+        """Returns the pose of the car at a time in seconds; poses between two steps are interpolated."""
+        return Pose(**{name: float(np.interp(time, self.time, c)) for name, c in self.columns.items()})
+
+    def follower(self, time: float) -> Pose:
+        """Returns the pose that the camera behind the car follows: the car's pose without roll, with a
+        heading and a pitch that lag behind the car's."""
+        late = {name: float(np.interp(time, self.time, c)) for name, c in self.followed.items()}
+        return self.car(time)._replace(**late, roll=0.0)
+
+    def readout(self, time: float) -> Readout:
+        """Returns the numbers to display at a time in seconds."""
+        at = int(np.clip(np.searchsorted(self.time, time + 1e-6) - 1, 0, len(self.time) - 1))
+        margin = None if self.margin is None else float(self.margin[at])
+        outside = 0.0 if self.outside is None else float(self.outside[at])
+        return float(self.columns["speed"][at]), float(self.s[at]), margin, outside
+
+
+def _lagging(values: Array, share: float) -> Array:
+    share = min(1.0, share)
+    return np.asarray(lfilter([share], [1.0, share - 1.0], values, zi=[values[0] * (1 - share)])[0])
+
+
+def _ride(road: Road, world: World) -> tuple[Array, dict[str, Array], Array]:
+    """Returns a ride along the middle of the driven lane at a constant speed, from the start to the goal."""
+    speed = calm_speed(road, world)
+    way = goal_of(road) - start_of(road)
+    if way / speed > LONGEST:
+        raise UsageError(f"a film of {way / speed / 60:.0f} minutes is too long; give a shorter road")
+    time = np.arange(0.0, max(way / speed, 2 * STEP), STEP)
+    s = np.minimum(start_of(road) + speed * time, road.length)
+    profile = world.profile_of(road)
+    place, heading, grade = road.at(s, profile.middle(s)), road.heading(s), road.grade(s)
+    level = np.zeros_like(s)
+    columns = {
+        "x": place[:, 0], "y": place[:, 1], "z": place[:, 2] + CAR.gravity_height,
+        "heading": heading, "pitch": np.arctan(grade), "roll": profile.superelevation(s), "steer": level,
+        "speed": np.full_like(s, speed), "brake": level, "wheel": level,
+    }  # fmt: skip
+    return time, columns, s
+
+
+Frame = NDArray[np.uint8]
+Weight = Literal["normal", "bold"]
+TITLE, TEXT, SMALL, LARGE = 13, 12, 10, 27  # pixels in a picture 360 high
+EDGE, LINE = 10, 17  # likewise: from the border, and from line to line
+LEAST = 0.5  # of all sizes, in small pictures
+WHOLE = 2.0  # m of margin that fill its bar
+WHITE, PALE = (255, 255, 255), (206, 212, 218)
+
+
+Glyph = tuple[NDArray[np.uint8], int, int, float]
+"""The image of a letter: the coverage of each pixel, ``(height, width)``, 0 to 255; the pixels from the
+baseline up to its first row, and from the start of the letter to its first column; and those from the start
+of the letter to the start of the next one."""
+
+
+@cache
+def glyph(letter: str, size: int, weight: Weight) -> Glyph:
+    """Returns the raster image of a letter; ``size`` is the font size in pixels."""
+    font = get_font(findfont(FontProperties(family="DejaVu Sans", weight=weight)))
+    font.set_size(float(size), POINTS)
+    advance = float(font.load_char(ord(letter)).linearHoriAdvance) / 65536
+    font.set_text(letter)
+    font.draw_glyphs_to_bitmap(antialiased=True)
+    cover = np.array(font.get_image())
+    left, _ = font.get_bitmap_offset()
+    top = len(cover) - 1 - int(np.ceil(font.get_descent() / 64))  # its last row is empty
+    return cover, top, int(np.floor(left / 64)), advance
+
+
+def width_of(text: str, size: int, weight: Weight = "normal") -> int:
+    """Returns the width of a line of text in pixels."""
+    return int(np.ceil(sum(glyph(letter, size, weight)[3] for letter in text)))
+
+
+def write_text(
+    frame: Frame, x: float, y: float, text: str, size: int, colour: tuple[int, int, int] = (255, 255, 255),
+    weight: Weight = "normal",
+) -> None:  # fmt: skip
+    """Writes one line of text into a frame from (x, y) on the baseline; text beyond the frame is cut off."""
+    for letter in text:
+        cover, top, left, advance = glyph(letter, size, weight)
+        _blend(frame, round(x) + left, round(y) - top, cover, colour)
+        x += advance
+
+
+def _blend(frame: Frame, x: int, y: int, cover: NDArray[np.uint8], colour: tuple[int, int, int]) -> None:
+    x0, y0 = max(x, 0), max(y, 0)
+    x1, y1 = min(x + cover.shape[1], frame.shape[1]), min(y + cover.shape[0], frame.shape[0])
+    if x0 >= x1 or y0 >= y1:
+        return
+    part = frame[y0:y1, x0:x1].astype(np.int32)
+    share = cover[y0 - y : y1 - y, x0 - x : x1 - x, None].astype(np.int32)
+    part += ((np.array(colour) - part) * share + 127) // 255
+    frame[y0:y1, x0:x1] = part
+
+
+def shade(frame: Frame, x0: float, y0: float, x1: float, y1: float, left: int = 110) -> None:
+    """Multiplies the brightness of a rectangle by ``left`` / 256, so that text on it can be read."""
+    part = frame[max(round(y0), 0) : max(round(y1), 0), max(round(x0), 0) : max(round(x1), 0)]
+    part[:] = (part.astype(np.uint16) * left) >> 8
+
+
+def fill(frame: Frame, x0: float, y0: float, x1: float, y1: float, colour: tuple[int, int, int]) -> None:
+    """Fills a rectangle of a frame with a colour."""
+    frame[max(round(y0), 0) : max(round(y1), 0), max(round(x0), 0) : max(round(x1), 0)] = colour
+
+
+def _rgb(colour: str) -> tuple[int, int, int]:
+    r, g, b = (round(255 * part) for part in to_rgb(colour))
+    return r, g, b
+
+
+@dataclass(frozen=True)
+class Overlay:
+    """Writes a Run's speed, outcome and other text into pictures of one size."""
+
+    run: Run
+    width: int
+    height: int
+
+    @property
+    def scale(self) -> float:
+        """Factor for the sizes of text and its distances from the edges; 1 in a picture of 640 by 360."""
+        return max(LEAST, min(self.height / 360, self.width / 440))
+
+    def _size(self, pixels: int) -> int:
+        return max(7, round(pixels * self.scale))
+
+    def lay(self, frame: Frame, readout: Readout, is_over: bool) -> None:
+        """Writes the text into a frame; ``is_over`` adds the outcome, for frames after the drive."""
+        self._title(frame)
+        self._numbers(frame, readout)
+        if is_over:
+            self._outcome(frame)
+
+    def _title(self, frame: Frame) -> None:
+        u, size = self.scale, self._size(TITLE)
+        rows = fitted(self.run.title, (self.width - 2 * EDGE * u) / POINTS, size, True, 2).split("\n")
+        shade(frame, 0, 0, self.width, (9 + LINE * len(rows)) * u)
+        for k, row in enumerate(rows):
+            write_text(frame, EDGE * u, (LINE * (k + 1)) * u, row, size, WHITE, "bold")
+
+    def _numbers(self, frame: Frame, readout: Readout) -> None:
+        (metres_per_second, s, margin, outside), u = readout, self.scale
+        edge = EDGE * u
+        large, text, small = self._size(LARGE), self._size(TEXT), self._size(SMALL)
+        wide, high = 148 * u, (78 if margin is not None else 52) * u
+        x, y = edge, self.height - edge - high
+        shade(frame, x, y, x + wide, y + high)
+        write_text(frame, x + 8 * u, y + 45 * u, f"at {s:.0f} of {self.run.length:.0f} m", text, PALE)
+        if margin is None:  # the speed of the camera has no meaning
+            write_text(frame, x + 8 * u, y + 24 * u, "not driven", self._size(TITLE), WHITE, "bold")
+            return
+        speed = f"{metres_per_second * 3.6:.0f}"
+        right = x + 62 * u
+        write_text(frame, right - width_of(speed, large, "bold"), y + 29 * u, speed, large, WHITE, "bold")
+        write_text(frame, right + 6 * u, y + 29 * u, "km/h", text, PALE)
+        colour = _rgb(SEVERE[severity(outside)] if margin > 0 else VERMILLION)
+        said = f"margin {margin:.1f} m" if margin > 0 else "out of its lane"
+        if outside > 0 and margin > 0:
+            said += f", {percent(outside)} out"
+        write_text(frame, x + 8 * u, y + 61 * u, said, small if outside > 0 else text, WHITE)
+        share = float(np.clip(margin / WHOLE, 0.0, 1.0)) if margin > 0 else 1.0
+        left, wide = x + 8 * u, wide - 16 * u
+        fill(frame, left, y + 67 * u, left + wide, y + 71 * u, (70, 76, 82))
+        fill(frame, left, y + 67 * u, left + wide * share, y + 71 * u, colour)
+
+    def _outcome(self, frame: Frame) -> None:
+        u, text, bold = self.scale, self._size(TEXT), self._size(LARGE)
+        room = min(self.width - 2 * EDGE * u, 420 * u)
+        rows = fitted(self.run.description, (room - 28 * u) / POINTS, text, lines=3).split("\n")
+        outcome = outcome_of(self.run)
+        if width_of(outcome, bold, "bold") > room - 28 * u:
+            bold = text
+        badge = width_of(outcome, bold, "bold")
+        colour = OUTCOMES.get(outcome, INK)
+        letters = _rgb(LETTERS[colour]) if colour in LETTERS else WHITE
+        wide = max(badge, *(width_of(row, text) for row in rows)) + 28 * u
+        high = (52 + LINE * len(rows)) * u
+        x, y = (self.width - wide) / 2, self.height * 0.155
+        fill(frame, x, y, x + wide, y + high, (255, 255, 255))
+        fill(frame, x, y, x + wide, y + 38 * u, _rgb(colour))
+        write_text(frame, x + (wide - badge) / 2, y + 29 * u, outcome, bold, letters, "bold")
+        for k, row in enumerate(rows):
+            start = x + (wide - width_of(row, text)) / 2
+            write_text(frame, start, y + (38 + 5 + LINE * (k + 0.75)) * u, row, text, _rgb(INK))
+
+
+View = Literal["chase", "bonnet", "both"]
+Watch = Callable[[Iterator[Frame], int], Iterator[Frame]]
+"""Takes all frames and their number, and yields the frames; used to show progress."""
+MOST = 2  # roads in one film
+HOLD = 2.0  # s that the last picture stays, with the outcome
+SEAM = 4  # pixels between two pictures
+SLOWEST, FASTEST = 1, 120  # frames per second
+SMALLEST, LARGEST = 64, 3840  # pixels, a side of a picture
+FIELDS: dict[str, float] = {"chase": math.radians(62), "bonnet": math.radians(72)}
+ENCODER = "libx264"
+QUALITY, PRESET = 20, "veryfast"  # x264's scale, on which smaller is better
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The size, speed and length of a film."""
+
+    width: int = 640  # width of each picture in the film, pixels
+    height: int = 360
+    fps: int = 25
+    begin: float = 0.0  # seconds from the start of the drive to the start of the film
+    seconds: float | None = None
+    """Largest number of seconds of the drive that the film shows; None for all of it."""
+
+    def __post_init__(self) -> None:
+        sides = (self.width, self.height)
+        if any(side % 2 or not SMALLEST <= side <= LARGEST for side in sides):
+            raise UsageError(
+                f"a film of {self.width}x{self.height} pixels cannot be made; give even numbers from "
+                f"{SMALLEST} to {LARGEST}, such as 640x360"
+            )
+        if not SLOWEST <= self.fps <= FASTEST:
+            raise UsageError(f"a film cannot have {self.fps} pictures a second; give {SLOWEST} to {FASTEST}")
+        if not self.begin >= 0 or (self.seconds is not None and not self.seconds > 0):
+            raise UsageError("a film begins at second 0 or later and lasts longer than nothing")
+
+
+@dataclass(frozen=True, eq=False)
+class Pane:
+    """Renders what one camera sees at any time of a drive; several threads may call ``draw`` at once."""
+
+    run: Run
+    scene: Scene
+    trip: Trip
+    camera: Camera
+
+    def draw(self, time: float) -> Frame:
+        """Returns the picture ``(height, width, 3)`` at ``time`` seconds; after the drive, the last one."""
+        now = min(time, self.trip.duration)
+        car = self.trip.car(now)
+        pose = self.trip.follower(now) if self.camera.mount == "chase" else car
+        frame = self.scene.render(self.camera, pose, car=None if self.run.drive is None else car)
+        overlay = Overlay(self.run, self.camera.width, self.camera.height)
+        overlay.lay(frame, self.trip.readout(now), time >= self.trip.duration)
+        return frame
+
+
+@dataclass(frozen=True, eq=False)
+class Film:
+    """A film of one or two roads: its Panes, in rows, and the times of its frames in seconds."""
+
+    rows: tuple[tuple[Pane, ...], ...]
+    settings: Settings
+    times: tuple[float, ...]
+
+    @classmethod
+    def of(cls, runs: Sequence[Run], view: View = "chase", settings: Settings | None = None) -> "Film":
+        """Returns a film of one or two Runs."""
+        if not 1 <= len(runs) <= MOST:
+            raise UsageError(f"a film shows one road or two side by side; {len(runs)} are given")
+        if view not in get_args(View):
+            raise UsageError(f"there is no view '{view}'; say {', '.join(get_args(View))}")
+        settings = settings or Settings()
+        trips = [Trip.of(run) for run in runs]
+        scenes = [Scene.of(run.road, run.world) for run in runs if run.road is not None]
+        mounts: tuple[Mount, ...] = ("chase", "bonnet") if view == "both" else (view,)
+        panes = [
+            tuple(
+                Pane(run, scene, trip, Camera(settings.width, settings.height, FIELDS[mount], mount))
+                for run, scene, trip in zip(runs, scenes, trips, strict=True)
+            )
+            for mount in mounts
+        ]
+        is_wide = len(runs) == 1 and len(mounts) == 2
+        rows = (panes[0] + panes[1],) if is_wide else tuple(panes)
+        return cls(rows, settings, _times(max(trip.duration for trip in trips), settings))
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def frame(self, n: int) -> Frame:
+        """Returns frame number ``n``, shape ``(height, width, 3)``, uint8."""
+        time = self.times[n]
+        strips = [_beside([pane.draw(time) for pane in row], axis=1) for row in self.rows]
+        return _beside(strips, axis=0)
+
+    def frames(self, threads: int | None = None) -> Generator[Frame]:
+        """Yields all frames in order; threads draw the next few frames in advance."""
+        count = threads or os.cpu_count() or 1
+        numbers = iter(range(len(self)))
+        with ThreadPoolExecutor(count) as pool:
+            ahead: deque[Future[Frame]] = deque(
+                pool.submit(self.frame, n) for n in islice(numbers, 2 * count)
+            )
+            try:
+                while ahead:
+                    frame = ahead.popleft().result()
+                    ahead.extend(pool.submit(self.frame, n) for n in islice(numbers, 1))
+                    yield frame
+            finally:
+                for future in ahead:
+                    future.cancel()
+
+
+def film_of(run: Run, path: Path | str, view: View | str = "chase", settings: Settings | None = None) -> Path:
+    """Films one drive into an MP4 file, and returns the path. Without a drive, the camera moves along the
+    road at a calm speed. ``view`` is "chase" (from behind), "bonnet" (from the hood camera) or "both"."""
+    return write([run], path, view, settings)
+
+
+def split_film(
+    run_a: Run, run_b: Run, path: Path | str, view: View | str = "chase", settings: Settings | None = None
+) -> Path:
+    """Films two drives side by side, each frame at the same time after the start; see ``film_of``."""
+    return write([run_a, run_b], path, view, settings)
+
+
+def write(
+    runs: Sequence[Run], path: Path | str, view: View | str = "chase", settings: Settings | None = None,
+    watch: Watch | None = None,
+) -> Path:  # fmt: skip
+    """Films one or two Runs, and returns the path; ``watch`` may wrap the iterator of frames."""
+    encoder()  # before anything is drawn
+    for road in (run.road for run in runs if run.road is not None):
+        refuse_without_route(road, "filmed")
+    film = Film.of(runs, view, settings)  # type: ignore[arg-type]
+    title = " and ".join(dict.fromkeys(run.title for run in runs))
+    with closing(film.frames()) as frames:
+        shown = frames if watch is None else watch(frames, len(film))
+        write_film(shown, Path(path), film.settings.fps, title)
+    return Path(path)
+
+
+def _times(duration: float, settings: Settings) -> tuple[float, ...]:
+    """Returns the times of the frames; the last one is repeated if the film reaches the end of the drive."""
+    if settings.begin >= duration:
+        raise UsageError(f"the drive is over after {duration:.1f} s; let the film begin before that")
+    wished = duration - settings.begin if settings.seconds is None else settings.seconds
+    is_whole = settings.begin + wished >= duration
+    last = min(settings.begin + wished, duration)
+    count = max(1, int(np.floor((last - settings.begin) * settings.fps + 1e-6)))
+    shown = [settings.begin + n / settings.fps for n in range(count)]
+    hold = [duration] * round(HOLD * settings.fps) if is_whole else []
+    return (*shown, *hold)
+
+
+def _beside(pictures: list[Frame], axis: int) -> Frame:
+    if len(pictures) == 1:
+        return pictures[0]
+    shape = list(pictures[0].shape)
+    shape[axis] = SEAM
+    seam = np.full(shape, 16, np.uint8)
+    parts = [part for picture in pictures for part in (seam, picture)][1:]
+    return np.ascontiguousarray(np.concatenate(parts, axis=axis))
+
+
+def encoder() -> Any:
+    """Returns the module ``av`` (PyAV)."""
+    try:
+        import av
+    except ImportError as error:
+        raise UsageError(f"films need PyAV; say {to_install('film')}") from error
+    if ENCODER not in av.codecs_available:
+        raise UsageError(
+            f"PyAV is installed without {ENCODER}, which writes films; install it from its wheels: "
+            "python -m pip install --force-reinstall --only-binary av av"
+        )
+    return av
+
+
+def write_film(frames: Iterable[Frame], path: Path, fps: int, about: str = "") -> None:
+    """Writes frames into a file with the title ``about``; the file appears only when it is complete. The
+    width and height of the frames must be even numbers of pixels."""
+    av = encoder()
+    with explained(RoadGPTError, f"cannot write {path}", "name another --out"):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with (
+            whole_file(path) as draft,
+            av.open(str(draft), "w", format="mp4", options={"movflags": "+faststart"}) as file,
+        ):
+            file.metadata["title"] = about
+            _encode(av, file, frames, fps)
+
+
+def _encode(av: Any, file: Any, frames: Iterable[Frame], fps: int) -> None:
+    stream = None
+    for n, frame in enumerate(frames):
+        if stream is None:
+            options = {"crf": str(QUALITY), "preset": PRESET}
+            stream = file.add_stream(ENCODER, rate=fps, options=options)
+            stream.height, stream.width = frame.shape[:2]
+            stream.pix_fmt = "yuv420p"
+        picture = av.VideoFrame.from_ndarray(frame, format="rgb24")
+        picture.pts, picture.time_base = n, Fraction(1, fps)
+        file.mux(stream.encode(picture))
+    if stream is not None:
+        file.mux(stream.encode(None))

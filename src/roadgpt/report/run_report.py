@@ -1,0 +1,160 @@
+"""Writes the report of a folder of runs, from the files in it."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from roadgpt.campaign.faults.fault import faults_in
+from roadgpt.errors import UsageError
+from roadgpt.plural import plural
+from roadgpt.report.chapters.alignment import alignment
+from roadgpt.report.chapters.diversity import diversity
+from roadgpt.report.chapters.faults import Steps, fault_summaries, faults, headline, what_to_try
+from roadgpt.report.chapters.roads import coverage, every_road, overview
+from roadgpt.report.chapters.validity import (
+    LEFT,
+    NAME,
+    SBFT,
+    STRICT,
+    THESIS_LEFT,
+    THESIS_VALID,
+    departures,
+    of_thesis,
+    outside_sentences,
+    passed_roads,
+    source_of,
+    validity,
+)
+from roadgpt.report.chapters.wording import near_and_far, percent, share_of
+from roadgpt.report.page import write
+from roadgpt.report.page.model import Page, Section
+from roadgpt.report.road_record import Prompt, RoadRecord, StudyPart, StudyPartRecord, read_part
+from roadgpt.road import World
+from roadgpt.road.world import oracle_in_words
+from roadgpt.run import Setup
+from roadgpt.run.folder import read_card
+
+UNITS = {
+    "speed_limit": (3.6, " km/h"),
+    "max_grade": (100.0, " %"),
+    "bank": (100.0, " %"),
+    "friction": (1.0, ""),
+    "oob_tolerance": (1.0, ""),
+}
+"""Factor and unit with which a field of the World is shown; fields that are not listed are in metres."""
+
+
+def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
+    """Writes the report of runs made by ``roadgpt run`` into their folder; returns the path of the HTML page.
+    It shows ``command``, which repeats the runs, and ``next_steps``, what to try if no road failed."""
+    card = read_card(folder)
+    request, setup = card.request, card.request.setup
+    words, world = request.words or "roads that were given", request.world
+    part = read_part(folder, StudyPart(setup.designer, 1, Prompt(id="1", prompt=words)))
+    if not part.roads:
+        raise UsageError(f"{folder} holds no finished road yet; say first: {command}")
+    parts, failed = [part], faults_in(folder)
+    summaries = fault_summaries(folder, failed)
+    opening = [overview(parts, world.site.map_size), faults(folder, failed, summaries)]
+    sections = [*filter(None, opening), *what_to_try(next_steps)]
+    sections += [validity(parts, [setup.designer])]
+    sections += [departures(parts, [setup.designer])] if setup.drives else []
+    sections += [alignment(parts, [setup.designer])] if request.words else []
+    far = _least(part.roads, "FAIL") if setup.keep_driving else None
+    sentences = sentences_of(parts, world, False, near_and_far(_least(part.roads, "PASS"), far))
+    page = Page(
+        words,
+        [*(headline(failed, summaries) if summaries else []), *sentences],
+        [*sections, *comparisons_of(parts, world)],
+        card_of(command, card.roads, request.seed, setup, world, parts),
+        f"{plural(len(part.roads), 'road')} of {card.roads:,}, seed {request.seed}",
+    )
+    return write(page, folder)
+
+
+def _least(roads: Sequence[RoadRecord], outcome: str) -> tuple[float, str] | None:
+    found = [(road.verdict.margin, road.index) for road in roads if road.outcome == outcome and road.verdict]
+    return (min(found)[0], f"road {min(found)[1]}") if found else None
+
+
+def card_of(
+    command: str, roads: int, seed: int, setup: Setup, world: World, parts: Sequence[StudyPartRecord]
+) -> dict[str, str]:
+    """Returns how a report can be reproduced, as labels with texts in the order of the page."""
+    out = {"command": command} if command else {}
+    out |= {
+        "seed": str(seed),
+        "roads of each": f"{roads:,}",
+        "made by": ", ".join(dict.fromkeys(part.designer for part in parts)),
+        "reader": setup.reader,
+    }
+    if setup.drives:
+        out["driven by"] = f"{setup.driver} in {setup.simulator}"
+        out["oracle"] = oracle_in_words(world.limits.oracle)
+    if setup.chat is not None and setup.chat.model:
+        out["language model"] = setup.chat.model
+    out["world"] = ", ".join(_said(name, value) for name, value in world.model_dump().items())
+    surfaces = {f"{road.friction:g}" for part in parts for road in part.roads if road.friction is not None}
+    if surfaces - {f"{world.site.friction:g}"}:
+        out["friction of the roads"] = f"{' and '.join(sorted(surfaces))}, by what the words say"
+    return out | {"versions": _versions(parts)}
+
+
+def _said(name: str, value: float | str) -> str:
+    factor, unit = UNITS.get(name, (1.0, " m"))
+    shown = value if isinstance(value, str) else f"{value * factor:.4g}{unit}"
+    if isinstance(value, bool):
+        shown = "counted" if value else "not counted"
+    return f"{name.replace('_', ' ')} {shown}"
+
+
+def _versions(parts: Sequence[StudyPartRecord]) -> str:
+    found: dict[str, dict[str, None]] = {}
+    for part in parts:
+        for road in part.roads:
+            for name, number in road.versions.items():
+                found.setdefault(name, {})[number] = None
+    return ", ".join(f"{name} {' and '.join(numbers)}" for name, numbers in found.items()) or "–"
+
+
+def sentences_of(
+    parts: Sequence[StudyPartRecord], world: World, is_thesis: bool, near: Sequence[str] = ()
+) -> list[str]:
+    """Returns sentences on the roads of one designer, among them the given ones on the drives that came
+    ``near`` to failing. If ``is_thesis``, only the thesis' prompts are counted, beside the thesis' counts."""
+    designer = parts[0].designer
+    counted = of_thesis(parts) if is_thesis else parts
+    strict, sbft = (source_of(designer, counted, kind) for kind in (STRICT, SBFT))
+    left, lines = source_of(designer, counted, LEFT), []
+    if strict.total:
+        beside = f"; {NAME} had {THESIS_VALID.share} by its own checks" if is_thesis else ""
+        lines.append(
+            f"{strict.share} roads are valid by strict rules, words included, "
+            f"and {sbft.share} by the SBFT competition's{beside}."
+        )
+    if left.total:
+        beside = f"; in the thesis on {THESIS_LEFT.share}" if is_thesis else ""
+        lines.append(f"The car left its lane on {left.share} driven roads{beside}.")
+    lines += [*outside_sentences(passed_roads([road for part in parts for road in part.roads]), world), *near]
+    good, turns = ([kept for part in parts for kept in part.kept(name)] for name in ("general", "turns"))
+    if good:
+        right = f"; the number of turns is right on {percent(sum(turns) / len(turns))}" if turns else ""
+        lines.append(f"{share_of(sum(good), len(good))} roads keep every word{right}.")
+    return [*lines, _different(parts)]
+
+
+def _different(parts: Sequence[StudyPartRecord]) -> str:
+    nearest = [float(part.spread.nearest.min()) for part in parts if len(part.compared) > 1]
+    twins = sum(len(part.spread.duplicates) for part in parts)
+    if not nearest:
+        return "There is one road of each description, so there is nothing to compare."
+    said = "No near duplicates" if not twins else plural(twins, "pair") + " of near duplicates"
+    return (
+        f"{said} among roads of one description; the nearest two plans are {min(nearest):.1f} m "
+        "apart (root mean square, however shifted, turned or mirrored)."
+    )
+
+
+def comparisons_of(parts: Sequence[StudyPartRecord], world: World) -> list[Section]:
+    """Returns the sections in which roads of one description are compared, and that with every road."""
+    covered = coverage(parts)
+    return [diversity(parts), *([covered] if covered else []), every_road(parts, world.site.map_size)]

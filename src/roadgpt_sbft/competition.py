@@ -1,0 +1,271 @@
+"""Defines the Competition, which runs one generator, test after test, until the generator ends or its budget
+is used up.
+"""
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from roadgpt.check import Finding, sbft_verdict
+from roadgpt.check.sbft import TOO_FEW
+from roadgpt.errors import PartError, RoadGPTError, UsageError
+from roadgpt.road import ORACLES, Limits, Road, Site, World
+from roadgpt.run import Draw, Request, Run, Seconds, Setup, check_parts, prove
+from roadgpt.run.model import LostDrives
+from roadgpt.stopping import look
+from roadgpt_sbft.client import Message
+from roadgpt_sbft.experiment import Ending, Experiment
+from roadgpt_sbft.generator_process import GeneratorExitedError, GeneratorProcess
+from roadgpt_sbft.results import LOG, Results, new_folder
+
+USUAL = World(site=Site(map_size=200.0), limits=Limits(**ORACLES["thesis"]))
+GROUND = 0.0  # m: the competition's roads are level, and points without heights are at this height
+PLAIN = Setup(rules="sbft", driver="beamng_like")
+WARM = [[60.0, 100.0], [100.0, 100.0], [140.0, 100.0]]  # a road to compile the simulator on
+LARGEST_ID = 999_999_999
+LOADING = 120.0  # s of wall time for a generator's module to be imported
+
+NO_PYTHON = "{} does not run generators: {}; is it a Python of 3.8 or newer? Name another one with --python"
+
+OVER: Message = {"is_over": True}
+WRONG_TYPE = "Wrong type"
+
+
+@dataclass
+class Competition:
+    """A generator and its tests. Iterate over a Competition to run its generator: each test is yielded as a
+    Run, after the files of the test have been written.
+    """
+
+    experiment: Experiment
+    request: Request
+    folder: Path
+    results: Results
+    ending: Ending | None = None
+    """How the generator ended; None while it is running."""
+    tests: int = 0
+    _deadline: float = field(default=0.0, repr=False)
+    _losses: LostDrives[int] = field(default_factory=LostDrives, repr=False)
+    _is_begun: bool = field(default=False, repr=False)
+    """Whether there are results or a log to keep."""
+
+    def __iter__(self) -> Iterator[Run]:
+        """Yields the Runs as tests end."""
+        try:
+            host = GeneratorProcess(self.folder / LOG, self.experiment.python)
+        except UsageError:
+            self.results.take_away(LOG)
+            raise
+        try:
+            self._begin(host)
+            yield from self._work(host)
+        except GeneratorExitedError as error:
+            self.ending = self._gone(error.status)
+        except OSError as error:
+            raise RoadGPTError(
+                f"cannot write into {self.folder}: {error.strerror or error}; make room there"
+            ) from error
+        finally:
+            host.stop()
+            if self._is_begun:
+                self.results.write_card(is_finished=True)
+            else:
+                self.results.take_away(LOG)
+        if self.ending is not None and not self.ending.is_of_a_generator:
+            raise UsageError(self.ending.sentence)
+
+    def _begin(self, host: GeneratorProcess) -> None:
+        """Loads the generator, and prepares the simulator before the clock starts."""
+        task = self.experiment.model_dump(exclude={"python", "patience", "grace"})
+        world = self.request.world
+        map_size = world.site.map_size
+        whole = int(map_size) if map_size.is_integer() else map_size
+        told = {
+            "oob_tolerance": world.limits.oob_tolerance,
+            "max_speed_in_kmh": round(world.limits.speed_limit * 3.6, 6),
+        }
+        host.tell({**task, **told, "map_size": whole, "folder": str(self.folder.resolve())})
+        first = prove(Road.through(WARM), 0, world, self.request.setup)
+        if first.outcome == "ERROR":
+            raise RoadGPTError(f"not even a straight road can be driven: {first.description}")
+        heard = host.hear(LOADING)
+        if heard is None:
+            self._is_begun = True
+            self.ending = Ending(how="hung", sentence=f"not loaded within {LOADING:g} s")
+        elif heard["op"] == "end":
+            self.ending = self._ended(heard)
+        else:
+            self._is_begun = True
+            self._deadline = time.monotonic() + (self.experiment.time_budget or float("inf"))
+            host.tell({"go": True})
+
+    def _work(self, host: GeneratorProcess) -> Iterator[Run]:
+        while self.ending is None:
+            look()
+            heard = host.hear(self._wait())
+            if heard is None:
+                self.ending = self._silent()
+            elif heard.get("op") == "end":
+                self.ending = self._ended(heard)
+            elif heard.get("op") == "test":
+                yield from self._test(heard, host.tell)
+
+    def _test(self, asked: Message, answer: Callable[[Message], None]) -> Iterator[Run]:
+        """Drives one test, unless the budget is used up; a test during which the time runs out does not
+        count."""
+        if self._is_over:
+            answer(OVER)
+            return
+        run = run_test(
+            asked["points"], self._number(asked["id"]), self.request, asked["generating"], asked["is_test"]
+        )
+        if time.monotonic() >= self._deadline:
+            answer(OVER)
+            return
+        self.tests += 1
+        test = self.results.write(run)
+        answer(
+            {
+                "is_over": False,
+                "is_valid": run.is_valid,
+                "message": run.validation_message,
+                "outcome": run.outcome,
+                "description": test.get("description", run.description),
+                "records": test.get("execution_data", []),
+                "features": test.get("features", {}),
+                "seconds": run.seconds.drive,
+            }
+        )
+        yield run
+        if self._losses.count(run.index, run.is_lost):
+            raise self._losses.given_up(
+                run.description,
+                f"the tests until then are in {self.folder}; a generator cannot be resumed, so repair the "
+                "simulator and start it again",
+            )
+
+    def _number(self, asked: Any) -> int:
+        """Returns the generator's own number of a test if it is valid and unused, else the next free one."""
+        is_number = isinstance(asked, int) and not isinstance(asked, bool) and 0 < asked <= LARGEST_ID
+        numbers = self.results.tests
+        return asked if is_number and asked not in numbers else max(numbers, default=0) + 1
+
+    @property
+    def _has_tests_left(self) -> bool:
+        return self.experiment.test_budget is None or self.tests < self.experiment.test_budget
+
+    @property
+    def _is_over(self) -> bool:
+        return not self._has_tests_left or time.monotonic() >= self._deadline
+
+    def _wait(self) -> float:
+        """Returns the seconds within which the generator must send its next message."""
+        left = self._deadline - time.monotonic() + self.experiment.grace
+        return min(left, self.experiment.patience if self._has_tests_left else self.experiment.grace)
+
+    def _silent(self) -> Ending:
+        if self._is_over:
+            return Ending(how="budget", sentence="budget used up; it did not notice, and was stopped")
+        patience = f"{self.experiment.patience:g} s"
+        return Ending(how="hung", sentence=f"it submitted no test within {patience}, and was stopped")
+
+    def _gone(self, status: int | None) -> Ending:
+        if not self._is_begun and self.experiment.python is not None:
+            return Ending(how="unasked", sentence=NO_PYTHON.format(self.experiment.python, _died(status)))
+        self._is_begun = True
+        return Ending(how="died", sentence=_died(status))
+
+    def _ended(self, heard: Message) -> Ending:
+        said = heard.get("said", "")
+        name = f"{self.experiment.class_name} of {self.experiment.module_name}"
+        sentences = {
+            "done": "finished by itself",
+            "budget": "budget used up",
+            "exit": f"it called sys.exit({said})",
+            "raised": f"it raised {said}",
+            "unloadable": f"the generator {name} cannot be loaded: {said}; check --module-name, --class-name "
+            "and --module-path",
+        }
+        how = heard.get("how", "died")
+        return Ending(how=how, sentence=sentences.get(how, said))
+
+
+def compete(
+    experiment: Experiment,
+    world: World = USUAL,
+    setup: Setup = PLAIN,
+    seed: int = 0,
+    out: Path | None = None,
+    draw: Draw | None = None,
+) -> Competition:
+    """Runs a test generator and drives its roads. The generator starts when you iterate over the returned
+    Competition.
+
+    Args:
+        experiment: the generator and its budget.
+        world: the map, the speed limit and the out-of-bounds tolerance; all roads are level.
+        setup: the driver and the simulator. Rules in the setup are ignored, because the competition's rules
+            apply.
+        seed: the driver's seed.
+        out: an empty or new folder for the results. If None, a new folder is made under ``results``, with the
+            name that the competition would give it.
+        draw: an object that draws pictures of every test, for example a ``report.Drawing``;
+            None: no pictures.
+    """
+    if experiment.time_budget is None and experiment.test_budget is None:
+        raise UsageError("a generator needs a budget; say --time-budget SECONDS or --test-budget N")
+    setup = setup.model_copy(update={"rules": "sbft"})
+    world = world.changed(z_floor=GROUND)
+    check_parts(setup, world)
+    request = Request(seed=seed, world=world, setup=setup)
+    folder, made = new_folder(experiment, out)
+    results = Results(folder, request, None, 1, made, draw=draw)
+    results.describe(experiment)
+    return Competition(experiment, request, folder, results)
+
+
+def _died(status: int | None) -> str:
+    if status is not None and status < 0:
+        return f"its process was ended by signal {-status}"
+    return f"its process ended without an answer (exit status {status})"
+
+
+def run_test(points: Any, index: int, request: Request, generating: float, is_test: bool) -> Run:
+    """Validates and drives one test, and returns the Run. If ``is_test`` is False, the generator submitted
+    something that is not a test: the Run is then invalid and has no road.
+
+    ``points`` are control points ``(n, 2)`` in metres. The rules in the request must be the competition's.
+    ``generating`` is the number of seconds that the generator took to make the test.
+    """
+
+    def invalid(message: str, road: Road | None = None) -> Run:
+        findings = (Finding("sbft", message),)
+        return Run(
+            request, index, request.seed, "INVALID", message, road=road, findings=findings,
+            seconds=Seconds(generating),
+        )  # fmt: skip
+
+    if not is_test:
+        return invalid(WRONG_TYPE)
+    table = np.asarray(points, float).reshape(-1, 2)
+    if len(table) < 2:
+        return invalid(TOO_FEW)
+    try:
+        road = Road.through(table)
+        is_valid, message = sbft_verdict(table, request.world.site.map_size)
+    except RoadGPTError as error:
+        return invalid(str(error))
+    if not is_valid:
+        return invalid(message, road)
+    try:
+        run = prove(road, request.seed, request.world, request.setup, index)
+    except PartError:
+        raise
+    except Exception as error:  # an error costs only the road on which it happens
+        said = str(error) if isinstance(error, RoadGPTError) else f"the test failed: {error!r}"
+        run = Run(request, index, request.seed, outcome="ERROR", description=said, road=road)
+    return replace(run, request=request, seconds=Seconds(generating, run.seconds.drive))

@@ -1,0 +1,109 @@
+"""Writes a folder of results with the competition's files, fields and columns, in the competition's order.
+
+results/MODULE_CLASS_STAMP/
+  test.NNNN.json  generation_stats.csv  oob_stats.csv  experiment_description.csv    the competition's
+  campaign.json  runs/NNNN/  overview.png  generator.log                             RoadGPT's
+"""
+
+import os
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from roadgpt.campaign.run_folder import RunFolder, finished_run
+from roadgpt.errors import UsageError, explained
+from roadgpt.geometry import interpolate
+from roadgpt.run import Run
+from roadgpt.run.atomic import json_text, missing
+from roadgpt.run.execution import features_of, records_of
+from roadgpt.run.folder import RUNS, Draw, write_run_folder
+from roadgpt.run.tables import SETTINGS, TallyEntry, write_settings
+from roadgpt_sbft.experiment import Experiment
+
+HOME = Path("results")
+LOG = "generator.log"
+SUCCESS = "Successful test"
+HEIGHT = -28.0  # m, of the ground of the competition's level
+
+
+def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, tuple[Path, ...]]:
+    """Creates the folder for results; if ``out`` is None, in ``results`` under the competition's name.
+    Returns the folder, and all folders that were created on its path, the innermost first."""
+    stamp = time.time_ns() // 1_000_000
+    name = f"{experiment.module_name}_{experiment.class_name}_{stamp}".replace("/", "-").replace("\\", "-")
+    folder = HOME / name if out is None else out
+    with explained(UsageError, f"cannot use {folder}", "name another folder with --out"):
+        made = missing(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        is_used = any(folder.iterdir())
+        (folder / RUNS).mkdir(exist_ok=True)
+    if is_used:
+        raise UsageError(f"{folder} is not empty; name another folder with --out")
+    return folder, made
+
+
+@dataclass
+class Results(RunFolder):
+    """Writes the result files after each test, so that they are complete at any time."""
+
+    draw: Draw | None = None
+    """Draws pictures of each test; None: no pictures."""
+
+    def write(self, run: Run) -> dict[str, Any]:
+        """Writes the files of a test; returns the content of its ``test.NNNN.json``."""
+        test = test_of(run)
+        write_run_folder(run, self.folder, self.draw)
+        text = json_text(test, indent=None)
+        self.keep(replace(finished_run(run), test_file=text, entry=TallyEntry.of(run)))
+        self.roads = len(self.tests)
+        return test
+
+    def describe(self, experiment: Experiment) -> None:
+        """Writes the settings, and result tables with all counts at 0; called before the first test."""
+        self.write_tables()
+        self.write_card(is_finished=False)
+        setup, told = self.request.setup, experiment.model_dump()
+        is_beamng = setup.simulator == "beamng"
+        homes = {
+            f"beamng_{name}": os.environ.get(f"ROADGPT_BEAMNG_{name.upper()}", "") if is_beamng else ""
+            for name in ("home", "user")
+        }
+        theirs = {name: value for name, value in told.items() if name in SETTINGS} | homes | {"log_to": LOG}
+        ours = {name: value for name, value in told.items() if name not in SETTINGS}
+        driven = {"driver": setup.driver, "seed": self.request.seed}
+        write_settings(self.request, theirs, ours | driven, self.folder)
+
+
+def test_of(run: Run) -> dict[str, Any]:
+    """Returns the fields of the competition's file for a test. An invalid test has only the fields up to
+    ``id``.
+
+    The heights of the drive are lowered by 28 m: the ground of the competition's level is at -28 m.
+    """
+    control = np.empty((0, 2)) if run.road is None else run.road.control_points()
+    nodes = control if run.road is None else interpolate(control)
+    test: dict[str, Any] = {
+        "is_valid": run.is_valid,
+        "validation_message": run.validation_message,
+        "road_points": control.tolist(),
+        "interpolated_points": nodes.tolist(),
+        "id": run.index,
+    }
+    if not run.is_valid:
+        return test
+    records = (
+        records_of(run.road, run.drive, run.world) if run.road is not None and run.drive is not None else []
+    )
+    lowered = [one._replace(pos=[*one.pos[:2], round(one.pos[2] + HEIGHT, 4)]) for one in records]
+    said = run.description if run.verdict is None else run.verdict.sbft_description
+    if run.verdict is not None and said != SUCCESS:
+        said += f" {run.request.setup.simulator}/{run.index:04d}"
+    return test | {
+        "execution_data": lowered,
+        "test_outcome": run.outcome,
+        "description": said,
+        "features": features_of(nodes, lowered),
+    }

@@ -1,0 +1,77 @@
+"""Writes the report of a study, from the files in its folder."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from roadgpt.plural import plural
+from roadgpt.reading import read_json
+from roadgpt.report.chapters.alignment import alignment
+from roadgpt.report.chapters.roads import overview
+from roadgpt.report.chapters.validity import (
+    departures,
+    validity,
+)
+from roadgpt.report.page import write
+from roadgpt.report.page.model import Page
+from roadgpt.report.road_record import StudyPartRecord, read_part
+from roadgpt.report.run_report import card_of, comparisons_of, sentences_of
+from roadgpt.run.atomic import json_text, write_whole
+from roadgpt_study.execution import Problem
+from roadgpt_study.plan import StudyPlan, read_plan
+
+PROBLEMS = "problems.json"
+
+
+def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:
+    """Writes the reasons for missing roads into the study's folder, so that later reports can show them."""
+    sentences = {problem.part: problem.sentence for problem in problems}
+    write_whole(folder / PROBLEMS, json_text(sentences))
+
+
+def write_study(folder: Path) -> Path:
+    """Writes the report of a study into its folder and returns the path of the HTML page."""
+    plan = read_plan(folder)
+    problems = _problems(folder)
+    parts = [
+        read_part(folder / part.name, part, part.name, problems.get(part.name, ""), plan.roads)
+        for part in plan.parts()
+    ]
+    return write(page_of(plan, parts), folder)
+
+
+def _problems(folder: Path) -> Mapping[str, str]:
+    try:
+        found = read_json(folder / PROBLEMS)
+    except (OSError, ValueError):
+        return {}
+    return {str(key): str(value) for key, value in found.items()} if isinstance(found, dict) else {}
+
+
+def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> Page:
+    """Returns the page with the report of a study."""
+    is_thesis = plan.kind == "thesis"
+    valid, left = (make(parts, plan.designers, has_baseline=is_thesis) for make in (validity, departures))
+    kept, first = alignment(parts, plan.designers), overview(parts, plan.world.site.map_size)
+    own = [valid, left, kept] if is_thesis else [kept, valid, *([left] if plan.setup.drives else [])]
+    title = "The evaluation of RoadGPT's thesis, done again" if is_thesis else "Do roads keep the words?"
+    lead = f"{plural(len(plan.prompts), 'description')}, {plural(plan.roads, 'road')} each"
+    return Page(
+        title,
+        _summary(plan, parts),
+        [*([first] if first else []), *own, *comparisons_of(parts, plan.world)],
+        card_of(plan.command, plan.roads, plan.seed, plan.setup, plan.world, parts),
+        f"{lead}, seed {plan.seed}" + (f", from {plan.source}" if plan.source else ""),
+    )
+
+
+def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> list[str]:
+    lines = []
+    for designer in plan.designers:
+        own = [part for part in parts if part.designer == designer]
+        if not any(part.roads for part in own):
+            problem = next((part.problem for part in own if part.problem), "nothing was made")
+            lines.append(f"{designer} was not run: {problem}.")
+            continue
+        said = sentences_of(own, plan.world, plan.kind == "thesis")
+        lines += said if len(plan.designers) == 1 else [f"{designer}: {sentence}" for sentence in said]
+    return lines
