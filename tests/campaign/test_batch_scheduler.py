@@ -101,6 +101,30 @@ def test_three_lost_in_a_row_by_number_end_it_and_its_table_does_not_depend_on_t
     assert len(tables) == 1
 
 
+def test_a_lost_test_before_an_unfinished_one_is_reopened_with_the_three_after_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Test 12 ends last; one worker alone would have given up at 13, with 11 and 12 lost."""
+
+    def all_but_one(executor: Inline) -> None:
+        slow = [job for job in executor.jobs if job.number == 12]
+        for job in [job for job in executor.jobs if job not in slow] or slow:
+            executor.jobs.remove(job)
+            executor.end(job)
+
+    tables = set()
+    for workers in (1, 9):
+        folder = tmp_path / str(workers)
+        losing(monkeypatch, [("c01", number) for number in range(11, 16)])
+        with monkeypatch.context() as patch, pytest.raises(GivenUpError, match="3 times in a row"):
+            if workers > 1:
+                patch.setattr(Inline, "some", all_but_one)
+            worked(folder, workers, tests=33)
+        losing(monkeypatch, ())
+        tables.add(worked(folder, workers, tests=33))
+    assert len(tables) == 1
+
+
 def test_lost_tests_that_only_end_one_after_another_are_not_in_a_row(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -417,13 +417,13 @@ class Scheduler:
             self.progress.outcomes[value.result.outcome] += 1
             out.schedule.ended(out.task.batch)
             if value.is_lost:
-                place = self._names.index(out.schedule.cell.name), out.task.number
-                self._lost[place] = out, value.result.description
+                self._lost[self._place(out)] = out, value.result.description
         self._give_up_if_lost()
 
     def _give_up_if_lost(self) -> None:
         """Ends the session if the simulator has failed in three successive tests, whichever ended first. They
-        and the lost ones after them are reopened for the next session, as if they had not been begun."""
+        and the lost ones after them are reopened for the next session, as if they had not been begun; so are
+        those before them that only tests without a result yet keep apart from them."""
         row: list[tuple[int, int]] = []
         for place in sorted(self._lost):
             row = [*row, place] if row and self._is_next(row[-1], place) else [place]
@@ -432,11 +432,17 @@ class Scheduler:
         else:
             return
         self._keep()
-        again = [out for place, (out, _) in self._lost.items() if place >= row[0]]
+        first, open_ = row[0], {self._place(out) for out in self._out.values()}
+        while (before := (first[0], first[1] - 1)) in self._lost or before in open_:
+            first = before
+        again = [out for place, (out, _) in self._lost.items() if place >= first]
         for out in again:
             self._store.reopen(out.schedule.cell.name, out.task.number, out.task.batch)
         self.progress.outcomes["ERROR"] -= len(again)
         self._error = LostDrives.given_up(self._lost[row[-1]][1], "fix it and continue")
+
+    def _place(self, out: _Out) -> tuple[int, int]:
+        return self._names.index(out.schedule.cell.name), out.task.number
 
     def _is_next(self, place: tuple[int, int], other: tuple[int, int]) -> bool:
         """Returns whether ``other`` is the next test after ``place``, perhaps the first of the next cell."""
