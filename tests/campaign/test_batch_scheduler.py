@@ -116,10 +116,11 @@ def test_a_lost_test_before_an_unfinished_one_is_reopened_with_the_three_after_i
     for workers in (1, 9):
         folder = tmp_path / str(workers)
         losing(monkeypatch, [("c01", number) for number in range(11, 16)])
-        with monkeypatch.context() as patch, pytest.raises(GivenUpError, match="3 times in a row"):
+        with monkeypatch.context() as patch:
             if workers > 1:
                 patch.setattr(Inline, "some", all_but_one)
-            worked(folder, workers, tests=33)
+            with pytest.raises(GivenUpError, match="3 times in a row"):
+                worked(folder, workers, tests=33)
         losing(monkeypatch, ())
         tables.add(worked(folder, workers, tests=33))
     assert len(tables) == 1

@@ -6,9 +6,9 @@ and its job runs again on another one, as soon as one is free.
 
 The parent of a worker process sends the module search paths, and then jobs; the first job prepares the
 worker. The worker sends the pickled value or error of each job. Calls and values are pickled one by one; if
-one cannot be unpickled, only its own job is lost. ``send`` and ``receive``
-connect processes that RoadGPT started on one machine. ``pickled`` and ``unpickled`` also serve the executor
-``ray``, whose workers may run on other machines of its cluster. Nothing else is read.
+one cannot be unpickled, only its own job is lost. ``send`` and ``receive`` connect processes that RoadGPT
+started on one machine. ``pickled`` and ``unpickled`` also serve the executor ``ray``, whose workers may run
+on other machines of its cluster. Nothing else is read.
 """
 
 import os

@@ -1,8 +1,8 @@
 """The executor ``processes``: workers that are processes on this machine.
 
 For each worker, a thread in the campaign's process sends it jobs and receives its answers, even while the
-main thread is busy. This executor does not use
-``ProcessPoolExecutor``, which loses all jobs when one process dies.
+main thread is busy. This executor does not use ``ProcessPoolExecutor``, which loses all jobs when one
+process dies.
 """
 
 import math

@@ -25,7 +25,6 @@ from roadgpt.campaign.record import Record
 from roadgpt.errors import RoadGPTError
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
-from roadgpt.run import Setup
 
 AROUND = 30.0  # m, the competition's, before and after the departure
 STEP = 1.0  # m
@@ -187,7 +186,8 @@ def _located(record: Record, some: Sequence[NumberedTest]) -> Iterator[LocatedFa
     cells = {cell.name: cell for cell in record.cells()}
     for name, tests in groupby(some, key=lambda each: each.cell):
         cell, every = cells[name], [each.number for each in tests]
-        system = system_of(cell.request.world, cell.request.setup)
+        world, setup = cell.request.world, cell.request.setup
+        system = f"{setup.driver} {setup.simulator} {setup.keep_driving} {world.model_dump_json()}"
         for start in range(0, len(every), AT_ONCE):
             numbers = every[start : start + AT_ONCE]
             where = f"tests.number IN ({', '.join('?' * len(numbers))})"
@@ -204,8 +204,3 @@ def _located(record: Record, some: Sequence[NumberedTest]) -> Iterator[LocatedFa
                 manner = manner_of(road, world, station, its.cause, its.side)
                 test = NumberedTest(name, its.number)
                 yield LocatedFailure(test, around, whose, manner, station, its.max_oob, its.beyond)
-
-
-def system_of(world: World, setup: Setup) -> str:
-    """Returns a text that identifies the driver, simulator and world of a cell."""
-    return f"{setup.driver} {setup.simulator} {setup.keep_driving} {world.model_dump_json()}"

@@ -105,7 +105,7 @@ def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
 
 def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
     """Returns the analysis with its simplest road; searches for this road unless it is stored already."""
-    place = simplest_of(task.folder, found.name)
+    place = run_folder(task.folder / FOLDER / SIMPLEST / found.name.cell, found.name.number)
     if found.simplest and is_run(place):
         return found
     run = kept_run(task.folder, *found.name)
@@ -124,11 +124,6 @@ def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
     found = [its for name, run in runs if (its := _read(page_of(folder / FOLDER, name), run, name))]
     # of equal ones max returns the first, which is the most typical
     return max(found, key=lambda its: its.stability.is_stable or its.stability.share, default=None)
-
-
-def simplest_of(folder: Path, name: NumberedTest) -> Path:
-    """Returns the path of the run folder of a failure's simplified road, whether or not it exists."""
-    return run_folder(folder / FOLDER / SIMPLEST / name.cell, name.number)
 
 
 def instructive(
