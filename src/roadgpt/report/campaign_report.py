@@ -105,7 +105,7 @@ def _summary(record: Record, first: Request, status: Status, cells: Sequence[Cel
         if other := sum(cell.handed_over for cell in status.cells):
             out.append(f"On {other:,} of them the driver had handed over: they are not its failures.")
         best = max(cells, key=_failing)
-        if len(cells) > 1:
+        if failed and len(cells) > 1:
             out.append(f"Most fail in {best.name}: {percent(_failing(best))} of its driven roads.")
         out += outside_sentences(passed_tests(record), first.world)
         farthest = _least(record, "FAIL") if first.setup.keep_driving else None

@@ -38,6 +38,8 @@ MOST_WORDS = 60
 """The largest number of words that are tried."""
 GUESS = 0.05
 """If the confidence in a route is lower, a single road that has a higher confidence is preferred."""
+NEARLY = 0.7
+"""By how much less the score of a plan may be that takes the place of one that contradicts itself."""
 ANY_WORLD = (None, 0.0)
 """No limit of the map and of radii: those of a World are checked in brief.read."""
 Asked = TypeVar("Asked")
@@ -94,12 +96,13 @@ def read_normal(line: str) -> Brief:
 
 
 def most_plausible(found: Sequence[ScoredPlan[Brief]]) -> ScoredPlan[Brief]:
-    """Returns the likeliest plan; one that contradicts itself is passed over if there is another one."""
-    if found[0].asks is None:
-        return found[0]
-    return next(
-        (each for each in found if each.asks is not None and is_possible(each.asks, *ANY_WORLD)), found[0]
-    )
+    """Returns the likeliest plan; one that contradicts itself is passed over if another one is nearly as
+    likely. If none is, the description contradicts itself, not the reading."""
+    first = found[0]
+    if first.asks is None:
+        return first
+    near = (each for each in found if each.score > first.score - NEARLY)
+    return next((each for each in near if each.asks and is_possible(each.asks, *ANY_WORLD)), first)
 
 
 def unused_words(
