@@ -98,11 +98,8 @@ def read_normal(line: str) -> Brief:
 def most_plausible(found: Sequence[ScoredPlan[Brief]]) -> ScoredPlan[Brief]:
     """Returns the likeliest plan; one that contradicts itself is passed over if another one is nearly as
     likely. If none is, the description contradicts itself, not the reading."""
-    first = found[0]
-    if first.asks is None:
-        return first
-    near = (each for each in found if each.score > first.score - NEARLY)
-    return next((each for each in near if each.asks and is_possible(each.asks, *ANY_WORLD)), first)
+    near = (each for each in found if found[0].asks and each.score > found[0].score - NEARLY)
+    return next((each for each in near if each.asks and is_possible(each.asks, *ANY_WORLD)), found[0])
 
 
 def unused_words(
