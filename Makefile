@@ -59,7 +59,7 @@ test: $(VENV)/.installed-test judges/.installed
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .
 	$(BIN)/python -m mypy
-	$(BIN)/python -m pytest -n 3
+	$(BIN)/python -m pytest -n 3 --dist worksteal
 	@echo "make test: $(SECONDS_SO_FAR) s"
 
 bench: $(VENV)/.installed-test

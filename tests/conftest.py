@@ -20,7 +20,7 @@ from named_files import watch_commands
 from roadgpt import provenance
 from roadgpt.campaign.workers import InProcess
 
-settings.register_profile("steady", derandomize=True, deadline=None, max_examples=50)
+settings.register_profile("steady", derandomize=True, deadline=None, max_examples=30)
 settings.register_profile("hunt", deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
 
@@ -45,7 +45,7 @@ def no_workers(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 OF_LIBRARIES = ("PYTHONBREAKPOINT", "PYGAME_HIDE_SUPPORT_PROMPT")  # set by Ray and by Gymnasium
-WATCHES = ("roadgpt-beamng", "roadgpt-watch")
+WATCHES = ("roadgpt-beamng", "roadgpt.campaign.workers")
 FOR_GOOD = ("PYTEST_", "ORT_DISABLE_TELEMETRY", "RAY_USAGE_STATS_ENABLED", *OF_LIBRARIES)
 
 

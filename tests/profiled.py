@@ -4,8 +4,7 @@ import numpy as np
 
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Design, Profile, Road, Segment, World, build
-from roadgpt.road.profile import Lane
-from roadgpt.road.superelevation import superelevation
+from roadgpt.road.profile import Lane, superelevation
 
 LANES = ("1+1", "2+1", "2+2", "3+2", "1+0", "2+0", "3+1")
 BANKS = (None, 0.025, 0.05, 0.08)

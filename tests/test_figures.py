@@ -2,25 +2,44 @@
 
 import importlib.util
 import sys
+from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from PIL import Image
+
+from roadgpt.campaign.workers import InProcess
+from roadgpt.cli import app
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
 @pytest.fixture(scope="module")
-def figures() -> ModuleType:
+def figures() -> Iterator[ModuleType]:
     spec = importlib.util.spec_from_file_location("figures", ROOT / "docs" / "figures.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules["figures"] = module
     spec.loader.exec_module(module)
-    return module
+    monkeypatch = pytest.MonkeyPatch()
+    monkeypatch.setattr(module.subprocess, "run", run_here)
+    yield module
+    monkeypatch.undo()
+
+
+def run_here(words: list[str], cwd: Path, **_: object) -> SimpleNamespace:
+    """A command in this process, which has imported and compiled what every new one would again."""
+    assert words[:3] == [sys.executable, "-m", "roadgpt"]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(cwd)
+        patch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
+        done = CliRunner().invoke(app, words[3:], "roadgpt", catch_exceptions=False)
+    assert done.exit_code == 0, done.output
+    return SimpleNamespace(stdout=done.stdout)
 
 
 @pytest.fixture(scope="module")

@@ -73,6 +73,7 @@ def test_words_become_a_folder(made: tuple[Path, list[dict[str, Any]]]) -> None:
     assert names == {
         "campaign.json",
         "campaign.lock",
+        "runs.sqlite",
         "test.0001.json",
         "test.0002.json",
         "generation_stats.csv",
@@ -118,7 +119,7 @@ def test_the_lines_that_show_prints_make_the_same_again(
     (drive,) = [line.split(maxsplit=1)[1] for line in said if line.strip().startswith("or ")]
     program, *arguments = shlex.split(again)
     assert program == "roadgpt"
-    roadgpt(tmp_path, *arguments, "--no-plot")
+    in_this_process(tmp_path, *arguments, "--no-plot")
     for name in ("brief.json", "design.json", "road.json", "drive.npz", "verdict.json", "run.json"):
         assert (folder_of(tmp_path) / "runs" / "0002" / name).read_bytes() == (run / name).read_bytes()
     (redriven,) = in_this_process(home, *shlex.split(drive)[1:])

@@ -3,7 +3,6 @@
 import ast
 import os
 import re
-import shlex
 import shutil
 import subprocess
 import sys
@@ -15,13 +14,20 @@ import pytest
 ROOT = Path(__file__).parents[1]
 COMMANDS = """
 run "two hairpins" -n 1 --seed 7 --out runs --junit runs.xml
-campaign "a road with 3 turns" -n 3 -j 2 --seed 7 --out hard
+campaign "a road with 3 turns" -n 2 -j 2 --seed 7 --out hard
 report hard
 view runs/runs/0001 --out page.html
 export runs --to opendrive,openscenario,gltf,lanelet2,commonroad,sumo,crg,beamng,sbft --out roads
 import roads/runs-0001.xodr --out imported.json
-film runs/runs/0001 --out film.mp4
+film runs/runs/0001 --size 160x90 --seconds 1 --out film.mp4
 doctor
+"""
+ALL_OF_THEM = """
+import shlex, sys
+from roadgpt.cli import app
+if __name__ == "__main__":
+    for line in sys.argv[1:]:
+        assert app(shlex.split(line), "roadgpt", standalone_mode=False) in (None, 0), line
 """
 TRACED = (
     "connect,sendto,sendmsg,open,openat,creat,mkdir,mkdirat,rename,renameat,renameat2,link,linkat,symlink"
@@ -68,16 +74,16 @@ def traced(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str]]:
     folder = tmp_path_factory.mktemp("traced")
     (folder / "home").mkdir()
     env = {"HOME": str(folder / "home"), "PATH": os.environ["PATH"], "TMPDIR": str(folder)}
-    for number, line in enumerate(COMMANDS.strip().splitlines()):
-        done = subprocess.run(
-            ["strace", "-f", "-y", "--seccomp-bpf", f"-etrace={TRACED}", f"-o{folder}/calls.{number:02}",
-             sys.executable, "-m", "roadgpt", *shlex.split(line)],
-            cwd=folder, env=env, stdin=subprocess.DEVNULL, capture_output=True, text=True,
-        )  # fmt: skip
-        if "ptrace" in done.stderr or "PTRACE" in done.stderr:
-            pytest.skip("strace may not trace here")
-        assert done.returncode == 0, (line, done.stderr)
-    return folder, [each for file in sorted(folder.glob("calls.*")) for each in file.read_text().splitlines()]
+    (folder / "all.py").write_text(ALL_OF_THEM)
+    done = subprocess.run(
+        ["strace", "-f", "-y", "--seccomp-bpf", f"-etrace={TRACED}", f"-o{folder}/calls",
+         sys.executable, "all.py", *COMMANDS.strip().splitlines()],
+        cwd=folder, env=env, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+    )  # fmt: skip
+    if "ptrace" in done.stderr or "PTRACE" in done.stderr:
+        pytest.skip("strace may not trace here")
+    assert done.returncode == 0, done.stderr
+    return folder, (folder / "calls").read_text().splitlines()
 
 
 @pytest.mark.timeout(900)

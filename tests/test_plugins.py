@@ -11,14 +11,19 @@ from roadgpt import plugins
 from roadgpt.cli import app
 from roadgpt.errors import PartError
 
+MAY_BE_EMPTY = {f"roadgpt.{kind}" for kind in ("commands", "checks", "reports", "settings")}
 SOUND = EntryPoint("sound", "collections:Counter", "roadgpt.drivers")
 
 
 @pytest.fixture
 def shelf(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[EntryPoint]]:
-    """What lies on every shelf."""
+    """What lies on every shelf; of commands, checks, reports and settings, on that which it names."""
     parts = [SOUND]
-    monkeypatch.setattr(plugins, "entry_points", lambda group: parts)
+
+    def found(group: str) -> list[EntryPoint]:
+        return [part for part in parts if part.group == group] if group in MAY_BE_EMPTY else parts
+
+    monkeypatch.setattr(plugins, "entry_points", found)
     plugins._registered.cache_clear()
     yield parts
     plugins._registered.cache_clear()

@@ -1,6 +1,6 @@
 """RoadGPT turns words into tested roads.
 
-The public classes and functions can be imported from here. Each is loaded when it is first used::
+The public classes and functions are imported from here. Each is loaded when it is first used::
 
     import roadgpt
 
@@ -25,7 +25,8 @@ _OFFERED = {
     "design": "draft",
     "drive": "Drive simulate",
     "verdict": "Verdict judge",
-    "run": "Run campaign perform prove",
+    "run": "Run perform prove",
+    "campaign": "campaign",
     "report": "draw",
     "report.plotting": "plot",
     "report.similarity": "compare",
@@ -56,9 +57,8 @@ _PICTURES = (
 _SENTENCES = (("roadgpt.brief.model", "Brief"), ("roadgpt.verdict.verdict", "Verdict"))
 
 
-def _picture(value: Any) -> bytes | None:
-    made: bytes | None = import_module("roadgpt.report.plotting").png_of(value)
-    return made
+def _picture(value: Any) -> Any:
+    return import_module("roadgpt.report.plotting").png_of(value)
 
 
 def _sentence(value: Any) -> str:

@@ -1,4 +1,4 @@
-"""Starts and ends child processes.
+"""Starts and ends child processes, and says what memory they take.
 
 Ctrl-C in the terminal does not reach these child processes. When a child process is ended, the processes that
 it started are ended as well."""
@@ -7,13 +7,13 @@ import os
 import signal
 import subprocess
 import sys
-import threading
-import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from pathlib import Path
 from typing import IO, Any
 
 FAREWELL = 10.0  # s in which a killed process must have ended
+SHARE = 0.5  # of the machine's memory that one process may take
 _APART: Mapping[str, Any] = (
     {"start_new_session": True}
     if os.name == "posix"
@@ -30,16 +30,6 @@ def start(words: Sequence[str], **how: Any) -> "subprocess.Popen[bytes]":
     return process
 
 
-def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
-    """Starts a Python process that runs ``main()`` of a module and communicates through its standard streams.
-    ``how`` is as in ``start``, but the variables in its ``env`` are added to the environment."""
-    # -P: modules in the user's current folder do not replace ours
-    words = [sys.executable, "-P", "-c", f"from {entry} import main; main()"]
-    extra = how.pop("env", {})
-    env = {**os.environ, **extra, "PYTHONUNBUFFERED": "1", "MPLBACKEND": "Agg"}
-    return start(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=env, **how)
-
-
 def kill(process: "subprocess.Popen[bytes]") -> None:
     """Kills a process, which may have ended, and its child processes; does not wait for them."""
     if os.name == "posix":
@@ -53,43 +43,12 @@ def kill(process: "subprocess.Popen[bytes]") -> None:
         process.kill()
 
 
-def ask_to_end(process: "subprocess.Popen[bytes]") -> None:
-    """Asks a process that has called ``ends_its_own`` to end itself and its child processes, whose sessions
-    ``kill`` would not reach; does not wait for them. On Windows, where it reaches them, nothing is done."""
-    if os.name == "posix" and process.poll() is None:
-        with suppress(OSError):
-            process.terminate()
-
-
-def ends_its_own() -> None:
-    """Makes SIGTERM end this process and every process that it has started with this module."""
-
-    def end_all(number: int, frame: object) -> None:
-        kill_all()
-        os._exit(128 + number)
-
-    signal.signal(signal.SIGTERM, end_all)
-
-
-def ends_with_parent() -> None:
-    """Makes this process end within a second after its parent process."""
-
-    def stay_while(parent: int) -> None:
-        while os.getppid() == parent:
-            time.sleep(1.0)
-        os._exit(1)
-
-    threading.Thread(target=stay_while, args=(os.getppid(),), daemon=True).start()
-
-
-def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int | None:
-    """Ends a process and its child processes. Returns its exit status; None if it has not ended within
-    ``patience`` seconds."""
+def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> None:
+    """Ends a process and its child processes, and waits until it has ended, at most ``patience`` seconds."""
     kill(process)
     with suppress(subprocess.TimeoutExpired):
         process.wait(patience)
     _running.discard(process)
-    return process.returncode
 
 
 def kill_all() -> None:
@@ -98,9 +57,12 @@ def kill_all() -> None:
         kill(process)
 
 
-def ending(status: int | None) -> str:
-    """Returns how a process ended, in words that can follow its name."""
-    return f"was ended by signal {-status}" if status and status < 0 else f"ended with status {status}"
+def end_with_all() -> None:
+    """Ends this process and all that it has started."""
+    kill_all()
+    if os.name == "posix":
+        os.killpg(os.getpgrp(), signal.SIGKILL)
+    os._exit(1)
 
 
 def private_streams() -> tuple[IO[bytes], IO[bytes]]:
@@ -112,3 +74,28 @@ def private_streams() -> tuple[IO[bytes], IO[bytes]]:
     os.close(nothing)
     os.dup2(2, 1)
     return os.fdopen(heard, "rb"), os.fdopen(said, "wb")
+
+
+def memory_limit() -> float:
+    """Returns the memory limit of a process in bytes: half of the memory of the machine or the container,
+    whichever is smaller. If the system does not state its memory, there is no limit (infinity)."""
+    found = []
+    with suppress(ValueError, OSError, AttributeError):
+        found.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    with suppress(ValueError, OSError):
+        found.append(int(Path("/sys/fs/cgroup/memory.max").read_text()))
+    return SHARE * min(found) if found else float("inf")
+
+
+def memory_of(pid: int) -> int:
+    """Returns the bytes of memory that a process uses; 0 where the system does not say (Windows)."""
+    if sys.platform == "linux":
+        with suppress(OSError, ValueError, IndexError):
+            pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+            return pages * os.sysconf("SC_PAGE_SIZE")
+    elif os.name == "posix":
+        words = ["/bin/ps", "-o", "rss=", "-p", str(pid)]
+        with suppress(OSError, ValueError, subprocess.SubprocessError):
+            told = subprocess.run(words, stdout=subprocess.PIPE, timeout=10, check=False)  # noqa: S603
+            return 1024 * int(told.stdout)
+    return 0

@@ -4,6 +4,7 @@ import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 
 class RoadGPTError(Exception):
@@ -104,6 +105,32 @@ class RefusedError(ReplyError):
 
 class UnparsableError(ReplyError):
     """None of the model's replies matches the requested schema, in any of the formats that were tried."""
+
+
+_ADVICE = {
+    "greater_than_equal": "give {ge:g} or more",
+    "greater_than": "give more than {gt:g}",
+    "less_than_equal": "give {le:g} or less",
+    "less_than": "give less than {lt:g}",
+    "literal_error": "give {expected}",
+    **dict.fromkeys(("int_parsing", "int_type", "int_from_float"), "give a whole number"),
+    **dict.fromkeys(("float_parsing", "float_type", "finite_number"), "give a number"),
+    "string_type": "give a text in quotes",
+    "string_too_short": "give a text that is not empty",
+    "bool_type": "give true or false",
+    "too_short": "give at least one",
+    "model_type": "give a table",
+    "dict_type": "give a table",
+}
+"""What the user can do about a value that a model refuses, by pydantic's name for the mistake."""
+
+
+def advice_on(mistake: Any) -> str:
+    """Returns what to give instead of a value that a pydantic model refuses; ``mistake`` is one of the
+    ``errors()`` of a ValidationError. The advice does not show the value, which may be a key."""
+    message = str(mistake["msg"]).removeprefix("Value error, ")
+    advice = _ADVICE.get(mistake["type"], "").format(**mistake.get("ctx", {}))
+    return advice or message[:1].lower() + message[1:]
 
 
 @contextmanager

@@ -120,8 +120,7 @@ class Slot:
         self.port, self.user, self._lock = port, user, lock
 
     def note(self, pid: int) -> None:
-        """Stores the id of the process that listens on the port, so that a later worker can end it if this
-        worker is killed."""
+        """Stores the id of the process that listens, so that a later worker can end it."""
         self._lock.seek(0)
         self._lock.truncate()
         self._lock.write(str(pid))
@@ -135,11 +134,8 @@ class Slot:
 
 
 def take(settings: BeamngSettings) -> Slot:
-    """Returns the first free slot.
-
-    If RoadGPT starts BeamNG itself, ports on which a program already listens are skipped, because that
-    program may not be BeamNG.
-    """
+    """Returns the first free slot. If RoadGPT starts BeamNG itself, ports on which any program listens are
+    skipped."""
     if settings.user is not None and " " in str(settings.user):
         raise UsageError(f"BeamNG does not start with a user folder that has a space: '{settings.user}'")
     for number in range(MOST_WORKERS):
@@ -177,8 +173,7 @@ def _locked(host: str, port: int) -> IO[str] | None:
 
 
 def _end_orphan(lock: IO[str], host: str, port: int) -> None:
-    """Ends a BeamNG process that a killed worker left behind on its port. No other worker uses that process,
-    because the port's lock was free."""
+    """Ends a BeamNG process that a killed worker left on its port; nobody uses it, as the lock was free."""
     lock.seek(0)
     said = lock.read()
     if os.name != "posix" or not said.isdecimal() or not is_taken(host, port):

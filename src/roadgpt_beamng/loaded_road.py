@@ -96,8 +96,7 @@ class LoadedRoad:
         return _triple(place), as_quaternion(turn)
 
     def _settle(self) -> None:
-        """Waits until the car is at rest. The first car of a session is also measured, and then moved to its
-        exact start."""
+        """Waits until the car is at rest. The first one of a session is measured and moved to its start."""
         with self.session.watchdog.within(self.settings.poll_timeout, "the car was put down"):
             self._rest()
             if self.session.body is None:
@@ -135,8 +134,8 @@ class LoadedRoad:
         return car_sample(state, electrics, self.body, self.lift, since, time)
 
     def _time_after(self, since: CarSample) -> float:
-        """Returns the seconds since the start by the car's clock, but at least half a step more than at the
-        previous sample. If the car reports no time, its steps are counted."""
+        """Returns the seconds since the start, at least half a step more than at the previous sample; if the
+        car reports no time, its steps are counted."""
         step = 1.0 / self.settings.rate
         if "time" not in self.vehicle.state:
             return since.time + step
@@ -171,11 +170,8 @@ class LoadedRoad:
         ai.set_waypoint(self.goal)
 
     def take_the_wheel(self) -> None:
-        """Prepares the car for a RoadGPT driver: selects an automatic gearbox mode, and measures the steering
-        if this session has not done so yet.
-
-        In BeamNG's other gearbox modes the car does not move until a gear is selected.
-        """
+        """Prepares the car for a RoadGPT driver: selects an automatic gearbox mode (in others the car does
+        not move until a gear is selected), and measures the steering if this session has not done so yet."""
         with self.session.watchdog.within(self.settings.poll_timeout, "the gearbox was set"):
             self.vehicle.set_shift_mode(GEARBOX)
             if self.session.gain is not None:
@@ -243,8 +239,7 @@ class LoadedRoad:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        """Removes the road and the car as far as possible; after an exception other than RoadGPTError, the
-        whole session is dropped instead."""
+        """Removes the road and the car as far as possible."""
         session = self.session
         if kind is not None and not issubclass(kind, RoadGPTError):
             return  # the session is dropped as a whole

@@ -95,13 +95,8 @@ class Session:
         return LEVELS.get(self.level, 0.0)
 
     def ready(self) -> None:
-        """Makes sure that BeamNG is ready to load a road.
-
-        Raises:
-            PartError: beamngpy is not installed or does not match BeamNG; BeamNG is not in the given folder
-                or is not BeamNG.tech; or it has no suitable level. In each case no road can be driven.
-            SimulatorError: BeamNG does not start or does not answer.
-        """
+        """Makes sure that BeamNG is ready to load a road. Raises PartError where no road can ever be driven,
+        such as without beamngpy, and SimulatorError where BeamNG does not start or does not answer."""
         if self.bng is not None and self.settings.launches and self.roads >= self.settings.recycle:
             self.close()
         if self.bng is None:
@@ -162,8 +157,7 @@ class Session:
         self.bng.settings.set_steps_per_second(self.settings.rate)
 
     def loading(self) -> AbstractContextManager[None]:
-        """Returns a context manager that limits the time for loading a road; the first road may take
-        minutes."""
+        """Limits the time for loading a road; the first road may take minutes."""
         if self.has_loaded:
             return self.watchdog.within(self.settings.load_timeout, "it was loading a road")
         patience = max(self.settings.first_load_timeout, self.settings.load_timeout)
@@ -187,9 +181,7 @@ class Session:
         self._forget()
 
     def drop(self) -> None:
-        """Kills BeamNG if RoadGPT started it; otherwise closes the connection without waiting for an
-        answer.
-        """
+        """Kills BeamNG if RoadGPT started it; otherwise closes the connection without waiting."""
         for each in self._sockets():
             with suppress(OSError):
                 each.close()
@@ -212,8 +204,7 @@ class Session:
             self.game.kill()
 
     def _sockets(self) -> list[socket.socket]:
-        """Returns the sockets that beamngpy currently uses for BeamNG and for the car; it may replace them at
-        any time."""
+        """Returns the sockets that beamngpy uses at present; it may replace them at any time."""
         found = []
         for holder in (self.bng, self.vehicle):
             link = getattr(getattr(holder, "connection", None), "skt", None)
@@ -223,8 +214,7 @@ class Session:
 
 
 def session_of(settings: BeamngSettings) -> Session:
-    """Returns this process's session for these settings. If there is none, creates it and ends any session
-    with other settings."""
+    """Returns this process's session for these settings, and ends any with other settings."""
     if settings not in _sessions:
         leave_all()  # one BeamNG at a time is enough for a graphics card
         _sessions[settings] = Session(settings)
@@ -252,9 +242,7 @@ def warn_if_untested(version: str) -> None:
 
 
 def mismatch_advice(game: str, client: str, version: str) -> str:
-    """Returns advice for a user whose BeamNG and beamngpy use different protocols. BeamNG uses the protocol
-    ``game``; beamngpy has this ``version`` and uses the protocol ``client``.
-    """
+    """Returns advice for a BeamNG of the protocol ``game`` and a beamngpy of another one, ``client``."""
     theirs = [pair for pair in VERSION_PAIRS if pair.protocol == game]
     ours = [pair for pair in VERSION_PAIRS if pair.protocol == client]
     said = f"BeamNG.tech {' or '.join(pair.tech for pair in theirs)}" if theirs else "this BeamNG.tech"
@@ -268,14 +256,9 @@ def mismatch_advice(game: str, client: str, version: str) -> str:
 
 
 def protocol_at(host: str, port: int, protocol: str, patience: float) -> str:
-    """Sends a first message (Hello) with the given protocol version to the program that listens on a port,
-    and returns the version in BeamNG's answer.
-
-    A message consists of its length (four bytes, big-endian) and one MessagePack map.
-
-    Raises:
-        OSError: no program listens on the port, or no answer came within ``patience`` seconds.
-    """
+    """Sends a first message (Hello), and returns the protocol version in BeamNG's answer. A message is its
+    length (four bytes, big-endian) and one MessagePack map. Raises OSError if nobody listens or answers in
+    time."""
     msgpack: Any = import_module("msgpack")
 
     hello = msgpack.packb({"type": "Hello", "protocolVersion": protocol, "_id": 0}, use_bin_type=True)

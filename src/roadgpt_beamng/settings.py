@@ -12,9 +12,9 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, advice_on
 
-OF_USER: dict[str, Any] = {"of_user": True}
+OF_USER: dict[str, Any] = {"of_user": True, "open": True}
 PREFIX = "ROADGPT_BEAMNG_"
 PORT = 25252  # BeamNG's default since 0.34
 
@@ -91,7 +91,7 @@ class BeamngSettings(BaseModel):
         except ValidationError as error:
             first = error.errors()[0]
             name = PREFIX + str(first["loc"][0]).upper()
-            raise UsageError(f"{name} cannot be '{first['input']}': {first['msg'].lower()}") from error
+            raise UsageError(f"{name} cannot be '{first['input']}'; {advice_on(first)}") from error
 
     @property
     def launches(self) -> bool:

@@ -33,13 +33,11 @@ IMITATES = "beamng_like"
 
 
 class BeamngSimulator:
-    """Simulates an ETK 800 in BeamNG.tech on a mesh road. Either BeamNG's AI drives, or the driver returns a
-    command at every step.
+    """Simulates an ETK 800 in BeamNG.tech on a mesh road.
 
-    If the driver is ``beamng_like``, an imitation of BeamNG's AI, and the setting ``imitation`` is False, the
-    AI itself drives, and ``Drive.driver`` is ``beamng_ai``. If BeamNG hangs, ends or loses its connection,
-    the drive is repeated once with a new BeamNG process or connection; a second failure raises
-    SimulatorError.
+    In place of the driver ``beamng_like``, which imitates BeamNG's AI, the AI itself drives as ``beamng_ai``,
+    unless the setting ``imitation`` is True. If BeamNG hangs, ends or loses its connection, the drive is
+    repeated once with a new one.
     """
 
     # The surfaces are those of the level's materials, and mesh roads that a client builds are level across.
@@ -125,10 +123,7 @@ class DriveLoop:
         self.has_left = False
 
     def drive(self, keep_driving: bool) -> Ended:
-        """Drives until the drive ends, and returns how it ended.
-
-        With ``keep_driving``, the drive goes on when the car leaves its lane.
-        """
+        """Returns how the drive ended; with ``keep_driving``, it goes on when the car leaves its lane."""
         loaded, world = self.loaded, self.world
         watchdog = loaded.session.watchdog
         watchdog.pause()
@@ -158,8 +153,7 @@ class DriveLoop:
             self._go_on(now)
 
     def _go_on(self, here: CarSample) -> None:
-        """Makes one step. The watchdog counts only BeamNG's time: RoadGPT may be compiling its functions, and
-        the guard has its own clock."""
+        """Makes one step. The watchdog counts only BeamNG's time; the guard has its own clock."""
         look()
         throttle = brake = 0.0
         loaded = self.loaded
@@ -198,8 +192,7 @@ class DriveLoop:
 
     def _cut(self, has_happened: Callable[[CarSample], bool], keep: bool = False) -> None:
         """Finds by interpolation the moment between the last two samples at which ``has_happened`` became
-        true. With ``keep``, a sample of this moment is inserted before the last sample; otherwise it replaces
-        the last sample."""
+        true; a sample of it replaces the last sample, or with ``keep`` goes before it."""
         if len(self.samples) < 2 or has_happened(self.samples[-2]):
             return
         before, after = self.samples[-2:]

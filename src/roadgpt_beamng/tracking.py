@@ -47,14 +47,8 @@ class CarGeometry(NamedTuple):
         corners: Mapping[str, Sequence[float]],
         ground: FloatArray,
     ) -> "CarGeometry":
-        """Returns the geometry of a car that is at rest.
-
-        Args:
-            state: the car's state as BeamNG reports it.
-            gravity: position of the car's centre of gravity in metres.
-            corners: positions of the corners of the car's bounding box in metres.
-            ground: the point of the road on which the car was placed.
-        """
+        """Returns the geometry of a car that is at rest on the point ``ground``: its state as BeamNG reports
+        it, its centre of gravity, and the corners of its bounding box."""
         frame = frame_of(state)
         centre = np.asarray(gravity, float)
         node = frame @ (np.asarray(state["pos"], float) - centre)
@@ -71,8 +65,7 @@ class CarGeometry(NamedTuple):
         return cls(place, float(rear), float(front), half, float(under), height)
 
     def box(self, lock: float) -> Box:
-        """Returns the geometry as a Box, with the angle ``lock`` of the front wheels at full lock in
-        radians."""
+        """Returns the geometry as a Box, with the angle of the front wheels at full lock in radians."""
         length, width, ahead = self.front - self.rear, 2 * self.half, (self.front + self.rear) / 2
         wheels = (ahead + AXLE * length, TYRES * width)
         return Box(length, width, ahead, lock, *wheels, height=self.height, under=-self.under)
@@ -85,8 +78,8 @@ class CarGeometry(NamedTuple):
 
 
 def frame_of(state: Mapping[str, Any]) -> FloatArray:
-    """Returns the car's unit vectors ahead, to the left and up, as the rows of a (3, 3) array; ``state`` is
-    the car's state as BeamNG reports it."""
+    """Returns the car's unit vectors ahead, to the left and up as rows, from the state that BeamNG
+    reports."""
     ahead, up = np.asarray(state["dir"], float), np.asarray(state["up"], float)
     size = float(np.linalg.norm(ahead))
     if not (np.isfinite(ahead).all() and np.isfinite(up).all() and size > 0.1):
@@ -157,8 +150,7 @@ class RoadTracker:
 def station_of(
     table: FloatArray, first: float, step: float, x: float, y: float, s: float
 ) -> tuple[float, float, float]:
-    """Returns the station and the offset of the point (x, y), and the height of the road there; ``s`` is a
-    station near the point."""
+    """Returns station and offset of a point near station s, and the height of the road there."""
     at, t, height, _, _, _ = locate_on(table, first, step, x, y, s)
     return at, t, height
 
@@ -171,8 +163,7 @@ def car_sample(
     since: CarSample | None,
     time: float,
 ) -> CarSample:
-    """Returns a CarSample, computed from the state that BeamNG reports; ``since`` is the previous sample,
-    or None for the first one."""
+    """Returns the sample for a state that BeamNG reports; ``since`` is the previous one, if any."""
     frame = frame_of(state)
     ahead, left, up = frame
     position = np.asarray(state["pos"], float) - np.asarray(body.node) @ frame

@@ -1,10 +1,8 @@
 """Ends calls to BeamNG that do not return.
 
-beamngpy blocks for ever if BeamNG hangs. Its timeouts do not help: after a timeout it silently reconnects
-without sending the first message (Hello), and then waits again for an answer that will never come. A thread
-therefore watches the time: when a call is overdue, it kills BeamNG's process and closes the sockets, so that
-the blocked call raises an exception. If the call reconnects, the new socket is closed as well, until the call
-fails.
+beamngpy blocks for ever if BeamNG hangs: after a timeout it silently reconnects without the first message
+(Hello), and waits again. A thread therefore watches the time: when a call is overdue, it kills BeamNG's
+process and closes the sockets, also new ones, until the blocked call fails.
 """
 
 import socket
@@ -24,25 +22,16 @@ class Watchdog:
     """Limits the time of each call to BeamNG in one session."""
 
     def __init__(self, sockets: Callable[[], Iterable[socket.socket]], kill: Callable[[], None]) -> None:
-        """Watches nothing yet.
-
-        Args:
-            sockets: function that returns the sockets on which a call may be blocked at present.
-            kill: function that ends the BeamNG process, if RoadGPT started this process.
-        """
+        """``sockets`` returns those on which a call may be blocked at present; ``kill`` ends a BeamNG process
+        that RoadGPT started."""
         self._sockets, self._kill = sockets, kill
         self._due: float | None = None
         self.has_fired = False
 
     @contextmanager
     def within(self, seconds: float, doing: str) -> Iterator[None]:
-        """Context manager: ends a call that takes longer than ``seconds``; ``doing`` says in error messages
-        what the call does.
-
-        Raises:
-            OverdueError: the call took too long. This error replaces the exception that the interrupted call
-                raised.
-        """
+        """Ends a call that takes longer than ``seconds``, and raises OverdueError in place of what the call
+        raised; ``doing`` says what the call does."""
         done = threading.Event()
         self.due_in(seconds)
         watcher = threading.Thread(target=self._watch, args=(done,), name="roadgpt-beamng", daemon=True)
@@ -58,15 +47,11 @@ class Watchdog:
             watcher.join()
 
     def due_in(self, seconds: float) -> None:
-        """Restarts the time limit: it ends ``seconds`` from now.
-
-        A loop in a single ``within`` block can thus give each call a limit of its own.
-        """
+        """Restarts the time limit, so that a loop in one ``within`` block can limit each call."""
         self._due = time.monotonic() + seconds
 
     def pause(self) -> None:
-        """Suspends the time limit until the next ``due_in``, for example while the driver computes its
-        command."""
+        """Suspends the time limit until the next ``due_in``, for example while the driver computes."""
         self._due = None
 
     def _watch(self, done: threading.Event) -> None:

@@ -1,29 +1,25 @@
-"""Runs test generators of the SBFT tool competition with RoadGPT, and RoadGPT as a generator in the
-competition. Main function: ``compete``.
+"""``compete`` runs test generators of the SBFT tool competition with RoadGPT's simulators: it starts a
+generator in a process of its own, passes it an executor with the competition's class name and methods, and
+drives the roads that it submits. In the other direction, ``RoadGPTTestGenerator`` runs RoadGPT in the
+competition's pipeline. The package ``sdc`` is a tool for the SDC competition on test selection.
 
-``compete`` runs the competition's generators with RoadGPT's simulators: it starts a generator in a process of
-its own, passes it an executor with the same class name and methods as the competition's, and drives the roads
-that the generator submits. In the other direction, the class ``RoadGPTTestGenerator`` runs RoadGPT in the
-competition's pipeline. The package ``sdc`` implements a tool for the SDC competition on test selection.
-
-The public classes and functions of this package are imported only when they are first used, because a
-generator's own process needs few of them.
+Names are imported when they are first used, because a generator's own process needs few of them.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from roadgpt_sbft.competition import Competition, compete
-    from roadgpt_sbft.experiment import Ending, Experiment
+    from roadgpt_sbft.competition import Competition, Ending, compete
     from roadgpt_sbft.generator import RoadGPTTestGenerator
+    from roadgpt_sbft.results import Experiment
 
 __all__ = ["Competition", "Ending", "Experiment", "RoadGPTTestGenerator", "compete"]
 
 _FILES = {
     "Competition": "competition",
-    "Ending": "experiment",
-    "Experiment": "experiment",
+    "Ending": "competition",
+    "Experiment": "results",
     "RoadGPTTestGenerator": "generator",
     "compete": "competition",
 }

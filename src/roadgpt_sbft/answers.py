@@ -1,9 +1,7 @@
 """Serves test generators that run in other Python interpreters: computes what the competition computes, and
-designs roads. Each request and each answer is one line of JSON.
-
-The client, ``names/roadgpt_client.py``, starts this module as ``python -m roadgpt_sbft.answers``. If
-``compete`` runs the generator in RoadGPT's own interpreter (no ``--python``), ``answer`` is called directly
-instead, and no process is started.
+designs roads. The client, ``names/roadgpt_client.py``, starts this module as ``python -m
+roadgpt_sbft.answers``; each request and each answer is one line of JSON. In RoadGPT's own interpreter,
+``answer`` is called directly.
 """
 
 import sys
@@ -27,8 +25,7 @@ Points = list[list[float]]
 
 
 def answer(asked: Message) -> Message:
-    """Carries out a request; returns its result under the key ``answer``, or an error message under the key
-    ``error``."""
+    """Carries out a request; returns its result as ``answer``, or a message as ``error``."""
     values = dict(asked)
     op = values.pop("op", None)
     if op not in OPS:
@@ -42,8 +39,7 @@ def answer(asked: Message) -> Message:
 
 
 def nodes(points: Any) -> Points:
-    """Returns the points ``(m, 2)`` that the competition interpolates through control points ``(n, 2)``, in
-    metres."""
+    """Returns the points that the competition interpolates through control points ``(n, 2)``, in metres."""
     table = np.asarray(points, float)[:, :2]
     if not np.isfinite(table).all():
         raise UsageError("a number of the road points is not finite; give every point as two plain numbers")
@@ -53,8 +49,7 @@ def nodes(points: Any) -> Points:
 
 
 def left_lane(points: Any, records: Any, before: float, after: float) -> Message | None:
-    """Returns the fields of the Departure that ``sparseness.departure`` finds; None if the car did not leave
-    its lane."""
+    """Returns the fields of the Departure; None if the car did not leave its lane."""
     from roadgpt.run.execution import ExecutionRecord
     from roadgpt.run.sparseness import departure
 
@@ -63,8 +58,8 @@ def left_lane(points: Any, records: Any, before: float, after: float) -> Message
 
 
 def spread(segments: Any) -> tuple[float, float]:
-    """Returns the mean and the standard deviation of the competition's sparseness of segments: points
-    ``(n, 2)`` of the road around each failure, in the order of the tests."""
+    """Returns mean and standard deviation of the competition's sparseness of segments: points ``(n, 2)`` of
+    the road around each failure."""
     from roadgpt.run.sparseness import Sparseness
 
     found = Sparseness()
@@ -78,8 +73,7 @@ _ASKED: list[tuple[Any, Iterator[Any]]] = []
 
 
 def begin(map_size: int | None = None, **asked: Any) -> None:
-    """Starts a sequence of roads for a description; ``another`` then returns the roads. ``asked`` are
-    attributes of RoadGPTTestGenerator, such as the description."""
+    """Starts a sequence of roads. ``asked`` are attributes of RoadGPTTestGenerator."""
     from roadgpt_sbft.generator import RoadGPTTestGenerator
 
     if unknown := set(asked) - {"description", "seed", "designer", "reader", "search", "oob_tolerance"}:
@@ -103,8 +97,7 @@ def another() -> Points:
 def tell(
     outcome: str, steering: list[float], distances: list[float], outside: list[float] | None = None
 ) -> None:
-    """Reports the outcome of the last road, as ``tell_columns`` of RoadGPTTestGenerator does. Has no effect
-    before ``begin``."""
+    """Reports the outcome of the last road to RoadGPTTestGenerator."""
     if _ASKED:
         _ASKED[0][0].tell_columns(outcome, steering, distances, outside)
 

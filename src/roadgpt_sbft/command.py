@@ -18,7 +18,6 @@ from roadgpt.errors import UsageError, explained, to_install
 
 if TYPE_CHECKING:
     from roadgpt.report import Scale
-    from roadgpt_sbft import Competition
 
 FAILED = 1  # exit status: the generator crashed, hung or left; its results are complete
 KMH = 3.6
@@ -40,41 +39,40 @@ def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None)
     ctx.exit()
 
 
-# fmt: off
-OPTIONS = (
-    Option("--module-name", "Python module of the generator.", required=True),
-    Option("--class-name", "Class of the generator.", required=True),
-    Option("--module-path", "Additional folder in which Python looks for the module.",
-           click.Path(exists=True, file_okay=False)),
-    Option("--python", "Interpreter for the generator, with its own libraries; Python 3.8 or later. "
-           "[default: RoadGPT's]"),
-    Option("--time-budget", "Budget in seconds, for generating and driving.",
-           measure(0, 10_000_000, "s", above=True)),
-    Option("--test-budget", "Budget in tests, including invalid ones.", whole(1, 10**7, "tests")),
-    Option("--map-size", "Side of the square map, m.", whole(100, 1000, "metres"), 200),
-    # the competition's own defaults and bounds, which no configuration file changes
-    Option("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
-           0.95, heading=Heading.DRIVE),
-    Option("--speed-limit", "Speed limit, km/h.", measure(10, 300, "km/h"), 70, heading=Heading.DRIVE),
-    named(options.SETUP, "driver")[0].but(default="beamng_like"),
-    *named(options.SETUP, "simulator"),
-    options.seed("Seed for the driver.", 0),
-    Option("--patience", "Seconds that the generator may take for one test.",
-           measure(0, 86_400, "s", above=True), 600),
-    options.out("An empty folder, or a new one. [default: results/MODULE_CLASS_STAMP]"),
-    Option("--plot has_pictures", "Draw every test, and not only the overview.", bool),
-    Option("--no-plot", "Draw nothing.", bool),
-    *(options.AXES, options.FORMAT),
-    Option("--debug", "Log more details of what the generator does.", bool),
-    Option("--client", "Write the Python module that lets the competition run RoadGPT, and exit.",
-           click.Path(dir_okay=False, path_type=Path), is_eager=True, expose_value=False,
-           callback=_write_client),
-    *options.SCREEN,
-)
-# fmt: on
+def _options() -> list[Option]:
+    return [
+        Option("--module-name", "Python module of the generator.", required=True),
+        Option("--class-name", "Class of the generator.", required=True),
+        Option("--module-path", "Additional folder in which Python looks for the module.",
+               click.Path(exists=True, file_okay=False)),
+        Option("--python", "Interpreter for the generator, with its own libraries; Python 3.8 or later. "
+               "[default: RoadGPT's]"),
+        Option("--time-budget", "Budget in seconds, for generating and driving.",
+               measure(0, 10_000_000, "s", above=True)),
+        Option("--test-budget", "Budget in tests, including invalid ones.", whole(1, 10**7, "tests")),
+        Option("--map-size", "Side of the square map, m.", whole(100, 1000, "metres"), 200),
+        # the competition's own defaults and bounds, which no configuration file changes
+        Option("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
+               0.95, heading=Heading.DRIVE),
+        Option("--speed-limit", "Speed limit, km/h.", measure(10, 300, "km/h"), 70, heading=Heading.DRIVE),
+        named(options.SETUP, "driver")[0].but(default="beamng_like"),
+        *named(options.SETUP, "simulator"),
+        options.seed("Seed for the driver.", 0),
+        Option("--patience", "Seconds that the generator may take for one test.",
+               measure(0, 86_400, "s", above=True), 600),
+        options.out("An empty folder, or a new one. [default: results/MODULE_CLASS_STAMP]"),
+        Option("--plot has_pictures", "Draw every test, and not only the overview.", bool),
+        Option("--no-plot", "Draw nothing.", bool),
+        *(options.AXES, options.FORMAT),
+        Option("--debug", "Log more details of what the generator does.", bool),
+        Option("--client", "Write the Python module that lets the competition run RoadGPT, and exit.",
+               click.Path(dir_okay=False, path_type=Path), is_eager=True, expose_value=False,
+               callback=_write_client),
+        *options.SCREEN,
+    ]  # fmt: skip
 
 
-@click.command("sbft", cls=GroupedCommand, has_simulators=True, params=[*OPTIONS])
+@click.command("sbft", cls=GroupedCommand, has_simulators=True, makes=_options)
 def sbft_command(
     map_size: int, oob_tolerance: float, speed_limit: float, driver: str, simulator: str, seed: int,
     out: Path | None, has_pictures: bool, no_plot: bool, axes: "Scale", picture_formats: Any,
@@ -106,11 +104,6 @@ def sbft_command(
     screen = Screen(work.experiment.test_budget or 0, as_json, quiet, verbose)
     screen.request = work.request
     screen.say(f"{work.experiment.class_name} of {work.experiment.module_name}, into {work.folder}")
-    return _watched(work, screen, () if no_plot else picture_formats)
-
-
-def _watched(work: "Competition", screen: Screen, formats: Any) -> int:
-    """Shows each test when it ends, then how the generator ended, and draws an overview of all tests."""
     try:
         screen.runs(work, work.folder)
     finally:
@@ -118,10 +111,10 @@ def _watched(work: "Competition", screen: Screen, formats: Any) -> int:
         if work.ending is None or work.ending.is_of_a_generator:  # else the error message tells all
             if work.ending is not None:
                 screen.say(f"the generator: {work.ending.sentence}")
-            if screen.rows and formats:
+            if screen.rows and picture_formats and not no_plot:
                 from roadgpt.report import overview
 
-                overview(work.folder, formats)
+                overview(work.folder, picture_formats)
             if work.folder.is_dir():
                 screen.say(f"tests and tables: {work.folder}")
     return 0 if work.ending is None or work.ending.is_fine else FAILED

@@ -6,10 +6,11 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from roadgpt.brief.model import Frozen
 from roadgpt.check import Finding, sbft_verdict
 from roadgpt.check.sbft import TOO_FEW
 from roadgpt.errors import PartError, RoadGPTError, UsageError
@@ -18,9 +19,8 @@ from roadgpt.run import Draw, Request, Run, Seconds, Setup, check_parts, prove
 from roadgpt.run.model import LostDrives
 from roadgpt.stopping import look
 from roadgpt_sbft.client import Message
-from roadgpt_sbft.experiment import Ending, Experiment
 from roadgpt_sbft.generator_process import GeneratorExitedError, GeneratorProcess
-from roadgpt_sbft.results import LOG, Results, new_folder
+from roadgpt_sbft.results import LOG, Experiment, Results, new_folder
 
 USUAL = World(site=Site(map_size=200.0), limits=Limits(**ORACLES["thesis"]))
 GROUND = 0.0  # m: the competition's roads are level, and points without heights are at this height
@@ -31,15 +31,30 @@ LOADING = 120.0  # s of wall time for a generator's module to be imported
 
 NO_PYTHON = "{} does not run generators: {}; is it a Python of 3.8 or newer? Name another one with --python"
 
-OVER: Message = {"is_over": True}
 WRONG_TYPE = "Wrong type"
+
+
+class Ending(Frozen):
+    """How and why a generator ended."""
+
+    how: Literal["done", "budget", "exit", "raised", "hung", "died", "unloadable", "unasked"]
+    sentence: str
+
+    @property
+    def is_fine(self) -> bool:
+        """Whether the generator finished by itself or used up its budget."""
+        return self.how in ("done", "budget")
+
+    @property
+    def is_of_a_generator(self) -> bool:
+        """Whether the generator was loaded before the end, in an interpreter that can run generators."""
+        return self.how not in ("unloadable", "unasked")
 
 
 @dataclass
 class Competition:
-    """A generator and its tests. Iterate over a Competition to run its generator: each test is yielded as a
-    Run, after the files of the test have been written.
-    """
+    """A generator and its tests. Iterating over it runs the generator and yields each test as a Run, after
+    the files of the test have been written."""
 
     experiment: Experiment
     request: Request
@@ -54,7 +69,6 @@ class Competition:
     """Whether there are results or a log to keep."""
 
     def __iter__(self) -> Iterator[Run]:
-        """Yields the Runs as tests end."""
         try:
             host = GeneratorProcess(self.folder / LOG, self.experiment.python)
         except UsageError:
@@ -115,16 +129,15 @@ class Competition:
                 yield from self._test(heard, host.tell)
 
     def _test(self, asked: Message, answer: Callable[[Message], None]) -> Iterator[Run]:
-        """Drives one test, unless the budget is used up; a test during which the time runs out does not
-        count."""
+        """Drives one test; none, and none that counts, once the budget is used up."""
         if self._is_over:
-            answer(OVER)
+            answer({"is_over": True})
             return
         run = run_test(
             asked["points"], self._number(asked["id"]), self.request, asked["generating"], asked["is_test"]
         )
         if time.monotonic() >= self._deadline:
-            answer(OVER)
+            answer({"is_over": True})
             return
         self.tests += 1
         test = self.results.write(run)
@@ -203,18 +216,9 @@ def compete(
     draw: Draw | None = None,
 ) -> Competition:
     """Runs a test generator and drives its roads. The generator starts when you iterate over the returned
-    Competition.
-
-    Args:
-        experiment: the generator and its budget.
-        world: the map, the speed limit and the out-of-bounds tolerance; all roads are level.
-        setup: the driver and the simulator. Rules in the setup are ignored, because the competition's rules
-            apply.
-        seed: the driver's seed.
-        out: an empty or new folder for the results. If None, a new folder is made under ``results``, with the
-            name that the competition would give it.
-        draw: an object that draws pictures of every test, for example a ``report.Drawing``;
-            None: no pictures.
+    Competition. Roads are level, and the competition's rules apply instead of those of the setup. The empty
+    or new folder ``out`` is by default one under ``results``, with the competition's name; ``draw``, such as
+    a ``report.Drawing``, draws every test.
     """
     if experiment.time_budget is None and experiment.test_budget is None:
         raise UsageError("a generator needs a budget; say --time-budget SECONDS or --test-budget N")
@@ -235,12 +239,8 @@ def _died(status: int | None) -> str:
 
 
 def run_test(points: Any, index: int, request: Request, generating: float, is_test: bool) -> Run:
-    """Validates and drives one test, and returns the Run. If ``is_test`` is False, the generator submitted
-    something that is not a test: the Run is then invalid and has no road.
-
-    ``points`` are control points ``(n, 2)`` in metres. The rules in the request must be the competition's.
-    ``generating`` is the number of seconds that the generator took to make the test.
-    """
+    """Validates and drives one test of control points ``(n, 2)`` in metres, which took ``generating`` seconds
+    to make. If ``is_test`` is False, the generator submitted something else, and the Run is invalid."""
 
     def invalid(message: str, road: Road | None = None) -> Run:
         findings = (Finding("sbft", message),)

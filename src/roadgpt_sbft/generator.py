@@ -1,14 +1,7 @@
 """Defines RoadGPT's test generator for the competition's own pipeline. Among the roads that meet a
-description, the generator searches for roads on which the car fails.
+description, it searches for roads on which the car fails. ``names/roadgpt_client.py`` says how it is used.
 
     python competition.py --module-name roadgpt_sbft --class-name RoadGPTTestGenerator ...
-
-The roads are controlled by environment variables (ROADGPT_DESCRIPTION, ROADGPT_SEED, ROADGPT_DESIGNER,
-ROADGPT_READER, ROADGPT_SEARCH) or by a subclass:
-
-    class Hairpins(RoadGPTTestGenerator):
-        description = "three hairpins"
-        seed = 7
 """
 
 import logging
@@ -52,20 +45,15 @@ U = TypeVar("U")
 class HerePool:
     """Replaces a pool of worker processes: calls all functions in this process."""
 
-    def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """Returns the results of ``function`` for all items."""
+    def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:  # noqa: D102
         return [function(item) for item in items]
 
 
 class RoadSearch:
-    """Searches for roads on which a car fails: ``ask`` returns a road, and ``tell`` receives its outcome.
-    Roads without an outcome are ignored.
-    """
+    """Searches for roads on which a car fails: ``ask`` returns a road, ``tell`` receives its outcome, if
+    any."""
 
     def __init__(self, brief: Brief, words: str, seed: int, world: World, setup: Setup) -> None:
-        """Begins a search among the roads that meet a description (``brief`` and ``words``) and the rules of
-        a setup. ``world.limits.oob_tolerance`` is the share of the car that may be outside its lane before a
-        drive fails."""
         self._brief, self._world = brief, world
         request = Request(words=words, seed=seed, world=world, setup=setup)
         cell = Cell("c01", request, brief, "quality_diversity", "failures")
@@ -104,17 +92,10 @@ class RoadSearch:
         distances: Sequence[float],
         outside: Sequence[float] | None = None,
     ) -> None:
-        """Receives the outcome of the last road. Only the first call for each road has an effect.
-
-        Args:
-            outcome: "PASS" or "FAIL"; tests with another outcome, or with fewer than three records, are
-                ignored.
-            steering: angle of the steering wheel in degrees at each record of the drive.
-            distances: distance in metres from the car's middle to the edge of its lane at each record,
-                negative outside (``oob_distance`` of the competition).
-            outside: where the car was farthest outside, ``[x, y]`` in metres; None if this is not known.
-                Without this place, the search learns less about where the car fails.
-        """
+        """Receives the outcome of the last road, once; ignores other outcomes than "PASS" and "FAIL", and
+        drives of fewer than three records. For each record: the angle of the steering wheel in degrees, and
+        the distance in metres from the car's middle to the edge of its lane, negative outside. ``outside`` is
+        where the car was farthest outside, ``[x, y]`` in metres."""
         asked, self._asked = self._asked, None
         if asked is None or outcome not in ("PASS", "FAIL") or len(distances) < FEWEST_RECORDS:
             return
@@ -135,30 +116,19 @@ class RoadSearch:
 
 
 class RoadGPTTestGenerator(ClientTestGenerator):
-    """Submits roads that meet a description, one after another, until the budget is used up.
-
-    This class is used in the same way as the client for other interpreters, but designs the roads in the
-    generator's process. So ``start`` raises the errors of ``roads``.
-    """
+    """The client for other interpreters, but it designs the roads in the generator's own process."""
 
     description: str = USUAL
     designer: str = "planner"
     reader: str = "model"
     search: bool = True
-    """Whether outcomes steer the choice of roads. Without a search, or with another designer than
-    ``planner``, roads are drafted one after another."""
+    """Whether outcomes steer the choice of roads, if the designer is ``planner``."""
     oob_tolerance: float | None = None
-    """Share of the car, 0 to 1, that may be outside its lane; None: the executor's ``oob_tolerance``, or 0.95
-    if the executor has none.
-    """
+    """Share of the car, 0 to 1, that may be outside its lane; None: the executor's, or else 0.95."""
 
     def __init__(self, executor: Any = None, map_size: int | None = None) -> None:
-        """Takes the arguments that the competition passes. Environment variables take precedence over class
-        attributes.
-
-        If only ``roads`` is used, no executor is needed. ``map_size`` is the side length of the square map in
-        metres, by default 200.
-        """
+        """Takes what the competition passes; environment variables take precedence over class attributes.
+        ``roads`` needs no executor. ``map_size`` is the side of the square map in metres, by default 200."""
         super().__init__(executor)
         self.map_size: int = map_size or MAP_SIZE
         self.description = os.environ.get("ROADGPT_DESCRIPTION", self.description)
@@ -170,26 +140,18 @@ class RoadGPTTestGenerator(ClientTestGenerator):
             self.oob_tolerance = getattr(executor, "oob_tolerance", None)
         self._road_search: RoadSearch | None = None
 
-    def tell_columns(
+    def tell_columns(  # noqa: D102
         self,
         outcome: str,
         steering: Sequence[float],
         distances: Sequence[float],
         outside: Sequence[float] | None = None,
     ) -> None:
-        """Passes the outcome of the last road on to the search, if there is one."""
         if self._road_search is not None:
             self._road_search.tell(outcome, steering, distances, outside)
 
     def roads(self) -> Iterator[Points]:
-        """Yields roads without end, each as its control points in metres. The points are at most 2 m apart,
-        there are at most 500 per road, and every road is valid in the competition.
-
-        Raises:
-            BriefError: the description cannot be read, or demands something that the map does not allow.
-            DesignError: no valid road was found in 20 attempts in a row.
-            ChatError: a language model cannot be used, or its answers are not usable.
-        """
+        """Yields roads as the client does; raises DesignError after 20 failed attempts in a row."""
         world = World(site=Site(map_size=float(self.map_size)), limits=Limits(**ORACLES["thesis"]))
         setup = Setup(reader=self.reader, designer=self.designer, drives=False, chat=_chat(self))
         brief = brief_of(self.description, world, setup)

@@ -1,7 +1,5 @@
-"""Starts a generator's process, exchanges messages with it under time limits, and ends it.
-
-One thread reads messages and another one writes them, so that RoadGPT is not blocked if the generator stops
-reading or writing.
+"""Starts a generator's process, exchanges messages with it under time limits, and ends it. Two threads read
+and write messages, so that RoadGPT is not blocked by a generator that does not.
 """
 
 import os
@@ -22,10 +20,8 @@ OURS = "ROADGPT_PYTHON"  # names RoadGPT's interpreter, if the generator runs in
 
 
 class GeneratorExitedError(Exception):
-    """Raised if a generator's process has ended.
-
-    ``status`` is its exit status: negative if a signal ended the process, None if it is unknown.
-    """
+    """A generator's process has ended. ``status``: its exit status, negative after a signal, None if
+    unknown."""
 
     def __init__(self, status: int | None) -> None:
         super().__init__(status)
@@ -79,24 +75,18 @@ class GeneratorProcess:
         self._to_tell.put(message)
 
     def hear(self, seconds: float) -> Message | None:
-        """Returns the next message from the generator; None if none arrives within ``seconds``.
-
-        Raises:
-            GeneratorExitedError: the process has ended and all its messages were read.
-        """
+        """Returns the next message; None if none arrives within ``seconds``. Raises GeneratorExitedError when
+        the process has ended and all its messages were read."""
         try:
             message = self._heard.get(timeout=max(seconds, 0.0))
         except queue.Empty:
             return None
         if message is None:
-            raise GeneratorExitedError(self._status())
+            try:
+                raise GeneratorExitedError(self._process.wait(children.FAREWELL))
+            except subprocess.TimeoutExpired:
+                raise GeneratorExitedError(None) from None
         return message
-
-    def _status(self) -> int | None:
-        try:
-            return self._process.wait(children.FAREWELL)
-        except subprocess.TimeoutExpired:
-            return None
 
     def stop(self) -> None:
         """Ends the generator's process and its child processes."""

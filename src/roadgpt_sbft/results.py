@@ -9,10 +9,12 @@ import os
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import Field
 
+from roadgpt.brief.model import Frozen
 from roadgpt.campaign.run_folder import RunFolder, finished_run
 from roadgpt.errors import UsageError, explained
 from roadgpt.geometry import interpolate
@@ -21,12 +23,36 @@ from roadgpt.run.atomic import json_text, missing
 from roadgpt.run.execution import features_of, records_of
 from roadgpt.run.folder import RUNS, Draw, write_run_folder
 from roadgpt.run.tables import SETTINGS, TallyEntry, write_settings
-from roadgpt_sbft.experiment import Experiment
 
 HOME = Path("results")
 LOG = "generator.log"
 SUCCESS = "Successful test"
 HEIGHT = -28.0  # m, of the ground of the competition's level
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+
+
+class Experiment(Frozen):
+    """One generator and its budget."""
+
+    module_name: str
+    """Name under which Python imports the generator's module."""
+    class_name: str
+    module_path: str | None = None
+    """An additional folder in which Python searches for modules."""
+    python: str | None = None
+    """The Python interpreter in which the generator runs; None: the interpreter that runs RoadGPT."""
+    time_budget: Positive | None = None
+    """Seconds of wall time for generating and driving."""
+    test_budget: Annotated[int, Field(ge=1)] | None = None
+    """Number of tests, including invalid ones. Unlike time, it does not depend on the speed of the
+    machine."""
+    patience: Positive = 600.0
+    """Seconds of wall time within which the generator must submit its next test."""
+    grace: Positive = 30.0
+    """Seconds of wall time within which the generator must stop after its budget is used up."""
+    debug: bool = False
+    """Whether the generator writes a more detailed log."""
 
 
 def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, tuple[Path, ...]]:
@@ -78,11 +104,8 @@ class Results(RunFolder):
 
 
 def test_of(run: Run) -> dict[str, Any]:
-    """Returns the fields of the competition's file for a test. An invalid test has only the fields up to
-    ``id``.
-
-    The heights of the drive are lowered by 28 m: the ground of the competition's level is at -28 m.
-    """
+    """Returns the fields of the competition's file for a test, in which the ground is at -28 m; an invalid
+    test has only the fields up to ``id``."""
     control = np.empty((0, 2)) if run.road is None else run.road.control_points()
     nodes = control if run.road is None else interpolate(control)
     test: dict[str, Any] = {

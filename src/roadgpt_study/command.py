@@ -17,43 +17,43 @@ from roadgpt_study.survey import command as survey
 
 if TYPE_CHECKING:
     from roadgpt.report.road_record import Prompt
-    from roadgpt_study.execution import Problem
     from roadgpt_study.plan import Kind, StudyPlan
 
 NOT_ASKED = ChatError.exit_status
 SHOWN = ("reader", "driver", "simulator", "keep_driving", "geometry")
 
-# fmt: off
 DESIGNERS = Option(
     "--designer designers", "What designs roads; repeat the option to compare designers.", str, ("planner",),
     multiple=True, heading=Heading.DESIGN, table="run", guard=designer_guard,
-)
+)  # fmt: skip
 ROADS_EACH = partial(Option, "--roads -n", "Roads per description.", ROADS)
-THESIS = {"driver": "beamng_like", "oracle": "thesis"}
-"""Defaults of studies, which drive and judge as the thesis did."""
-DRIVEN = [
-    each.but(default=THESIS[each.field]) if each.field in THESIS else each
-    for each in (*named(options.SETUP, *SHOWN), *options.WORLD)
-]
-STUDY_OPTIONS = (
-    DESIGNERS,
-    options.seed("The same seed gives the same files.", 1),
-    options.out("Folder for the study. [default: in roadgpt-runs]"),
-    options.AGAIN,
-    Option("--workers", "Number of descriptions processed in parallel; the files do not depend on it.",
-           whole(1, 64, "processes"), 2),
-    *DRIVEN,
-    options.FORMAT,
-    Option("--no-plot", "Draw no pictures of single runs.", bool, heading=Heading.FILES),
-    Option("--quiet -q", "Print only errors and the path of the report.", bool, heading=Heading.OUTPUT),
-    *options.CHAT,
-)
+THESIS = {"driver": "beamng_like", "oracle": "thesis"}  # studies drive and judge as the thesis did
 PROMPTS = Argument("prompts", "PROMPTS.jsonl", kind=PATH)
 DRIVES = Option("--drive drives", "Drive the roads as well.", bool)
-# fmt: on
 
 
-@click.command(cls=GroupedCommand, params=[ROADS_EACH(100), options.NO_DRIVE, *STUDY_OPTIONS])
+def _driven() -> list[Option]:
+    every = (*named(options.SETUP, *SHOWN), *options.WORLD)
+    return [each.but(default=THESIS[each.field]) if each.field in THESIS else each for each in every]
+
+
+def _study_options() -> list[Option]:
+    return [
+        DESIGNERS,
+        options.seed("The same seed gives the same files.", 1),
+        options.out("Folder for the study. [default: in roadgpt-runs]"),
+        options.AGAIN,
+        Option("--workers", "Number of descriptions processed in parallel; the files do not depend on it.",
+               whole(1, 64, "processes"), 2),
+        *_driven(),
+        options.FORMAT,
+        Option("--no-plot", "Draw no pictures of single runs.", bool, heading=Heading.FILES),
+        Option("--quiet -q", "Print only errors and the path of the report.", bool, heading=Heading.OUTPUT),
+        *options.CHAT,
+    ]  # fmt: skip
+
+
+@click.command(cls=GroupedCommand, params=[ROADS_EACH(100), options.NO_DRIVE], makes=_study_options)
 def thesis(no_drive: bool, **rest: Any) -> int:
     """Repeat the evaluation of RoadGPT's thesis: validity, drives, match with descriptions, and diversity.
 
@@ -71,7 +71,7 @@ def thesis(no_drive: bool, **rest: Any) -> int:
     return _study("thesis", thesis_prompts(), "", not no_drive, rest)
 
 
-@click.command(cls=GroupedCommand, params=[PROMPTS, ROADS_EACH(10), DRIVES, *STUDY_OPTIONS])
+@click.command(cls=GroupedCommand, params=[PROMPTS, ROADS_EACH(10), DRIVES], makes=_study_options)
 def alignment(prompts: Path, drives: bool, **rest: Any) -> int:
     """Measure how well roads match their descriptions, criterion by criterion.
 
@@ -123,7 +123,11 @@ def _study(kind: "Kind", prompts: "Sequence[Prompt]", source: str, drives: bool,
         made = sum(len(finished(place / part.name)) for part in plan.parts())
         click.echo(f"{plural(made, 'road')} in {time.perf_counter() - begun:.0f} s; writing the report")
     page = write_study(place)
-    _complain(problems)
+    told: dict[str, list[str]] = {}
+    for problem in problems:
+        told.setdefault(problem.sentence, []).append(problem.part)
+    for sentence, parts in told.items():
+        warn(f"{', '.join(parts)}: {sentence}")
     click.echo(str(page))
     return NOT_ASKED if any(problem.is_of_chat for problem in problems) else 0
 
@@ -151,18 +155,10 @@ def _command(plan: "StudyPlan", place: Path) -> str:
     words = ["study", plan.kind, *([plan.source] if plan.source else [])]
     words += ["--roads", str(plan.roads), "--seed", str(plan.seed), *DESIGNERS.written(plan.designers)]
     told = {*THESIS} | ({"friction"} & plan.world.site.model_fields_set)
-    words += option_words(plan.setup, plan.world, DRIVEN[: len(SHOWN)], also=told)
+    words += option_words(plan.setup, plan.world, _driven()[: len(SHOWN)], also=told)
     if plan.setup.drives != (plan.kind == "thesis"):
         words.append("--drive" if plan.setup.drives else "--no-drive")
     return command_line(*words, "--out", place)
-
-
-def _complain(problems: "Sequence[Problem]") -> None:
-    told: dict[str, list[str]] = {}
-    for problem in problems:
-        told.setdefault(problem.sentence, []).append(problem.part)
-    for sentence, parts in told.items():
-        warn(f"{', '.join(parts)}: {sentence}")
 
 
 @click.group(
@@ -174,6 +170,5 @@ def command() -> None:
     """Evaluate many roads, by measurements or by people who rate them."""
 
 
-command.add_command(thesis)
-command.add_command(alignment)
-command.add_command(survey.command)
+for each in (thesis, alignment, survey.command):
+    command.add_command(each)

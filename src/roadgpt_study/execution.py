@@ -46,16 +46,9 @@ def work(
     note: Note = lambda _: None,
 ) -> list[Problem]:
     """Makes all roads of a study that do not exist yet, and returns one Problem for each study part that
-    lacks roads.
-
-    This process makes the parts whose designer or reader asks a language model, one after another.
-    ``workers`` processes make all other parts; if ``workers`` is 1, this process makes them.
-
-    Args: plan: the study. folder: the study's folder, which must exist. workers: number of worker processes.
-    draw: function that draws pictures of a run into its folder; None: no pictures. tell: called with the
-    number of finished roads, after each road. note: called with a sentence for each part whose description
-    names a surface, such as a wet road, or needs a larger map.
-    """
+    lacks roads. This process makes the parts whose designer or reader asks a language model, one after
+    another; ``workers`` processes make all others, or this one if there is one. ``tell`` and ``note`` are
+    told how many roads are finished, and which descriptions name a surface or need a larger map."""
     session = _Session(plan, folder, draw, tell, note)
     asking = {name for name in plan.designers if plan.setup_of(name).chat is not None}
     with alone_in(folder):

@@ -51,8 +51,7 @@ class StudyPlan(Frozen):
         )
 
     def setup_of(self, designer: str) -> Setup:
-        """Returns the setup for one designer. It contains settings of a language model only if the
-        designer or the reader uses a language model."""
+        """Returns the setup for one designer, with a language model only if designer or reader ask one."""
         asks = asks_a_model(plugins.find("designers", designer)) or asks_a_model(
             plugins.find("readers", self.setup.reader.partition(":")[0])
         )
@@ -65,11 +64,8 @@ class StudyPlan(Frozen):
 
 
 def open_folder(plan: StudyPlan, folder: Path) -> None:
-    """Creates a study's folder, or checks that an existing folder holds the same study, and writes
-    ``study.json``.
-
-    When a study is resumed, the new plan may have more roads and more designers than the old one.
-    """
+    """Creates a study's folder, or checks that it holds the same study with as many or fewer roads and
+    designers, and writes ``study.json``."""
     with explained(UsageError, f"cannot use {folder}", "name another folder"):
         folder.mkdir(parents=True, exist_ok=True)
         if (folder / CARD).is_file():

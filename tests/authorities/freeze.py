@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from authorities.test_truth import drawn_truth
+from authorities.test_referee import drawn_truth
 from outside_judge import load_referee
 from roadgpt.brief import read
 from roadgpt.check.measures import measure

@@ -20,7 +20,7 @@ POLYGON = Polygon(np.vstack([ROAD.at(S)[:, :2], ROAD.at(S, -4.0)[::-1, :2]]))
 
 
 @given(st.floats(0.0, 1.0), st.floats(-9.0, 5.0), st.floats(-math.pi, math.pi))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60)
 def test_the_share_outside_is_shapelys(share, t, turned):
     s = share * ROAD.length
     x, y, _ = ROAD.at(s, t)

@@ -5,7 +5,7 @@ Shapely's union of fine quads measures what is covered; what is missing lies ove
 
 import numpy as np
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from roadgpt import plugins
@@ -33,7 +33,6 @@ def covered(road: Road) -> float:
 
 
 @given(st.lists(pieces, min_size=2, max_size=6).map(tuple))
-@settings(max_examples=80, deadline=None)
 def test_a_road_overlaps_exactly_where_it_covers_less_than_its_length_times_its_width(
     pieces: tuple[Piece, ...],
 ) -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import orthogonal_procrustes
 
@@ -27,7 +27,6 @@ def at(line: tuple[np.ndarray, np.ndarray], stations: np.ndarray) -> np.ndarray:
     return np.interp(stations, s, z.real) + 1j * np.interp(stations, s, z.imag)
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.integers(0, 10**6))
 def test_distances_agree(seed: int) -> None:
     rng = np.random.default_rng(seed)

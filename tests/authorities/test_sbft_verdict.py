@@ -76,13 +76,12 @@ coordinates = st.floats(-20, 220).map(lambda v: round(v, 1))
 
 
 @given(st.lists(st.tuples(coordinates, coordinates), min_size=2, max_size=9), st.sampled_from([100, 200]))
-@settings(max_examples=60, deadline=None)
 def test_any_points(points: list[tuple[float, float]], map_size: float) -> None:
     assert agree(np.array(points), map_size)
 
 
 @given(st.lists(st.sampled_from("NESW"), min_size=1, max_size=12), st.sampled_from([4, 8, 16]))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=50)
 def test_roads_on_a_lattice_that_touch_themselves(hops: list[str], step: int) -> None:
     moves = {"N": (0, 1), "E": (1, 0), "S": (0, -1), "W": (-1, 0)}
     points = 100 + step * np.cumsum([(0, 0), *(moves[hop] for hop in hops)], axis=0, dtype=float)

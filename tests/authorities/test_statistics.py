@@ -79,7 +79,6 @@ def brute_force(table: list[list[int]]) -> float:
     return rare / total
 
 
-@settings(max_examples=60)
 @given(table=tables)
 def test_chi_squared_is_that_of_statsmodels_and_the_exact_test_is_right(table) -> None:
     from statsmodels.stats.contingency_tables import Table
@@ -109,7 +108,6 @@ def test_tables_too_many_to_count_are_drawn_from_a_seed(monkeypatch: pytest.Monk
     assert exact([[3, 1, 4], [1, 5, 9], [2, 6, 5]]).is_drawn
 
 
-@settings(max_examples=40)
 @given(n=st.integers(1, 400), share=st.floats(0, 1))
 def test_intervals_are_those_of_statsmodels(n, share) -> None:
     from statsmodels.stats.proportion import proportion_confint
@@ -128,7 +126,6 @@ def test_published_intervals() -> None:
     assert wilson(0, 0) == clopper_pearson(0, 0) == (0, 1)
 
 
-@settings(max_examples=40)
 @given(table=tables)
 def test_trend_is_that_of_statsmodels(table) -> None:
     from statsmodels.stats.contingency_tables import Table
@@ -201,14 +198,12 @@ def test_cochrans_q_of_conovers_own_example() -> None:
     assert found.statistic == pytest.approx(cochrans_q(np.array(table)).statistic)
 
 
-@settings(max_examples=30)
 @given(b=st.integers(0, 40), c=st.integers(0, 40))
 def test_mcnemars_exact_test_counts_coins(b, c) -> None:
     ways = [math.comb(b + c, k) for k in range(b + c + 1)]
     assert mcnemar(b, c) == pytest.approx(min(1.0, 2 * sum(ways[: min(b, c) + 1]) / sum(ways)))
 
 
-@settings(max_examples=30)
 @given(p=st.lists(st.floats(0, 1), min_size=1, max_size=8))
 def test_holm_is_that_of_statsmodels(p) -> None:
     from statsmodels.stats.multitest import multipletests
@@ -220,7 +215,6 @@ def test_krippendorffs_own_example() -> None:
     assert krippendorff(KRIPPENDORFF) == pytest.approx(0.815, abs=5e-4)
 
 
-@settings(max_examples=40)
 @given(seed=st.integers(0, 10**6))
 def test_alpha_is_one_less_the_ratio_of_disagreements(seed) -> None:
     """By the definition, pair by pair."""
@@ -244,7 +238,6 @@ def test_alpha_is_one_less_the_ratio_of_disagreements(seed) -> None:
     assert krippendorff(x) == pytest.approx(1 - seen / chance)
 
 
-@settings(max_examples=40)
 @given(seed=st.integers(0, 10**6), whole=st.booleans())
 def test_ranks_with_their_effects(seed, whole) -> None:
     rng = np.random.default_rng(seed)

@@ -29,7 +29,7 @@ class FakeBeamNG(FakeServer):
     def __init__(self, port=0, user="", **settings):
         self.scenarios, self.cameras, self._vehicles = {}, {}, {}
         self.world = self.loaded = self.fps = None
-        self.is_running = self.is_paused = self.is_even = False
+        self.is_running = self.is_even = False
         self.user = user
         super().__init__(FakeSettings(**settings), port)
 
@@ -88,7 +88,6 @@ class FakeBeamNG(FakeServer):
         )
         self.loaded, self.is_running = message["path"], False
         self.fps, self.is_even = None, False  # a level may bring settings of its own
-        time.sleep(self.settings.slow_load if self.made == 1 else 0.0)
         return {"type": "MapLoaded"}
 
     def ge_GetCurrentVehicles(self, message):
@@ -123,19 +122,8 @@ class FakeBeamNG(FakeServer):
         self.is_running = False
         return {"type": "ScenarioStopped"}
 
-    def ge_GameStateRequest(self, message):
-        if self.loaded is None:
-            return {"type": "GameState", "state": "menu"}
-        state = "running" if self.is_running else "pre-running"
-        return {"type": "GameState", "state": "scenario", "scenario_state": state}
-
     def ge_Pause(self, message):
-        self.is_paused = True
         return {"type": "Paused"}
-
-    def ge_Resume(self, message):
-        self.is_paused = False
-        return {"type": "Resumed"}
 
     def ge_Step(self, message):
         if self.world is not None and self.is_running:
@@ -146,9 +134,6 @@ class FakeBeamNG(FakeServer):
         self.is_even = True
         return {"type": "SetPhysicsDeterministic"}
 
-    def ge_SetPhysicsNonDeterministic(self, message):
-        return {"type": "SetPhysicsNonDeterministic"}
-
     def ge_FPSLimit(self, message):
         self.fps = float(message["fps"])
         return {"type": "SetFPSLimit"}
@@ -156,29 +141,17 @@ class FakeBeamNG(FakeServer):
     def ge_QueueLuaCommandGE(self, message):
         return {"type": "ExecutedLuaChunkGE"}
 
-    def ge_HideHUD(self, message):
-        return None
-
     def ge_GetBBoxCorners(self, message):
         return {"type": "BBoxCorners", "points": self._car(message["vid"]).corners()}
 
     def ge_Teleport(self, message):
         x, y, z, w = message["rot"]
-        ahead = (
-            -2 * (x * y + z * w),
-            -(1 - 2 * (x * x + z * z)),
-            -2 * (y * z - x * w),
-        )
+        ahead = (-2 * (x * y + z * w), -(1 - 2 * (x * x + z * z)), -2 * (y * z - x * w))
         car = self._car(message["vehicle"])
         car.put(message["pos"], ahead)
         if message.get("reset"):
             car.shift_mode = car.usual_mode
         return {"type": "Teleported", "success": True}
-
-    def ge_GetRoadNetwork(self, message):
-        roads = {} if self.world is None else self.world.decals
-        data = {name: {"drivability": road["drivability"]} for name, road in roads.items()}
-        return {"type": "RoadNetwork", "data": data}
 
     def ge_OpenCamera(self, message):
         self._car(message["vid"])
@@ -212,9 +185,8 @@ class FakeBeamNG(FakeServer):
 
     def veh_SensorRequest(self, car, message):
         known = {
-            "State": lambda: {"state": car.state(self.settings.tells_time)},
+            "State": lambda: {"state": car.state()},
             "Electrics": lambda: {"values": car.electrics(self.settings.told_sign)},
-            "Damage": lambda: {"damage": 0},
         }
         data = {}
         for name, wish in message["sensors"].items():

@@ -214,7 +214,7 @@ class FakeCar:
         at = (self.x, self.y, self.z)
         return [at[k] + ahead * f[k] + left * side[k] + up * u[k] for k in range(3)]
 
-    def state(self, tells_time):
+    def state(self):
         flat = [self.v * each for each in self.ahead]
         flat[2] += self.vz
         return {
@@ -223,7 +223,7 @@ class FakeCar:
             "up": self.up,
             "vel": flat,
             "rotation": [0.0, 0.0, 0.0, 1.0],
-            "time": self.world.time if tells_time else None,
+            "time": self.world.time,
         }
 
     def electrics(self, told_sign):

@@ -49,10 +49,6 @@ class FakeSettings:
     """Of the steering input that is told, against that which was commanded."""
     is_blind: bool = False
     """The AI does not see roads of prefabs."""
-    tells_time: bool = True
-    """The state of a car has a time."""
-    slow_load: float = 0.0
-    """s that the first level takes: shaders are compiled."""
     tech: bool = True
     state: str = ""
     """A file that survives restarts: scenarios so far, and faults that have been."""

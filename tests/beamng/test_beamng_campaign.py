@@ -137,8 +137,7 @@ def test_a_dead_simulator_is_given_up_and_no_road_is_lost(
     monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
     setup, out = Setup(reader="plan", simulator="beamng"), tmp_path / "out"
     with pytest.raises(
-        GivenUpError,
-        match=r"failed 3 times in a row .*nobody listens on .*fix it and continue$",
+        GivenUpError, match=r"failed 3 times in a row .*nobody listens on .*fix it and continue$"
     ) as caught:
         list(campaign(SHORTEST, 8, 5, World(), setup, out))
     assert caught.value.exit_status == 5

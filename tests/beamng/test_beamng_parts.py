@@ -52,10 +52,7 @@ def test_another_version_is_told_of_with_the_cure(other: str) -> None:
 
 
 def test_a_game_that_is_not_tech_is_told_of() -> None:
-    with (
-        FakeBeamNG(protocol=OURS, tech=False) as fake,
-        pytest.raises(PartError, match="needs BeamNG\\.tech"),
-    ):
+    with FakeBeamNG(protocol=OURS, tech=False) as fake, pytest.raises(PartError, match="needs BeamNG\\.tech"):
         drive(BeamngSettings(port=fake.port))
 
 
@@ -186,16 +183,7 @@ def test_the_self_test_writes_a_report(tmp_path: Path, port: int, monkeypatch: p
     monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
     for name in ("HOME", "USER", "PORT"):  # what the options set goes again with the test
         monkeypatch.setenv(f"ROADGPT_BEAMNG_{name}", "")
-    words = [
-        "doctor",
-        "beamng",
-        "--out",
-        str(tmp_path / "out"),
-        "--repeats",
-        "2",
-        "--beamng-home",
-        str(home),
-    ]
+    words = ["doctor", "beamng", "--out", str(tmp_path / "out"), "--repeats", "2", "--beamng-home", str(home)]
     words += ["--beamng-user", str(tmp_path / "user"), "--beamng-port", str(port)]
     done = CliRunner().invoke(app, words, standalone_mode=False)
     assert done.exception is None, done.output

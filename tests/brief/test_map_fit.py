@@ -1,13 +1,19 @@
-"""The real map decides what can be built: for every reader, in every language, whatever it was trained on."""
+"""What is possible passes; the limits are those of the World; the real map decides for every
+reader and language; and words and plans give its size.
+"""
 
 import pytest
 
-from roadgpt.brief import exactly, read
+from roadgpt.brief import Brief, Clause, check, exactly, read
+from roadgpt.brief.expressions import said_map_size
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.words import LEAST_RADIUS, STEEPEST
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
-from roadgpt.design.room import world_for
+from roadgpt.design.room import world_for, world_remarks
 from roadgpt.errors import BriefError
-from roadgpt.road import World, build
+from roadgpt.road import Site, World, build
+from roadgpt.road.design import MAX_INCLINE
 from tables import rows
 
 LONG = rows(__file__, "long")
@@ -70,3 +76,89 @@ def test_a_road_too_long_for_the_usual_map_is_read_if_the_map_may_grow(
     found = measure(build(draft(brief, wide, seed=2)).sample().points)
     assert found.length == pytest.approx(metres, rel=0.1)
     assert len(found.turns) == turns
+
+
+def test_a_map_is_neither_tiny_nor_huge() -> None:
+    with pytest.raises(BriefError, match="a map of 5 m by 5 m cannot be made; ask for one of 50 to 40000 m"):
+        read("three crossroads on a map of 5 m")
+    with pytest.raises(BriefError, match="this gives only the size of the map; say what the road should be"):
+        read("on a map of 500 m")
+    with pytest.raises(BriefError, match="a map of 50000 m by 50000 m"):
+        read("three crossroads on a map of 50 km")
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["a road with 4 turns on a 400 m by 400 m map", "auf einer Karte von 400 m: zwei Kreuzungen, links"],
+)
+def test_words_set_the_map_and_nothing_else(words: str) -> None:
+    brief = read(words, is_map_fixed=False)
+    bare = said_map_size(words)
+    assert bare is not None
+    other = read(bare[1], is_map_fixed=False)
+    assert brief.words == words
+    assert plan(brief) == plan(other.model_copy(update={"map_size": 400.0}))
+    assert world_for(brief, World()).site.map_size == 400
+    assert world_for(brief, World(site=Site(map_size=300))).site.map_size == 300
+
+
+def test_remarks_say_which_map_is_used() -> None:
+    brief = read("two bends on a map of 500 m", is_map_fixed=False)
+    said = [
+        world_remarks(brief, world, world_for(brief, world))
+        for world in (World(), World(site=Site(map_size=300)))
+    ]
+    assert said == [
+        ("the words ask for a map of 500 m; --map-size gives another",),
+        ("the words ask for a map of 500 m; but one of 300 m is set and used",),
+    ]
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["turn x3 | map_size=400", "crossroads left || map_size=400", "map columns=2 rows=2 || map_size=400"],
+)
+def test_plans_give_the_size_of_the_map(line: str) -> None:
+    brief = read_plan(line)
+    assert (brief.map_size, plan(brief)) == (400, line)
+    world = world_for(brief, World())
+    assert draft(brief, world, seed=1) is not None
+    assert world.site.map_size == 400
+
+
+@pytest.mark.parametrize("line", rows(__file__, "possible"))
+def test_what_can_be_passes(line: str) -> None:
+    check(read_plan(line))
+
+
+def test_a_larger_map_holds_more() -> None:
+    many = Brief(clauses=(Clause(kind="hairpin", count=exactly(40)),))
+    with pytest.raises(BriefError, match="larger map"):
+        check(many, map_size=250)
+    check(many, map_size=600)
+    check(many, map_size=None)
+
+
+def test_limits_are_those_of_the_world() -> None:
+    world = World()
+    assert (world.limits.min_radius, world.limits.max_grade, MAX_INCLINE) == (
+        LEAST_RADIUS,
+        STEEPEST / 100,
+        STEEPEST,
+    )
+
+
+def test_the_limits_of_another_world_count() -> None:
+    tight = Brief(clauses=(Clause(kind="turn", radius=exactly(20)),))
+    check(tight)
+    with pytest.raises(BriefError, match="ask for 30 m or more"):
+        check(tight, min_radius=30.0)
+    tighter = Brief(clauses=(Clause(kind="turn", radius=exactly(9)),))
+    with pytest.raises(BriefError, match="too tight"):
+        check(tighter)
+    check(tighter, min_radius=8.0)
+    assert read("turn r=9", "plan", min_radius=8.0).clauses == tighter.clauses
+    with pytest.raises(BriefError, match="ask for 6 percent or less"):
+        read("| up turns=1.. pct=10", "plan", max_grade=0.06)
+    with pytest.raises(BriefError, match="ask for 15 percent or less"):
+        read("| up turns=1.. pct=20", "plan", max_grade=0.3)  # designs have no more

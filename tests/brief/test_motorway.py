@@ -1,18 +1,14 @@
 """A motorway is one: radii of 600 m or more and 5 percent at most; or a sentence says what is not kept."""
 
-import json
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from roadgpt import check
 from roadgpt.brief import read, remarks, sentence
 from roadgpt.brief.expressions import says_motorway
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.cli.app import app
 from roadgpt.design import draft
 from roadgpt.road import Road, Site, World, build
 from tables import rows
@@ -81,14 +77,7 @@ def test_what_is_said_of_the_turns_wins_and_is_named(line: str) -> None:
     assert draft(brief, World(site=Site(map_size=4000)), seed=2)
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        "a road", "a service road beside the motorway", "a road to the motorway", "no motorway, but a lane",
-        "a dual carriageway", "a motorway exit", "eine Straße neben der Autobahn", "the autobahnesque lane",
-        "a mountain road",
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize("words", rows(__file__, "none"))
 def test_other_roads_are_none(words: str) -> None:
     assert not says_motorway(words)
 
@@ -100,24 +89,3 @@ def test_the_sentence_and_the_plan_hold_it() -> None:
     assert (plan(again), again.unused) == (plan(brief), ()) == ("turn x3 sweeping | motorway", ())
     assert read_plan(plan(brief)).motorway
     assert not read("a road with 3 curves").motorway
-
-
-def typed(*words: str) -> str:
-    """What a command says, on both streams."""
-    done = CliRunner().invoke(app, words, standalone_mode=False)
-    assert done.exception is None, done.exception
-    return done.output
-
-
-def test_it_is_said_on_the_screen_in_json_and_in_the_record(tmp_path: Path) -> None:
-    said = typed("read", "a motorway")
-    assert "note: a motorway has turns of 600 m radius or more, and a map of 250 m cannot hold one" in said
-    data = json.loads(typed("read", "a motorway", "--json", "--map-size", "4000"))
-    assert data["map_size"] == 4000
-    assert data["remarks"] == ["a motorway has turns of 600 m radius or more, and grades of 5 % or less"]
-    assert "cannot hold one" in typed(
-        "run", "a motorway", "--seed", "7", "--no-drive", "--no-plot", "--out", str(tmp_path / "out")
-    )
-    folder = tmp_path / "out" / "runs" / "0001"
-    assert "cannot hold one" in json.loads((folder / "run.json").read_text())["remarks"][0]
-    assert "cannot hold one" in typed("show", str(folder))

@@ -9,7 +9,7 @@ import pytest
 from roadgpt.brief import normal, read, sentence
 from roadgpt.brief.expressions import said_map_size, says_left_hand
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.overlooked import negative_number
+from roadgpt.brief.readers.model.before import negative_number
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.errors import BriefError
 
@@ -62,3 +62,7 @@ def test_plans_that_cannot_be_are_refused_in_one_line(row: Row) -> None:
     with pytest.raises(BriefError, match=row["reason"]) as refusal:
         read(row["plan"], "plan")
     assert "\n" not in str(refusal.value)
+
+
+def test_a_road_of_which_only_the_traffic_is_said_has_it() -> None:
+    assert read("left-hand traffic").left_hand

@@ -1,52 +1,20 @@
 """The size of a roundabout whose outer diameter is given in metres."""
 
-import json
-import re
-from pathlib import Path
-
 import pytest
 
-from roadgpt.brief import check
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.ring_sizes import least_diameter, with_diameters
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.design import draft
-from roadgpt.errors import BriefError
 from roadgpt.network import network_made_from
 from roadgpt.road import World
 from roadgpt_training.tokens import tokens_of
 from tables import rows
 
-FOLDER = Path(__file__).parents[2] / "training" / "data" / "networks" / "train"
-
 
 @pytest.mark.parametrize(("text", "written", "wanted"), rows(__file__, "diameter_decides_size"))
 def test_a_diameter_decides_the_size(text: str, written: str, wanted: str) -> None:
     assert plan(with_diameters(read_plan(written), written.split(), slotted(text))) == wanted
-
-
-def test_the_labels_of_training_keep_their_sizes() -> None:
-    """The rule agrees with those who labelled by hand, whatever size the network guesses."""
-    kept = changed = 0
-    for path in sorted(FOLDER.glob("*.jsonl")):
-        for line in path.read_text(encoding="utf-8").splitlines():
-            pair = json.loads(line)
-            if "roundabout" not in pair["plan"] or not re.search(r"mini|normal|large", pair["plan"]):
-                continue
-            text = slotted(pair["text"])
-            tokens = tokens_of(pair["plan"], text.slots)
-            if not tokens or tokens[0].startswith("!"):
-                continue
-            brief = read_plan(pair["plan"])
-            guess = read_plan(re.sub(r"\b(mini|large)\b", "normal", pair["plan"]))
-            sizes, guessed = (
-                [each.size for each in with_diameters(one, tokens, text).junctions] for one in (brief, guess)
-            )
-            if guessed != [each.size for each in guess.junctions]:
-                changed += 1
-                kept += sizes == guessed == [each.size for each in brief.junctions]
-    assert changed > 20
-    assert kept >= 0.95 * changed
 
 
 @pytest.mark.parametrize(("text", "plan", "wanted"), rows(__file__, "diameter_required_there"))
@@ -67,9 +35,3 @@ def test_from_the_least_diameter_on_every_draft_has_it(rest: str) -> None:
         route = network_made_from(draft(asked, World(), seed=1), World())
         (ring,) = route.network.roundabouts
         assert 2 * (ring.radius + ring.width) == pytest.approx(across, abs=0.5)
-
-
-@pytest.mark.parametrize(("line", "said"), rows(__file__, "diameters_cannot_refused"))
-def test_diameters_that_cannot_be_are_refused(line: str, said: str) -> None:
-    with pytest.raises(BriefError, match=said):
-        check(read_plan(f"// {line} //"))

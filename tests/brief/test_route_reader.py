@@ -10,7 +10,7 @@ import pytest
 from roadgpt.brief import Brief, NotBuiltError, normal, read
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model import WEIGHTS, ModelReader
-from roadgpt.brief.readers.model.route_words import may_tell_a_route
+from roadgpt.brief.readers.model.before import may_tell_a_route
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.trained import ScoredPlan, Trained, chosen
 from roadgpt_training.mirror import is_of_junctions

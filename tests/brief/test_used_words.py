@@ -1,11 +1,13 @@
-"""Which words a plan does not depend on, with a network whose mind is known."""
+"""Which words a plan does not depend on, with a network whose mind is known, and the doubt they leave."""
 
 from collections.abc import Sequence
 
 import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
 
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
-from roadgpt.brief.readers.model.trained import passes_over, unused_words
+from roadgpt.brief.readers.model.trained import DOUBT, Trained, confidence, passes_over
 
 FILLERS = frozenset(("a", "road", "with", "and", "the"))
 REASONS = {"up": {"uphill", "climbing"}, "turn": {"turns", "bends"}, "3": {"3"}}
@@ -27,7 +29,7 @@ class Mind:
 
 
 def idle(words: str, *tokens: str) -> tuple[str, ...]:
-    return unused_words(Mind(), slotted(words), tokens, FILLERS)  # type: ignore[arg-type]
+    return Trained(Mind(), 0.5, {}, FILLERS).unused(slotted(words), tokens)  # type: ignore[arg-type]
 
 
 def test_a_word_counts_as_used_only_if_the_reading_changes_without_it() -> None:
@@ -59,3 +61,12 @@ def test_a_number_that_changes_nothing_is_noticed_even_if_there_are_more_than_fi
     assert [word for word in found if word[0].isdecimal()] == [
         f"{41 + n} m" for n in range(len(text.slots), 15)
     ]
+
+
+@given(st.floats(-20, 20))
+def test_a_measure_that_is_ignored_leaves_doubt_and_another_word_does_not(bias: float) -> None:
+    text = slotted("dear Ruth, three turns, one of them 40 m long, and a tree")
+    sure = confidence({"bias": bias}, {}, (), text)
+    assert confidence({"bias": bias}, {}, ("Ruth", "tree"), text) == sure
+    assert confidence({"bias": bias}, {}, ("Ruth", "40 m"), text) == min(DOUBT, sure)
+    assert confidence({"bias": bias}, {}, ("three", "not"), text) == sure

@@ -106,6 +106,12 @@ def dies(status: int) -> None:
     os._exit(status)
 
 
+def eats(megabytes: int) -> int:
+    eaten = [bytes(1_000_000).replace(b"\0", b"x") for _ in range(megabytes)]
+    time.sleep(300)
+    return len(eaten)
+
+
 def sleeps(seconds: float) -> float:
     time.sleep(seconds)
     return seconds

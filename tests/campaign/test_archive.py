@@ -15,15 +15,11 @@ from roadgpt.campaign.archive import (
     NOVELTY,
     SAMPLES,
     Archive,
-    Predictions,
-    is_far,
     select,
     spread_out,
-    stacked,
 )
 from roadgpt.campaign.behaviour import bounds_of
 from roadgpt.campaign.boundary_pairs import paired
-from roadgpt.design.variety import PlanShape, apart, shape_of
 
 MAPS = [
     (("MAX_CURV", "STD_SA"), 25, "grid"),
@@ -60,21 +56,15 @@ def test_it_has_the_cells_and_the_elites_of_pyribs(axes: tuple[str, ...], cells:
     assert len(ours.elites()) > min(20, cells - 1)
 
 
-def line(bend: float) -> PlanShape:
-    """A road of 100 m with that curvature."""
-    s = np.linspace(0.0, 100.0, 101)
-    return shape_of(s, np.concatenate([[0j], np.cumsum(np.exp(1j * bend * s[:-1]))]))
-
-
 @settings(max_examples=25)
 @given(st.integers(1, 12), st.integers(1, 9), st.integers(0, 99), st.sampled_from(["failures", "coverage"]))
 def test_what_is_driven_is_what_a_slow_choice_would_drive(n: int, wanted: int, seed: int, goal: str) -> None:
     rng = np.random.default_rng(seed)
     trees = 5
     cells = rng.integers(0, 4, (trees, n)), rng.integers(0, 3, (trees, n))
-    expected = Predictions(rng.normal(0.2, 0.5, (trees, n)), cells)
+    margins = rng.normal(0.2, 0.5, (trees, n))
     counts = Counter({0: 3, 1: 1}), Counter({2: 2})
-    found = select(goal, wanted, expected, [Counter(one) for one in counts])  # type: ignore[arg-type]
+    found = select(goal, wanted, margins, cells, [Counter(one) for one in counts])  # type: ignore[arg-type]
     known = [{cell: float(one[cell]) for cell in range(4)} for one in counts]
     left, slow = list(range(n)), []
     while len(slow) < wanted and left:
@@ -82,7 +72,7 @@ def test_what_is_driven_is_what_a_slow_choice_would_drive(n: int, wanted: int, s
         def worth(i: int) -> float:
             total, chances, plain = 0.0, 0.0, 0.0
             for tree in range(trees):
-                weight = 1.0 if goal == "coverage" else float(expected.margins[tree, i] <= 0)
+                weight = 1.0 if goal == "coverage" else float(margins[tree, i] <= 0)
                 floor = 0.0 if goal == "coverage" else ANYWHERE
                 new = [
                     1 / (1 + its[int(own[tree, i])]) ** NOVELTY for its, own in zip(known, cells, strict=True)
@@ -98,29 +88,11 @@ def test_what_is_driven_is_what_a_slow_choice_would_drive(n: int, wanted: int, s
         best = max(left, key=lambda i: (worth(i), found[len(slow) :][:1] == [i], -i))
         slow.append(best)
         for tree in range(trees):
-            weight = 1.0 if goal == "coverage" else float(expected.margins[tree, best] <= 0)
+            weight = 1.0 if goal == "coverage" else float(margins[tree, best] <= 0)
             for its, own in zip(known, cells, strict=True):
                 its[int(own[tree, best])] += weight / trees
         left = [i for i in left if i != best]
     assert found == slow
-
-
-def test_every_fourth_road_may_be_unlikely_to_fail_if_its_cell_is_new() -> None:
-    """Six roads are sure to fail in one cell; another fails in a new one by one tree of 100."""
-    margins = np.full((100, 7), -1.0)
-    margins[1:, 6] = 1.0
-    cells = np.array([[0, 0, 0, 0, 0, 0, 1]] * 100)
-    assert select("failures", 4, Predictions(margins, (cells,)), [Counter()]) == [0, 1, 2, 6]
-
-
-@given(st.integers(0, 20), st.floats(0.1, 4))
-def test_roads_like_known_ones_are_told_from_others(seed: int, least: float) -> None:
-    rng = np.random.default_rng(seed)
-    one, *known = (line(rng.uniform(0, 0.05)) for _ in range(6))
-    near = min(float(apart(one, stacked([shape]))[0]) for shape in known)
-    assert is_far(one, stacked(known), least) == (near >= least)
-    assert is_far(one, None, least)
-    assert is_far(one, stacked([one]), 0.0)
 
 
 @given(st.integers(1, 15), st.integers(1, 20), st.integers(0, 50))

@@ -23,7 +23,7 @@ from roadgpt.campaign.folder_record import read_trace
 from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.status import status_of
 from roadgpt.cli import app
-from roadgpt.run import read_run
+from roadgpt.run import read_run, store
 from roadgpt.run.atomic import alone_in
 from rows import rows
 
@@ -118,7 +118,7 @@ def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(tmp_path: Path) -> None
     assert "ignored" not in errors + said
     gone(workers)
     assert 0 < done_in(tmp_path / "c") < 5000
-    assert "interrupted" in roadgpt("show", "--progress", tmp_path / "c").stdout
+    assert "interrupted" in roadgpt("show", tmp_path / "c").stdout
 
 
 def done_in(folder: Path) -> int:
@@ -132,14 +132,14 @@ def done_in(folder: Path) -> int:
 
 
 def test_status_and_top_tell_of_a_finished_campaign(driven: Path) -> None:
-    said = roadgpt("show", "--progress", driven)
+    said = roadgpt("show", driven)
     assert "finished, 3 of 3 tests" in said.output
     assert "turn x2 (lane_centring, words, seed 7)" in said.output
-    told = json.loads(roadgpt("show", "--progress", driven, "--json").stdout)
+    told = json.loads(roadgpt("show", driven, "--json").stdout)
     assert told["is_finished"]
     assert sum(told["outcomes"].values()) == told["done"] == told["total"] == 3
     assert told["cells"][0]["name"] == "c01"
-    shown = roadgpt("show", "--watch", driven, "--once").output
+    shown = roadgpt("show", "--watch", driven).output
     assert "3 of 3 tests" in " ".join(shown.split())  # the line of a long folder name is wrapped
     assert f"roadgpt show {driven}/c01/1" in roadgpt("show", driven).output
     again = roadgpt("resume", driven, "--json")
@@ -168,6 +168,30 @@ def test_a_test_is_driven_again_to_the_same_bytes(driven: Path, tmp_path: Path) 
     assert "turn x2" in roadgpt("show", one).output
 
 
+def test_a_campaign_is_written_as_folders_of_runs(driven: Path, tmp_path: Path) -> None:
+    done = roadgpt("export", driven, "--to", "runs", "--out", tmp_path)
+    assert done.exit_code == 0, done.output
+    place = tmp_path / driven.name / "c01"
+    assert done.stdout.split() == [str(place / "runs" / f"{number:04d}") for number in (1, 2, 3)]
+    with (driven / "results.csv").open() as file:
+        rows = [*csv.DictReader(file)]
+    for number, row in enumerate(rows, 1):
+        run = read_run(place / f"test.{number:04d}.json")
+        assert run.outcome == row["outcome"]
+        assert run.seed == int(row["seed"])
+        assert run.verdict is not None
+        assert run.verdict.margin == float(row["margin_m"])
+    again = roadgpt("show", place)
+    assert again.exit_code == 0, again.output
+    with (place / "generation_stats.csv").open() as file:
+        assert next(csv.DictReader(file))["test_generated"] == "3"
+    twice = roadgpt("export", driven, "--to", "runs", "--out", tmp_path)
+    assert twice.exit_code == 2
+    assert "holds runs already; name another folder" in twice.stderr
+    for words in (["--to", "runs,csv"], ["--to", "runs"]):
+        assert roadgpt("export", driven / "results.csv", *words).exit_code == 2
+
+
 def test_the_python_in_the_guide_runs(driven: Path, capsys: pytest.CaptureFixture[str]) -> None:
     guide = (TESTS.parent / "docs" / "how-to" / "run-campaigns.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"^```python\n(.*?)^```", guide, re.MULTILINE | re.DOTALL)
@@ -189,26 +213,26 @@ def test_what_cannot_be_is_told_in_a_sentence(driven: Path, words: list[str], se
 
 def of_a_folder(folder: Path) -> dict[str, bytes]:
     """The files of a folder of runs, but for those of the clock."""
-    clock = ("seconds.json", "generation_stats.csv", "campaign.lock")
+    clock = ("seconds.json", "generation_stats.csv", "campaign.lock", store.STORE)
     files = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.name not in clock)
     return {str(path.relative_to(folder)): path.read_bytes() for path in files}
 
 
 def test_a_folder_of_roadgpt_run_is_resumed_as_a_campaign_is(tmp_path: Path) -> None:
-    """Runs that were taken away or broken are made again, with pictures and road files like the others."""
+    """Runs without a row have not ended: they are made again, with pictures and road files."""
     whole, broken = tmp_path / "whole", tmp_path / "broken"
     words = ["straight | turns=0 len=50", "-n", 3, "--seed", 7, "--reader", "plan", "--format", "svg"]
     assert roadgpt("run", *words, "--export", "opendrive", "--out", whole).exit_code == 0
     shutil.copytree(whole, broken)
     (broken / "test.0002.json").unlink()
     (broken / "runs/0003/run.json").write_text("{}")
+    for number in (2, 3):
+        store.remove(broken, number)
     card = json.loads((broken / "campaign.json").read_text())
     (broken / "campaign.json").write_text(json.dumps(card | {"is_finished": False}))
-    (broken / "runs/0003").rename(broken / "aside")
     with alone_in(broken):
-        assert roadgpt("show", "--progress", broken).stdout.startswith(f"{broken}: at work, 1 of 3 tests")
-    assert roadgpt("show", "--progress", broken).stdout.startswith(f"{broken}: interrupted, 1 of 3 tests")
-    (broken / "aside").rename(broken / "runs/0003")
+        assert "at work, 1 of 3 tests" in " ".join(roadgpt("show", "--watch", broken).stdout.split())
+    assert "interrupted, 1 of 3 tests" in " ".join(roadgpt("show", "--watch", broken).stdout.split())
     done = roadgpt("resume", broken, "--json", "--junit", tmp_path / "tests.xml")
     assert done.exit_code == 0, done.output
     told = json.loads(done.stdout)
@@ -218,9 +242,8 @@ def test_a_folder_of_roadgpt_run_is_resumed_as_a_campaign_is(tmp_path: Path) -> 
     assert {*first} == {*second}
     assert {"runs/0002/road.xodr", "runs/0002/birds_eye.svg"} <= {*second}
     assert [name for name in first if first[name] != second[name]] == []
-    status = roadgpt("show", "--progress", broken).stdout
-    assert status.startswith(f"{broken}: finished, 3 of 3 tests")
-    assert "continue with" not in status
+    status = " ".join(roadgpt("show", "--watch", broken).stdout.split())
+    assert "finished, 3 of 3 tests" in status
 
 
 def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:

@@ -9,7 +9,6 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.stats import binomtest
 
 from campaign.quick import features_of_road
 from roadgpt.campaign.faults import minimise as minimising
@@ -21,17 +20,16 @@ from roadgpt.campaign.faults.failures import (
     Surroundings,
     between,
     groups_of,
+    lane_curvature,
+    reason_of,
     surroundings,
     typical,
 )
 from roadgpt.campaign.faults.fault import WAYS
 from roadgpt.campaign.faults.minimise import simplest, smallest_change
-from roadgpt.campaign.faults.reason import lane_curvature, manner_of, reason_of
 from roadgpt.campaign.faults.stability import (
     Disturbance,
     LateDriver,
-    Repeated,
-    Stability,
     drive_disturbed,
     repeated,
 )
@@ -158,17 +156,6 @@ def test_a_crest_takes_grip_and_is_named() -> None:
     assert crest.needed > flat.needed * 1.05
 
 
-def test_the_way_of_a_failure_needs_no_drive() -> None:
-    road = build(design(straight(60), bend(-80, 20)))
-    run = failed(road, 72.0, t=1.5)
-    assert run.verdict is not None
-    found, reason = manner_of(road, WORLD, 72.0, run.verdict.cause, run.verdict.side), reason_of(run)
-    assert (found.way, found.side, found.radius) == (reason.way, reason.side, reason.radius)
-    assert manner_of(road, WORLD, 72.0, "out of lane", "right").way == "inside"
-    assert manner_of(road, WORLD, 20.0, "out of lane", "right") == ("off", None, None)
-    assert manner_of(road, WORLD, 72.0, "stuck", None) == ("stopped", None, None)
-
-
 def test_a_straight_a_standstill_and_a_car_that_kept_its_lane() -> None:
     road = build(design(straight(120, -8.0), start=(60.0, 120.0, 12.0)))
     run = failed(road, 60.0, t=1.5)
@@ -221,17 +208,6 @@ def test_the_same_bend_reached_otherwise_is_one_fault_and_its_mirror_image_anoth
     assert groups_of([plain, mirrored, later, gentle, steep, left, plain]) == [0, 1, 0, 2, 3, 4, 0]
     assert groups_of([]) == []
     assert groups_of([plain]) == [0]
-
-
-@given(st.integers(1, 40), st.data())
-def test_the_interval_is_scipys_exact_one(n: int, data: st.DataObject) -> None:
-    k = data.draw(st.integers(0, n))
-    nothing = Disturbance(1.0, 0.0, 0.0)
-    made = Stability(tuple(Repeated(i, nothing, i < k, 0.0, None) for i in range(n)))
-    wanted = binomtest(k, n).proportion_ci(0.95, method="exact")
-    assert made.interval == pytest.approx((wanted.low, wanted.high), abs=1e-9)
-    assert made.share == k / n
-    assert ("every time" in made.sentence) == (k == n)
 
 
 class Notes:

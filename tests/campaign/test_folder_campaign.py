@@ -1,14 +1,19 @@
 """Campaigns: one folder, whatever happens on the way."""
 
 import csv
+import io
 import json
 import os
 import random
+import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
+import zipfile
 from collections.abc import Sequence
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -17,17 +22,18 @@ from campaign.folder_worker import REQUEST, Deadly, LargeDrawing, perform
 from roadgpt import children
 from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.campaign import campaign
+from roadgpt.campaign.folder_record import open_record, write_runs
 from roadgpt.campaign.run_folder import RunFolder, work_in
 from roadgpt.campaign.scheduler import GIVE_UP
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design, Road, World
-from roadgpt.run import Request, Run, Setup, brief_of, read_run, seed_in, seed_of
+from roadgpt.run import Request, Run, Setup, brief_of, read_run, seed_in, seed_of, store
 from run.doubles import FreshDesigner, Unable, a_design, folder_of, put_on_shelf
 
 TESTS = Path(__file__).resolve().parents[1]
 BRIEF = Brief(words="A road with a turn!")
 NO_DRIVE = Setup(designer="double", drives=False)
-ON_THE_CLOCK = {"seconds.json", "generation_stats.csv"}
+ON_THE_CLOCK = {"seconds.json", "generation_stats.csv", "runs.sqlite"}  # the last one holds the first
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -105,14 +111,92 @@ def test_a_campaign_that_was_left_goes_on(designer: FreshDesigner, tmp_path: Pat
     assert table(parts, "generation_stats.csv")["test_generated"] == "5"
 
 
-def test_a_road_that_was_taken_away_is_made_again(designer: FreshDesigner, tmp_path: Path) -> None:
+def test_files_that_were_taken_away_are_written_again_from_the_record(
+    designer: FreshDesigner, tmp_path: Path
+) -> None:
     whole, parts = tmp_path / "whole", tmp_path / "parts"
     for place, n in ((whole, 4), (parts, 3)):
         list(campaign(BRIEF, n, 7, setup=NO_DRIVE, out=place))
     (parts / "test.0002.json").unlink()
+    shutil.rmtree(parts / "runs" / "0003")
     again = campaign(BRIEF, 4, 7, setup=NO_DRIVE, out=parts)
-    assert [run.index for run in again] == [2, 4]
+    assert [run.index for run in again] == [4]
     assert contents(whole) == contents(parts)
+
+
+def test_without_the_record_a_folder_is_shown_but_not_continued(
+    designer: FreshDesigner, tmp_path: Path
+) -> None:
+    made = list(campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path))
+    (tmp_path / "runs.sqlite").unlink()
+    before = contents(tmp_path)
+    with pytest.raises(UsageError, match=r"has no runs\.sqlite, .* name another folder, or add --again"):
+        campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path)
+    assert contents(tmp_path) == before
+    with open_record(tmp_path) as record:
+        assert [record.run("", number).design for number in (1, 2)] == [run.design for run in made]
+    assert [run.index for run in campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path, again=True)] == [1, 2, 3]
+
+
+@pytest.mark.parametrize("damage", [b"", b"no database", b"SQLite format 3\0" + b"\xff" * 4000])
+def test_a_record_that_is_damaged_is_told_in_a_sentence(
+    designer: FreshDesigner, tmp_path: Path, damage: bytes
+) -> None:
+    list(campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path))
+    (tmp_path / "runs.sqlite").write_bytes(damage)
+    with pytest.raises(UsageError, match=r"runs\.sqlite cannot be read .* remove it"):
+        campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path)
+    (tmp_path / "runs.sqlite").unlink()
+    with open_record(tmp_path) as record:
+        assert len(record.tests()) == 2
+
+
+def test_a_record_of_others_writes_nothing_outside_its_runs(designer: FreshDesigner, tmp_path: Path) -> None:
+    place = tmp_path / "runs-of-others"
+    list(campaign(BRIEF, 1, 7, setup=NO_DRIVE, out=place))
+    before = contents(place)
+    with closing(sqlite3.connect(place / "runs.sqlite")) as db, db:
+        (packed,) = db.execute("SELECT files FROM runs").fetchone()
+        archive = io.BytesIO(packed)
+        with zipfile.ZipFile(archive, "a") as files:
+            files.writestr("../../evil.txt", "evil")
+            files.writestr("my_driver.py", "evil")
+        db.execute("UPDATE runs SET files = ?", (archive.getvalue(),))
+        db.execute("INSERT INTO runs VALUES (-1, ?)", (packed,))
+        db.execute("INSERT INTO runs VALUES (99999999999, ?)", (packed,))
+    assert list(write_runs(place, place)) == [place / "runs" / "0001"]
+    assert contents(tmp_path) == {f"runs-of-others/{name}": data for name, data in before.items()}
+    with closing(sqlite3.connect(place / "runs.sqlite")) as db, db:
+        db.execute("UPDATE runs SET files = ? WHERE number = 1", (b"no archive",))
+    with pytest.raises(UsageError, match=r"runs\.sqlite is damaged at run 1"):
+        list(write_runs(place, place))
+    (place / "runs.sqlite").rename(tmp_path / "mine.sqlite")
+    (place / "runs.sqlite").symlink_to(tmp_path / "mine.sqlite")
+    with pytest.raises(UsageError, match=r"runs\.sqlite is a link to somewhere else"):
+        open_record(place)
+
+
+def test_a_test_has_ended_when_its_row_is_there(
+    designer: FreshDesigner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The process is killed right behind the row, and right before it."""
+    keep = store.keep
+    for place, is_behind, left in ((tmp_path / "a", True, []), (tmp_path / "b", False, [2])):
+        with monkeypatch.context() as patched:
+
+            def killed(campaign: Path, number: int, *rest: object, is_behind: bool = is_behind) -> None:
+                if number == 1 or is_behind:
+                    keep(campaign, number, *rest)
+                if number == 2:
+                    raise KeyboardInterrupt
+
+            patched.setattr(store, "keep", killed)
+            with pytest.raises(KeyboardInterrupt):
+                list(campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=place))
+        assert not (place / "test.0002.json").exists()
+        again = campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=place)
+        assert [run.index for run in again] == left
+    assert contents(tmp_path / "a") == contents(tmp_path / "b")
 
 
 def test_a_finished_campaign_is_not_made_again_but_can_grow(designer: FreshDesigner, tmp_path: Path) -> None:
@@ -291,16 +375,21 @@ def test_impossible_numbers_are_told(designer: FreshDesigner, tmp_path: Path, n:
         list(campaign(BRIEF, n, seed, setup=NO_DRIVE, out=tmp_path))
 
 
-def test_a_road_that_cannot_be_read_is_made_again(designer: FreshDesigner, tmp_path: Path) -> None:
-    whole, parts = tmp_path / "whole", tmp_path / "parts"
-    for place, n in ((whole, 4), (parts, 3)):
-        list(campaign(BRIEF, n, 7, setup=NO_DRIVE, out=place))
+def test_files_that_were_damaged_are_written_again_on_request(
+    designer: FreshDesigner, tmp_path: Path
+) -> None:
+    whole, parts, copy = tmp_path / "whole", tmp_path / "parts", tmp_path / "copy"
+    for place in (whole, parts):
+        list(campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=place))
     (parts / "runs" / "0001" / "road.json").write_text("{")
     (parts / "runs" / "0003" / "run.json").write_text((parts / "runs" / "0002" / "run.json").read_text())
-    again = campaign(BRIEF, 4, 7, setup=NO_DRIVE, out=parts)
-    assert again.kept == (2,)
-    assert [run.index for run in again] == [1, 3, 4]
+    (parts / "oob_stats.csv").unlink()
+    again = campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=parts)
+    assert again.kept == (1, 2, 3)
+    assert list(again) == []
+    assert len(list(write_runs(parts, copy))) == len(list(write_runs(parts, parts))) == 3
     assert contents(whole) == contents(parts)
+    assert contents(copy) == contents(whole)
 
 
 def test_a_campaign_cannot_shrink_below_the_roads_that_are_there(
@@ -366,7 +455,7 @@ def test_earlier_designs_come_in_their_order_also_when_a_gap_is_filled(
         return Run(request, index, index, design=a_design(index), road=road)
 
     list(folder_of(request, 4, tmp_path, one, patch=monkeypatch.setattr))
-    (tmp_path / "test.0002.json").unlink()
+    store.remove(tmp_path, 2)
     list(folder_of(request, 5, tmp_path, one, patch=monkeypatch.setattr))
     assert seen == {1: [], 2: [1], 3: [1, 2], 4: [1, 2, 3], 5: [1, 2, 3, 4]}
 
@@ -436,6 +525,6 @@ def test_a_brief_that_was_written_by_hand_is_enough(tmp_path: Path) -> None:
     brief = Brief(clauses=(Clause(kind="turn", count=exactly(2)),))
     made = list(campaign(brief, 2, 3, World(), Setup(drives=False), tmp_path / "out"))
     assert [run.outcome for run in made] == ["VALID", "VALID"]
-    (tmp_path / "out" / "test.0002.json").unlink()
+    store.remove(tmp_path / "out", 2)
     again = list(campaign(brief, 2, 3, World(), Setup(drives=False), tmp_path / "out"))
     assert [run.design for run in again] == [made[1].design]

@@ -44,7 +44,7 @@ def hostile(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_description_takes_one_line_whatever_is_in_it(hostile: Path) -> None:
-    said = roadgpt("show", "--progress", hostile)
+    said = roadgpt("show", hostile)
     assert said.exit_code == 0
     (line,) = [line for line in said.output.splitlines() if line.startswith("c01")]
     assert "a road [/red] [bold]<b> [31m very" in line
@@ -88,7 +88,7 @@ def test_an_interrupted_campaign_is_read_where_nothing_may_be_written(
     monkeypatch.setattr("roadgpt.campaign.record.sqlite3.connect", refusing)
     assert status_of(tmp_path).total == 5
     (tmp_path / f"{STORE}-wal").write_text("what is not in the store yet")
-    said = roadgpt("show", "--progress", tmp_path)
+    said = roadgpt("show", tmp_path)
     assert said.exit_code == 2
     assert "copy this to where you may write" in " ".join(said.output.split())
 

@@ -12,8 +12,7 @@ from roadgpt.campaign.plan import read_plan
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
-from roadgpt.drive.loading import load_driver
-from roadgpt.drive.permission import permit
+from roadgpt.drive.loading import load_driver, permit
 from roadgpt.errors import UsageError
 
 DRIVER = """

@@ -119,6 +119,20 @@ def test_a_job_that_kills_or_hangs_is_given_up_after_three_workers_and_others_ar
         [*two.map(jobs.dies, [1])]
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="asks /proc")
+def test_a_job_that_takes_too_much_memory_is_given_up_and_others_are_done(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(children, "memory_limit", lambda: 700e6)
+    monkeypatch.setattr("roadgpt.campaign.workers.MOST_DEATHS", 2)
+    workers = Processes(WorkerConfig(1, jobs.nothing, SOON, tmp_path / "log"))
+    eats, other = workers.submit(jobs.eats, 800), workers.submit(jobs.square, 5)
+    with pytest.raises(LostWorkerError, match=r"2 workers .* last one took 0\.\d GB of memory"):
+        eats.result(SOON)
+    assert other.result(SOON) == 25
+    workers.shutdown()
+
+
 @unix
 def test_every_job_ends_once_while_workers_are_killed(patient: Processes) -> None:
     """Also those that have nothing to do, which is nobody's fault."""
@@ -134,7 +148,7 @@ def test_every_job_ends_once_while_workers_are_killed(patient: Processes) -> Non
     for _ in range(4):
         for worker in [*patient._workers]:
             assert isinstance(worker, shelf.Process)
-            worker._process.kill()
+            worker.process.kill()
         assert patient.submit(jobs.square, 3).result(SOON) == 9
 
 
@@ -166,7 +180,7 @@ def test_workers_that_the_system_cannot_start_are_told(
     def refused(*_: object, **__: object) -> Any:
         raise BlockingIOError(11, "Resource temporarily unavailable")
 
-    monkeypatch.setattr(children, "python", refused)
+    monkeypatch.setattr(children, "start", refused)
     workers = Processes(WorkerConfig(2, jobs.nothing, SOON, tmp_path / "log"))
     with pytest.raises(
         RoadGPTError,

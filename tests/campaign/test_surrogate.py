@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from sklearn.datasets import make_friedman1, make_friedman2, make_friedman3, make_regression
 from sklearn.ensemble import ExtraTreesRegressor
@@ -53,32 +53,6 @@ def test_the_forest_is_as_good_as_scikit_learns(name: str, n: int) -> None:
         theirs.append(r2_score(y[n:], model.predict(x[n:])))
     assert np.mean(theirs) > 0.3
     assert abs(np.mean(ours) - np.mean(theirs)) < SAME
-
-
-@settings(max_examples=15, deadline=None)
-@given(st.integers(2, 40), st.integers(1, 3), st.integers(1, 4), st.integers(0, 99))
-def test_every_tree_is_one_that_could_be_drawn(n: int, targets: int, least: int, seed: int) -> None:
-    """Each sample is followed by itself from the root to its leaf."""
-    rng = np.random.default_rng(seed)
-    x, y = rng.integers(0, 6, (n, 4)) / 5.0, rng.normal(size=(n, targets))
-    forest = grow(x, y, 3, least, seed)
-    for tree in range(3):
-        held: dict[int, list[int]] = {}
-        for sample in range(n):
-            at = tree
-            held.setdefault(at, []).append(sample)
-            while forest.feature[at] >= 0:
-                is_right = x[sample, forest.feature[at]] > forest.threshold[at]
-                at = int(forest.left[at]) + int(is_right)
-                held.setdefault(at, []).append(sample)
-            assert forest.predict(x[sample : sample + 1])[tree, 0] == pytest.approx(forest.value[at])
-        assert held[tree] == list(range(n))
-        for node, samples in held.items():
-            assert forest.value[node] == pytest.approx(y[samples].mean(axis=0))
-            assert len(samples) >= min(least, n)
-            if forest.feature[node] >= 0:
-                column = x[samples, forest.feature[node]]
-                assert column.min() <= forest.threshold[node] < column.max()
 
 
 def curved(turn: float, radius: float, length: float) -> Design:

@@ -170,7 +170,7 @@ def test_a_driver_that_was_named_by_a_relative_path_is_named_so_again(
 
 def test_what_needs_no_driver_shows_a_strangers_folder(shared: Path) -> None:
     for words in (
-        ("show", "run/runs/0001"), ("show", "done"), ("show", "--progress", "done"),
+        ("show", "run/runs/0001"), ("show", "done"),
         ("view", "run/runs/0001", "--format", "png", "--out", "p"),
         ("export", "run/runs/0001", "--to", "csv", "--out", "x"), ("report", "done"),
         ("view", "run/runs/0001", "--out", "v.html"), ("edit", *COMMANDS["edit"][1:], "--no-drive"),

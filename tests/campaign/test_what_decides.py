@@ -26,7 +26,7 @@ from roadgpt.drive.driver_files import WRITTEN
 from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import UsageError
 from roadgpt.reading import digest
-from roadgpt.run import Run, Setup, read_run, versions
+from roadgpt.run import Run, Setup, read_run, store, versions
 from roadgpt.run.versions import joined
 
 MINE = """
@@ -108,7 +108,7 @@ def contents(folder: str | Path) -> dict[str, bytes]:
     return {
         str(path.relative_to(folder)): rows(path) if path.suffix == ".sqlite" else path.read_bytes()
         for path in sorted(Path(folder).rglob("*"))
-        if path.is_file() and path.name not in ("seconds.json", "generation_stats.csv")
+        if path.is_file() and path.name not in ("seconds.json", "generation_stats.csv", store.STORE)
     }
 
 
@@ -132,6 +132,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
             assert done.exit_code == 0, done.output
         shutil.copytree("runs", "half")
         Path("half", "test.0002.json").unlink()
+        store.remove(Path("half"), 2)
     return place
 
 

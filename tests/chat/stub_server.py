@@ -148,19 +148,6 @@ def drips(seconds: float, text: str = "{}") -> Scene:
     return scene
 
 
-def drips_headers(seconds: float) -> Scene:
-    """Headers without end, slowly."""
-
-    def scene(request: HeardRequest, handler: BaseHTTPRequestHandler) -> None:
-        handler.wfile.write(b"HTTP/1.1 200 OK\r\n")
-        for number in range(10_000):
-            handler.wfile.write(f"X-{number}: 1\r\n".encode())
-            handler.wfile.flush()
-            time.sleep(seconds)
-
-    return scene
-
-
 def drops(sent: bytes = b"", head: bytes = b"HTTP/1.1 200 OK\r\nContent-Length: 5000\r\n\r\n") -> Scene:
     """The connection ends, in the middle of an answer or before it."""
 

@@ -153,15 +153,3 @@ def test_any_order_of_known_words_is_a_brief_or_a_sentence(along: list[str], roa
     except BriefError as error:
         told = str(error)
     assert "\n" not in told
-
-
-@given(st.text(max_size=80))
-def test_any_line_is_a_brief_or_a_sentence(line: str) -> None:
-    part, _ = reader(line)
-    try:
-        brief = part.read("a left turn")
-    except BriefError as error:
-        told = str(error)
-    else:
-        told = brief.words
-    assert "\n" not in told.strip()

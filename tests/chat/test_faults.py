@@ -19,7 +19,6 @@ from chat.stub_server import (
     answers,
     completion,
     drips,
-    drips_headers,
     drops,
     fails,
     floods,
@@ -68,56 +67,36 @@ ROAD, SENTENCE = "a road", "a sentence"
 FAULTS: dict[str, tuple[Scene, set[str]]] = {
     "fenced": (says(f"Here you are:\n```json\n{text()}\n```\nDrive safely!"), {ROAD}),
     "schema ignored": (only("text", text=f"```\n{text()}\n```"), {ROAD}),
-    "no json_object": (only("json_schema", "text", text=text()), {ROAD}),
     "no temperature": (refuses("temperature", text()), {ROAD}),
     "whitespace flood": (says(" \n" * 8000, "length"), {SENTENCE}),
     "endless whitespace": (floods(5), {SENTENCE}),
     "cut off": (says(text()[:90], "length"), {SENTENCE}),
     "refusal": (says(None, refusal="I do not design roads."), {SENTENCE}),
-    "refusal in words": (says("I'm sorry, but I can't help with that."), {SENTENCE}),
     "filtered": (says("", "content_filter"), {SENTENCE}),
     "401": (fails(401, "Incorrect API key provided"), {SENTENCE}),
-    "404": (fails(404, "The model does not exist"), {SENTENCE}),
     "429": (fails(429, "slow down"), {SENTENCE}),
-    "429 with retry-after": (fails(429, "slow down", {"retry-after": "3"}), {SENTENCE}),
-    "429 for an hour": (fails(429, "slow down", {"retry-after": "3600"}), {SENTENCE}),
     "500": (fails(500, "boom"), {SENTENCE}),
     "slow drip": (drips(0.05, text()), {SENTENCE}),
-    "slow headers": (drips_headers(0.05), {SENTENCE}),
     "dropped": (drops(), {SENTENCE}),
     "dropped half way": (drops(b'{"choices": ['), {SENTENCE}),
     "not HTTP": (drops(b"", head=b"\x00" * 99), {SENTENCE}),
     "HTML": (answers(b"<html>502 Bad Gateway</html>"), {SENTENCE}),
     "no choices": (answers({"choices": []}), {SENTENCE}),
-    "another body": (answers({"object": "list", "choices": {"0": 1}, "usage": [1]}), {SENTENCE}),
     "wrong types": (says(text(segments="left, then right", theta=[1])), {SENTENCE}),
-    "segments are numbers": (says(text(segments=[1, 2, 3])), {SENTENCE}),
-    "no segments": (says(text(segments=[])), {SENTENCE}),
     "numbers as text": (says(AS_TEXT), {ROAD}),
     "numbers with units": (says(AS_TEXT.replace('"60"', '"60 m"').replace('"2"', '"2 %"')), {SENTENCE}),
     "10,000 segments": (says(MANY), {SENTENCE}),
     "NaN": (says(text().replace("60,", "NaN,", 1)), {SENTENCE}),
     "Infinity": (says(text().replace("55,", "Infinity,", 1)), {SENTENCE}),
-    "NaN as text": (says(text(theta="NaN")), {SENTENCE}),
     "huge": (says(text(theta=1e308, starting_point=[1e300, -1e300, 0])), {SENTENCE}),
-    "huge lengths": (says(text(segments=[{**SEGMENTS[0], "distance": 1e200}])), {ROAD, SENTENCE}),
     "duplicate keys": (says(DOUBLE), {SENTENCE}),
     "deep nesting": (says('{"segments": ' * 5000 + "1" + "}" * 5000), {SENTENCE}),
-    "keys in another order": (says(json.dumps(dict(reversed(road().items())))), {ROAD}),
-    "keys that are too many": (says(text(comment="x" * 5000, __class__="os")), {SENTENCE}),
     "injection": (says(INJECTION), {ROAD, SENTENCE}),
     "injection alone": (says("\x1b]0;pwned\x07 {{7*7}} ${jndi:ldap://x} `touch pwned`"), {SENTENCE}),
     "half letters": (answers(json.dumps(completion("\ud800" + text())).encode()), {ROAD}),
     "model with a path": (answers({**completion(text()), "model": "../../pwned\x1b[0m\n" * 50}), {ROAD}),
-    "no usage": (answers({**completion(text()), "usage": None}), {ROAD}),
     "usage beyond measure": (answers({**completion(text()), "usage": {"prompt_tokens": -1e300}}), {ROAD}),
 }  # fmt: skip
-
-OF_READERS = (
-    "fenced", "whitespace flood", "cut off", "refusal", "filtered", "401", "429", "500", "slow drip",
-    "dropped", "HTML", "no choices", "wrong types", "NaN", "duplicate keys", "deep nesting", "injection",
-    "injection alone",
-)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -200,21 +179,6 @@ def test_a_fault_ends_in_a_road_or_a_sentence_and_costs_no_road_before_it(
         assert run(stub, roads=2).exit_code == 0
         assert Path("c/test.0002.json").is_file()
     assert came in ends
-
-
-@pytest.mark.parametrize("fault", OF_READERS)
-@pytest.mark.usefixtures("waits")
-def test_the_reader_gives_a_brief_or_a_sentence(stub: StubServer, fault: str) -> None:
-    stub.play(FAULTS[fault][0])
-    server = ["--base-url", stub.url, "--model", "m", "--retries", "1", "--timeout", "0.6", "--rounds", "2"]
-    result = CliRunner().invoke(
-        app, ["read", "two left turns", "--reader", "chat", *server], prog_name="roadgpt"
-    )
-    assert result.exit_code in (2, 4)  # a road is no plan
-    assert result.stderr.count("\n") == result.stderr.count("roadgpt: ") == 1
-    assert result.stderr.strip().isprintable()
-    assert len(result.stderr) < 500
-    assert not [*Path().rglob("*pwned*")]
 
 
 def test_a_campaign_whose_server_goes_away_goes_on_with_the_next_server(

@@ -22,7 +22,7 @@ from chat.stub_server import (
     send,
 )
 from roadgpt.chat import ChatError, ChatSettings, Message, open_chat
-from roadgpt.chat.secret import Key, redacted
+from roadgpt.chat.config import Key, redacted
 from roadgpt.cli import app
 
 ESCAPED = "".join(f"\\u{ord(letter):04x}" for letter in KEY)

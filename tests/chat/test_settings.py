@@ -28,9 +28,9 @@ def test_every_place_yields_to_those_before_it(monkeypatch: pytest.MonkeyPatch) 
     flags: dict[str, Any] = {}
     assert found() == (None, "default")
     write(user_file(), '[chat]\nmodel = "of-user"')
-    assert found() == ("of-user", str(user_file()))
+    assert found() == ("of-user", f"{user_file()} [chat]")
     write(Path("roadgpt.toml"), '[chat]\nmodel = "of-folder"')
-    assert found() == ("of-folder", "roadgpt.toml")
+    assert found() == ("of-folder", "roadgpt.toml [chat]")
     write(Path(".env"), "ROADGPT_MODEL=of-dotenv\n")
     assert found() == ("of-dotenv", ".env (ROADGPT_MODEL)")
     monkeypatch.setenv("ROADGPT_MODEL", "of-environment")
@@ -95,7 +95,7 @@ def test_a_base_url_is_a_place_and_holds_no_key(url: str) -> None:
 def test_keys_come_from_the_same_places(monkeypatch: pytest.MonkeyPatch) -> None:
     assert key_for(None) is None
     write(user_file(), '[chat]\napi_key = "of-user-0123456789"')
-    assert str(key_for(None).origin) == f"{user_file()} (api_key)"  # type: ignore[union-attr]
+    assert str(key_for(None).origin) == f"{user_file()} [chat]"  # type: ignore[union-attr]
     write(Path(".env"), "OPENAI_API_KEY=of-dotenv-0123456789")
     assert key_for(None).value == "of-dotenv-0123456789"  # type: ignore[union-attr]
     monkeypatch.setenv("OPENAI_API_KEY", "  of-environment-0123 \n")
@@ -128,7 +128,7 @@ def test_the_command_shows_origins_and_masks_keys(monkeypatch: pytest.MonkeyPatc
     result = invoke("config", "show", "--origin", "--max-cost", "0.5")
     assert result.exit_code == 0
     lines = {line.split()[0]: line for line in result.stdout.splitlines()}
-    assert lines["model"].split()[1:] == ["mine", "roadgpt.toml"]
+    assert lines["model"].split()[1:] == ["mine", "roadgpt.toml", "[chat]"]
     assert lines["max_cost"].split()[1:] == ["0.5", "--max-cost"]
     assert lines["api_key"].endswith(f"sk-... ({len(KEY)} letters)  environment (OPENAI_API_KEY)")
     assert "ROADGPT_MODLE in the environment is not a setting" in result.stderr

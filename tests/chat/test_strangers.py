@@ -123,18 +123,10 @@ def test_a_redirect_to_another_server_is_not_followed(stub: StubServer, status: 
     with serving(says("hello")) as elsewhere:
         place = f"{elsewhere.url}/chat/completions"
         stub.play(lambda request, handler: send(handler, status, {}, {"Location": place}))
-        with pytest.raises(ChatError, match=r"redirects to http://127\.0\.0\.1:\d+, which is sent"):
+        with pytest.raises(ChatError, match=r"redirects to http://127\.0\.0\.1:\d+/\S+, which is sent"):
             ask(stub)
         assert not elsewhere.requests
     assert len(stub.requests) == 1
-
-
-def test_a_redirect_within_a_server_is_followed(stub: StubServer) -> None:
-    stub.play(
-        lambda request, handler: send(handler, 307, {}, {"Location": "/v2/chat/completions"}), says("x")
-    )
-    assert ask(stub) == "x"
-    assert stub.requests[1].path == "/v2/chat/completions"
 
 
 @cache

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
-from roadgpt.chat.answer import MOST_CHARACTERS, NotReadableError, plain, read_as, read_object
+from roadgpt.chat.answer import MOST_CHARACTERS, NotReadableError, plain, read_object
 
 
 class Part(BaseModel):
@@ -60,7 +60,7 @@ def test_any_text_is_an_object_or_refused(text: str) -> None:
         ("", "blank"),
         (" \n\t" * 10_000, "blank"),
         ("I would rather not.", "no JSON object"),
-        ("[1, 2]", "not an object"),
+        ("[1, 2]", "no JSON object"),
         ('{"a": NaN}', "NaN"),
         ('{"a": -Infinity}', "Infinity"),
         ('{"a": 1e999}', "not a number"),
@@ -69,8 +69,6 @@ def test_any_text_is_an_object_or_refused(text: str) -> None:
         ('{"a": {"b": 1, "b": "1"}}', "'b' twice"),
         ('{"a": 1', "not JSON"),
         ("{'a': (1, 2)}", "not JSON"),
-        ('{"a":' * 100 + "1" + "}" * 100, "brackets"),
-        ("[" * 200_000, "brackets"),
         ('{"a":' * 100_000, "brackets"),
         ("x" * (MOST_CHARACTERS + 1), "characters"),
     ],
@@ -92,13 +90,6 @@ def test_no_flood_takes_long(text: str) -> None:
     with pytest.raises(NotReadableError):
         read_object(text)
     assert time.perf_counter() - begun < 5.0
-
-
-def test_the_order_of_keys_is_free_and_ten_thousand_parts_are_read() -> None:
-    parts = [{"turns": number, "distance": 1.0} for number in range(10_000)]
-    whole = read_as(Whole, json.dumps({"parts": parts, "name": "long"}))
-    assert len(whole.parts) == 10_000
-    assert whole.parts[-1].turns == 9_999
 
 
 @given(st.text(max_size=300))

@@ -83,17 +83,7 @@ def test_a_grid_that_is_not_as_asked(asked: str, wanted: str) -> None:
     assert wanted in told(asked, grid())
 
 
-@pytest.mark.parametrize(
-    "asked",
-    [
-        "map crossroads; y_junction",
-        "map junction x2",
-        "map crossroads; junction",
-        "map crossroads x1..2; y_junction x1..3",
-        "map junction x2 len=90",
-        "map crossroads; y_junction route=straight+left",
-    ],
-)
+@pytest.mark.parametrize("asked", rows(__file__, "a_village_that_is_as_asked"))
 def test_a_village_that_is_as_asked(asked: str) -> None:
     assert told(asked, village()) == []
 
@@ -108,14 +98,6 @@ def test_signs_of_some_junctions_of_a_village(asked: str, wanted: list[str]) -> 
     assert bool(found) == bool(wanted)
 
 
-@pytest.mark.parametrize(
-    ("asked", "wanted"),
-    [
-        ("map crossroads x2", "asked for 2 of the kind crossroads, has 1"),
-        ("map crossroads", "asked for 1 junctions in all, has 2"),
-        ("map crossroads; t_junction", "asked for 1 of the kind T-junction, has 0"),
-        ("map roundabout; junction", "asked for 1 to 2 of the kind roundabout, has 0"),
-    ],
-)
+@pytest.mark.parametrize(("asked", "wanted"), rows(__file__, "a_village_that_is_not_as_asked"))
 def test_a_village_that_is_not_as_asked(asked: str, wanted: str) -> None:
     assert wanted in told(asked, village())

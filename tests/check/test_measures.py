@@ -62,18 +62,6 @@ def test_a_straight_is_cut_where_its_grade_changes_class() -> None:
     assert (found.lowest_grade, found.highest_grade) == pytest.approx((-6, 6), abs=0.01)
 
 
-def test_climb_and_mean_grade_of_a_hill_road() -> None:
-    found = measure(line_of(straight(50, 8), turn(60, 40, incline=8), straight(50, 8)))
-    assert found.climb == pytest.approx(0.08 * found.length, abs=0.01)
-    assert found.grade == pytest.approx(8, abs=0.01)
-    assert found.turns[0].grade == pytest.approx(8, abs=0.01)
-
-
-def test_up_down_up_down_changes_three_times() -> None:
-    hills = (straight(50, incline) for incline in (5, -5, 5, -5))
-    assert measure(line_of(*hills)).hills == 3
-
-
 @settings(max_examples=60, deadline=None)
 @given(designs(), st.floats(0, 6.3), st.floats(-50, 50))
 def test_where_a_road_lies_does_not_matter(design: Design, angle: float, shift: float) -> None:

@@ -230,7 +230,6 @@ class TestArmsTooClose:
 class TestConflictingOverlap:
     def test_a_route_that_crosses_an_arm(self) -> None:
         """Left at the crossroads, then around to the left across the arm that goes straight on."""
-        bend = {"distance": 60, "direction": "left", "turn_degrees": -70}
         turns = [{"distance": 30, "direction": "right", "turn_degrees": -70} for _ in range(3)]
         arms = [{"angle": 90}, {"angle": 0, "length": 100}, {"angle": -90}]
         route = built(design(60.0, {"kind": "crossroads", "take": "left", "arms": arms}, 20.0, *turns, 60.0))
@@ -241,7 +240,6 @@ class TestConflictingOverlap:
         assert found.s is not None
         assert found.s > route.starts[2]
         assert abs(found.y - 250) < 4  # type: ignore[operator]
-        assert bend
 
     @pytest.mark.parametrize(("apart", "is_wrong"), [(7.95, True), (8.05, False)])
     def test_roads_side_by_side(self, apart: float, is_wrong: bool) -> None:

@@ -16,9 +16,9 @@ from network.changing import (
     with_road,
 )
 from network.ruled import findings, the_finding
-from roadgpt.geometry import CubicProfile, GradeProfile, Piece
+from roadgpt.geometry import GradeProfile, Piece
 from roadgpt.network import Connection, LaneLink, Network, build_route, read_network_design
-from roadgpt.road import Profile, Road, World
+from roadgpt.road import Profile, World
 from roadgpt.road.profile import Lane
 
 
@@ -74,19 +74,6 @@ class TestTightTurns:
         assert bool(found) == is_wrong
         if is_wrong:
             assert "has a radius of 5.0 m in its middle, tighter than 5 m" in found[0].sentence
-
-    def test_a_lane_that_widens_bends_more(self) -> None:
-        """The middle of a straight lane that widens from 2 m to 8 m, against circles through its points."""
-        network = passing("crossroads").network
-        number = network.junctions[0].connections[0].road
-        profile = Profile((), (Lane("driving", CubicProfile.smooth([(0.0, 2.0), (8.0, 8.0)])),), 0, "none")
-        plan = with_plan(network.road(number), pieces=(Piece(8.0),)).road.plan
-        road = Road(plan, GradeProfile(0.0, (0.0, 8.0), (0.0, 0.0)), profile=profile)
-        damaged = with_road(network, number, lambda each: replace(each, road=road))
-        s = np.linspace(0, 8, 8001)
-        least = radius_of_points(road.at(s, profile.middle(s))[:, :2])
-        found = the_finding("connection_too_tight", damaged)
-        assert f"radius of {least:.1f} m" in found.sentence
 
 
 def tilted(network: Network, ax: float, ay: float) -> Network:

@@ -9,6 +9,7 @@ from roadgpt.check import inspect
 from roadgpt.check.network_measures import measured_junctions
 from roadgpt.network import Route, build_route, read_network_design
 from roadgpt.road import World
+from tables import rows
 
 WORLD = World()
 
@@ -40,6 +41,7 @@ CROSS = {"kind": "crossroads", "take": "left", "arms": arms(-90, 0, 90), "contro
 SKEW = {"kind": "crossroads", "take": "straight", "arms": arms(-125, 0, 55)}
 STAR = {"kind": "star", "take": 4, "arms": arms(-108, -36, 36, 108)}
 RING = {"kind": "roundabout", "take": 3, "radius": 16, "arms": arms(-90, 0, 90)}
+STAR_RIGHT = {**STAR, "take": 1}
 TWO = {"kind": "roundabout", "take": 1, "radius": 16, "arms": arms(-90, 60)}
 
 
@@ -49,50 +51,14 @@ def told(asked: str, *junctions: dict[str, Any], lengths: tuple[float, ...] = ()
     return [finding.sentence for finding in found if finding.rule == "promises"]
 
 
-@pytest.mark.parametrize(
-    ("asked", "junction"),
-    [
-        ("t_junction right ways=left+right none", T_STEM),
-        ("t_junction straight ways=left+straight priority arms=3", T_LEFT),
-        ("y_junction left", FORK),
-        ("crossroads left lights arms=4", CROSS),
-        ("crossroads straight skew", SKEW),
-        ("star sharp_left arms=5", STAR),
-        ("star left", {**STAR, "take": 4}),
-        ("roundabout exit=3 arms=4 normal r=16", RING),
-        ("roundabout left yield", RING),
-        ("roundabout exit=1 arms=3", TWO),
-        ("junction left", CROSS),
-    ],
-)
-def test_a_promise_that_is_kept_is_not_mentioned(asked: str, junction: dict[str, Any]) -> None:
-    assert told(asked, junction) == []
+@pytest.mark.parametrize(("asked", "junction"), rows(__file__, "kept"))
+def test_a_promise_that_is_kept_is_not_mentioned(asked: str, junction: str) -> None:
+    assert told(asked, globals()[junction]) == []
 
 
-@pytest.mark.parametrize(
-    ("asked", "junction", "said"),
-    [
-        ("y_junction right", T_STEM, "asked for a Y-junction, has arms 90, 180, 90 degrees apart"),
-        ("t_junction left", FORK, "asked for a T-junction, has arms 120, 120, 120 degrees apart"),
-        ("t_junction left", T_STEM, "asked to turn left, turns -90 degrees"),
-        ("t_junction ways=right+straight", T_LEFT, "ways to the right and straight, has straight and left"),
-        ("crossroads right", CROSS, "asked to turn right, turns 90 degrees"),
-        ("crossroads stop", CROSS, "asked for stop, has lights"),
-        ("crossroads skew", CROSS, "the least angle is 90 degrees"),
-        ("star arms=6", STAR, "asked for 6 arms, has 5"),
-        ("star slight_left", STAR, "asked to bear slightly left, turns 108 degrees"),
-        ("star slight_right", {**STAR, "take": 1}, "asked to bear slightly right, turns -108 degrees"),
-        ("roundabout exit=2", RING, "asked for exit 2, takes exit 3"),
-        ("roundabout straight", RING, "asked to go straight on, turns 90 degrees"),
-        ("roundabout back", RING, "asked to turn back the way it came, turns 90 degrees"),
-        ("roundabout mini", RING, "asked for a mini roundabout, 13 to 25 m wide, is 42.0 m wide"),
-        ("roundabout r=25", RING, "asked for an island of 25 m radius, has 16.0 m"),
-        ("roundabout lights", RING, "asked for lights, has yield"),
-        ("junction", RING, "asked for a junction, has arms 90, 90, 90, 90 degrees apart"),
-    ],
-)
-def test_a_broken_promise_is_said_with_what_there_is(asked: str, junction: dict[str, Any], said: str) -> None:
-    (sentence,) = told(asked, junction)
+@pytest.mark.parametrize(("asked", "junction", "said"), rows(__file__, "broken"))
+def test_a_broken_promise_is_said_with_what_there_is(asked: str, junction: str, said: str) -> None:
+    (sentence,) = told(asked, globals()[junction])
     assert sentence.startswith("junction 1 at s = 40 m: ")
     assert said in sentence
 

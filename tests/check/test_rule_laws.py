@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from roadgpt import plugins
 from roadgpt.check import inspect
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
-from roadgpt.road import CrossSection, Limits, Road, Site, World
+from roadgpt.road import CrossSection, Road, Site, World
 
 WORLD = World(site=Site(map_size=1000))
 SHAPE_RULES = (
@@ -110,13 +110,3 @@ def test_what_strict_lets_pass_the_competition_lets_pass(
     x, y = np.min([road.at(np.linspace(0, road.length, 500), t)[:, :2].min(axis=0) for t in (-4, 4)], axis=0)
     road = laid(road, room_x - x, room_y - y, 0.0)
     assert inspect(road, None, World()) or not inspect(road, None, World(), rules="sbft")
-
-
-@given(roads(), st.floats(0.01, 0.6))
-@settled
-def test_a_road_is_too_steep_exactly_beyond_its_steepest_place(road: Road, limit: float) -> None:
-    steepest = float(np.abs(road.elevation.grade(np.array([0.0, road.length]))).max())
-    assume(abs(steepest - limit) > 0.001)
-    assert objects("too_steep", road, World(site=Site(map_size=1000), limits=Limits(max_grade=limit))) == (
-        steepest > limit
-    )

@@ -1,7 +1,6 @@
 """Every rule: a road that passes and a road that fails, with the place and the numbers that it says."""
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -53,9 +52,6 @@ def designed(*segments: Segment, geometry: str = "arcs") -> Road:
 
 
 class TestFinite:
-    def test_passes(self) -> None:
-        assert not findings("finite", straight())
-
     @pytest.mark.parametrize("number", [math.nan, math.inf])
     def test_a_hole_in_the_heights_is_found(self, number: float) -> None:
         road = Road(straight(100).plan, GradeProfile(0.0, (0.0, 50.0, 60.0), (0.0, 0.0, number)))
@@ -292,19 +288,6 @@ class TestNoOverlap:
 class TestSbft:
     def test_fails_in_the_competition_s_words(self) -> None:
         assert the_finding("sbft", straight(500)).sentence == "Not entirely inside the map boundaries"
-
-
-PAIRS: dict[str, tuple[Callable[[], Road], Callable[[], Road]]] = {
-    "finite": (straight, lambda: straight(x=math.nan)),
-    "number_of_points": (straight, lambda: Road.through(np.linspace([10, 10], [200, 10], 501))),
-    "too_short": (straight, lambda: straight(19)),
-    "inside_map": (straight, lambda: straight(x=-50)),
-    "below_floor": (straight, lambda: sloping((0, 0), (100, 0), z=-29)),
-    "too_steep": (straight, lambda: sloping((0, 0.2), (100, 0.2))),
-    "too_tight": (straight, lambda: turning((20, 8))),
-    "no_overlap": (straight, lambda: two_legs(6)),
-    "sbft": (straight, lambda: straight(x=-50)),
-}
 
 
 @pytest.mark.parametrize("rule", plugins.names("rules"))

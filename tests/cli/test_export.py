@@ -87,18 +87,6 @@ def test_opendrive_keeps_its_lanes_and_limits_on_its_way_through(here: Path) -> 
     assert 'friction="0.6"' in told
 
 
-@pytest.mark.parametrize("quiet", [False, True])
-def test_quiet_is_quiet(here: Path, quiet: bool) -> None:
-    said("export", "hill.json", "--to", "opendrive", "-q")
-    file = Path("exports/hill.xodr")
-    file.write_text(file.read_text().replace('rule="RHT"', 'rule="LHT"'))
-    for words in (["import", str(file)], ["export", str(file), "--to", "csv"]):
-        result = said(*words, *["-q"] * quiet)
-        assert result.exit_code == 0
-        assert ("left-hand traffic" in result.stderr) is not quiet
-        assert bool(result.stdout) is not quiet
-
-
 @pytest.mark.parametrize(
     "words",
     [["export", "--to", "csv"], ["check"], ["drive"], ["view", "--format", "png"], ["view"], ["film"]],

@@ -52,13 +52,6 @@ def test_a_road_whose_lane_would_leave_the_map_is_moved(tmp_path: Path, y: float
     assert "into the middle of the map" in told
 
 
-def test_a_road_on_the_map_keeps_its_place(tmp_path: Path) -> None:
-    row, told = typed(file(tmp_path, element(20, 30, 0, 100)))
-    assert (row["test_outcome"], row["findings"]) == ("PASS", [])
-    assert "moved" not in told
-    assert read_road(tmp_path / "town.json").at(0.0)[:2] == pytest.approx([20, 30])
-
-
 @given(
     st.floats(-1e7, 1e7), st.floats(-1e7, 1e7), st.floats(-3.2, 3.2), st.floats(25, 3_000),
     st.floats(2, 10), st.floats(-0.01, 0.01),

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from command_line import roadgpt
 from roadgpt.cli import app
 from roadgpt.cli.junit import write_junit
-from roadgpt.cli.result_row import Row
+from roadgpt.cli.screen import Row
 from roadgpt.errors import RoadGPTError
 
 # github.com/testmoapp/junitxml: attributes of each element, and which may stand in which.
@@ -80,7 +80,7 @@ def test_whatever_is_said_the_file_is_of_the_format(
         for n, (outcome, says, seconds) in enumerate(told)
     ]
     path = tmp_path_factory.mktemp("junit") / "roads.xml"
-    write_junit(path, [(f"x{words}", {"words": words}, lambda: rows), ("empty", {}, list)])
+    write_junit(path, [(f"x{words}", {"words": words}, rows), ("empty", {}, [])])
     root = checked(path)
     suite = root.findall("testsuite")[0]
     marks = {"FAIL": ["failure"], "INVALID": ["skipped"], "ERROR": ["error"], "PASS": [], "VALID": []}

@@ -12,7 +12,7 @@ from click.testing import CliRunner, Result
 import command_line
 from roadgpt.campaign import single_test
 from roadgpt.cli import app
-from roadgpt.drive.isolation import process
+from roadgpt.drive.isolation import proxy
 from roadgpt.errors import DesignError
 from rows import rows
 
@@ -142,14 +142,6 @@ def test_nothing_that_could_be_designed_ends_with_3(monkeypatch: pytest.MonkeyPa
     assert not Path("here").exists()
 
 
-def test_what_was_understood_is_said_when_nothing_stands_in_the_way() -> None:
-    for more in (("--driver", "nobody"), ("--driver", "none.py:Nobody"), ("--out", "taken")):
-        Path("taken").mkdir(exist_ok=True)
-        Path("taken", "thesis.docx").write_text("")
-        result = invoke(WORDS, *more)
-        assert (result.exit_code, result.stdout) == (2, "")
-
-
 def test_a_driver_that_prints_spoils_no_json(
     capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -165,7 +157,7 @@ def test_a_driver_that_prints_spoils_no_json(
     assert "steering" in result.stderr
     assert "loaded" in result.stderr
     road = str(Path("here", "runs", "0001", "road.json"))
-    monkeypatch.setattr(process, "_idle", [])  # a driver's process that is begun here writes where we look
+    monkeypatch.setattr(proxy, "_idle", [])  # a driver's process that is begun here writes where we look
     driven = CliRunner().invoke(app, ["drive", road, "--json", *chatty])
     assert driven.exit_code == 0
     assert len([json.loads(line) for line in driven.stdout.splitlines()]) == 1

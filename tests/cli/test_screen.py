@@ -6,8 +6,7 @@ from dataclasses import replace
 import pytest
 
 from roadgpt import stopping
-from roadgpt.cli.result_row import COLOURS, Row, colour_of, metres, summary
-from roadgpt.cli.screen import Screen
+from roadgpt.cli.screen import COLOURS, Row, Screen, colour_of, metres, summary
 from roadgpt.cli.streams import apart
 from roadgpt.verdict import graded
 
@@ -43,15 +42,6 @@ def test_a_pass_outside_the_lane_does_not_look_like_one_inside() -> None:
     assert json.loads(NEARLY.to_json())["beyond_m"] == 1.1349
     grades = {graded("PASS", share) for share in (0.0, 0.2, 0.9)}
     assert grades <= {*COLOURS}
-
-
-def test_a_line_of_a_driven_road_fits_into_80_columns() -> None:
-    far = replace(LEFT, file="roadgpt-runs/a-very-long-description/test.0001.json", name="test.0001.json")
-    assert far.to_line().endswith("  test.0001.json")
-    assert len(f"1000/1000  {far.to_line()}") <= 80
-    outside = replace(NEARLY, max_oob=0.9999, beyond_m=10.0, name="test.0001.json")
-    assert len(f"1000/1000  {outside.to_line()}") <= 80
-    assert json.loads(far.to_json())["file"] == far.file
 
 
 def test_what_is_printed_while_a_step_is_made_goes_to_standard_error(

@@ -3,8 +3,6 @@
 import pytest
 
 from command_line import invoke
-from roadgpt import __version__
-from roadgpt.cli.app import commands
 from rows import rows
 
 
@@ -64,17 +62,6 @@ def test_an_option_before_a_command_is_told_where_it_belongs() -> None:
     assert result.exit_code == 2
     assert "No such option '--seed' here" in result.stderr
     assert "roadgpt run 'an uphill road with 3 turns' --seed 7" in result.stderr
-
-
-@pytest.mark.parametrize("name", commands())
-def test_every_command_has_help_and_refuses_unknown_options(name: str) -> None:
-    assert invoke(name, "--help").exit_code == 0
-    assert "Usage: roadgpt " + name in invoke(name, "-h").stdout
-    assert invoke(name, "--no-such-option").exit_code == 2
-
-
-def test_version() -> None:
-    assert invoke("--version").stdout == f"roadgpt {__version__}\n"
 
 
 def test_a_part_that_is_not_installed_is_answered_with_those_that_are() -> None:

@@ -194,17 +194,7 @@ def test_words_that_are_not_understood_are_told() -> None:
     assert read_request("make the second turn sharper pronto").unused == ("pronto",)
 
 
-KNOWN = sorted({word for words, _ in ROWS if len(words) < 300 for word in words.split()})
-
-
 few = settings(max_examples=12, deadline=None)
-
-
-@few
-@given(st.lists(st.sampled_from([*KNOWN, "2", "40 m", "90 degrees", "8 %", ",", "-", "blue"]), max_size=14))
-def test_any_row_of_words_is_read_or_refused(words: list[str]) -> None:
-    with suppress(EditError):
-        assert read_request(" ".join(words)).changes
 
 
 @few

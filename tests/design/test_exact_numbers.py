@@ -7,7 +7,7 @@ import roadgpt
 from roadgpt.brief.plan import read_plan
 from roadgpt.check.measures import Measures, measure
 
-SEEDS = range(12)
+SEEDS = range(6)
 
 
 def measured(plan: str) -> list[Measures]:

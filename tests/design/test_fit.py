@@ -60,14 +60,14 @@ def test_one_turn_gets_its_angle_and_all_other_segments_keep_every_number(
 
 def test_most_angles_that_are_near_are_found() -> None:
     done = 0
-    for seed in range(12):
+    for seed in range(6):
         design = draft(Brief(), WORLD, seed=seed)
         elements, _ = elements_on_road(design)
         turn = next(element for element in elements if element.is_turn)
         assert turn.seen is not None
         wanted = Range(0.88 * turn.seen.degrees, 0.94 * turn.seen.degrees)
         done += not fitted(design, turn.name, Feature("turn", "turn", degrees=wanted)).objection
-    assert done >= 10
+    assert done >= 5
 
 
 def test_what_is_as_asked_comes_back_as_it_is() -> None:

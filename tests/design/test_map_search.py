@@ -9,7 +9,7 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.design import draft
-from roadgpt.design.map_search import MapSearch
+from roadgpt.design.network_search import MapSearch
 from roadgpt.drive import simulate
 from roadgpt.errors import BriefError, DesignError, UsageError
 from roadgpt.network import MapDesign, MapNode, Route, build_map, made_from
@@ -31,7 +31,7 @@ def route_of(line: str, seed: int, world: World = USUAL) -> Route:
     return build_map(drafted(line, seed, world), world)
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(4))
 def test_roundabouts_have_three_arms_where_only_few_roads_may_end(seed: int) -> None:
     line = "map roundabout x4 blocks=1 dead_ends=4"
     design = drafted(line, seed, USUAL)

@@ -67,13 +67,13 @@ def assert_fine(design: Design, brief: Brief, world: World) -> None:
     assert read_design(design.to_json()) == (design, ())
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(sensible_briefs(), st.integers(0, 10**9))
 def test_what_can_be_had_is_drafted(brief: Brief, seed: int) -> None:
     assert_fine(planner.draft(brief, WORLD, (), (), seed), brief, WORLD)
 
 
-@settings(max_examples=settings.default.max_examples // 2, deadline=None)
+@settings(max_examples=settings.default.max_examples // 3, deadline=None)
 @given(briefs(), worlds(), st.integers(0, 1000))
 def test_any_brief_gives_a_fine_road_or_one_sentence_of_advice(brief: Brief, world: World, seed: int) -> None:
     drafted = attempt(brief, world, seed)
@@ -127,7 +127,7 @@ def test_the_same_arguments_give_the_same_design() -> None:
     rows(__file__, "straights_of_different_grades_keep_their_lengths_and_grades"),
 )
 def test_straights_of_different_grades_keep_their_lengths_and_grades(line: str) -> None:
-    for seed in range(6):
+    for seed in range(3):
         brief = read_plan(line)
         assert_fine(planner.draft(brief, WORLD, (), (), seed), brief, WORLD)
 
@@ -145,7 +145,7 @@ def test_a_short_ramp_between_level_straights_is_as_steep_as_asked(
     brief = read_plan(
         f"straight flat len=30; straight {way} len={length} pct={percent}; straight flat; turn left"
     )
-    for seed in range(3):
+    for seed in range(2):
         points = build(draft(brief, world, seed=seed)).centreline()
         s = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(points[:, :2], axis=0).T))])
         z = np.interp(np.arange(0, s[-1]), s, points[:, 2])
@@ -200,8 +200,7 @@ ODD_WORLDS = [
 @pytest.mark.parametrize("world", ODD_WORLDS)
 def test_other_worlds_have_roads_too(world: World) -> None:
     for brief in (A_ROAD, Brief(clauses=(turns(2),), slope="gently_up")):
-        for seed in range(2):
-            assert_fine(planner.draft(brief, world, (), (), seed), brief, world)
+        assert_fine(planner.draft(brief, world, (), (), 1), brief, world)
 
 
 def test_the_map_that_is_advised_is_large_enough() -> None:
@@ -226,7 +225,7 @@ def test_the_longest_turns_keep_one_radius_through_all_their_segments() -> None:
     assert arc == pytest.approx(radius * swept - (parts[0].transition or 0), abs=1.0)
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 3])
 @pytest.mark.parametrize(
     ("line", "degrees"),
     [

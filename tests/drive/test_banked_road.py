@@ -105,8 +105,7 @@ class Steady(dict):
 CASES = [
     (radius, ratio, share, hand)
     for radius, hand in ((25, 1), (60, -1), (120, 1), (250, -1))
-    for ratio in (-0.08, 0.08)
-    for share in (0.15, 0.55)
+    for ratio, share in ((-0.08, 0.55), (0.08, 0.15), (0.08, 0.55))
 ]
 
 
@@ -209,7 +208,7 @@ def test_the_drive_says_where_the_car_is_on_the_surface() -> None:
         assert np.linalg.norm(centre - foot) == pytest.approx(0.56, abs=0.06)
 
 
-@pytest.mark.parametrize("ratio", [-0.12, -0.08, -0.03, 0.0, 0.03, 0.08, 0.12])
+@pytest.mark.parametrize("ratio", [-0.12, -0.03, 0.0, 0.08])
 @pytest.mark.parametrize(
     ("radius", "grip", "hand"), [(30, 0.64, 1), (80, 0.3, -1), (200, 0.64, -1), (60, 0.15, 1)]
 )

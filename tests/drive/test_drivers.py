@@ -87,7 +87,7 @@ def test_every_driver_copes_with_a_road_through_a_few_points(name: str) -> None:
 
 
 @given(seed=st.integers(0, 10_000), kmh=st.sampled_from([40, 70, 100]), friction=st.sampled_from([1.0, 0.6]))
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=4, deadline=None)
 def test_the_reference_stays_in_the_middle(seed: int, kmh: int, friction: float) -> None:
     road, world = hilly(seed), World(limits=Limits(speed_limit=kmh / 3.6), site=Site(friction=friction))
     seen = drive(road, Reference(), world)

@@ -14,10 +14,10 @@ from road_parts import road_of
 from roadgpt import children
 from roadgpt.drive import simulate
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.drive.isolation import driver_of, process
+from roadgpt.drive.isolation import driver_of, proxy
 from roadgpt.drive.isolation.proxy import IsolatedDriver
 from roadgpt.drive.loading import load_driver
-from roadgpt.errors import DriverError
+from roadgpt.errors import DriverError, RoadGPTError
 from roadgpt.road import Road, Site, World
 
 HEAD = """
@@ -84,11 +84,11 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 @pytest.mark.parametrize(
     "nuisance",
     [
-        "signal.setitimer(signal.ITIMER_REAL, 0.001, 0.001); signal.signal(signal.SIGALRM, lambda *_: None)",
-        "os.chdir(os.sep); os.environ.clear(); sys.path.clear(); os.umask(0o777)",
-        "signal.signal(signal.SIGINT, signal.SIG_IGN); signal.signal(signal.SIGTERM, signal.SIG_IGN)",
-        "threading.Thread(target=time.sleep, args=(3600,)).start()",
+        "signal.signal(signal.SIGALRM, lambda *_: None); signal.setitimer(signal.ITIMER_REAL, 0.001, 0.001); "
+        "signal.signal(signal.SIGINT, signal.SIG_IGN); signal.signal(signal.SIGTERM, signal.SIG_IGN); "
         "print('x' * 100); os.write(1, b'loud'); sys.stdin.read()",
+        "os.chdir(os.sep); os.environ.clear(); sys.path.clear(); os.umask(0o777)",
+        "threading.Thread(target=time.sleep, args=(3600,)).start()",
         "sys.stdout = sys.stderr = None; os.closerange(0, 3)",
     ],
 )
@@ -125,7 +125,7 @@ def test_whatever_goes_wrong_is_one_error_of_that_drive(spec, does: str, says: s
 
 
 HANGS = {
-    "in Python": "while True: pass",
+    "sleeps": "time.sleep(3600)",
     "and catches all": "while True:\n            try: time.sleep(1)\n            except: pass",
     "in compiled code": "ctypes.PyDLL(None).sleep(3600)",  # which keeps Python from running
     "stopped": "os.kill(os.getpid(), signal.SIGSTOP)",
@@ -133,24 +133,79 @@ HANGS = {
 }
 
 
-@pytest.mark.skipif(os.name != "posix", reason="uses the system's C library")
+def gone(pid: int, seconds: float = 10.0) -> bool:
+    """Whether a process ends within some time; one that nobody waited for counts as ended."""
+    due = time.monotonic() + seconds
+    while time.monotonic() < due:
+        state = Path(f"/proc/{pid}/stat")
+        if not state.exists() or state.read_text().rpartition(")")[2].split()[0] == "Z":
+            return True
+        time.sleep(0.05)
+    return False
+
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="asks /proc")
+
+
+@linux
 @pytest.mark.parametrize("hang", HANGS.values(), ids=HANGS)
 def test_a_driver_that_hangs_anywhere_is_ended(spec, hang: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("roadgpt.drive.isolation.proxy.ONE_ANSWER", 0.5)
     driver = driver_of(spec(f"    def steer(self, view):\n        {hang}"))
-    pid = driver._process._process.pid
     begun = time.perf_counter()
     with pytest.raises(DriverError, match=r"gave no answer within 0.5 s at 0.00 s|ended its own process"):
         simulate(STRAIGHT, World(), driver, 1)
     assert time.perf_counter() - begun < 10
-    with pytest.raises(ProcessLookupError):
-        os.kill(pid, 0)
+    assert gone(driver._process.process.pid)
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="asks /proc")
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        (
+            "    def start(self, *given): time.sleep(3600)\n" + CALM,
+            r"driver 'D' was not ready within 1 s: make",
+        ),
+        ("    def start(self, *given): os._exit(7)\n" + CALM, r"driver 'D' ended its own .*status 7"),
+        ("    time.sleep(3600)\n" + CALM, r"the driver d.py:D was not made within 1 s: let its __init__"),
+        ("    os._exit(7)\n" + CALM, r"the driver d.py:D cannot be made: it ended its own .*status 7"),
+    ],
+)
+def test_one_that_hangs_or_ends_before_it_drives_costs_one_drive(
+    spec, body: str, says: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also while its file is imported; the next drive has a new process."""
+    monkeypatch.setattr(proxy, "BEFORE_START", 1.0)
+    monkeypatch.setattr(proxy, "MAKING", 12.0)
+    with pytest.raises(RoadGPTError, match=says):
+        simulate(STRAIGHT, World(), IsolatedDriver(spec(body), 1.0), 1)
+    assert went(spec(CALM)).ended == "goal"
+
+
+def test_what_a_driver_imports_is_as_new_in_every_drive(spec) -> None:
+    Path("part").mkdir()
+    Path("part/gain.py").write_text("seen = []")
+    counts = spec(
+        "    from part import gain\n"
+        "    def start(self, *given):\n"
+        "        self.gain.seen.append(1)\n"
+        "        Path('seen').open('a').write(f'{os.getpid()} {len(self.gain.seen)}\\n')\n" + CALM
+    )
+    drives = [went(counts).to_bytes() for _ in range(3)]
+    assert len({*drives}) == 1
+    lines = Path("seen").read_text().split("\n")[:-1]
+    assert len(lines) == 3
+    assert [*{*lines}] == [lines[0]]  # one process, and a new module each time
+    assert lines[0].endswith(" 1")
+    Path("part/gain.py").write_text("seen = [1, 2, 3]")
+    went(counts)
+    assert Path("seen").read_text().endswith(" 4\n")
+
+
+@linux
 def test_a_driver_that_eats_memory_is_ended(spec, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(process, "memory_limit", lambda: 600e6)
-    monkeypatch.setattr(process, "_idle", [])
+    monkeypatch.setattr(children, "memory_limit", lambda: 600e6)
+    monkeypatch.setattr(proxy, "_idle", [])
     eats = (
         "    eaten = []\n"
         "    def steer(self, view):\n"
@@ -160,42 +215,28 @@ def test_a_driver_that_eats_memory_is_ended(spec, monkeypatch: pytest.MonkeyPatc
         went(spec(eats))
 
 
-def test_the_same_process_serves_many_drives_and_each_has_a_new_driver(spec) -> None:
-    counts = spec(
-        "    n = 0\n"
-        "    def steer(self, view):\n"
-        "        D.n += 1\n"
-        "        Path('pids').open('a').write(f'{os.getpid()} {D.n}\\n') if D.n == 1 else None\n"
-        "        return keep(view)"
-    )
-    for _ in range(3):
-        assert went(counts).ended == "goal"
-    lines = Path("pids").read_text().split("\n")[:-1]
-    assert len(lines) == 3
-    assert len(set(lines)) == 1
-
-
-def test_it_ends_with_whoever_asks(spec, tmp_path: Path) -> None:
+@linux
+@pytest.mark.parametrize("work", ["while True: pass", "return keep(view)"], ids=["busy", "idle"])
+def test_it_ends_with_whoever_asks_and_so_does_all_that_it_has_started(spec, work: str) -> None:
     path = spec(
-        "    def steer(self, view):\n"
-        "        Path('pid').write_text(str(os.getpid()))\n        while True: pass"
+        "    def start(self, *given):\n"
+        "        child = os.fork()\n"
+        "        if not child: time.sleep(3600)\n"
+        "        Path('pids').write_text(f'{os.getpid()} {child} ')\n"
+        f"    def steer(self, view):\n        {work}"
     )
     code = (
-        "from roadgpt.drive import simulate; from roadgpt.road import Road, World\n"
-        f"simulate(Road.through([[0, 0], [50, 0], [100, 0]]), World(), {path!r}, 1)"
+        "import time; from roadgpt.drive import simulate; from roadgpt.road import Road, World\n"
+        f"simulate(Road.through([[0, 0], [25, 0], [50, 0]]), World(), {path!r}, 1)\nprint(1, flush=True)\n"
+        "time.sleep(3600)"
     )
-    asks = subprocess.Popen([sys.executable, "-c", code])
+    asks = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
     due = time.monotonic() + 60
-    while not (Path("pid").exists() and Path("pid").read_text()) and time.monotonic() < due:
+    while not (Path("pids").exists() and Path("pids").read_text()) and time.monotonic() < due:
         time.sleep(0.05)
-    pid = int(Path("pid").read_text())
+    if work != "while True: pass":
+        assert asks.stdout is not None
+        assert asks.stdout.readline() == b"1\n"
     asks.kill()
-    asks.wait()
-    while time.monotonic() < due:
-        try:
-            os.kill(pid, 0)
-        except ProcessLookupError:
-            return
-        time.sleep(0.1)
-    children.kill(asks)
-    pytest.fail("it goes on without anybody who asks")
+    asks.communicate()
+    assert all(gone(int(pid)) for pid in Path("pids").read_text().split())

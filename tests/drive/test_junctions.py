@@ -13,9 +13,8 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.design import draft
 from roadgpt.design.room import world_for
 from roadgpt.drive import Drive, JunctionAhead, simulate
-from roadgpt.drive.driving_line import line_along, stations
+from roadgpt.drive.driving_line import highest_speeds, kept_in_lane, line_along, stations, turning_speed
 from roadgpt.drive.outlook import Outlook
-from roadgpt.drive.turning import highest_speeds, kept_in_lane, turning_speed
 from roadgpt.network import Route, build_route, made_from, read_network_design
 from roadgpt.road import Limits, Road, World
 from roadgpt.verdict import judge

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from road_parts import road_of
 from roadgpt.drive.sampled_road import locate_on, sample_road
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, tables
-from roadgpt.drive.simulators.mujoco.dynamics import esc_torques
-from roadgpt.drive.simulators.mujoco.tyres import tyre_forces
+from roadgpt.drive.simulators.mujoco.dynamics import esc_torques, tyre_forces
 from roadgpt.export.ego import CAR
 
 TYRE = ETK_LIKE.front.tyre
@@ -125,7 +124,7 @@ def on_ribbon(x, y, near):
 
 
 @given(st.floats(0.0, 1.0), st.floats(-7.0, 7.0), st.floats(-2.0, 2.0))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_the_ribbon_knows_the_road(share, t, off):
     s = share * ROAD.length
     x, y, z = ROAD.at(s, t).tolist()

@@ -5,7 +5,7 @@ metre of drop, to 0.4 m below the land 2 m beyond the edge.
 import numpy as np
 import pytest
 
-from roadgpt.export.embankments import Embankment, embankments
+from roadgpt.export.edges import Embankment, embankments
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Profile, Road
 from roadgpt.road.land import Land

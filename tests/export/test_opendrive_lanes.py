@@ -21,8 +21,7 @@ from export.test_opendrive_networks import (
 from network.changing import design
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.network import Junction, build_route, read_network_design
-from roadgpt.network.arrows import arrows
-from roadgpt.network.markings import STOP_LINE, strokes
+from roadgpt.network.markings import STOP_LINE, arrows, strokes
 from roadgpt.network.paved import paved_by
 from roadgpt.road.profile import LINE
 
@@ -100,7 +99,9 @@ def test_roads_that_continue_each_other_are_linked_lane_by_lane(seed: int) -> No
 
 @pytest.mark.parametrize("seed", [*SEEDS, *LANES])
 def test_lanes_lead_through_junctions_without_a_step(seed: int) -> None:
+    """And where every lane leads on, no lane is left out."""
     here = written(seed)
+    used: dict[tuple[str, str], set[tuple[str, int]]] = {}
     for connection, way in here.ways():
         pairs = {(int(link.attrib["from"]), int(link.attrib["to"])) for link in connection.iter("laneLink")}
         assert {own for _, own in pairs} == way.driven
@@ -113,10 +114,15 @@ def test_lanes_lead_through_junctions_without_a_step(seed: int) -> None:
             for own in way.driven:
                 lane = linked(here, int(way.id), own, tag)
                 assert lane is not None
+                used.setdefault((way.junction, tag), set()).add((other.id, lane))
                 assert tag == "successor" or (lane, own) in pairs
                 assert lane_of(here, int(way.id), contact, own) == pytest.approx(
                     lane_of(here, int(other.id), link["contactPoint"], lane), abs=1e-6
                 )
+    for name in here.junctions if seed in SEEDS else ():
+        for tag, ends in (("predecessor", ("start", "end")), ("successor", ("end", "start"))):
+            lanes = {(r, n) for r, end in here.meets(name) for n in here.roads[r].into(ends[end == "end"])}
+            assert used[name, tag] == lanes
 
 
 @pytest.mark.parametrize("seed", [*SEEDS, *LANES])

@@ -141,34 +141,6 @@ def turned(heading: float) -> float:
     return math.remainder(heading, 2 * math.pi)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_every_lane_leads_through_a_junction_at_its_full_width(seed: int) -> None:
-    here = written(seed)
-    reached: dict[str, set[tuple[str, int]]] = {name: set() for name in here.junctions}
-    left = {name: set() for name in here.junctions}
-    for connection, way in here.ways():
-        pairs = {(int(link.attrib["from"]), int(link.attrib["to"])) for link in connection.iter("laneLink")}
-        assert {own for _, own in pairs} == way.driven
-        for own in way.driven:
-            before, after = (
-                int(way.lanes[own].find(f"link/{tag}").attrib["id"]) for tag in ("predecessor", "successor")
-            )
-            assert (before, own) in pairs
-            for tag, lane, s in (("predecessor", before, 0.0), ("successor", after, way.length)):
-                other, contact = here.roads[way.links[tag]["elementId"]], way.links[tag]["contactPoint"]
-                assert lane in other.into("start" if (tag == "successor") == (contact == "end") else "end")
-                assert way.width(own, s) == pytest.approx(other.width(lane, other.end(contact)), abs=1e-9)
-                assert way.border(own, s) == pytest.approx(
-                    -abs(other.border(lane, other.end(contact))), abs=1e-9
-                )
-                (reached if tag == "successor" else left)[way.junction].add((other.id, lane))
-    for name in here.junctions:
-        ends = here.meets(name)
-        assert left[name] == {(road, n) for road, end in ends for n in here.roads[road].into(end)}
-        out = {"start": "end", "end": "start"}
-        assert reached[name] == {(road, n) for road, end in ends for n in here.roads[road].into(out[end])}
-
-
 def boundary_of(here: WrittenMap, junction: ET.Element) -> list[list[tuple[float, float]]]:
     """The points of each segment of a junction's boundary."""
     found = []

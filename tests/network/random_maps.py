@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from roadgpt.brief.plan import read_plan
-from roadgpt.design.map_search import MapSearch
+from roadgpt.design.network_search import MapSearch
 from roadgpt.network import MapDesign, Route, build_map
 from roadgpt.road import Site, World
 

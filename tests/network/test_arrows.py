@@ -14,7 +14,7 @@ from network.changing import design
 from network.mirrored import in_mirror
 from network.random_designs import random_design, random_lanes_design
 from roadgpt.network import Network, RoadEnd, Route, build_route, read_network_design
-from roadgpt.network.arrows import PaintedArrow, arrows
+from roadgpt.network.markings import PaintedArrow, arrows
 from roadgpt.road import Site, World
 
 WORLD = World(site=Site(map_size=600))
@@ -24,7 +24,7 @@ CROSSED = 5.0  # m, that a crosswalk and the gap before it take
 OTHER = {"left": "right", "right": "left", "straight": "straight"}
 Shown = dict[tuple[int, str, int], frozenset[str]]
 """For the id of a road, the end towards which one drives, and the id of a lane: the ways on."""
-settled = settings(max_examples=25, deadline=None)
+settled = settings(max_examples=12, deadline=None)
 seeds = st.integers(0, 10_000)
 DRAWINGS = pytest.mark.parametrize("draw", [random_design, random_lanes_design])
 Drawing = Callable[[int], dict[str, Any]]

@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.network import RoadEnd
-from roadgpt.network.building import Stub
-from roadgpt.network.crossing import LaneWay, lane_ways
+from roadgpt.network.building import LaneWay, Stub, lane_ways
 from roadgpt.road import Profile
 
 Arms = list[tuple[float, int, int]]
@@ -49,7 +48,7 @@ def turn(arms: Arms, to: int) -> float:
 
 
 @given(junctions())
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_every_arm_with_lanes_out_is_reached_by_lanes_that_are_there(arms: Arms) -> None:
     found = ways(arms)
     assert set(found) == {n for n, (_, _, out_of) in enumerate(arms) if n and out_of}
@@ -60,7 +59,7 @@ def test_every_arm_with_lanes_out_is_reached_by_lanes_that_are_there(arms: Arms)
 
 
 @given(junctions())
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_ways_from_one_arm_never_cross(arms: Arms) -> None:
     """Of two ways, the lanes of the one farther to the left lie to the left; they may share one lane."""
     by_turn = sorted(ways(arms).items(), key=lambda each: turn(arms, each[0]))
@@ -70,7 +69,7 @@ def test_ways_from_one_arm_never_cross(arms: Arms) -> None:
 
 
 @given(junctions())
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_every_lane_leads_on_where_there_is_room(arms: Arms) -> None:
     found = ways(arms)
     led = {i for way in found.values() for i, _ in way}

@@ -112,7 +112,7 @@ def test_a_map_that_is_wrong(fields: dict[str, Any], wanted: str) -> None:
     assert wanted in said(changed(**fields))
 
 
-@pytest.mark.parametrize("seed", range(50))
+@pytest.mark.parametrize("seed", range(24))
 def test_a_spoilt_map_is_built_or_refused_in_one_sentence(seed: int) -> None:
     rng = random.Random(seed)
     data = copy.deepcopy(GOOD) if seed % 3 else random_map(seed % 8).to_json()

@@ -36,7 +36,7 @@ def changed(**fields: Any) -> dict[str, Any]:
 
 
 @given(st.sampled_from([random_design, random_lanes_design]), st.integers(0, 10_000), st.booleans())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=24, deadline=None)
 def test_what_is_written_is_read(draw: Any, seed: int, left_hand: bool) -> None:
     design_, _ = read_network_design({**draw(seed), "left_hand": left_hand})
     written = json.loads(json.dumps(design_.to_json()))

@@ -13,7 +13,7 @@ from roadgpt.errors import UsageError
 from roadgpt.network import Leg, Network, Route, build_route, has_no_route, read_network_design
 from roadgpt.road import World
 
-settled = settings(max_examples=30, deadline=None)
+settled = settings(max_examples=14, deadline=None)
 seeds = st.integers(0, 10_000)
 BACK = {"kind": "roundabout", "take": 4}
 

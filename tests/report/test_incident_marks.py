@@ -10,7 +10,7 @@ from matplotlib.text import Annotation, Text
 
 from roadgpt.network import made_from, read_network_design
 from roadgpt.report import birds_eye, view
-from roadgpt.report.places import minor_places_of, places_of
+from roadgpt.report.birds_eye import minor_places_of, places_of
 from roadgpt.road import World
 from roadgpt.run import Run, Setup, prove
 from roadgpt.verdict import Incident

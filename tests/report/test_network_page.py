@@ -10,8 +10,7 @@ import shapely
 from tests.report.test_networks import TWO
 
 from roadgpt.network import Route, made_from, read_network_design
-from roadgpt.network.arrows import arrows
-from roadgpt.network.markings import strokes
+from roadgpt.network.markings import arrows, strokes
 from roadgpt.report import view
 from roadgpt.road import CrossSection, World
 from roadgpt.run import Run, Setup, prove

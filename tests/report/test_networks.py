@@ -12,12 +12,11 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from roadgpt.network import NetworkDesign, Route, made_from, read_network_design
-from roadgpt.network.arrows import arrows
+from roadgpt.network.markings import arrows
 from roadgpt.report import birds_eye, height_profile, strip, view
-from roadgpt.report.network_view import ASPHALT, GRASS, KERB, PAINT, TINT
 from roadgpt.report.overview import pages
 from roadgpt.report.page.maps import draw_site, site_of
-from roadgpt.report.plan_view import Frame
+from roadgpt.report.plan_view import ASPHALT, GRASS, KERB, PAINT, TINT, Frame
 from roadgpt.road import Profile, Road, World
 from roadgpt.run import Run, Setup, prove, write_run
 

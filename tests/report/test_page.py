@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
+from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import RoadGPTError
 from roadgpt.report.overview import Thumbnail
 from roadgpt.report.page import STYLE, csv_of, html_of, latex_of, write
@@ -29,7 +30,7 @@ from roadgpt.report.page.model import (
     cell,
     linked,
 )
-from roadgpt.road import CrossSection, Road, World
+from roadgpt.road import CrossSection, Design, Road, Segment, World, build
 
 NASTY = "<script>alert(1)</script> & \"100 %\" | $x_1$ \\ {y} 'z'"
 TABLE = Table(
@@ -268,10 +269,6 @@ def test_a_map_that_shows_nothing_is_none(filled: list[float], is_one: bool) -> 
 
 def test_the_place_of_a_failure_is_to_scale_and_the_way_there_leads_up() -> None:
     """A car on a straight to the east: its way is drawn upwards, in the right lane, 240 px for 52 m."""
-    from roadgpt.drive import COLUMNS, Box, Columns, Drive
-    from roadgpt.report.page.maps import draw_site, site_of
-    from roadgpt.road import Design, Segment, World, build
-
     straight = Segment(distance=120.0, direction="straight")
     road = build(Design(starting_point=(20, 100, 0), theta=0, segments=(straight,)))
     s = np.linspace(2.0, 70.0, 500)

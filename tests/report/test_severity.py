@@ -12,13 +12,12 @@ from PIL import Image
 
 from roadgpt.drive import Columns
 from roadgpt.report import Drawing
-from roadgpt.report.birds_eye import severities
+from roadgpt.report.birds_eye import places_of, severities
 from roadgpt.report.canvas import OUTCOMES, SEVERE, outcome_of
 from roadgpt.report.chapters.validity import outside_sentences, outside_table, passed_roads
 from roadgpt.report.overview import _thumbnail, overview
-from roadgpt.report.places import places_of
 from roadgpt.report.road_record import RoadRecord
-from roadgpt.report.view.scene import scene
+from roadgpt.report.view import scene
 from roadgpt.road import Road, World
 from roadgpt.run import Run, prove, write_run
 from roadgpt.verdict import SEVERITIES, judge

@@ -16,7 +16,7 @@ from road_parts import design_of, named
 from roadgpt.cli import app
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.report import view
-from roadgpt.report.view.scene import DRIVE
+from roadgpt.report.view import DRIVE
 from roadgpt.road import CrossSection, Design, Road, Site, World
 from roadgpt.run import Run, Setup, prove, write_run
 from roadgpt.scene import Scene

@@ -62,7 +62,7 @@ S = np.linspace(0.0, LENGTH, 400)
 
 @given(near(STEEPEST, 1.2), st.floats(5, 50), st.sampled_from([-1, 1]))
 @example(0.92, 50.0, -1)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=20, deadline=None)
 def test_superelevation(
     tmp_path_factory: pytest.TempPathFactory, most: float, ramp: float, side: int
 ) -> None:
@@ -84,7 +84,7 @@ def test_superelevation(
 
 
 @given(near(WIDEST, 60.0), st.floats(5, 50))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 def test_width_of_a_shoulder(tmp_path_factory: pytest.TempPathFactory, most: float, ramp: float) -> None:
     folder = tmp_path_factory.mktemp("width")
     wide = swelling("width", "sOffset", 1.0, most, ramp)
@@ -97,7 +97,7 @@ def test_width_of_a_shoulder(tmp_path_factory: pytest.TempPathFactory, most: flo
 
 
 @given(st.one_of(near(2.0, 1.9), near(10.0, 8.0)), st.floats(5, 50))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 def test_width_of_the_driven_lane(tmp_path_factory: pytest.TempPathFactory, some: float, ramp: float) -> None:
     folder = tmp_path_factory.mktemp("lane")
     said, road, _ = told_and_read(folder, "", swelling("width", "sOffset", 3.5, some, ramp))
@@ -111,7 +111,7 @@ def test_width_of_the_driven_lane(tmp_path_factory: pytest.TempPathFactory, some
 
 
 @given(st.floats(0, 3), st.floats(-2, 9))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 def test_rows_that_a_file_holds_are_refused_with_value_and_place(excess: float, ramp: float) -> None:
     """A road file that somebody wrote: its limits are those at which OpenDRIVE is clamped."""
     most = STEEPEST + 10.0**-ramp * excess
@@ -130,7 +130,7 @@ def test_rows_that_a_file_holds_are_refused_with_value_and_place(excess: float, 
     st.one_of(near(300 / 3.6, 9.0), near(5 / 3.6, 1.0)),
     st.one_of(near(2.0, 1.0), near(10.0, 5.0)),
 )
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 def test_the_world_of_an_export_comes_back_or_is_limited_in_a_sentence(
     tmp_path_factory: pytest.TempPathFactory, friction: float, speed: float, width: float
 ) -> None:

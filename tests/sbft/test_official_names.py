@@ -117,29 +117,33 @@ def test_every_public_name_is_there(python: str) -> None:
     assert told_in(python)[0] == []
 
 
-@pytest.mark.parametrize("module", [*ELSEWHERE, "self_driving.vehicle_state_reader"])
-def test_what_takes_beamng_is_told_by_name(module: str, tmp_path: Path) -> None:
-    package, _, stem = module.partition(".")
-    words = f"from {module} import VehicleStateReader"
-    told = run_in(sys.executable, f"try:\n    {words}\nexcept ImportError as error:\n    print(error)")
-    assert f"RoadGPT has no stand-in for {module}" in told
-    assert "PYTHONPATH" in told
-    (tmp_path / package).mkdir()
-    (tmp_path / package / "__init__.py").write_text("")
-    (tmp_path / package / f"{stem}.py").write_text("VehicleStateReader = 'theirs'\n_private = 'as well'")
-    words = f"from {module} import VehicleStateReader, _private; print(VehicleStateReader, _private)"
-    assert run_in(sys.executable, words, folder=tmp_path) == "theirs as well"
+def test_what_takes_beamng_is_told_by_name(tmp_path: Path) -> None:
+    modules = [*ELSEWHERE, "self_driving.vehicle_state_reader"]
+    tries = "".join(
+        f"try:\n    from {module} import VehicleStateReader\nexcept ImportError as error:\n    print(error)\n"
+        for module in modules
+    )
+    for module, told in zip(modules, run_in(sys.executable, tries).splitlines(), strict=True):
+        assert f"RoadGPT has no stand-in for {module}" in told
+        assert "PYTHONPATH" in told
+    for module in modules:
+        package, _, stem = module.partition(".")
+        (tmp_path / package).mkdir(exist_ok=True)
+        (tmp_path / package / "__init__.py").write_text("")
+        (tmp_path / package / f"{stem}.py").write_text(f"VehicleStateReader = 'their {stem}'\n_private = 7")
+    words = "from {} import VehicleStateReader, _private; print(VehicleStateReader, _private)\n"
+    told = run_in(sys.executable, "".join(map(words.format, modules)), folder=tmp_path)
+    assert told.splitlines() == [f"their {module.partition('.')[2]} 7" for module in modules]
 
 
-@pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.py")), ids=lambda path: path.name)
-def test_this_half_is_python_3_8_and_the_standard_library(path: Path) -> None:
-    tree = ast.parse(path.read_text(encoding="utf-8"), feature_version=(3, 8))
+def test_this_half_is_python_3_8_and_the_standard_library() -> None:
     own = {entry.stem for entry in FOLDER.iterdir()}
-    for node in tree.body:  # what the file needs to be imported at all
-        modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-        modules += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
-        for module in modules:
-            assert module.split(".")[0] in {*sys.stdlib_module_names, *own}, f"{path}: {module}"
+    for path in FOLDER.rglob("*.py"):
+        for node in ast.parse(path.read_text(encoding="utf-8"), feature_version=(3, 8)).body:
+            modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            modules += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+            for module in modules:  # what the file needs to be imported at all
+                assert module.split(".")[0] in {*sys.stdlib_module_names, *own}, f"{path}: {module}"
 
 
 @pytest.mark.skipif(not PYTHONS[1:], reason="no Python of 3.8 to 3.10 is installed")

@@ -131,13 +131,13 @@ def test_outcomes_reach_it_from_another_interpreter(tmp_path: Path) -> None:
     env = {**os.environ, "ROADGPT_PYTHON": sys.executable}
     done = subprocess.run(words, env=env, capture_output=True, text=True, check=False, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    told, untold = (roads_of_16(with_place) for with_place in (True, False))
+    told, untold = (roads_told(with_place) for with_place in (True, False))
     assert json.loads(done.stdout) == told
     assert told[:10] == untold[:10]
     assert told[10:] != untold[10:]  # where the car left its lane is learnt, too
 
 
-def roads_of_16(with_place: bool) -> list[list[list[float]]]:
+def roads_told(with_place: bool) -> list[list[list[float]]]:
     """Roads of a generator here that is told what CLIENT tells, with or without the places."""
     generator = RoadGPTTestGenerator(None, 200)
     generator.description, generator.reader, generator.seed = FLAT, "plan", 4

@@ -17,10 +17,7 @@ TESTS = 14
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("results")
     experiment = Experiment(
-        module_name="curvature_walk",
-        class_name="CurvatureWalk",
-        module_path=str(EXAMPLES),
-        test_budget=TESTS,
+        module_name="curvature_walk", class_name="CurvatureWalk", module_path=str(EXAMPLES), test_budget=TESTS
     )
     assert len(list(compete(experiment, out=out))) == TESTS
     return out

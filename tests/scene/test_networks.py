@@ -7,11 +7,10 @@ import pytest
 import shapely
 
 from roadgpt.network import Route, made_from, read_any_design
-from roadgpt.network.arrows import arrows
-from roadgpt.network.markings import signs
+from roadgpt.network.markings import arrows, signs
 from roadgpt.road import CrossSection, World
 from roadgpt.scene import Camera, CameraPlacement, Pose, Scene
-from roadgpt.scene.junction_signs import faces_of
+from roadgpt.scene.network_mesh import faces_of
 
 HIGH = 40.0  # m, of a camera that looks down
 STRAIGHT = {"distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0}

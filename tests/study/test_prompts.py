@@ -27,10 +27,7 @@ def test_a_truth_is_optional_and_so_is_an_id(tmp_path: Path) -> None:
     assert other.truth.turns == (1, None)
 
 
-@pytest.mark.parametrize(
-    ("line", "says"),
-    rows(__file__, "a_wrong_line_is_named"),
-)
+@pytest.mark.parametrize(("line", "says"), rows(__file__, "a_wrong_line_is_named"))
 def test_a_wrong_line_is_named(tmp_path: Path, line: object, says: str) -> None:
     file = written(tmp_path, {"prompt": "a road"}, line)
     with pytest.raises(UsageError, match="line 2") as error:

@@ -22,7 +22,7 @@ from roadgpt.campaign.status import status_of
 from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
 from roadgpt.cli.repeat_commands import next_steps, of_status
-from roadgpt.report.chapters import same_roads
+from roadgpt.report import campaign_report
 from roadgpt.report.page import write
 from roadgpt.report.page.model import Figure, Page
 from roadgpt.road import Design, Segment
@@ -86,9 +86,9 @@ def test_every_figure_is_that_of_others(
         drawn.append((road[0].number, which))
         return Figure("x", "", "<svg/>")
 
-    monkeypatch.setattr(same_roads, "_figure", figure)
+    monkeypatch.setattr(campaign_report, "_figure", figure)
     with Record.opened(folder) as record:
-        said, section = same_roads.compared(record), same_roads.same_roads(folder, record)
+        said, section = campaign_report.compared(record), campaign_report.same_roads(folder, record)
     write(Page("", [], [section]), tmp_path)
     with (tmp_path / "tables" / "pairs-of-drivers.csv").open(encoding="utf-8") as file:
         rows = [*csv.DictReader(file)]

@@ -66,7 +66,6 @@ def test_the_distance_of_plans_is_that_of_procrustes() -> None:
     assert found.metres == pytest.approx(np.sqrt(square), rel=1e-6)
 
 
-@settings(max_examples=60)
 @given(one=st.text("LRS", max_size=8), other=st.text("LRS", max_size=8))
 def test_edits_are_those_of_the_slow_way(one: str, other: str) -> None:
     def slow(a: str, b: str) -> int:

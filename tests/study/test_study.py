@@ -24,7 +24,12 @@ from roadgpt_study.plan import Prompt, StudyPlan, open_folder, read_plan, thesis
 from roadgpt_study.study_report import keep_problems, write_study
 
 GOLDEN = Path(__file__).parent / "golden"
-CLOCK = ("seconds.json", "generation_stats.csv", "workers.log")  # what the clock and workers write
+CLOCK = (
+    "seconds.json",
+    "generation_stats.csv",
+    "workers.log",
+    "runs.sqlite",
+)  # what the clock and workers write
 QUICK = Setup(reader="plan", drives=False)
 ANY = "| turns=1.."  # a road of any kind
 

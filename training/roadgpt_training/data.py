@@ -12,8 +12,8 @@ import numpy.typing as npt
 from roadgpt.brief.model import Amount
 from roadgpt.brief.normal import STRAIGHT, normal
 from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.before import TOLD_ON_ROUTES
 from roadgpt.brief.readers.model.neural_network import WINDOW, WordPieces
-from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES
 from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot, slot_name, slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, OF_ROADS, SLOT_TOKENS, Compared
 from roadgpt.brief.sentence import sentence

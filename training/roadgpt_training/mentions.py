@@ -10,7 +10,7 @@ import numpy as np
 
 from roadgpt.brief.plan import ALIKE, read_plan
 from roadgpt.brief.plan import plan as plan_of
-from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES
+from roadgpt.brief.readers.model.before import TOLD_ON_ROUTES
 from roadgpt_training.mirror import is_of_junctions
 from roadgpt_training.noise import tidy
 from roadgpt_training.pair import Pair

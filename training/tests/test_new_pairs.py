@@ -40,8 +40,9 @@ def letters(row: dict[str, Any]) -> str:
 
 
 @pytest.mark.parametrize("path", [*CHANGES, *CONTRASTS, *FREE], ids=lambda path: path.stem)
-def test_every_label_is_in_the_language_of_plans(path: Path) -> None:
-    for row in rows(path):
+def test_labels_are_in_the_language_of_plans(path: Path) -> None:
+    """Of each file every fifth one; all together take a minute."""
+    for row in rows(path)[::5]:
         assert row.keys() == {"text", "plan", "family", "lang"}
         assert row["family"] == path.stem
         if row["plan"].startswith("!"):

@@ -22,24 +22,10 @@ from roadgpt.brief import beside
 from roadgpt.brief.expressions import said_map_size, says_motorway, with_driving_side
 from roadgpt.brief.feasible import check, is_possible
 from roadgpt.brief.map_fit import ROAD_WIDTH, motorway_remarks
-from roadgpt.brief.model import (
-    Amount,
-    Brief,
-    Clause,
-    Kind,
-    Sharpness,
-    Side,
-    Size,
-    Slope,
-    at_least,
-    at_most,
-    between,
-    exactly,
-)
+from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.brief.normal import normal
-from roadgpt.brief.outline import Feature, Group, Outline, outline
+from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.ranges import Range
 from roadgpt.brief.refusal import (
     AnotherRoadError,
     ContradictionError,
@@ -54,27 +40,15 @@ from roadgpt.errors import BriefError, PartError
 
 __all__ = [
     "SURE",
-    "Amount",
     "AnotherRoadError",
     "Brief",
     "Clause",
     "ContradictionError",
-    "Feature",
-    "Group",
-    "Kind",
     "NoRoomError",
     "NotBuiltError",
     "Outline",
-    "Range",
     "Reader",
-    "Sharpness",
-    "Side",
-    "Size",
-    "Slope",
     "alternatives",
-    "at_least",
-    "at_most",
-    "between",
     "check",
     "exactly",
     "normal",

@@ -8,35 +8,18 @@ therefore removed from the words before a reader reads the words.
 import re
 from itertools import pairwise
 
+from roadgpt.brief.languages import TABLE, pattern_of, word_set
 from roadgpt.brief.model import Brief
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, unaccented
 from roadgpt.errors import BriefError
 
-MAP = r"(?:maps?|karten?|landkarten?|cartes?|mapas?|mapp[ae])"
-GROUND = (
-    r"(?:areas?|sites?|plots?|terrains?|grounds?|fl[äa]chen?|gel[äa]nden?|areale?n?|gebiet(?:en|es)?|zones?|"
-    r"surfaces?|terrenos?|[áa]reas?|zonas?|terren[oi]|zon[ae])"
-)
-ON = r"(?:on|onto|in|inside|within|over|auf|innerhalb|sur|dans|en|sobre|dentro de|su|sopra)"
-ARTICLE = r"(?:an?|the|one|die|il|eine[rmn]?|der|dem|une?|la|le|una?|uno|el)"
-OF = r"(?:(?:of|with|that is|measuring|von|mit|de|di|d[ae]|size|sized|que mide|mesurant) )*"
-UNIT = (
-    r"(?:km|kilomet(?:er|re)s?n?|kil[óo]metros?|chilometr[oi]|kilom[èe]tres?|"
-    r"m|met(?:er|re)s?n?|m[èe]tres?|metros?|metri)"
+MAP, GROUND, ON, ARTICLE, OF, UNIT, BY, SQUARE, SIZE, IS = (
+    TABLE["map_size"][name].replace("\n", "")
+    for name in ("map", "ground", "on", "article", "of", "unit", "by", "square", "size", "is")
 )
 NUMBER = r"(\d+(?:[.,]\d+)?)"
 METRES = rf"{NUMBER}[ -]?({UNIT})\b"
-BY = r"\s*(?:x|×|\*|by|mal|auf|sur|per|por)\s*"
 TWO = rf"{NUMBER}(?:[ -]?({UNIT})\b)?{BY}{METRES}"
-SQUARE = (
-    r"(?:square|wide|across|on each side|im quadrat|breite?[ns]?|gro(?:ß|ss)e?[ns]?|de c[ôo]t[ée]|de large|"
-    r"de lado|cuadrad[oa]s?|di lato|quadrat[oa])"
-)
-SIZE = (
-    r"(?:(?:map|site|area) size|kartengr[öo](?:ß|ss)e|gr[öo](?:ß|ss)e der karte|taille de (?:la )?carte|"
-    r"tama[ñn]o del? mapa|dimensione della mappa)"
-)
-IS = r"(?::|(?: is| has| measures| ist| misst| hat| fait| mesure| mide| tiene| es| misura| [eè] di| [eè]))"
 MAP_SIZES = tuple(
     re.compile(form, re.IGNORECASE)
     for form in (
@@ -89,22 +72,7 @@ def said_map_size(words: str) -> tuple[float, str] | None:
     return metres, rest
 
 
-LEFT_HAND = re.compile(
-    r"left[- ]?hand traffic|\blht\b|traffic (?:(?:is|keeps|drives|goes) )?(?:on the )?left\b(?! lane)|"
-    r"\bdriv(?:e|es|ing) (?:on|to) the left\b(?! lane)|\bso on the left|"
-    r"on the left(?:-hand)? side of the road like|wrong side,? ie the left|"
-    r"linksverkehr|\bfahr(?:en|t) (?:sie |wir |man )?(?:links,|auf der linken (?:strassen)?seite)|"
-    r"\b(?:conduite|circulation) a gauche|\b(?:roul|condui|circul)\w* a gauche|\btient la gauche|"
-    r"\b(?:circul|conduc|condu[cz]|manej|transit|trafico)\w*(?: siempre)? por la izquierda|"
-    r"\bguida\w* a sinistra|\b(?:si|che) (?:viaggia|guida|circola|tiene) (?:a |la |sulla )?sinistra|"
-    r"\bbritish (?:rules|traffic)"
-)
-TRAFFIC = re.compile(r"traffic|verkehr|circulation|circulacion|circolazione|trafico")
-FORK = re.compile(r"\b(?:bivio|biforcazione|fourche|bifurcation)\b")
-"""Words for a fork, where "keep left" tells the way of the route instead of the driving side."""
-NEGATED = re.compile(
-    r"\b(?:no|not|without|never|kein|keinen|nicht|ohne|pas de|sans|sin|senza)\b(?:\s\w+)?\s*$"
-)
+LEFT_HAND, TRAFFIC, FORK, NEGATED = map(pattern_of, ("left_hand", "traffic", "fork", "negated"))
 
 
 def says_left_hand(words: str) -> bool:
@@ -130,26 +98,9 @@ def with_driving_side(brief: Brief, words: str) -> Brief:
     return brief.model_copy(update={"left_hand": True, "beside": beside})
 
 
-def _bag(*lines: str) -> frozenset[str]:
-    return frozenset(word for line in lines for word in line.split())
-
-
-MOTORWAYS = _bag(
-    "motorway motorways freeway freeways expressway expressways highway highways interstate turnpike",
-    "autobahn autobahnen schnellstrasse schnellstraße kraftfahrstrasse kraftfahrstraße autoroute autoroutes",
-    "autopista autopistas autovia autovias autostrada autostrade superstrada superstrade",
-)
+MOTORWAYS, NOT_ONE, PARTS_OF_ONE = map(word_set, ("motorways", "not_one", "parts_of_one"))
 PAIRS = frozenset([("voie", "rapide"), ("voies", "rapides")])
-NOT_ONE = _bag(
-    "no not without off from to towards toward near beside leaving leave join joining over under",
-    "kein keine keiner ohne neben zur zum von pas sans vers quitter sin hacia junto senza verso accanto non",
-)
-"""Words, up to three before "motorway", that say that the road is no motorway or only near a motorway."""
 WORDS_BEFORE = 3  # how many words before "motorway" are searched for NOT_ONE
-PARTS_OF_ONE = _bag(
-    "exit exits ramp ramps slip interchange junction entrance bridge services ausfahrt auffahrt"
-)
-"""Words that, right after "motorway", name only a part of it, such as a ramp or a bridge."""
 
 
 def says_motorway(words: str) -> bool:

@@ -1,25 +1,10 @@
 """The normal form of a Brief: two Briefs that ask for the same road have the same normal form.
 
-- ``words``, ``unused``, ``confidence`` and ``other`` describe the origin of a Brief, not its requirements,
-  and are cleared.
-- A slope with a number loses its adverb: 'steeply up' at 12 percent becomes 'up' at 12 percent. A grade in
-  percent without a direction is uphill.
-- A clause with several straights, crests or dips is split into clauses with a single one. So is a clause
-  with alternating turns if the direction of the first is known. Consecutive clauses for equal turns, S-bends
-  or chicanes are merged into one clause with the total count.
-- A serpentine 'of 4 turns or more' becomes a serpentine without a count. ``alternating`` is not set for kinds
-  that always alternate.
-- A requirement for every turn (sharpness, degrees, radius) moves to the clauses if they name the turns.
-- If all clauses have the same slope and none has a height, this slope becomes the slope of the whole road.
-- A height in metres turns 'steeply up' into 'up'. A height without a direction is uphill.
-- Fields that only repeat the clauses (number of turns, left or right, slope, first and last feature) are
-  cleared.
-- If 4 of 5 turns go left, 1 goes right; if none goes left, all turns go right.
-- If a Brief names no other feature, 'N turns' becomes a clause, and 'N or more turns' a requirement for the
-  whole road.
-- A Brief that names no features and no number of turns requires at least one turn. A Brief that names only
-  straights forbids turns, unless it has the requirement '0 or more turns'. This requirement is removed from
-  all other Briefs.
+What describes only the origin of a Brief is cleared. Each requirement stands in one place and in one form: a
+number replaces its word; what holds for every turn stands in the clauses if they name the turns; equal
+neighbours are one clause; what only repeats the clauses, or follows from other numbers, is left out or filled
+in always. A Brief without features and number of turns asks for at least one turn, and one of straights alone
+for none, unless it asks for '0 or more turns'.
 """
 
 from collections.abc import Iterable, Sequence

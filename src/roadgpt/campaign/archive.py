@@ -19,7 +19,7 @@ boundary   as for failures, but the value peaks near a predicted probability of 
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,26 +120,25 @@ DARING = 0.5  # power of the probability of failing for those that explore
 LEAST_TREES = 0.5  # trees that are taken to predict a failure where none does
 
 
-class Predictions(NamedTuple):
-    """The surrogate's predictions for n candidates, as arrays ``(trees, n)`` with one row per tree."""
+def select(
+    goal: Goal, n: int, margins: Array, places: Sequence[Cells], counts: Sequence[Counter[int]]
+) -> list[int]:
+    """Returns the indices of the n most valuable candidates for a goal, the most valuable first.
 
-    margins: Array  # predicted margins, in metres; negative for a predicted failure
-    cells: tuple[NDArray[np.intp], ...]  # predicted cell numbers of the candidates, one array for each map
-
-
-def select(goal: Goal, n: int, expected: Predictions, counts: Sequence[Counter[int]]) -> list[int]:
-    """Returns the indices of the n most valuable candidates for a goal, the most valuable first. ``counts``
-    has one Counter per map: the failures (for the goal "coverage": the tests) so far in each cell."""
-    weight = (expected.margins <= 0.0).astype(float) if goal != "coverage" else np.ones_like(expected.margins)
-    maps: list[tuple[NDArray[np.intp], Array]] = []
-    for cells, of_cells in zip(expected.cells, counts, strict=True):
+    Each tree of the surrogate predicts their ``margins``, metres, negative for a failure, and their cells in
+    each map, ``places``; both have the shape ``(trees, candidates)``. ``counts`` has one Counter per map: the
+    failures (for the goal "coverage": the tests) so far in each cell.
+    """
+    weight = (margins <= 0.0).astype(float) if goal != "coverage" else np.ones_like(margins)
+    maps: list[tuple[Cells, Array]] = []
+    for cells, of_cells in zip(places, counts, strict=True):
         used, index = np.unique(cells, return_inverse=True)  # numbered anew, so that counts fit in an array
         maps.append((index.reshape(cells.shape), np.array([float(of_cells[int(cell)]) for cell in used])))
-    is_left = np.ones(expected.margins.shape[1], bool)
+    is_left = np.ones(margins.shape[1], bool)
     out: list[int] = []
     while len(out) < n and is_left.any():
         if goal == "hardest":
-            value = expected.margins.std(axis=0) - expected.margins.mean(axis=0)
+            value = margins.std(axis=0) - margins.mean(axis=0)
         else:
             floor = 0.0 if goal == "coverage" else ANYWHERE
             worth = sum(1 / (1 + known[cells]) ** NOVELTY for cells, known in maps) / len(maps)

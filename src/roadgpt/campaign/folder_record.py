@@ -5,21 +5,31 @@ stored or by driving its road again.
 import json
 import sqlite3
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from roadgpt.campaign.model import Cell, NumberedTest, Result
 from roadgpt.campaign.record import STORE, Record, no_road, no_tests
-from roadgpt.campaign.run_folder import FolderStore, RunFolder, finished_run
+from roadgpt.campaign.run_folder import FolderStore, RunFolder, finished_run, writing
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.road import Road
-from roadgpt.run import Request, Run, Setup, prove, read_run
-from roadgpt.run.atomic import is_locked
+from roadgpt.run import Request, Run, Setup, prove, read_run, store, write_run
+from roadgpt.run.atomic import alone_in, is_locked
 from roadgpt.run.execution import test_name
-from roadgpt.run.folder import CARD, RUNS, finished, is_run, read_card, run_folder
+from roadgpt.run.folder import (
+    CARD,
+    RUNS,
+    finished,
+    finished_run_in,
+    is_run,
+    read_card,
+    run_folder,
+    write_again,
+)
+from roadgpt.run.tables import TallyEntry, write_description
 
 
 def is_store(folder: Path) -> bool:
@@ -55,17 +65,17 @@ class FolderRecord(FolderStore):
 
     def __init__(self, folder: Path) -> None:
         """Opens a folder of runs, or the folder of one Run."""
-        self._is_entered = False
+        self._is_entered, self._home = False, folder
         if is_run(folder):
             self._places = {read_run(folder).index: folder}
         else:
             self._places = {number: run_folder(folder, number) for number in finished(folder)}
         card = read_card(folder) if (folder / CARD).is_file() else None
-        first = next(iter(self._places.values()), None)
+        first = next(iter(self._places), None)
         brief, request, versions = None, card and card.request, card and card.versions
         if first is not None:
             try:
-                run = read_run(first)
+                run = self.run("", first)
                 brief, request, versions = run.brief, request or run.request, versions or run.versions
             except UsageError:
                 if request is None:
@@ -109,7 +119,8 @@ class FolderRecord(FolderStore):
     def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
         """Returns the Run of a test, always with its drive; raises UsageError if it cannot be read."""
         self.check_ended(cell, number)
-        return read_run(self._places[number])
+        place = self._places[number]
+        return read_run(place) if place == self._home else finished_run_in(self._home, number)
 
     def result(self, cell: str, number: int) -> Result:
         """Returns the result of one test; raises UsageError if its Run cannot be read."""
@@ -158,6 +169,35 @@ def run_again(folder: Path, cell: str, number: int) -> tuple[Run, Result]:
         raise no_road(folder, cell, result)
     run = prove(kept.road, kept.seed, kept.world, kept.request.setup, number, kept.brief)
     return replace(run, request=kept.request, design=kept.design), result
+
+
+def write_runs(folder: Path, out: Path) -> Iterator[Path]:
+    """Writes the tests of a campaign, or of a folder of runs, as a folder of runs ``out`` with its tables; of
+    a campaign, a folder in ``out`` for each cell. If ``out`` is the folder of runs itself, what is missing or
+    damaged there becomes what it was, but for the pictures. Yields the folder of each Run when it is written.
+    Raises UsageError if another campaign is in ``out``."""
+    with open_record(folder) as record:
+        for cell in record.cells():
+            place = out / cell.name
+            names, versions = record.tests(cell.name), record.versions(cell.request.setup.driver)
+            roads = cell.budget.tests or len(names)
+            runs = RunFolder(place, cell.request, cell.brief, roads, versions=versions)
+            is_again = place.exists() and place.samefile(folder)
+            if (place / CARD).is_file() and not is_again:
+                raise UsageError(f"{place} holds runs already; name another folder")
+            with alone_in(place), writing(place):
+                for _, number in names:
+                    run = record.run(cell.name, number)
+                    if isinstance(record, FolderRecord) and store.is_kept(folder):
+                        write_again(folder, number, place)
+                    else:
+                        write_run(run, place)
+                    runs.count(replace(finished_run(run), entry=TallyEntry.of(run)))
+                    yield run_folder(place, number)
+                write_description(cell.request, roads, place)
+                runs.write_tables()
+                if not is_again:
+                    runs.write_card(is_finished=True)
 
 
 def is_same(run: Run, result: Result) -> bool:

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.status import status_of
-from roadgpt.drive.permission import without_folder
+from roadgpt.drive.loading import without_folder
 from roadgpt.errors import GateError, RoadGPTError, UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.plural import plural

@@ -25,7 +25,7 @@ from roadgpt.chat import ChatSettings, Meter, Spent
 from roadgpt.chat.config import key_for
 from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored
-from roadgpt.drive.permission import require_permission
+from roadgpt.drive.loading import require_permission
 from roadgpt.errors import UsageError, command_line
 from roadgpt.road import World
 from roadgpt.run import Draw, brief_of

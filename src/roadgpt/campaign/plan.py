@@ -31,9 +31,8 @@ from roadgpt.campaign.model import (
 )
 from roadgpt.chat import ChatSettings, asks_a_model
 from roadgpt.design.room import world_for
-from roadgpt.drive import permission
-from roadgpt.drive.loading import absolute_spec
-from roadgpt.errors import UsageError
+from roadgpt.drive.loading import absolute_spec, driver_from_file
+from roadgpt.errors import UsageError, advice_on
 from roadgpt.reading import read_text
 from roadgpt.road import Geometry, World
 from roadgpt.road.world import STEEPEST, Lanes, NotNegative, Positive, bank_in
@@ -82,7 +81,7 @@ class Plan(Frozen):
         """Returns the Plan read from a file that another person may have written: RoadGPT asks before it runs
         a driver's file, or sends the user's API key to a server, that only this file names."""
         chat = self.chat and self.chat.came_with(file)
-        drivers = tuple(permission.driver_from_file(driver, file) for driver in self.drivers)
+        drivers = tuple(driver_from_file(driver, file) for driver in self.drivers)
         return self.model_copy(update={"chat": chat, "drivers": drivers})
 
     @property
@@ -180,23 +179,6 @@ class Plan(Frozen):
 
 LARGEST = 4_000_000  # bytes of a file
 FOLDERS = ("record", "replay")  # keys of [chat] that name a folder
-
-ADVICE = {
-    "greater_than_equal": "give {ge:g} or more",
-    "greater_than": "give more than {gt:g}",
-    "less_than_equal": "give {le:g} or less",
-    "less_than": "give less than {lt:g}",
-    "literal_error": "give {expected}",
-    "int_type": "give a whole number",
-    "float_type": "give a number",
-    "string_type": "give a text in quotes",
-    "string_too_short": "give a text that is not empty",
-    "bool_type": "give true or false",
-    "too_short": "give at least one",
-    "model_type": "give a table",
-    "dict_type": "give a table",
-}
-"""Advice to the user on each kind of mistake, by pydantic's name for it."""
 
 
 def _listed(value: Any) -> Any:
@@ -324,9 +306,7 @@ def _sentence(error: ValidationError, within: tuple[str, ...]) -> str:
         near = get_close_matches(str(place[-1]).lower(), known, 1, 0.5)
         advice = f"did you mean '{near[0]}'?" if near else f"keys are {', '.join(known)}"
         return f"'{key}' is not a key of a campaign; {advice}"
-    advice = ADVICE.get(mistake["type"], "").format(**mistake.get("ctx", {}))
-    message = str(mistake["msg"]).removeprefix("Value error, ")
-    return f"{key}: {_short(mistake['input'])} is not possible; {advice or message[:1].lower() + message[1:]}"
+    return f"{key}: {_short(mistake['input'])} is not possible; {advice_on(mistake)}"
 
 
 def _keys(place: tuple[Any, ...]) -> list[str]:

@@ -1,8 +1,8 @@
 """Folders of runs, as ``roadgpt run`` and each part of a study write them, as the stores of cells.
 
-The files in a folder, which are those of the SBFT competition, are the only record of its tests. A test has
-ended when its ``test.NNNN.json`` exists: this file is written last, by the process that holds the folder's
-lock.
+Each folder has a record of its tests, see ``run.store``. The process that holds the folder's lock adds a row
+to it when the files of a Run are written; from then on the test has ended. The files are those of the SBFT
+competition.
 """
 
 import sqlite3
@@ -26,7 +26,7 @@ from roadgpt.design import designer_of
 from roadgpt.design.room import world_for
 from roadgpt.errors import DesignError, RoadGPTError, UsageError, explained
 from roadgpt.road import Design, World
-from roadgpt.run import PLAIN, USUAL, Request, Run, Setup, atomic, brief_of, check_parts, read_run
+from roadgpt.run import PLAIN, USUAL, Request, Run, Setup, atomic, brief_of, check_parts, store
 from roadgpt.run.atomic import LOCK, json_text, missing, refuse_links, sweep, take_away, write_whole
 from roadgpt.run.execution import test_name, test_text
 from roadgpt.run.folder import (
@@ -36,10 +36,12 @@ from roadgpt.run.folder import (
     Card,
     Draw,
     finished,
+    finished_run_in,
     new_folder,
     read_card,
     remove_run,
     run_folder,
+    write_again,
     write_run_folder,
 )
 from roadgpt.run.tables import DESCRIPTION, TABLES, Tally, TallyEntry, write_description
@@ -148,6 +150,11 @@ class RunFolder:
                 "add --again to make all its tests anew"
             )
         there = finished(self.folder)
+        if there and not store.is_kept(self.folder):
+            raise UsageError(
+                f"{self.folder} has no {store.STORE}, the record of its tests, so they are shown but not "
+                "continued; name another folder, or add --again to make all its tests anew"
+            )
         if there and there[-1] > self.roads:
             raise UsageError(
                 f"{self.folder} holds road {there[-1]} already; ask for at least so many "
@@ -162,11 +169,11 @@ class RunFolder:
 
     def _read(self, index: int) -> None:
         try:
-            run = read_run(run_folder(self.folder, index))
+            run = finished_run_in(self.folder, index)
         except UsageError:
             return
         if run.index == index:
-            self._count(replace(finished_run(run), entry=TallyEntry.of(run)))
+            self.count(replace(finished_run(run), entry=TallyEntry.of(run)))
             self.spent += run.spent or Spent()
 
     def cell(self, name: str) -> Cell:
@@ -186,6 +193,10 @@ class RunFolder:
             self.write_card(is_finished=False)
             (self.folder / RUNS).mkdir(exist_ok=True)
             sweep(self.folder / RUNS)
+            for number in self.tests:  # a killed process may have left a row whose files were not written
+                places = self.folder / test_name(number), run_folder(self.folder, number)
+                if not all(place.exists() for place in places):
+                    write_again(self.folder, number, self.folder)
             write_description(self.request, self.roads, self.folder)
         return False
 
@@ -204,10 +215,13 @@ class RunFolder:
         return written
 
     def keep(self, ended: FinishedTest) -> None:
-        """Writes the ``test.NNNN.json`` of a test, after its Run, and the tables; raises OSError."""
+        """Stores a test whose Run is written, from when on it has ended; then writes its ``test.NNNN.json``
+        and the tables. Raises OSError."""
+        number = ended.result.number
         self.write_card(is_finished=False)
-        write_whole(self.folder / test_name(ended.result.number), ended.test_file)
-        self._count(ended)
+        store.keep(self.folder, number, run_folder(self.folder, number), ended.test_file)
+        write_whole(self.folder / test_name(number), ended.test_file)
+        self.count(ended)
         self._tally.write(self.folder)
 
     def remove(self, number: int) -> None:
@@ -215,8 +229,9 @@ class RunFolder:
         self.tests.pop(number, None)
         self._tally = Tally()
         for ended in [*self.tests.values()]:
-            self._count(ended)
+            self.count(ended)
         with writing(self.folder):
+            store.remove(self.folder, number)
             remove_run(number, self.folder)
             self._tally.write(self.folder)
 
@@ -249,10 +264,11 @@ class RunFolder:
     def take_away(self, *names: str) -> None:
         """Removes ``campaign.json``, the tables and the files in ``names``; then ``runs/`` and the folders
         that were created for this session, if they are empty."""
-        every = (CARD, DESCRIPTION, *TABLES, *names)
+        every = (CARD, DESCRIPTION, *TABLES, store.STORE, *names)
         take_away((self.folder / name for name in every), (self.folder / RUNS, *self.made))
 
-    def _count(self, ended: FinishedTest) -> None:
+    def count(self, ended: FinishedTest) -> None:
+        """Counts a test that has ended for the tables."""
         self.tests[ended.result.number] = replace(ended, test_file="", run=None)
         if ended.entry is not None:
             self._tally.add(ended.entry)
@@ -350,7 +366,7 @@ def work_in(
         left = {name: folder for name, folder in folders.items() if not folder.begin()}
         for name, folder in folders.items() if with_earlier else ():
             for number, ended in sorted(folder.tests.items()):
-                yield name, replace(ended, run=read_run(run_folder(folder.folder, number)))
+                yield name, replace(ended, run=finished_run_in(folder.folder, number))
         if not left:
             return
         refuse_links(home / LOG)

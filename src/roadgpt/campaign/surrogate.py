@@ -87,7 +87,7 @@ def features_of_samples(samples: RoadSamples, world: World) -> NDArray[np.float6
     kept = (samples.s >= STARTING) & (samples.s <= length - ENDING)
     if np.count_nonzero(kept) < 2:
         kept = np.ones(len(samples.s), bool)
-    all_of_lane = lane_curvature(samples)
+    all_of_lane = curvature_of_lane(samples.curvature, samples.middle)
     lane, grade = all_of_lane[kept], samples.grade[kept]
     means = [moving_mean(lane, window) for window in WINDOWS]
     crest = -np.gradient(moving_mean(grade, WINDOWS[1]))
@@ -126,9 +126,10 @@ def features_of_samples(samples: RoadSamples, world: World) -> NDArray[np.float6
     )
 
 
-def lane_curvature(samples: RoadSamples) -> Array:
-    """Returns the curvature in 1/m of the middle of the driven lane at each sample."""
-    return samples.curvature / np.maximum(1 - samples.middle * samples.curvature, TIGHTEST)
+def curvature_of_lane(curvature: Array, middle: Array) -> Array:
+    """Returns the curvature in 1/m of the middle of the driven lane, from that of the centre line and the
+    offset of the middle in metres, positive to the left."""
+    return curvature / np.maximum(1 - middle * curvature, TIGHTEST)
 
 
 def steering_so_far(s: Array, lane: Array, world: World) -> Array:
@@ -269,9 +270,7 @@ def _split(
 TREES = 60
 LEAF = 2  # roads in one leaf, at least
 FEWEST = 10  # roads; with fewer, there is nothing to learn from
-FAILED = (
-    -0.3
-)  # m, learnt for every failure: a drive ends where it fails, so its margin does not tell how badly it fails
+FAILED = -0.3  # m, learnt for every failure: a drive ends where it fails, whatever its margin would become
 MOST = 1500  # roads to learn from, the latest ones
 LEAST_SQUARE = 1e-9  # of a guess, so that nothing is divided by 0
 
@@ -351,25 +350,9 @@ class RoadStations(NamedTuple):
     """Standard deviation of the wheels' angle from the start to each station, radians, ``(m,)``."""
 
 
-class DepartureForecast(NamedTuple):
-    """Predictions for n roads."""
-
-    chance: Array  # chance that the car leaves its lane, ``(n,)``
-    steering: Array
-    """Standard deviation of the wheels' angle up to the departure, radians, ``(n,)``: the mean over all
-    stations, weighted by the chance of a departure there."""
-    likeliest: Array
-    """Standard deviation of the wheels' angle up to the likeliest departure, radians, ``(n,)``."""
-
-    def table(self) -> Array:
-        """Returns features ``(n, 3)``: ``steering``, ``likeliest`` and ``chance``, each scaled to a magnitude
-        of about 1."""
-        return np.stack([self.steering / 0.1, self.likeliest / 0.1, self.chance], axis=1)
-
-
 def stations_of(samples: RoadSamples, world: World) -> RoadStations:
     """Returns the stations of a road; there is at least one."""
-    s, lane = samples.s, lane_curvature(samples)
+    s, lane = samples.s, curvature_of_lane(samples.curvature, samples.middle)
     square = squared_speed(s, lane, world, GENTLY)
     entering = before(square, ENTERING)
     bend = moving_mean(lane, 5)
@@ -402,8 +385,11 @@ class DepartureModel:
             leaves[-1][-1] = end is not None
         self._weights = logistic(np.concatenate(rows), np.concatenate(leaves))
 
-    def predict(self, roads: Sequence[RoadStations]) -> DepartureForecast:
-        """Returns the predictions for n roads."""
+    def predict(self, roads: Sequence[RoadStations]) -> Array:
+        """Returns three features of n roads, ``(n, 3)``, each scaled to a magnitude of about 1: the standard
+        deviation of the wheels' angle up to the departure (0.1 radians count as 1), as a mean over all
+        stations weighted by the chance of a departure there, and up to the likeliest departure; and the
+        chance that the car leaves its lane."""
         counts = np.array([len(road.s) for road in roads])
         starts = np.cumsum(counts) - counts
         logit = np.concatenate([road.signs @ self._weights for road in roads])
@@ -417,7 +403,7 @@ class DepartureModel:
         mean = np.add.reduceat(share * steering, starts) / np.maximum(chance, 1e-12)
         ends = starts + counts
         tops = [a + int(share[a:b].argmax()) for a, b in zip(starts, ends, strict=True)]
-        return DepartureForecast(chance, mean, steering[tops])
+        return np.stack([mean / 0.1, steering[tops] / 0.1, chance], axis=1)
 
 
 def logistic(rows: Array, leaves: Array) -> Array:

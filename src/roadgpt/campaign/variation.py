@@ -57,7 +57,6 @@ INTERPOLATED = Element._fields[: Element._fields.index("vertical_radius") + 1]
 
 Rng = np.random.Generator
 Make = Callable[[Elements, Rng, World], Elements]
-ElementKind = Literal["turn", "straight", "any"]
 
 
 class Mutation(NamedTuple):
@@ -113,8 +112,7 @@ def varied(parents: Sequence[Elements], rng: Rng, world: World, numeric: float, 
     return elements
 
 
-def mirrored(elements: Elements) -> Elements:
-    """Returns the road with every left turn replaced by a right turn, and every right turn by a left turn."""
+def _mirrored(elements: Elements, rng: Rng, world: World) -> Elements:
     return tuple(element._replace(turn=-element.turn) if element.turn else element for element in elements)
 
 
@@ -156,8 +154,7 @@ def _inserted(elements: Elements, rng: Rng, world: World) -> Elements:
         return elements
     at = int(rng.integers(len(elements) + 1))
     incline = elements[min(at, len(elements) - 1)].incline
-    turn = float(rng.choice((-1, 1)) * rng.uniform(*NEW_TURN))
-    radius = min(world.limits.min_radius * OVER_LEAST_RADIUS * exp(float(rng.exponential(0.5))), WIDEST)
+    turn, radius = float(rng.choice((-1, 1)) * rng.uniform(*NEW_TURN)), _tight(rng, world, 0.5)
     new = Element(turn=turn, radius=radius, transition=_transition(rng), incline=incline)
     straight = Element(straight=float(rng.uniform(*NEW_STRAIGHT)), incline=incline)
     return (*elements[:at], new, straight, *elements[at:])
@@ -187,15 +184,9 @@ def _wound(elements: Elements, rng: Rng, world: World) -> Elements:
         return elements
     at = int(rng.integers(len(elements) + 1))
     incline = elements[min(at, len(elements) - 1)].incline
-    side = float(rng.choice((-1, 1)))
-    radius = min(world.limits.min_radius * OVER_LEAST_RADIUS * exp(float(rng.exponential(0.2))), WIDEST)
-    pair = tuple(
-        Element(
-            turn=hand * float(rng.uniform(*NEW_TURN)),
-            radius=radius,
-            transition=_transition(rng),
-            incline=incline,
-        )
+    side, radius = float(rng.choice((-1, 1))), _tight(rng, world, 0.2)
+    pair = (
+        Element(0.0, hand * float(rng.uniform(*NEW_TURN)), radius, _transition(rng), incline)
         for hand in (side, -side)
     )
     return (*elements[:at], *pair, *elements[at:])
@@ -242,7 +233,7 @@ def _backwards(elements: Elements, rng: Rng, world: World) -> Elements:
     )
 
 
-def _of_one(change: Callable[[Element, Rng, World], Element], kind: ElementKind) -> Make:
+def _of_one(change: Callable[[Element, Rng, World], Element], kind: str) -> Make:
     def make(elements: Elements, rng: Rng, world: World) -> Elements:
         found = [i for i, one in enumerate(elements) if kind in ("any", "turn" if one.turn else "straight")]
         if not found:
@@ -268,10 +259,15 @@ MUTATIONS: dict[str, Mutation] = {
     "wound": Mutation(_wound, 1.0, False),
     "enlarged": Mutation(_enlarged, 1.5, True),
     "redrawn": Mutation(redrawn, 0.5, False),
-    "mirrored": Mutation(lambda elements, rng, world: mirrored(elements), 0.5, False),
+    "mirrored": Mutation(_mirrored, 0.5, False),
     "backwards": Mutation(_backwards, 0.5, False),
 }
 NUMERIC_ONES = [one for one in MUTATIONS.values() if one.is_numeric]
+
+
+def _tight(rng: Rng, world: World, spread: float) -> float:
+    """Draws a radius in metres, mostly near the smallest one of the world."""
+    return min(world.limits.min_radius * OVER_LEAST_RADIUS * exp(float(rng.exponential(spread))), WIDEST)
 
 
 def _transition(rng: Rng) -> float:
@@ -335,7 +331,15 @@ def make_candidate(task: VariationTask) -> Candidate | None:
     rng = np.random.default_rng(task.seed)
     setting = task.setting
     if task.kind == "between":
-        return _between(task)
+        (one, other), share = task.parents, task.share
+        between = interpolated(elements_of(one.segments), elements_of(other.segments), share)
+        if between is None:
+            return None
+        (x0, y0, _), (x1, y1, _) = one.starting_point, other.starting_point
+        turned = (other.theta - one.theta + 180) % 360 - 180
+        x, y = round(x0 + share * (x1 - x0), 2), round(y0 + share * (y1 - y0), 2)
+        where = MapPose(x, y, round((one.theta + share * turned) % 360, 1) % 360)
+        return validated(design_of(between, where, setting.world), setting, task.origin)
     if task.kind == "draft":
         design = draft(setting, rng)
         return validated(design, setting, task.origin) if design else None
@@ -355,23 +359,6 @@ def draft(setting: VariationContext, rng: np.random.Generator) -> Design | None:
         return draft_road(setting.brief or NOBODY, setting.world, seed=int(rng.integers(2**53)))
     except DesignError:
         return None
-
-
-def _between(task: VariationTask) -> Candidate | None:
-    """Returns a road between the two parents, which starts at a place between their starts; None if the
-    roads do not correspond or the new road is not valid."""
-    (one, other), share = task.parents, task.share
-    elements = interpolated(elements_of(one.segments), elements_of(other.segments), share)
-    if elements is None:
-        return None
-    (x0, y0, _), (x1, y1, _) = one.starting_point, other.starting_point
-    turned = (other.theta - one.theta + 180) % 360 - 180
-    where = MapPose(
-        round(x0 + share * (x1 - x0), 2),
-        round(y0 + share * (y1 - y0), 2),
-        round((one.theta + share * turned) % 360, 1) % 360,
-    )
-    return validated(design_of(elements, where, task.setting.world), task.setting, task.origin)
 
 
 def room_for(elements: Elements, setting: VariationContext, rng: np.random.Generator) -> PlacedPlan | None:

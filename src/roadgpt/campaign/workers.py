@@ -4,16 +4,14 @@ pool of workers that may die.
 A pool has a thread for each worker that gives it one job after another. A worker that has ended is replaced,
 and its job runs again on another one, as soon as one is free.
 
-The parent of a worker process sends the module search paths, and then jobs; the first job prepares the
-worker. The worker sends the pickled value or error of each job. Calls and values are pickled one by one; if
-one cannot be unpickled, only its own job is lost. ``send`` and ``receive`` connect processes that RoadGPT
-started on one machine. ``pickled`` and ``unpickled`` also serve the executor ``ray``, whose workers may run
-on other machines of its cluster. Nothing else is read.
+The first jobs of a worker process set the module search paths, and prepare it. A worker sends the pickled
+value or error of each job. Calls and values are pickled one by one; if one cannot be unpickled, only its own
+job is lost. ``pickled`` and ``unpickled`` serve processes that RoadGPT started on one machine, and the
+executor ``ray``, whose workers may run on other machines of its cluster. Nothing else is read.
 """
 
 import os
 import pickle
-import signal
 import sys
 import threading
 import time
@@ -26,9 +24,9 @@ from functools import cached_property, lru_cache
 from heapq import heappop, heappush
 from itertools import count
 from pathlib import Path
-from typing import IO, Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
-from roadgpt import children
+from roadgpt.drive.isolation.process import GoneError, pickled, serve
 from roadgpt.errors import RoadGPTError
 
 T = TypeVar("T")
@@ -74,14 +72,12 @@ VALUE, ERROR = "value", "error"  # how a job ended
 
 def main() -> None:
     """Runs the jobs that the parent process sends, until the parent ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent hears of Ctrl-C, and ends us
-    children.ends_its_own()
-    children.ends_with_parent()
-    received, sent = children.private_streams()
-    with suppress(EOFError, OSError, pickle.UnpicklingError):
-        sys.path[:] = receive(received)
-        while True:
-            send(sent, answer(receive(received)))
+    serve(answer)
+
+
+def set_paths(paths: list[str]) -> None:
+    """Sets the module search paths, which the jobs after this one need."""
+    sys.path[:] = paths
 
 
 def answer(call: bytes) -> tuple[str, bytes]:
@@ -104,37 +100,13 @@ def portable(error: Exception) -> bytes:
     return data
 
 
-def pickled(value: Any) -> bytes:
-    """Returns a value as bytes."""
-    return pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
-
-
 def unpickled(data: bytes) -> Any:
     """Returns the value that was pickled into these bytes."""
     return pickle.loads(data)  # noqa: S301 - from our own process
 
 
-def send(stream: IO[bytes], message: Any) -> None:
-    """Sends a message; raises OSError if the other process has ended."""
-    pickle.dump(message, stream, pickle.HIGHEST_PROTOCOL)
-    stream.flush()
-
-
-def receive(stream: IO[bytes]) -> Any:
-    """Returns the next message; raises EOFError or UnpicklingError if the other process has ended."""
-    return pickle.load(stream)  # noqa: S301 - from our own process
-
-
 MOST_DEATHS = 3  # of workers that ran the same job; after that many, the job is to blame
 FIRST, LATER = 0, 1  # calls of ``map`` go before other jobs
-
-
-class WorkerEndedError(Exception):
-    """A worker has ended. The message says how, in words that can follow the worker's name."""
-
-    def __init__(self, how: str, is_jobs_fault: bool = True) -> None:
-        super().__init__(how)
-        self.is_jobs_fault = is_jobs_fault
 
 
 class Job(Future[Any]):
@@ -161,11 +133,11 @@ class Worker(ABC):
 
     @abstractmethod
     def begin(self, prepare: Callable[[], object]) -> None:
-        """Prepares the worker for jobs; raises any error of ``prepare``, or WorkerEndedError."""
+        """Prepares the worker for jobs; raises any error of ``prepare``, or GoneError."""
 
     @abstractmethod
     def run(self, call: bytes) -> tuple[str, bytes]:
-        """Runs a job, see ``answer``, and returns how it ended; raises WorkerEndedError."""
+        """Runs a job, see ``answer``, and returns how it ended; raises GoneError."""
 
     @abstractmethod
     def ask_to_end(self) -> None:
@@ -278,7 +250,7 @@ class WorkerPool(Executor, ABC):
                 worker.begin(self._staff.prepare)
                 worker.is_ready, self._in_vain = True, 0
                 return worker
-            except WorkerEndedError as ended:
+            except GoneError as ended:
                 self._in_vain += 1
                 if self._in_vain >= MOST_DEATHS:
                     sentence = f"workers end before they begin (the last one {ended})"
@@ -302,7 +274,7 @@ class WorkerPool(Executor, ABC):
         job.worker, job.begun = worker.name, time.time()
         try:
             kind, what = worker.run(pickled(job.call))
-        except WorkerEndedError as ended:
+        except GoneError as ended:
             job.worker = ""
             self._give_again(job, ended)
             return False
@@ -331,9 +303,9 @@ class WorkerPool(Executor, ABC):
                     worker.is_idle = False
                     return job
 
-    def _give_again(self, job: Job, ended: WorkerEndedError) -> None:
+    def _give_again(self, job: Job, ended: GoneError) -> None:
         """Queues the job of a worker that has ended; gives it up if too many workers ended over it."""
-        job.deaths += ended.is_jobs_fault
+        job.deaths += not ended.is_blameless
         if job.deaths < MOST_DEATHS or self._broken is not None:
             self._queue(job)
         else:

@@ -10,8 +10,6 @@ are rejected. Nothing is evaluated."""
 
 import json
 import math
-import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -20,10 +18,8 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from roadgpt.chat.model import Usage
 
 MOST_CHARACTERS = 1_000_000
-MOST_DEPTH = 32  # nested brackets; our schemas need 3
 MOST_TRIES = 20  # places tried as the beginning of an object
 THOUGHTS_END = ("</think>", "</thinking>")
-FENCE = re.compile(r"```[ \t]*[\w-]*[ \t]*\r?\n(.*?)(?:```|\Z)", re.DOTALL)
 Schema = TypeVar("Schema", bound=BaseModel)
 
 
@@ -56,61 +52,27 @@ def read_object(text: str) -> dict[str, Any]:
         raise NotReadableError("it is blank")
     if len(text) > MOST_CHARACTERS:
         raise NotReadableError(f"it has more than {MOST_CHARACTERS:,} characters")
-    why = NotReadableError("it holds no JSON object")
-    for number, candidate in enumerate(_candidates(text.lstrip("\ufeff"))):
-        try:
-            found = _loads(candidate)
-        except NotReadableError as error:
-            why = error if number == 0 or candidate.startswith("{") else why
-            continue
-        if isinstance(found, dict):
-            return found
-        why = NotReadableError("it is JSON, but not an object")
-    raise why
-
-
-def _candidates(text: str) -> Iterator[str]:
-    """Yields the whole text if it begins with a bracket, the contents of code fences, and the parts in
-    balanced braces."""
-    said = text
     for end_mark in THOUGHTS_END:
-        said = said.rpartition(end_mark)[2]
-    if said.lstrip()[:1] in ("{", "["):
-        yield said.strip()
-    for fence in FENCE.findall(said):
-        yield fence.strip()
-    tries, at = 0, said.find("{")
-    while at >= 0 and tries < MOST_TRIES:
-        end = next((end for end, depth in _depths(said, "{}", at) if depth == 0), None)
-        if end is not None:
-            yield said[at:end]
-        tries, at = tries + 1, said.find("{", end or at + 1)
-
-
-def _depths(text: str, brackets: str, start: int = 0) -> Iterator[tuple[int, int]]:
-    """Yields, for each opening or closing bracket outside of strings, the index behind it and how many
-    brackets are open there."""
-    depth, in_string = 0, False
-    for match in re.compile(rf'\\.|["{re.escape(brackets)}]', re.DOTALL).finditer(text, start):
-        sign = match.group()
-        if sign == '"':
-            in_string = not in_string
-        elif not in_string and sign in brackets:
-            depth += 1 if sign in "{[" else -1
-            yield match.end(), depth
-
-
-def _loads(text: str) -> Any:
-    if any(depth > MOST_DEPTH for _, depth in _depths(text, "{}[]")):
-        raise NotReadableError(f"it has brackets inside brackets, more than {MOST_DEPTH} deep")
-    try:
-        return json.loads(text, object_pairs_hook=_object, parse_constant=_number, parse_float=_number)
-    except json.JSONDecodeError as error:
-        raise NotReadableError(f"it is not JSON ({error.msg} at character {error.pos:,})") from None
-    except NotReadableError:
-        raise
-    except ValueError:
-        raise NotReadableError("it holds a number of thousands of digits") from None
+        text = text.rpartition(end_mark)[2]
+    decoder = json.JSONDecoder(object_pairs_hook=_object, parse_constant=_number, parse_float=_number)
+    why, at = "it holds no JSON object", text.find("{")
+    for number in range(MOST_TRIES):
+        if at < 0:
+            break
+        try:
+            found: dict[str, Any] = decoder.raw_decode(text, at)[0]
+        except json.JSONDecodeError as error:
+            why = f"it is not JSON ({error.msg} at character {error.pos:,})" if number == 0 else why
+        except NotReadableError:
+            raise
+        except RecursionError:
+            raise NotReadableError("it has too many brackets inside brackets") from None
+        except ValueError:
+            raise NotReadableError("it holds a number of thousands of digits") from None
+        else:
+            return found
+        at = text.find("{", at + 1)
+    raise NotReadableError(why)
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -169,8 +131,6 @@ def _flat(schema: dict[str, Any], named: dict[str, Any], levels: int) -> dict[st
 
 NOTHING = Usage()
 MOST_TOKENS = 100_000_000  # of one exchange; a larger number is not taken for a count
-BUSY = {408, 409, 425, 429, 500, 502, 503, 504, 529}  # statuses after which a retry may help
-SPENT_UP = ("insufficient_quota", "billing", "credit")  # words in a 429 for which waiting does not help
 
 
 @dataclass
@@ -181,11 +141,6 @@ class RequestError(Exception):
     status: int | None = None
     details: str = ""  # the server's own error message in lower case
     parameter: str = ""
-
-
-def is_spent_up(status: int, message: str) -> bool:
-    """Returns True if a server's error message says that the account has no credit left."""
-    return status == 429 and any(word in message.lower() for word in SPENT_UP)
 
 
 @dataclass(frozen=True)
@@ -205,26 +160,21 @@ def from_chat(body: dict[str, Any]) -> Answer:
     choice = _fields(choices[0]) if isinstance(choices, list) and choices else {}
     message = _fields(choice.get("message"))
     finish = _word(choice.get("finish_reason")) or "stop"
-    refusal = message.get("refusal")
+    refusal, content = message.get("refusal"), message.get("content")
     refusal = refusal if isinstance(refusal, str) and refusal.strip() else None
     if finish == "content_filter" and refusal is None:
         refusal = "the server's filter stopped the answer"
+    parts = content if isinstance(content, list) else [{"text": content}]
+    texts = [_fields(part).get("text") for part in parts]
+    text = "".join(text for text in texts if isinstance(text, str))
     counted = Usage(
         prompt=_count(usage.get("prompt_tokens")), completion=_count(usage.get("completion_tokens"))
     )
-    return Answer(_text_of(message.get("content")), _word(body.get("model")), finish, counted, refusal)
+    return Answer(text, _word(body.get("model")), finish, counted, refusal)
 
 
 def _fields(value: Any) -> dict[str, Any]:
     return value if isinstance(value, dict) else {}
-
-
-def _text_of(content: Any) -> str:
-    if isinstance(content, str):
-        return content
-    parts = content if isinstance(content, list) else []
-    texts = [_fields(part).get("text") for part in parts]
-    return "".join(text for text in texts if isinstance(text, str))
 
 
 def _word(value: Any) -> str:

@@ -15,7 +15,8 @@ written the file. ``key_for`` has the exact rules."""
 import os
 import re
 import tomllib
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
 from types import MappingProxyType
@@ -24,11 +25,11 @@ from typing import Any, NamedTuple
 from pydantic import ValidationError
 
 from roadgpt.chat.model import ChatSettings, origin_of
-from roadgpt.chat.secret import Key, usable
-from roadgpt.errors import ChatError, UsageError
+from roadgpt.errors import ChatError, UsageError, advice_on
 from roadgpt.provenance import SERVERS
 from roadgpt.reading import read_text
 
+TABLE = "chat"
 FIELDS = tuple(ChatSettings.model_fields)
 KEY = "api_key"
 DEFAULT = "default"
@@ -44,18 +45,6 @@ OF_OTHERS = "ROADGPT_NO_NUMBA"  # used in the hallway: compiled.py
 MOST_BYTES = 1_000_000  # of a settings file
 
 
-FAULTS = {
-    **dict.fromkeys(("float_parsing", "float_type", "finite_number"), "it is not a number"),
-    **dict.fromkeys(("int_parsing", "int_type", "int_from_float"), "it is not a whole number"),
-    "string_type": "it is not text",
-    "literal_error": "use {expected}",
-    "greater_than": "give a number above {gt:g}",
-    "greater_than_equal": "give {ge:g} or more",
-    "less_than_equal": "give {le:g} or less",
-}
-"""What is wrong with a value, or what to give instead, by the type of pydantic's error."""
-
-
 class Setting(NamedTuple):
     """The value of a setting and where it was found."""
 
@@ -67,9 +56,51 @@ class Layer(NamedTuple):
     """One source of settings, such as the environment or a file."""
 
     name: str
-    found: dict[str, Any]  # the values, keyed by field name or, for the environment, by name of the variable
+    variables: Mapping[str, str] = MappingProxyType({})
     tables: Mapping[str, Any] = MappingProxyType({})
-    """All tables of a TOML file, by name; ``roadgpt.cli.options`` reads those other than ``[chat]``."""
+    """The tables of a TOML file, by name."""
+
+    def find(self, table: str, key: str, *variables: str) -> Setting | None:
+        """Returns the Setting that one of these variables sets here, or this key of a table; None if none."""
+        for name in variables:
+            if name in self.variables:
+                return Setting(self.variables[name], f"{self.name} ({name})")
+        value = self.tables.get(table, {}).get(key)
+        return None if value is None else Setting(value, f"{self.name} [{table}]")
+
+
+@dataclass(frozen=True)
+class Key:
+    """An API key and its origin. As text it is masked: its length and, if it is long, its first 3 letters."""
+
+    value: str = field(repr=False)
+    origin: str
+
+    def __str__(self) -> str:
+        head = self.value[:3] if len(self.value) >= 20 else ""
+        return f"{head}... ({len(self.value)} letters)"
+
+
+NO_KEY = Key("none", "nowhere")
+"""A placeholder for servers that need no key: the library always requires a key."""
+GONE = "(key)"
+# What looks like a key, also one that a server abbreviated: sk-..., sk-proj-ab****yz; "Bearer ...".
+LOOKS_LIKE_A_KEY = re.compile(r"\b(?:sk|rk|pk)-[\w*.\-]{6,}|(?i:\bbearer\s+)[\w~+/=.\-]{8,}")
+SHORTEST = 8  # characters of a key that is searched for in texts; shorter ones would match ordinary words
+
+
+def redacted(value: Any, key: Key) -> Any:
+    """Removes the key, and everything that looks like a key, from a text or from all texts in lists and
+    dictionaries."""
+    if isinstance(value, str):
+        if len(key.value) >= SHORTEST and key.value in value:
+            value = value.replace(key.value, GONE)
+        return LOOKS_LIKE_A_KEY.sub(GONE, value)
+    if isinstance(value, dict):
+        return {redacted(name, key): redacted(item, key) for name, item in value.items()}
+    if isinstance(value, list):
+        return [redacted(item, key) for item in value]
+    return value
 
 
 def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None) -> ChatSettings:
@@ -94,12 +125,19 @@ def settings_with_origin(
     flags = flags or {}
     if flags.get("base_url"):
         SERVERS.add_from_user(str(origin_of(str(flags["base_url"]))))
-    places = [_looked_up(layer) for layer in ([plan] if plan else []) + layers()]
-    found = {name: Setting(field.default, DEFAULT) for name, field in ChatSettings.model_fields.items()}
-    for place in reversed(places):
-        found |= place
-    given = {name: value for name, value in flags.items() if name in FIELDS and value is not None}
-    return found | {name: Setting(each, f"--{name.replace('_', '-')}") for name, each in given.items()}
+    places = ([plan] if plan else []) + layers()
+    found = {}
+    for name, each in ChatSettings.model_fields.items():
+        setting = next(_in_order(places, name), Setting(each.default, DEFAULT))
+        if flags.get(name) is not None:
+            setting = Setting(flags[name], f"--{name.replace('_', '-')}")
+        found[name] = setting
+    return found
+
+
+def _in_order(places: Sequence[Layer], name: str) -> Iterator[Setting]:
+    variables = (f"ROADGPT_{name.upper()}", *(["OPENAI_BASE_URL"] if name == "base_url" else []))
+    return (setting for place in places if (setting := place.find(TABLE, name, *variables)))
 
 
 def settings_from(found: Mapping[str, Setting]) -> ChatSettings:
@@ -110,9 +148,9 @@ def settings_from(found: Mapping[str, Setting]) -> ChatSettings:
     except ValidationError as error:
         problem = error.errors(include_url=False, include_input=False)[0]  # the input may be a key
         name = str(problem["loc"][0])
-        fault = FAULTS.get(problem["type"], "").format(**problem.get("ctx", {}))
-        said = fault or str(problem["msg"]).removeprefix("Value error, ")
-        raise UsageError(f"the setting '{name}' from {found[name].origin} cannot be used: {said}") from None
+        raise UsageError(
+            f"the setting '{name}' from {found[name].origin} cannot be used: {advice_on(problem)}"
+        ) from None
 
 
 def key_for(base_url: str | None) -> Key | None:
@@ -131,10 +169,9 @@ def key_for(base_url: str | None) -> Key | None:
     if host.endswith(".azure.com"):
         names.insert(1, "AZURE_OPENAI_API_KEY")
     keys = [
-        Key(str(value), f"{layer.name} ({name})")
+        Key(str(setting.value), setting.origin)
         for layer in layers()
-        for name in (*names, KEY)
-        if (value := layer.found.get(name))
+        if (setting := layer.find(TABLE, KEY, *names)) and setting.value
     ]
     place = untrusted_source(base_url)
     if place and keys and (place not in FOLDER or host not in LOOPBACK):
@@ -145,7 +182,15 @@ def key_for(base_url: str | None) -> Key | None:
                 f"the server {host} is named in {where}, so your own key is not sent there; if you trust it, "
                 f"say so in your environment: OPENAI_BASE_URL={base_url}"
             )
-    return usable(keys[0]) if keys else None
+    if not keys:
+        return None
+    value = keys[0].value.strip()
+    if not re.fullmatch(r"[!-~]+", value):
+        raise ChatError(
+            f"the key from {keys[0].origin} holds blanks or letters that no key has, or is empty; "
+            "copy it again from where it was issued"
+        )
+    return Key(value, keys[0].origin)
 
 
 def trust_server(base_url: str, wanted: str | None, place: object) -> None:
@@ -168,7 +213,7 @@ def untrusted_source(base_url: str | None) -> str:
     naming = [
         layer.name
         for layer in layers()
-        if (said := _looked_up(layer).get("base_url")) and origin_of(str(said.value)) == wanted
+        if (said := next(_in_order([layer], "base_url"), None)) and origin_of(str(said.value)) == wanted
     ]
     if wanted == origin_of(None) or any(name not in FOLDER for name in naming):
         return ""
@@ -177,32 +222,38 @@ def untrusted_source(base_url: str | None) -> str:
     return SERVERS.untrusted_file(str(wanted)) or next(iter(naming), "")
 
 
-def layers() -> list[Layer]:
+def layers(known: Mapping[str, Sequence[str]] | None = None) -> list[Layer]:
     """Returns all sources of settings except options and plan files, beginning with the highest precedence.
-    Raises UsageError if a file cannot be read, or its table ``[chat]`` has an unknown key."""
-    tables = {str(path): _toml(path) for path in (Path(PROJECT), user_file())}
-    return [
-        Layer("environment", {name: value for name, value in os.environ.items() if _is_ours(name, value)}),
-        Layer(DOTENV, _dotenv(Path(DOTENV))),
-        *(Layer(place, _chat_table(whole, place), whole) for place, whole in tables.items()),
-    ]
+
+    Raises UsageError if a file cannot be read, or its table ``[chat]`` has an unknown key. ``known`` are the
+    keys of the other tables, by name; with them, these and all other tables are looked at, too."""
+    files = [Layer(str(path), tables=_toml(path)) for path in (Path(PROJECT), user_file())]
+    keys = {**(known or {}), TABLE: (*FIELDS, KEY)}
+    for path, _, tables in files:
+        outside = next((name for name in keys[TABLE] if name in tables), None)
+        if outside:
+            raise UsageError(
+                f"the setting '{outside}' in {path} is outside of a table; put it below a line [chat]"
+            )
+        for name, table in tables.items():
+            if name in keys and not isinstance(table, dict):
+                raise UsageError(f"the settings in {path} need a table [{name}]")
+            if name not in keys and known is not None:
+                there = ", ".join(f"[{each}]" for each in keys)
+                raise UsageError(f"the settings in {path} have no table [{name[:40]}]; there are: {there}")
+            for key in table if name in keys else ():
+                if key not in keys[name]:
+                    near = get_close_matches(key, keys[name], 1)
+                    advice = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(keys[name])}"
+                    raise UsageError(f"the settings in {path} have no '{key[:40]}' under [{name}]; {advice}")
+    environment = {name: value for name, value in os.environ.items() if _is_ours(name, value)}
+    return [Layer("environment", environment), Layer(DOTENV, _dotenv(Path(DOTENV))), *files]
 
 
 def user_file() -> Path:
     """Returns the path of the user's own settings file, whether or not it exists."""
     home = os.environ.get("XDG_CONFIG_HOME") or os.environ.get("APPDATA")
     return (Path(home) if home else Path("~/.config").expanduser()) / "roadgpt" / "config.toml"
-
-
-def _looked_up(layer: Layer) -> dict[str, Setting]:
-    found: dict[str, Setting] = {}
-    for name in FIELDS:
-        variables = (f"ROADGPT_{name.upper()}", *(["OPENAI_BASE_URL"] if name == "base_url" else []))
-        for key in (*variables, name):
-            if key in layer.found:
-                origin = layer.name if key == name else f"{layer.name} ({key})"
-                found.setdefault(name, Setting(layer.found[key], origin))
-    return found
 
 
 def _read(path: Path) -> str:
@@ -246,30 +297,6 @@ def _toml(path: Path) -> dict[str, Any]:
         place = re.search(r"at line \d+", str(error))
         where = place.group() if place else "somewhere"
         raise UsageError(f"the settings in {path} are not TOML ({where}); correct them") from None
-
-
-def _chat_table(whole: Mapping[str, Any], path: str) -> dict[str, Any]:
-    """Returns the table ``[chat]``; raises UsageError if it has an unknown key or is not a table."""
-    outside = next((name for name in (*FIELDS, KEY) if name in whole), None)
-    if outside:
-        raise UsageError(
-            f"the setting '{outside}' in {path} is outside of a table; put it below a line [chat]"
-        )
-    table = whole.get("chat", {})
-    if not isinstance(table, dict):
-        raise UsageError(f'the settings in {path} need a table [chat], with lines like model = "gpt-5-mini"')
-    for name in table:
-        if name not in (*FIELDS, KEY):
-            raise unknown_key(path, "chat", name, (*FIELDS, KEY))
-    return dict(table)
-
-
-def unknown_key(path: str, table: str, key: str, keys: Sequence[str]) -> UsageError:
-    """Returns the error for a key that a table of settings in a file cannot have; ``keys`` are the keys that
-    the table can have."""
-    near = get_close_matches(key, keys, 1)
-    advice = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(keys)}"
-    return UsageError(f"the settings in {path} have no '{key[:40]}' under [{table}]; {advice}")
 
 
 def unknown_variables(others: Collection[str] = ()) -> list[str]:

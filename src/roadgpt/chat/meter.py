@@ -73,11 +73,6 @@ def price_of(settings: ChatSettings, model: str = "") -> tuple[float, float] | N
     return None
 
 
-def cost_of(usage: Usage, price: tuple[float, float] | None) -> float | None:
-    """Returns the cost of these tokens in USD; None if the price is unknown."""
-    return None if price is None else (usage.prompt * price[0] + usage.completion * price[1]) / 1e6
-
-
 LETTERS_PER_TOKEN = 4  # bytes of English and JSON; an estimate until the server has counted
 ENDLESS = 10**15
 
@@ -165,29 +160,29 @@ def occasion() -> str:
     return _now.get()[1]
 
 
-class Account:
-    """Counts what one Chat spends, and adds the same amounts to the campaign's Meter. Without a campaign,
-    they are added to the Chat's own Meter."""
+class Account(Meter):
+    """Counts what one Chat spends, and adds the same amounts to the Meter of the campaign, if any."""
 
     def __init__(self, settings: ChatSettings) -> None:
+        super().__init__(settings.max_tokens, settings.max_cost)
         self.settings = settings
-        self.spent = Spent()
-        self._own = Meter.of(settings)
 
     @property
     def meter(self) -> Meter:
-        """The meter of the current campaign; the Chat's own meter if there is no campaign."""
-        return _now.get()[0] or self._own
+        """The meter of the current campaign; the Account itself if there is no campaign."""
+        return _now.get()[0] or self
 
     def count(self, model: str, usage: Usage, seconds: float) -> None:
         """Counts one answered request."""
-        cost = cost_of(usage, price_of(self.settings, model))
+        price = price_of(self.settings, model)
+        cost = price and (usage.prompt * price[0] + usage.completion * price[1]) / 1e6
         self.add(Spent(calls=1, usage=usage, seconds=seconds, cost=cost))
 
     def add(self, spent: Spent) -> None:
         """Adds costs that are already known, such as those of a recorded exchange."""
-        self.spent = self.spent + spent
-        self.meter.add(spent)
+        super().add(spent)
+        if self.meter is not self:
+            self.meter.add(spent)
 
 
 def tokens_in(*texts: str) -> int:

@@ -1,6 +1,6 @@
 """The data types of a conversation with a language model, and the addresses of servers."""
 
-from typing import Annotated, Any, Literal, Self
+from typing import Any, Literal, Self
 from urllib.parse import urlsplit
 
 from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, field_validator
@@ -41,6 +41,7 @@ def origin_of(base_url: str | None) -> Origin:
 
 LEAST_REPLY = 64  # tokens; a shorter answer is of no use
 DECIMALS = 9  # of seconds and USD, so that a difference of sums does not depend on earlier costs
+RARE: Any = {"json_schema_extra": {"rare": True}}  # options that only --help-all lists
 Role = Literal["system", "user", "assistant"]
 
 
@@ -125,34 +126,49 @@ class ChatSettings(ChatValue):
     """Which language model to ask, and how. The settings are stored in run folders and never contain an
     API key."""
 
-    provider: str = "openai"
+    provider: str = Field("openai", description="Protocol of the server. [default: openai]", **RARE)
     """Name of an installed provider."""
-    model: str | None = None
-    """The name by which the server knows the model; with None, the server must have only one model, which
-    is used."""
-    base_url: str | None = None
-    """Address of the server, up to and including ``/v1``; None means OpenAI's server."""
-    temperature: Annotated[float, Field(ge=0, le=2)] | None = None
-    """The sampling temperature, from 0 to 2; None uses the server's default."""
-    timeout: Annotated[float, Field(gt=0, le=86_400)] = 60.0
-    """Time limit in seconds for one complete answer."""
-    retries: Annotated[int, Field(ge=0, le=20)] = 3
-    """The largest number of times that a request is repeated after a failure of the server."""
-    max_completion: Annotated[int, Field(ge=LEAST_REPLY, le=1_000_000)] = 4096
-    """The largest number of tokens of one reply."""
-    max_tokens: Annotated[int, Field(ge=1)] | None = None
-    """The largest total number of tokens of all questions and answers of the campaign; None is no limit."""
-    max_cost: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
-    """The largest cost of the whole campaign in USD; None is no limit."""
-    price: str | None = None
-    """USD per million tokens of prompt and completion, as "0.15/0.60"; None uses the built-in table."""
-    record: str | None = Field(default=None, exclude=True)
-    """Folder in which every exchange is stored. This setting is left out of saved files, so that a replay
-    writes the same files as the recorded run."""
-    replay: str | None = Field(default=None, exclude=True)
-    """Folder of recorded exchanges, from which every answer is taken instead of asking a server."""
-    rounds: Annotated[int, Field(ge=1, le=20)] = 3
-    """The largest number of questions that may be asked for one description or change request."""
+    model: str | None = Field(None, description="Name of the model on its server.")
+    """With None, the server must have only one model, which is used."""
+    base_url: str | None = Field(
+        None, description="Address of the server, including /v1. [default: OpenAI's]"
+    )
+    temperature: float | None = Field(
+        None, ge=0, le=2, description="Sampling temperature. [default: the server's]", **RARE
+    )
+    timeout: float = Field(
+        60.0, gt=0, le=86_400, description="Seconds to wait for an answer. [default: 60]", **RARE
+    )
+    retries: int = Field(
+        3, ge=0, le=20, description="Further attempts when the server fails. [default: 3]", **RARE
+    )
+    max_completion: int = Field(
+        4096, ge=LEAST_REPLY, le=1_000_000,
+        description="Maximum number of tokens in one answer. [default: 4096]", **RARE,
+    )  # fmt: skip
+    max_tokens: int | None = Field(
+        None, ge=1, description="Stop when all roads together have used this many tokens.", **RARE
+    )
+    max_cost: float | None = Field(
+        None, gt=0, allow_inf_nan=False,
+        description="Stop when the language model has cost this many USD.",
+    )  # fmt: skip
+    price: str | None = Field(
+        None,
+        description="USD per million input and output tokens, such as 0.15/0.60. [default: OpenAI's prices]",
+        **RARE,
+    )
+    record: str | None = Field(
+        None, exclude=True, description="Save every exchange with the server in this folder.", **RARE
+    )
+    """Left out of saved files, as is ``replay``, so that a replay writes the same files."""
+    replay: str | None = Field(
+        None, exclude=True, description="Use the answers saved in this folder; ask no server.", **RARE
+    )
+    rounds: int = Field(
+        3, ge=1, le=20,
+        description="Maximum number of requests to the model for one description. [default: 3]", **RARE,
+    )  # fmt: skip
 
     @field_validator("base_url")
     @classmethod

@@ -61,7 +61,6 @@ def lowest(profile: ElevationProfile, length: float) -> tuple[float, float]:
 
 
 def _stations(profile: GradeProfile, length: float) -> Array:
-    """Returns the stations in metres where parabolas begin or end on the road, and its two ends."""
     s = np.array(profile.stations)
     return np.concatenate(([0.0], s[(s > 0) & (s < length)], [length]))
 

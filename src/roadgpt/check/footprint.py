@@ -133,7 +133,6 @@ class Footprint:
 
     @cached_property
     def _varies(self) -> NDArray[np.bool_]:
-        """Whether the width or the offset of the carriageway varies along each road, ``(n,)``."""
         return np.array([_varies(each) for each in self.network.roads])
 
     @cached_property
@@ -211,7 +210,6 @@ def _before(values: Array, first: Indices) -> Array:
 
 
 def _near(bounds: Array) -> tuple[Indices, Indices]:
-    """Returns the index pairs, smaller index first, of boxes that touch."""
     low, high = bounds[:, None, :2], bounds[None, :, 2:]
     touch = (low <= high).all(axis=2)
     one, other = np.nonzero(np.triu(touch & touch.T, 1))
@@ -225,7 +223,6 @@ def _varies(member: NetworkRoad) -> bool:
 
 
 def _heights(member: NetworkRoad) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Returns the height in metres and the grade at the start of a road, and those at its end."""
     profile = member.road.elevation
     if isinstance(profile, GradeProfile) and not any(profile.grades):
         return (profile.z0, 0.0), (profile.z0, 0.0)

@@ -59,7 +59,6 @@ def fits(stretch: MeasuredFeature, feature: Feature) -> bool:
 
 
 def _wrong(stretch: MeasuredFeature, feature: Feature) -> list[str]:
-    """Returns the names of the quantities that are outside of the required ranges."""
     return [
         name for name in FEATURE if (asked := getattr(feature, name)) and getattr(stretch, name) not in asked
     ]
@@ -160,7 +159,6 @@ def sides_of(group: Group, sides: Sequence[Side | None]) -> list[Side | None]:
 def _of_gap(
     found: Measures, gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], turn: int
 ) -> Match[Complaint]:
-    """Matches the wanted straights with the pieces before a turn (counted from 0)."""
     if not wanted or (len(wanted) == 1 and any(fits(straight, wanted[0]) for straight in gap)):
         return Match()
     pieces = [piece for straight in gap for piece in straight.pieces]
@@ -188,7 +186,6 @@ def _of_gap(
 
 
 def _ramps(wanted: tuple[Feature, ...]) -> list[list[Feature]]:
-    """Returns the wanted straights, those together that could be parts of one piece."""
     out = [[wanted[0]]]
     for one, other in pairwise(wanted):
         if change_of_grade(one.grade, other.grade) is None:
@@ -198,7 +195,6 @@ def _ramps(wanted: tuple[Feature, ...]) -> list[list[Feature]]:
 
 
 def _fit(found: Measures, piece: MeasuredFeature, ramp: Sequence[Feature]) -> bool:
-    """Returns whether a piece fits the only straight of a ramp, or its parts fit its straights in order."""
     if len(ramp) == 1:
         return fits(piece, ramp[0])
     changes = [change_of_grade(one.grade, other.grade) for one, other in pairwise(ramp)]

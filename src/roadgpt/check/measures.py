@@ -228,18 +228,15 @@ def _radius(curvature: Array) -> float:
 
 
 def _windows(line: CentreLine, width: int) -> Array:
-    """Returns the grade in percent over ``width`` stations, at every place."""
     return np.asarray(100 * (line.z[width:] - line.z[:-width]) / (line.s[width:] - line.s[:-width]))
 
 
 def _stretches(values: NDArray[np.int8]) -> tuple[Indices, Indices]:
-    """Returns the first and the last index of every run of equal values."""
     cuts = np.flatnonzero(values[1:] != values[:-1])
     return np.concatenate([[0], cuts + 1]), np.concatenate([cuts, [len(values) - 1]])
 
 
 def _signs(values: Array, least: float) -> NDArray[np.int8]:
-    """Returns 1 or -1, or 0 where the absolute value does not exceed ``least``."""
     return (values > least).astype(np.int8) - (values < -least).astype(np.int8)
 
 
@@ -268,7 +265,6 @@ def _turns(line: CentreLine, widest: float) -> list[_Bend]:
 
 
 def _joined(bends: Sequence[_Bend], s: Array) -> list[_Bend]:
-    """Merges neighbours that bend to the same side and are close together."""
     out: list[_Bend] = []
     for bend in bends:
         before = out[-1] if out else None

@@ -138,7 +138,6 @@ def _lane_places(route: Route) -> Iterator[MeasuredLanes]:
 
 
 def _narrow_part(member: NetworkRoad, at_end: bool) -> float:
-    """Returns the length in metres at one end of a road in which a lane is too narrow for a car."""
     length = member.road.length
     s = np.linspace(0.0, length, math.ceil(length / STEP) + 1)
     found = 0.0
@@ -160,7 +159,6 @@ def is_beside_ramp(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool
 
 
 def _is_by_ramp(network: Network, passage: Passage) -> bool | None:
-    """Returns whether the route uses the ramp of a merge or exit; None if there is no ramp."""
     junction = passage.entered
     if junction.kind not in RAMPS:
         return None
@@ -169,7 +167,6 @@ def _is_by_ramp(network: Network, passage: Passage) -> bool | None:
 
 
 def _way_of_ramp(network: Network, junction: Junction) -> Connection:
-    """Returns the way of a merge or exit that turns most: that from or to the ramp."""
     return max(junction.connections, key=lambda each: abs(_turn_of(network, each)))
 
 

@@ -325,13 +325,11 @@ def _kinds(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
 
 
 def _in_all(asked: Iterable[JunctionCount]) -> Range:
-    """Returns how many junctions there may be of some kinds together."""
     counts = [span(each.count) for each in asked]
     return Range(sum(each.lo for each in counts), sum(each.hi for each in counts))
 
 
 def _controls(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
-    """Checks the signs of a map some of whose kinds of junctions have their own."""
     wanted = [asked.control_of(each) for each in asked.junctions]
     for control in dict.fromkeys(each for each in wanted if each is not None):
         allowed = _in_all(each for each in asked.junctions if asked.control_of(each) == control)
@@ -359,7 +357,6 @@ def _controls_of_grid(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
 
 
 def _kinds_with_signs(found: MeasuredMap, asked: MapClause, kinds: Sequence[JunctionCount]) -> Iterator[str]:
-    """Yields a text for each of some kinds of which too few junctions have the signs that are asked for."""
     for each in kinds:
         held = asked.control_of(each)
         if held is not None:
@@ -370,7 +367,6 @@ def _kinds_with_signs(found: MeasuredMap, asked: MapClause, kinds: Sequence[Junc
 
 
 def _is_of(node: MeasuredNode, kind: MapJunctionKind) -> bool:
-    """Returns whether a junction is of a kind; "junction" is any kind but a roundabout."""
     return "roundabout" not in node.kinds if kind == "junction" else kind in node.kinds
 
 

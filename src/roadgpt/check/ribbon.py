@@ -92,13 +92,11 @@ def _pairs_of_portion(
 
 
 def _boxes(low: Array, high: Array, size: int) -> Boxes:
-    """Returns the bounding boxes of every ``size`` consecutive boxes."""
     starts = np.arange(0, len(low), size)
     return np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
 
 
 def _meeting(boxes: Boxes, some: Indices, others: Indices) -> tuple[Indices, Indices]:
-    """Returns the pairs of boxes that touch: their indices from ``some``, and those from ``others``."""
     low, high = boxes
     touch = _touch(low[some][:, None], high[some][:, None], low[others], high[others])
     one, other = np.nonzero(touch)

@@ -95,7 +95,6 @@ def _passes_for_inside(nodes: Array, map_size: float) -> bool:
 
 
 def _meets_border(left: Array, right: Array, map_size: float) -> bool:
-    """Returns whether the closed outline touches the border line of the map."""
     outline = np.concatenate((left, right[::-1]))
     low, high, doubt = outline.min(), outline.max(), _doubt(outline)
     if low > doubt and high < map_size - doubt:
@@ -131,7 +130,6 @@ def keeps_clear(quads: Array) -> bool:
 
 
 def _are_apart(quads: Array, plain: NDArray[np.bool_], i: Indices, j: Indices, doubt: float) -> bool:
-    """Returns whether quads i and j, which are not neighbours, are disjoint; equal quads are ignored."""
     gap = np.where(plain[i] & plain[j], gaps(quads, i, j), 0.0)
     i, j, gap = i[gap <= doubt], j[gap <= doubt], gap[gap <= doubt]
     differ = (quads[i] != quads[j]).any(axis=(1, 2))

@@ -71,7 +71,6 @@ FEATURE_FIELDS: Mapping[Criterion, tuple[str, ...]] = {
 
 
 def _pair(value: Any) -> Any:
-    """Returns a single number as both bounds."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return (value, value)
     return value
@@ -118,16 +117,13 @@ class Truth(Frozen):
     ends: ExpectedElement | None = None
     starts: ExpectedElement | None = None
     alternating: Literal[True] | None = None
-    max_grade: Bounds | None = None
-    """Grade of the steepest 10 m of the road, uphill or downhill, in percent."""
+    max_grade: Bounds | None = None  # grade of the steepest 10 m of the road, uphill or downhill, in percent
     climb: Bounds | None = None
     length: Bounds | None = None
     hilly: Annotated[Bounds | None, BeforeValidator(_at_least)] = None
     """Number of changes between uphill and downhill; a single number is a minimum."""
-    min_radius: Bounds | None = None
-    """Smallest radius of the road, metres."""
-    turning: Bounds | None = None
-    """Sum of the absolute changes of heading, degrees."""
+    min_radius: Bounds | None = None  # smallest radius of the road, metres
+    turning: Bounds | None = None  # sum of the absolute changes of heading, degrees
 
     def given(self) -> tuple[str, ...]:
         """Returns the names of the keys that are not None."""
@@ -148,7 +144,6 @@ class Truth(Frozen):
 
 
 def _asked(value: Any) -> Any:
-    """Converts the value of a key of a Truth to the value that an Outline uses for it."""
     if isinstance(value, ExpectedElement):
         return Feature(
             value.kind,
@@ -215,7 +210,6 @@ def _of_features(found: Measures, asked: Outline) -> dict[Criterion, bool]:
 
 
 def _part(feature: Feature, fields: tuple[str, ...]) -> Feature:
-    """Returns a feature with only the requirements ``fields``, less those that every straight has to meet."""
     own = {name: getattr(feature, name) for name in fields}
     if feature.kind == "straight":
         usual = KINDS["straight"]

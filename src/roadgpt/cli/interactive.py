@@ -16,11 +16,8 @@ from roadgpt.errors import RoadGPTError
 
 USUAL_ROADS = 3
 ENOUGH = {"exit", "quit", "bye", "q"}
-
 HELP = {"help", "?", "hilfe"}
 
-CHANGE = "change it? > "
-CHANGE_ONE = "change one? (2: make the last turn sharper) > "
 CHANGES = """\
 Say what to change, for example:
   make the second turn sharper and the end downhill
@@ -51,35 +48,30 @@ def converse() -> None:
         with suppress(ImportError):
             import readline  # noqa: F401  importing it switches on arrow keys and history
     click.echo(f"{HELLO}\n")
-    while (words := _asked("description> ", EXPLAINED)) and words.lower() not in ENOUGH:
-        try:
-            meant = _understood(words)  # reports what cannot be read, before it asks for a number
-            if meant is None:
-                continue
-            roads = _how_many()
-            if roads is None:
-                break
-            screen = Screen(roads)
-            given = make.usual_values(meant or words, roads, is_plan=bool(meant))
-            make.carry_out(screen, meant or words, **given)
-            if not _changed(screen):
-                break
-        except RoadGPTError as error:
-            warn(error)
-        except KeyboardInterrupt:
-            stopping.forget()  # what was finished has been said; ask for the next description
-        click.echo()
-
-
-def _asked(question: str, explained: str) -> str:
-    """Returns the answer without blanks around it; empty at the end of the input. To an answer that asks
-    for help, explains, and asks again."""
-    while True:
-        try:
-            answer = input(question).strip()
-        except EOFError:
+    with suppress(EOFError):
+        while words := _asked("description> ", EXPLAINED):
+            try:
+                meant = _understood(words)  # reports what cannot be read, before it asks for a number
+                if meant is None:
+                    continue
+                screen = Screen(_how_many())
+                given = make.usual_values(meant or words, screen.total, is_plan=bool(meant))
+                make.carry_out(screen, meant or words, **given)
+                _change([row.file for row in screen.rows])
+            except RoadGPTError as error:
+                warn(error)
+            except KeyboardInterrupt:
+                stopping.forget()  # what was finished has been said; ask for the next description
             click.echo()
-            return ""
+
+
+def _asked(question: str, explained: str = "") -> str:
+    """Returns the answer without blanks around it; explains, and asks again, if it asks for help. Raises
+    EOFError if the user wants to leave."""
+    while True:
+        answer = input(question).strip()
+        if answer.lower() in ENOUGH:
+            raise EOFError
         if answer.lower() not in HELP or not explained:
             return answer
         click.echo(f"{explained}\n")
@@ -95,37 +87,30 @@ def _understood(words: str) -> str | None:
         brief = read(words, is_map_fixed=False)
     except AnotherRoadError as error:
         click.echo(f"{error.offer}: {make.reading(error.brief)}")
-        answer = _asked("1 to build that, or an empty line to say it in other words> ", "")
+        answer = _asked("1 to build that, or an empty line to say it in other words> ")
         return error.plan if answer == "1" else None
     if not brief.other:
         return ""
     other = make.reading(read_plan(brief.other))
     click.echo(f"I am not sure what is meant:\n  1  {make.reading(brief)}\n  2  {other}")
-    answer = _asked("1, 2, or an empty line to say it in other words> ", "")
+    answer = _asked("1, 2, or an empty line to say it in other words> ")
     return {"1": "", "2": brief.other}.get(answer)
 
 
-def _how_many() -> int | None:
-    """Asks for the number of roads; returns None if the user wants to leave."""
+def _how_many() -> int:
     while True:
         answer = _asked(f"how many roads [{USUAL_ROADS}]> ", EXPLAINED)
-        if answer.lower() in ENOUGH:
-            return None
         try:
             return ROADS(answer) if answer else USUAL_ROADS
         except click.BadParameter as error:
             warn(error.message)
 
 
-def _changed(screen: Screen) -> bool:
-    """Asks for changes to the new roads and makes them; returns False if the user wants to leave."""
+def _change(roads: list[str]) -> None:
     from roadgpt.road import World
 
-    roads = [row.file for row in screen.rows]
-    while roads and (answer := _asked(CHANGE if len(roads) == 1 else CHANGE_ONE, CHANGES)):
-        if answer.lower() in ENOUGH:
-            return False
-        # "2: make the last turn sharper"
+    question = "change it? > " if len(roads) == 1 else "change one? (2: make the last turn sharper) > "
+    while roads and (answer := _asked(question, CHANGES)):
         match = re.match(r"(?:road\s+)?(\d+)\s*[:,]?\s+(.*)", answer, re.IGNORECASE | re.DOTALL)
         is_numbered = match is not None and 1 <= int(match[1]) <= len(roads)
         number, words = (int(match[1]) - 1, match[2]) if match and is_numbered else (0, answer)
@@ -133,4 +118,3 @@ def _changed(screen: Screen) -> bool:
             roads[number] = str(make.edit_road(Screen(1), roads[number], words, World()))
         except RoadGPTError as error:
             warn(error)
-    return True

@@ -10,26 +10,24 @@ suites with counts, cases with ``name``, ``classname``, ``time`` and ``file``, a
 cases. Source: the documentation of the common format, https://github.com/testmoapp/junitxml."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 from roadgpt.campaign.folder_record import has_tests, open_record
-from roadgpt.campaign.model import Cell, NumberedTest
-from roadgpt.cli.result_row import Row, row_of_result
+from roadgpt.campaign.model import NumberedTest
+from roadgpt.cli.screen import Row, row_of_result
 from roadgpt.errors import RoadGPTError, explained
-from roadgpt.export.markup import DECLARATION, escaped
-from roadgpt.run.atomic import write_lines
+from roadgpt.export.markup import XmlElement, escaped
+from roadgpt.run.atomic import write_whole
 from roadgpt.run.folder import is_run
 from roadgpt.run.model import Request
 
 Properties = Mapping[str, str | float | int | None]
-Suite = tuple[str, Properties, Callable[[], Iterable[Row]]]
-"""Tests with the same description and settings: a name, the settings, and a function that returns the rows of
-all tests. It is called twice: to count the tests, and to write them."""
+Suite = tuple[str, Properties, Sequence[Row]]
+"""Tests with the same description and settings: a name, the settings, and the rows of all tests."""
 
-MARKS = {"FAIL": "failure", "INVALID": "skipped", "ERROR": "error"}
+MARKS = {"FAIL": "failure", "ERROR": "error"}
 COUNTED = {"FAIL": "failures", "ERROR": "errors", "INVALID": "skipped"}
 LONGEST = 120  # letters of a suite's name
 IN_CASE = (
@@ -37,50 +35,42 @@ IN_CASE = (
     "handed_to",
 )  # fmt: skip
 UNKNOWN = "roads that were given"
+TIMES = (
+    "SELECT number, coalesce(design_s, 0) + coalesce(drive_s, 0) FROM tests "
+    "WHERE cell = ? AND outcome IS NOT NULL"
+)
+ERRORS = "SELECT number, error FROM details WHERE cell = ? AND error IS NOT NULL"
 
 
-def write_rows(path: Path, request: Request, rows: Sequence[Row]) -> None:
-    """Writes result rows of a request as a JUnit file; raises RoadGPTError if it cannot be written."""
-    write_junit(path, [(request.words[:LONGEST] or UNKNOWN, _common(request), lambda: rows)])
-
-
-def write_folder(path: Path, folder: Path, worse: Mapping[str, str]) -> None:
-    """Writes the tests of a folder of runs, a campaign or a study as a JUnit file; ``worse`` says of some, by
-    names such as DIR/c01/17, in what they are worse than in a baseline."""
+def suites_of(folder: Path, worse: Mapping[str, str]) -> Iterator[Suite]:
+    """Yields the tests of a folder of runs, a campaign or a study; ``worse`` says of some, by names such as
+    DIR/c01/17, in what they are worse than in a baseline."""
     is_one = has_tests(folder) or is_run(folder)
     inside = [] if is_one else [place for place in sorted(folder.glob("*/*")) if has_tests(place)]
-    write_junit(path, (suite for place in inside or [folder] for suite in _of_folder(place, worse)))
+    for place in inside or [folder]:
+        with open_record(place) as record:
+            cells = record.cells()
+            for cell in cells:
+                rows = []
+                times = dict(record.query(TIMES, (cell.name,)))
+                errors = dict(record.query(ERRORS, (cell.name,)))
+                for result in record.results(cell.name):
+                    number, file = result.number, record.file(result.number)
+                    test = str(NumberedTest(cell.name, number))
+                    row = row_of_result(
+                        result, cell.request.words, record.seed(result), Path(file).name or test
+                    )
+                    own = {"seconds": times.get(number, 0.0), "trace": str(errors.get(number, ""))}
+                    own |= {"file": file, "origin": result.proposal.origin if cell.name else None}
+                    rows.append(replace(row, worse=worse.get(f"{place}/{test}", ""), **own))
+                name = cell.request.words[:LONGEST] or UNKNOWN
+                of_cell = {"cell": cell.name, "generator": cell.generator, "goal": cell.goal}
+                properties = {**properties_of(cell.request), **(of_cell if cell.name else {})}
+                yield name if len(cells) == 1 else f"{cell.name}: {name}", properties, rows
 
 
-def _of_folder(folder: Path, worse: Mapping[str, str]) -> Iterator[Suite]:
-    with open_record(folder) as record:
-        cells = record.cells()
-        for cell in cells:
-            name = cell.request.words[:LONGEST] or UNKNOWN
-            shown = name if len(cells) == 1 else f"{cell.name}: {name}"
-            of_cell = {"cell": cell.name, "generator": cell.generator, "goal": cell.goal} if cell.name else {}
-            yield shown, {**_common(cell.request), **of_cell}, partial(_of_cell, folder, cell, worse)
-
-
-def _of_cell(folder: Path, cell: Cell, worse: Mapping[str, str]) -> Iterator[Row]:
-    times = (
-        "SELECT number, coalesce(design_s, 0) + coalesce(drive_s, 0) FROM tests "
-        "WHERE cell = ? AND outcome IS NOT NULL"
-    )
-    errors = "SELECT number, error FROM details WHERE cell = ? AND error IS NOT NULL"
-    with open_record(folder) as record:
-        took: dict[int, float] = dict(record.query(times, (cell.name,)))
-        said: dict[int, str] = dict(record.query(errors, (cell.name,)))
-        for result in record.results(cell.name):
-            number, file = result.number, record.file(result.number)
-            test = str(NumberedTest(cell.name, number))
-            row = row_of_result(result, cell.request.words, record.seed(result), Path(file).name or test)
-            row = replace(row, seconds=took.get(number, 0.0), file=file, trace=str(said.get(number, "")))
-            origin = result.proposal.origin if cell.name else None
-            yield replace(row, worse=worse.get(f"{folder}/{test}", ""), origin=origin)
-
-
-def _common(request: Request) -> Properties:
+def properties_of(request: Request) -> Properties:
+    """Returns the settings of a suite."""
     setup, world = request.setup, request.world
     return {
         "words": request.words or None,
@@ -96,29 +86,24 @@ def _common(request: Request) -> Properties:
     }
 
 
-def write_junit(path: Path, suites: Iterable[Suite]) -> None:
+def write_junit(path: Path, suites: Sequence[Suite]) -> None:
     """Writes the suites into one file, which appears only when it is complete."""
-    with explained(RoadGPTError, f"cannot write {path}", "name another file with --junit"):
-        write_lines(path, _document([*suites]))
-
-
-def _document(suites: Sequence[Suite]) -> Iterator[str]:
-    counts = [_counted(rows()) for _, _, rows in suites]
-    yield f'{DECLARATION}\n<testsuites name="roadgpt"{_attributes(sum(counts, Counter[str]()))}>\n'
+    counts = [_counted(rows) for _, _, rows in suites]
+    root = XmlElement("testsuites", {"name": "roadgpt", **_attributes(sum(counts, Counter[str]()))})
     for (name, properties, rows), counted in zip(suites, counts, strict=True):
-        yield f'  <testsuite name="{escaped(name)}"{_attributes(counted)}>\n'
-        yield from _properties(properties, "    ")
-        for row in rows():
-            yield from _case(row, name)
-        yield "  </testsuite>\n"
-    yield "</testsuites>\n"
+        suite = root.add("testsuite", {"name": name, **_attributes(counted)})
+        _add_properties(suite, properties)
+        for row in rows:
+            _add_case(suite, row, name)
+    with explained(RoadGPTError, f"cannot write {path}", "name another file with --junit"):
+        write_whole(path, root.to_text())
 
 
 def _outcome(row: Row) -> str:
     return "FAIL" if row.worse and row.test_outcome != "ERROR" else row.test_outcome
 
 
-def _counted(rows: Iterable[Row]) -> Counter[str]:
+def _counted(rows: Sequence[Row]) -> Counter[str]:
     """Returns the number of tests by the names of attributes, and the milliseconds that they took."""
     counts: Counter[str] = Counter()
     for row in rows:
@@ -126,35 +111,29 @@ def _counted(rows: Iterable[Row]) -> Counter[str]:
     return counts
 
 
-def _attributes(counts: Counter[str]) -> str:
-    numbers = "".join(f' {name}="{counts[name]}"' for name in ("tests", *COUNTED.values()))
-    return f'{numbers} time="{counts["ms"] / 1000:.3f}"'
+def _attributes(counts: Counter[str]) -> dict[str, str]:
+    numbers = {name: str(counts[name]) for name in ("tests", *COUNTED.values())}
+    return {**numbers, "time": f"{counts['ms'] / 1000:.3f}"}
 
 
-def _case(row: Row, suite: str) -> Iterator[str]:
+def _add_case(suite: XmlElement, row: Row, classname: str) -> None:
     outcome, says = _outcome(row), row.description
     if row.worse:
         says = f"worse than in the baseline: {row.worse}; {says}"
-    file = f' file="{escaped(row.file)}"' if row.file else ""
-    name = escaped(row.name or row.file)
-    yield f'    <testcase name="{name}" classname="{escaped(suite)}" time="{row.seconds:.3f}"{file}>\n'
-    yield from _properties({name: getattr(row, name) for name in IN_CASE}, "      ")
-    mark = MARKS.get(outcome)
-    if mark == "skipped":
-        yield f'      <skipped message="{escaped(says)}"/>\n'
-    elif mark is not None:
+    case = {"name": row.name or row.file, "classname": classname, "time": f"{row.seconds:.3f}"}
+    element = suite.add("testcase", {**case, **({"file": row.file} if row.file else {})})
+    _add_properties(element, {name: getattr(row, name) for name in IN_CASE})
+    if outcome == "INVALID":
+        element.add("skipped", {"message": says})
+    elif outcome in MARKS:
         text = "\n".join(filter(None, (says, row.file, row.trace)))
-        kind = escaped(row.cause or outcome)
-        yield f'      <{mark} message="{escaped(says)}" type="{kind}">{escaped(text)}</{mark}>\n'
-    yield "    </testcase>\n"
+        element.add(MARKS[outcome], {"message": says, "type": row.cause or outcome}, escaped(text))
 
 
-def _properties(properties: Properties, indent: str) -> Iterator[str]:
+def _add_properties(element: XmlElement, properties: Properties) -> None:
     known = {name: value for name, value in properties.items() if value not in (None, "")}
-    if not known:
-        return
-    yield f"{indent}<properties>\n"
-    for name, value in known.items():
-        text = f"{value:.6g}" if isinstance(value, float) else str(value)
-        yield f'{indent}  <property name="{escaped(name)}" value="{escaped(text)}"/>\n'
-    yield f"{indent}</properties>\n"
+    if known:
+        below = element.add("properties")
+        for name, value in known.items():
+            text = f"{value:.6g}" if isinstance(value, float) else str(value)
+            below.add("property", {"name": name, "value": text})

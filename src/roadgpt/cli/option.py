@@ -10,8 +10,9 @@ from contextlib import contextmanager
 from copy import copy
 from enum import StrEnum
 from functools import partial
+from math import inf, isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
@@ -187,20 +188,16 @@ class Option(click.Option):
         from roadgpt.chat.config import FOLDER, Setting
 
         for layer in layers:
-            table = layer.tables.get(self.table, {})
-            said, where = table.get(self.key), f"[{self.table}]"
-            if self.variable in layer.found:
-                said, where = layer.found[self.variable], f"({self.variable})"
-            if said is None:
+            setting = layer.find(self.table, self.key, self.variable)
+            if setting is None:
                 continue
-            origin = f"{layer.name} {where}"
-            with self._naming(origin):
-                value = self._text(said)
+            with self._naming(setting.origin):
+                value = self._text(setting.value)
             place = OF_FOLDER if layer.name in FOLDER else OF_USER if layer.tables else OF_ENVIRONMENT
             for one in value if isinstance(value, tuple) else (value,):
                 if self.guard and (refusal := self.guard(str(one), place)):
-                    raise UsageError(f"{origin} says {self.key} = {one}: {refusal}")
-            return Setting(value, origin)
+                    raise UsageError(f"{setting.origin} says {self.key} = {one}: {refusal}")
+            return Setting(value, setting.origin)
         return None
 
     def _text(self, value: Any) -> Any:
@@ -267,30 +264,35 @@ def _digits(value: float, unit: float) -> str:
     return next((text for text in texts if float(text) / unit == value), texts[-1])
 
 
-N = TypeVar("N", int, float)
 PICTURES = ("png", "svg", "pdf")  # as report.FORMATS has them, which would load matplotlib
 
 
 def measure(low: float, high: float, unit: str = "", above: bool = False) -> Callable[[str], float]:
     """Returns the type of an option for a finite number from ``low`` to ``high``, or ``above`` ``low``."""
-    bounds = f"above {low:g}, up to {high:g}" if above else f"from {low:g} to {high:g}"
-    return _number(float, "number", low, high, f"give a number {bounds}{unit and ' ' + unit}", above)
+    return number(float, low, high, above, unit=unit)
 
 
 def whole(low: int, high: int, what: str) -> Callable[[str], int]:
     """Returns the type of an option for a whole number within bounds; ``what`` it is, such as 'a seed'."""
-    return _number(int, "whole number", low, high, f"give {what}, a whole number from {low} to {high}")
+    return number(int, low, high, what=f"{what}, ")
 
 
-def _number(
-    kind: Callable[[str], N], name: str, low: N, high: N, advice: str, above: bool = False
-) -> Callable[[str], N]:
-    def number(value: str) -> N:  # click shows this name in the help
+def number(
+    kind: Any, low: float, high: float, is_above: bool = False, what: str = "", unit: str = ""
+) -> Callable[[str], Any]:
+    """Returns the type of an option for a number of this ``kind`` within bounds, of which infinite ones are
+    left out; with ``is_above``, the lower bound itself is not possible."""
+    name = "whole number" if kind is int else "number"
+    lower = f"above {low:g}, up to" if is_above else f"from {low:g} to"
+    bounds = f"{lower} {high:.15g}" if high < inf else lower.rpartition("," if is_above else " to")[0]
+    advice = f"give {what}a {name} {bounds}{unit and ' ' + unit}"
+
+    def number(value: str) -> Any:  # click shows this name in the help
         try:
             found = kind(value)
         except ValueError:
             raise click.BadParameter(f"'{value}' is no {name}; {advice}") from None
-        if not low <= found <= high or (above and found == low):
+        if not (low <= found <= high and isfinite(found)) or (is_above and found == low):
             raise click.BadParameter(f"{value} is not possible; {advice}")
         return found
 
@@ -309,13 +311,15 @@ def lanes(value: str) -> str:
 
 def bank(value: str) -> str | float:
     """Converts a superelevation to a number in percent; returns "none" and "auto" unchanged."""
+    from roadgpt.road.world import STEEPEST, bank_in
+
     text = str(value).strip().removesuffix("%").strip()
-    if text in ("none", "auto"):
-        return text
     try:
-        return measure(0, 12, "percent")(text)
-    except click.BadParameter as error:
-        raise click.BadParameter(f"{error.message}, or none, or auto") from None
+        return bank_in(text if text in ("none", "auto") else float(text), 100 * STEEPEST, "a percentage")
+    except ValueError:
+        raise click.BadParameter(
+            f"'{value}' is not possible; give none, auto or a percentage from 0 to {100 * STEEPEST:g}"
+        ) from None
 
 
 ROADS = whole(1, 1_000_000, "the number of roads")
@@ -350,8 +354,7 @@ def driver(value: str) -> str:
     """Returns the value of --driver; for a driver's file, makes its path absolute and permits its code."""
     if ".py" not in value:
         return value
-    from roadgpt.drive.loading import absolute_spec
-    from roadgpt.drive.permission import permit
+    from roadgpt.drive.loading import absolute_spec, permit
 
     permit(found := absolute_spec(value, Path.cwd()))
     return found

@@ -1,7 +1,7 @@
 """Makes help texts that list options in groups: ``--help`` lists common options, ``--help-all`` lists all."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
 from itertools import takewhile
@@ -55,22 +55,27 @@ class GroupedCommand(click.Command):
     """A command whose help lists options in groups. It also prints which settings come from files.
 
     ``heading`` is the heading of ``roadgpt --help`` under which a command of another package stands;
-    ``has_simulators`` adds the options of simulators."""
+    ``has_simulators`` adds the options of simulators. ``makes`` returns further parameters; it is called when
+    they are first used, since options of models load the models."""
 
-    def __init__(self, *args: Any, heading: str = "", has_simulators: bool = False, **rest: Any) -> None:
+    def __init__(
+        self, *args: Any, heading: str = "", has_simulators: bool = False,
+        makes: Callable[[], Sequence[click.Parameter]] = tuple, **rest: Any,
+    ) -> None:  # fmt: skip
         super().__init__(*args, **rest)
-        self.heading, self.has_simulators = heading, has_simulators
+        self.heading, self.has_simulators, self._makes = heading, has_simulators, makes
         self.params.append(HELP_ALL)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
-        """Returns the parameters; those of simulators come last, and are made when they are first used."""
+        """Returns the parameters; those of simulators come last."""
+        self.params[-1:-1], self._makes = self._makes(), tuple
         found = super().get_params(ctx)
         return [*found, *options.simulator_options()] if self.has_simulators else found
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parses the arguments; says what to do with a description that begins with a dash."""
         ctx.meta.setdefault(LAYERS, cache(options.layers))
-        if not any(parameter.name == "words" for parameter in self.params):
+        if not any(parameter.name == "words" for parameter in self.get_params(ctx)):
             return super().parse_args(ctx, args)
         with dash_advice(ctx, args):
             return super().parse_args(ctx, args)

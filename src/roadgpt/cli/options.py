@@ -1,12 +1,13 @@
 """Declares the options that several commands share, and converts their values to objects such as the World.
 
-Each entry in ``WORLD`` or ``SETUP`` defines four things: an option of ``roadgpt run``, ``campaign`` and
-others, a key in configuration files, a line of ``roadgpt config show``, and an argument in printed commands.
+Those of the World, the Setup, language models and simulators are made from the models of their values.
 """
 
 import os
+import re
 from collections.abc import Iterator, Sequence
 from functools import cache, partial
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
@@ -30,6 +31,7 @@ from roadgpt.cli.option import (
     lanes,
     measure,
     named,
+    number,
     path_guard,
     picture_formats,
     place_guard,
@@ -46,78 +48,115 @@ if TYPE_CHECKING:
     from roadgpt.report import Drawing
     from roadgpt.road import World
 
-CHAT_TABLE = "chat"
-_world = partial(Option, heading=Heading.SITE, table="world")
-_judged = partial(_world, heading=Heading.DRIVE)
-_run = partial(Option, heading=Heading.DESIGN, table="run")
-_chat = partial(Option, heading=Heading.MODEL)
-_rare = partial(Option, heading=Heading.MODEL, is_rare=True)
 _files = partial(Option, heading=Heading.FILES)
-
-# fmt: off
-WORLD = (
-    _world("--map-size", "Side of the map, m. [default: 250, more if needed]",
-           measure(50, 40_000, "metres")),
-    _judged("--speed-limit", "Speed limit, km/h.", measure(5, 300, "km/h"), 70, unit=3.6,
-            key="speed_limit_kmh"),
-    _judged("--oracle", "FAIL when more of the car than this is outside its lane: half, sbft (85 %), thesis "
-            "(95 %), 0.7 ...; departure: a front tyre over the marking.", str, "half", metavar="ORACLE"),
-    _judged("--oob-tolerance", "Share of the car that may be outside its lane. [default: that of --oracle]",
-            measure(0, 1, above=True), is_rare=True),
-    _judged("--lane-departure", "Also fail if a front tyre crosses the lane marking.", bool, is_rare=True),
-    _world("--lanes", "Own + oncoming lanes. [default: 1+1, or as described]",
-           lanes),
-    _world("--lane-width", "Width of every lane, m.", measure(2, 10, "metres"), 4),
-    _world("--lane-width-end", "Lane width at the road's end, m, reached gradually. [default: the same]",
-           measure(2, 10, "metres"), is_rare=True),
-    _world("--bank", "Bank of bends: none, auto, or in %.", bank, "none", unit=100.0),
-    _world("--shoulder", "Width of the firm ground along each side of the road, m; 0: none.",
-           measure(0, 100, "metres"), 3, is_rare=True),
-    _world("--friction", "Friction coefficient: dry 1, wet 0.6, snow 0.35.",
-           measure(0, 2, above=True)),
-)
-"""The options that set fields of the World."""
-
-SETUP = (
-    _run("--reader", "Reads the description: model (neural networks), chat (a language model), plan (plans "
-         "only).", str, "model", guard=reader_guard),
-    _run("--designer", "Designs roads: planner (a search), or thesis (a language model, as in RoadGPT's "
-         "thesis).", str, "planner", guard=designer_guard),
-    _run("--driver", "A name, or FILE.py:CLASS.", driver, "lane_centring", heading=Heading.DRIVE,
-         guard=driver_guard),
-    _run("--simulator", "What simulates the car.", str, "mujoco", heading=Heading.DRIVE),
-    _run("--keep-driving", "Continue to the end after the car leaves its lane.", bool, heading=Heading.DRIVE),
-    _run("--geometry",
-         "How a design becomes a road: arcs (lines, arcs, clothoids), or spline (as in RoadGPT's "
-         "thesis).",
-         click.Choice(["arcs", "spline"]), "arcs", is_rare=True),
-    _run("--rules", "Which rules a road must satisfy: RoadGPT's own (strict), or those of the SBFT tool "
-         "competition.", click.Choice(["strict", "sbft"]), "strict", is_rare=True),
-)
+GUARDS: dict[str, Any] = {"reader": reader_guard, "designer": designer_guard, "driver": driver_guard}
+KINDS: dict[str, Any] = {"driver": driver, "lanes": lanes, "bank": bank}
+"""What refuses and what converts the values of fields, where their types do not say it all."""
+ORACLE = Option(
+    "--oracle",
+    "FAIL when more of the car than this is outside its lane: half, sbft (85 %), thesis (95 %), 0.7 ...; "
+    "departure: a front tyre over the marking.",
+    str, "half", metavar="ORACLE", heading=Heading.DRIVE, table="world",
+)  # fmt: skip
+"""Stands for the two fields of the Limits that are options of their own."""
+WORLD: Sequence[Option]
+"""The options that set fields of the World; made, as all of models, when they are first used."""
+SETUP: Sequence[Option]
 """The options that set fields of the Setup."""
-
-CHAT = (
-    _chat("--model", "Name of the model on its server."),
-    _chat("--base-url", "Address of the server, including /v1. [default: OpenAI's]"),
-    _rare("--provider", "Protocol of the server. [default: openai]"),
-    _rare("--temperature", "Sampling temperature. [default: the server's]", measure(0, 2)),
-    _rare("--timeout", "Seconds to wait for an answer. [default: 60]", measure(0, 86_400, "s", above=True)),
-    _rare("--retries", "Further attempts when the server fails. [default: 3]", whole(0, 20, "retries")),
-    _rare("--max-completion", "Maximum number of tokens in one answer. [default: 4096]",
-          whole(16, 1_000_000, "tokens")),
-    _rare("--max-tokens", "Stop when all roads together have used this many tokens.",
-          whole(1, 10**12, "tokens")),
-    _chat("--max-cost", "Stop when the language model has cost this many USD.",
-          measure(0, 1e6, "USD", above=True)),
-    _rare("--price",
-          "USD per million input and output tokens, such as 0.15/0.60. [default: OpenAI's prices]"),
-    _rare("--record", "Save every exchange with the server in this folder."),
-    _rare("--replay", "Use the answers saved in this folder; ask no server."),
-    _rare("--rounds", "Maximum number of requests to the model for one description. [default: 3]",
-          whole(1, 20, "rounds")),
-)
+CHAT: Sequence[Option]
 """The options that set fields of ChatSettings; ``roadgpt.chat.config`` looks up those that are not given."""
-# fmt: on
+MAKING: Sequence[Option]
+"""The options of ``roadgpt run`` that say how roads are made, driven, drawn and exported."""
+
+
+def of_model(
+    model: Any, heading: Heading, table: str = "", stem: str = "", is_rare: bool = False, **more: Any
+) -> Iterator[Option]:
+    """Yields the options of a pydantic model: one for each field with a ``description``, which is also a key
+    in a table of settings files, and a line of ``roadgpt config show``.
+
+    The field's type, bounds and default are those of the option; its ``json_schema_extra`` may have the
+    ``heading``, ``rare``, ``unit`` (the factor to the option's value), ``within`` (narrower bounds than the
+    model's, in its unit), ``key``, ``flag``, ``open`` (no default: it means that nothing was asked for), and
+    ``of_user``, for what no file of the working folder sets; nor does such a file set folders."""
+    for name, field in model.model_fields.items():
+        if field.description is None:
+            continue
+        kinds, extra = get_args(field.annotation) or (field.annotation,), field.json_schema_extra or {}
+        unit, usual, kind = extra.get("unit", 1.0), field.default, KINDS.get(name)
+        guard = place_guard if extra.get("of_user") else GUARDS.get(name)
+        if "[default:" in field.description or extra.get("open"):
+            usual = None
+        elif isinstance(usual, float):
+            usual = round(usual * unit, 9)
+            usual = int(usual) if usual.is_integer() else usual
+        if kind is None and (get_origin(kinds[0]) is Literal or isinstance(kinds[0], str)):
+            kind = click.Choice([*(kinds if isinstance(kinds[0], str) else get_args(kinds[0]))])
+        elif kinds[0] is Path:
+            kind, guard = _whole_folder, path_guard
+        elif kinds[0] is bool:
+            kind = bool
+        elif kind is None and kinds[0] in (int, float):
+            kind = _within(kinds[0], field, extra.get("within"), unit)
+        yield Option(
+            extra.get("flag", f"--{stem}{name.replace('_', '-')}"), field.description, kind, usual,
+            key=extra.get("key", name), heading=Heading(extra.get("heading", heading)), table=table,
+            is_rare=is_rare or "rare" in extra, guard=guard, unit=unit, **more,
+        )  # fmt: skip
+
+
+def _within(kind: type, field: Any, within: tuple[float, float] | None, unit: float) -> Any:
+    found = {
+        name: getattr(each, name)
+        for each in field.metadata
+        for name in ("gt", "ge", "le")
+        if getattr(each, name, None) is not None
+    }
+    said = re.search(r", (km/h|m)\b", field.description)
+    low, high = within or (found.get("ge", found.get("gt", -inf)), found.get("le", inf))
+    low, high = round(low * unit, 9), round(high * unit, 9)
+    return number(
+        kind, low, high, is_above="gt" in found and low == found["gt"] * unit, unit=said[1] if said else ""
+    )
+
+
+@cache
+def _of_models() -> dict[str, tuple[Option, ...]]:
+    from roadgpt.chat.model import ChatSettings
+    from roadgpt.road.world import CrossSection, Limits, Parts, Site
+
+    of_world = [
+        each for part in (Site, CrossSection, Limits) for each in of_model(part, Heading.SITE, "world")
+    ]
+    order = (
+        "map_size", "speed_limit", "oracle", "oob_tolerance", "lane_departure", "lanes", "lane_width",
+        "lane_width_end", "bank", "shoulder", "friction",
+    )  # fmt: skip
+    world = tuple(named([ORACLE, *of_world], *order))
+    names = ("reader", "designer", "driver", "simulator", "keep_driving", "geometry", "rules")
+    setup = tuple(named([*of_model(Parts, Heading.DESIGN, "run")], *names))
+    making = (*setup[:5], *world, *setup[5:], NO_DRIVE, NO_PLOT, AXES, FORMAT, EXPORT)
+    chat = tuple(of_model(ChatSettings, Heading.MODEL))
+    return {"WORLD": world, "SETUP": setup, "CHAT": chat, "MAKING": making}
+
+
+def __getattr__(name: str) -> Any:
+    if name in ("WORLD", "SETUP", "CHAT", "MAKING"):
+        return _of_models()[name]
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+@cache
+def simulator_options() -> tuple[Option, ...]:
+    """Returns the options of all simulators that bring a model of their settings, a plug-in ``settings``:
+    ``--beamng-port`` for the field ``port`` of ``beamng``. Every field can be set in the environment, such as
+    by ROADGPT_BEAMNG_PORT."""
+    more: dict[str, Any] = {"is_rare": True, "expose_value": False, "callback": _keep}
+    return tuple(
+        each
+        for name in plugins.names("settings")
+        for each in of_model(plugins.find("settings", name), Heading.SIMULATOR, name, f"{name}-", **more)
+    )
 
 
 # fmt: off
@@ -211,51 +250,6 @@ GATE = (
     _gate("--margin-loss", "Loss of margin that is not worse than the baseline, m. [default: 0.1]",
           measure(0, 100)),
 )  # fmt: skip
-MAKING = (
-    *named(SETUP, "reader", "designer", "driver", "simulator", "keep_driving"),
-    *WORLD,
-    *named(SETUP, "geometry", "rules"),
-    *(NO_DRIVE, NO_PLOT, AXES, FORMAT, EXPORT),
-)
-"""The options of ``roadgpt run`` that say how roads are made, driven, drawn and exported."""
-
-
-@cache
-def simulator_options() -> tuple[Option, ...]:
-    """Returns the options of all simulators that bring a model of their settings, a plug-in ``settings``.
-
-    A field that has a ``description`` becomes an option, a key in the simulator's table of configuration
-    files, and a line of ``roadgpt config show``; every field can be set in the environment, such as
-    ROADGPT_BEAMNG_PORT for ``port`` of ``beamng``. The option is called ``--beamng-port``, or as the field's
-    ``flag`` says. Folders, and fields with ``of_user``, are not taken from files of the working folder."""
-    names = plugins.names("settings")
-    return tuple(each for name in names for each in _options(name, plugins.find("settings", name)))
-
-
-def _options(simulator: str, model: Any) -> Iterator[Option]:
-    for name, field in model.model_fields.items():
-        if field.description is None:
-            continue
-        kinds, more = get_args(field.annotation) or (field.annotation,), field.json_schema_extra or {}
-        low = next((each.ge for each in field.metadata if hasattr(each, "ge")), 0)
-        high = next((each.le for each in field.metadata if hasattr(each, "le")), 1_000_000)
-        kind: Any = None
-        guard = place_guard if more.get("of_user") else None
-        if get_origin(kinds[0]) is Literal or isinstance(kinds[0], str):
-            kind = click.Choice([*(kinds if isinstance(kinds[0], str) else get_args(kinds[0]))])
-        elif kinds[0] is Path:
-            kind, guard = _whole_folder, path_guard
-        elif kinds[0] is bool:
-            kind = bool
-        elif kinds[0] is int:
-            kind = whole(low, high, "a number")
-        elif kinds[0] is float:
-            kind = measure(low, high)
-        yield Option(
-            more.get("flag", f"--{simulator}-{name.replace('_', '-')}"), field.description, kind, key=name,
-            heading=Heading.SIMULATOR, table=simulator, is_rare=True, guard=guard, expose_value=False,
-            callback=_keep,
-        )  # fmt: skip
 
 
 def _whole_folder(value: str) -> Path:
@@ -268,7 +262,7 @@ _whole_folder.__name__ = "folder"  # click shows it in the help
 def _keep(ctx: click.Context, option: click.Parameter, value: Any) -> None:
     # the simulator and its workers read it in the environment
     assert isinstance(option, Option)
-    if value not in (None, False):
+    if value not in (None, False) and ctx.get_parameter_source(option.field) is not ParameterSource.DEFAULT:
         os.environ[option.variable] = "1" if value is True else str(value)
     elif ctx.get_parameter_source(option.field) is ParameterSource.COMMANDLINE:
         os.environ.pop(option.variable, None)  # --no-headless
@@ -276,33 +270,17 @@ def _keep(ctx: click.Context, option: click.Parameter, value: Any) -> None:
 
 def settable() -> list[Option]:
     """Returns the options that configuration files can set, in the order of ``roadgpt run``."""
-    return [each for each in (*MAKING, *simulator_options()) if each.table]
+    return [each for each in (*_of_models()["MAKING"], *simulator_options()) if each.table]
 
 
 def layers() -> "Sequence[Layer]":
     """Reads all sources of settings, and returns them, highest precedence first; refuses unknown keys."""
     from roadgpt.chat.config import layers as all_layers
-    from roadgpt.chat.config import unknown_key
 
     keys: dict[str, list[str]] = {}
     for each in settable():
         keys.setdefault(each.table, []).append(each.key)
-    found = all_layers()
-    for layer in found:
-        for name, table in layer.tables.items():
-            if name == CHAT_TABLE:
-                continue  # roadgpt.chat.config checks it
-            if name not in keys:
-                there = ", ".join(f"[{each}]" for each in (*keys, CHAT_TABLE))
-                raise UsageError(
-                    f"the settings in {layer.name} have no table [{name[:40]}]; there are: {there}"
-                )
-            if not isinstance(table, dict):
-                raise UsageError(f"the settings in {layer.name} need a table [{name}]")
-            for key in table:
-                if key not in keys[name]:
-                    raise unknown_key(layer.name, name, key, keys[name])
-    return found
+    return all_layers(keys)
 
 
 def typed(ctx: click.Context) -> set[str]:
@@ -314,7 +292,8 @@ def world_of(values: dict[str, Any]) -> "World":
     """Returns the World that option values describe, and removes them from ``values``; None is not set."""
     from roadgpt.road import World
 
-    given = {each.field: each.read(values.pop(each.field)) for each in WORLD if each.field in values}
+    of_world = _of_models()["WORLD"]
+    given = {each.field: each.read(values.pop(each.field)) for each in of_world if each.field in values}
     if "oracle" in given:  # what is typed precedes what files set, and this the default oracle
         from roadgpt.road.world import oracle_limits
 
@@ -339,7 +318,7 @@ def reader_of(values: dict[str, Any]) -> str:
 
 def chat_values(values: dict[str, Any]) -> dict[str, Any]:
     """Returns the fields of ChatSettings that were given as options."""
-    given = {each.field: each.read(values.get(each.field)) for each in CHAT}
+    given = {each.field: each.read(values.get(each.field)) for each in _of_models()["CHAT"]}
     return {field: value for field, value in given.items() if value is not None}
 
 
@@ -347,7 +326,7 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
     """Returns the settings of the language model, or None if neither reader nor designer uses one; removes
     their options from ``values``."""
     told = chat_values(values)
-    for each in CHAT:
+    for each in _of_models()["CHAT"]:
         values.pop(each.field, None)
     from roadgpt.chat import asks_a_model, configured
 
@@ -355,7 +334,7 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
     if any(asks_a_model(plugins.find(shelf, name.partition(":")[0])) for shelf, name in shelves if name):
         return configured(told)
     if told:
-        flag = next(each.flag for each in CHAT if each.field in told)
+        flag = next(each.flag for each in _of_models()["CHAT"] if each.field in told)
         raise UsageError(f"{flag} is for language models; give --reader chat as well")
     return None
 

@@ -53,16 +53,16 @@ def request_words(request: Request, roads: int, brief: Brief | None) -> list[str
 def option_words(
     setup: Setup,
     world: World,
-    of_setup: Sequence[Option] = options.SETUP,
+    of_setup: Sequence[Option] | None = None,
     asks: bool = True,
     also: Set[str] = frozenset(),
 ) -> list[str]:
     """Returns the arguments for options that differ from their defaults, that configuration files or the
     environment set, or whose keys are in ``also``. ``of_setup`` are those of the command that set fields of
-    the Setup; ``asks`` says whether it has options for language models."""
+    the Setup, of all if it is None; ``asks`` says whether it has options for language models."""
     layers = options.layers()
     told = {each.key for each in options.settable() if each.found(layers) is not None} | also
-    words = words_of(of_setup, dict(setup), told=told)
+    words = words_of(of_setup or options.SETUP, dict(setup), told=told)
     told |= {"oracle"} if told & {*oracle_limits()} else set()
     values = world.values() | dict.fromkeys(oracle_limits()) | {"oracle": world.limits.oracle}
     words += words_of(options.WORLD, values, World().values(), told)
@@ -171,22 +171,19 @@ def of_status(status: Status) -> WithoutFailure | None:
         first, *others = record.cells()
         compares: tuple[str, ...] = ()
         if others:
-            asked = [_with_usual_driver(cell.request) for cell in (first, *others)]
+            named = ",".join(cell.request.setup.driver for cell in (first, *others))
+            asked = []
+            for cell in (first, *others):
+                setup = cell.request.setup.model_copy(update={"driver": Setup().driver})
+                asked.append(cell.request.model_copy(update={"setup": setup}))
             if any(request != asked[0] for request in asked):
                 return None
-            named = ",".join(cell.request.setup.driver for cell in (first, *others))
             compares = ("--drivers", named, *["--paired"] * record.plan().paired)
             first = replace(first, request=asked[0])
     outside = sum(cell.partly_outside + cell.mostly_outside for cell in status.cells)
     tests, is_search = first.budget.tests or SEARCHED, not first.in_sequence
     passed = status.outcomes["PASS"]
     return WithoutFailure(first.request, tests, passed, outside, first.goal, is_search, first.brief, compares)
-
-
-def _with_usual_driver(request: Request) -> Request:
-    setup = request.setup
-    usual = setup.model_copy(update={"driver": type(setup)().driver})
-    return request.model_copy(update={"setup": usual})
 
 
 def of_rows(request: Request, brief: Brief | None, roads: int, rows: Any) -> WithoutFailure | None:

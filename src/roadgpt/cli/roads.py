@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from roadgpt.cli.options import WORLD, typed
-from roadgpt.cli.result_row import Row, unreadable
-from roadgpt.cli.screen import Screen
+from roadgpt.cli.screen import Row, Screen, unreadable
 from roadgpt.cli.streams import warn
 from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError, explained
 from roadgpt.plural import plural

@@ -1,25 +1,233 @@
-"""Prints the output of a command while it works: lines with a progress bar on a terminal, plain lines, JSON,
-or nothing."""
+"""Prints the results of roads while a command works: lines with a progress bar on a terminal, plain lines,
+JSON, or nothing; and defines ``Row``, the result of one road."""
 
+import json
 import logging
+import math
 import sys
 import time
-from dataclasses import replace
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import click
 
 from roadgpt import stopping
-from roadgpt.cli.result_row import WIDEST, Row, colour_of, driver_and_oracle, row_of, summary
 from roadgpt.cli.streams import apart, is_coloured, progress
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from roadgpt.campaign.gate import Gate
-    from roadgpt.run import Request, Run
+    from roadgpt.campaign.model import Result
+    from roadgpt.chat import Spent
+    from roadgpt.run.model import Outcome, Request, Run
+    from roadgpt.verdict import Verdict
+
+COLOURS = {
+    "PASS": "green",
+    "PASS (partly outside)": "yellow",
+    "PASS (mostly outside)": "bright_red",
+    "VALID": "green",
+    "FAIL": "red",
+    "INVALID": "cyan",
+    "ERROR": "magenta",
+}
+"""Colours of outcomes on a terminal, from the best outcome to the worst."""
+WIDEST = max(len(name) for name in (*COLOURS, "FAIL (out of lane)"))
+MOST_TOLD = len("PASS (100 % out, 10.00 m)")
+IN_JSON = (
+    "file", "is_valid", "validation_message", "findings", "test_outcome", "description", "max_oob",
+    "beyond_m", "margin_m", "length_m", "own_share", "handed_to", "seconds",
+)  # fmt: skip
+
+
+def colour_of(outcome: str) -> str:
+    """Returns the colour of an outcome on a terminal."""
+    return COLOURS[_kind(outcome)]
+
+
+def _kind(outcome: str) -> str:
+    return outcome if outcome in COLOURS else outcome.split(" ")[0]
+
+
+@dataclass(frozen=True)
+class Row:
+    """The result of one road; the outcome VALID means that the road was checked but not driven."""
+
+    file: str
+    test_outcome: "Outcome"
+    description: str  # one sentence on the result: the verdict, the broken rule or the error
+    is_valid: bool = True
+    validation_message: str = ""
+    findings: tuple[str, ...] = ()
+    """One sentence for each broken rule; the first is also ``validation_message``."""
+    cause: str | None = None
+    """Cause of a FAIL: out of lane, fell, stuck or timeout. For an ERROR: unreadable, if the file cannot
+    be read."""
+    max_oob: float | None = None  # largest share of the car that was outside its lane, 0 to 1
+    beyond_m: float | None = None  # largest distance of the car's body beyond the lane marking, m
+    margin_m: float | None = None
+    length_m: float | None = None
+    at_s_m: float | None = None  # station of the failure, metres along the road; None if the car did not fail
+    side: str | None = None  # the side on which the car left its lane
+    own_share: float | None = None
+    """Share of the way, 0 to 1, that the driver drove itself; None if it never handed over."""
+    handed_to: str | None = None  # who drove where the car failed, if the driver had handed over
+    seconds: float = 0.0
+    name: str = ""  # a shorter name, which is printed instead of ``file``; if empty, ``file`` is printed
+    spent: "Spent | None" = None  # tokens, seconds and cost of the language models used for the road
+    words: str = ""
+    seed: int | None = None  # the seed of this road
+    trace: str = ""  # the traceback, if a driver or a simulator failed
+    worse: str = ""  # in what the result is worse than in the baseline
+    origin: str | None = None  # how a search came to the road
+
+    @property
+    def outcome(self) -> str:
+        """The outcome with cause or qualifier, such as 'FAIL (out of lane)' or 'PASS (mostly outside)'."""
+        if self.cause:
+            other = f", {self.handed_to} drove" if self.handed_to else ""
+            return f"{self.test_outcome} ({self.cause}{other})"
+        from roadgpt.verdict import graded
+
+        return graded(self.test_outcome, self.max_oob)
+
+    @property
+    def told(self) -> str:
+        """The outcome as commands print it; of a passed drive with how far the car was outside."""
+        if self.test_outcome != "PASS" or not self.max_oob:
+            return self.outcome
+        return f"PASS ({outside(self.max_oob, self.beyond_m)})"
+
+    def to_json(self) -> str:
+        """Returns the row as one line of JSON."""
+        told = {name: _rounded(getattr(self, name)) for name in IN_JSON}
+        if self.spent is not None:
+            told |= {"tokens": self.spent.usage.total, "model_seconds": _rounded(self.spent.seconds)}
+            told["cost_usd"] = self.spent.cost
+        if self.worse:
+            told["worse"] = self.worse
+        return json.dumps(told)
+
+    def to_line(self) -> str:
+        """Returns a line with outcome, length, margin, file, and the sentence on a rule or an error."""
+        length = "" if self.length_m is None else f"{self.length_m:6.1f} m"
+        margin = "" if self.margin_m is None else f"margin {metres(self.margin_m)}"
+        line = f"{self.told:<{MOST_TOLD}} {length:>9}  {margin:<15}  {self.name or self.file}"
+        if self.own_share is not None:
+            line += f"  drove {100 * self.own_share:.0f} % itself"
+        if self.worse:
+            line += f"  worse: {self.worse}"
+        if self.test_outcome in ("INVALID", "ERROR"):
+            return f"{line}  {self.description.removeprefix(f'{self.file}: ')}"
+        if not self.findings:
+            return line
+        rest = len(self.findings) - 1  # the road was driven in spite of them
+        more = f" and {rest} more finding{'s' * (rest > 1)}" if rest else ""
+        return f"{line}  finding: {self.findings[0]}{more}"
+
+
+def driver_and_oracle(drivers: Sequence[str], oracle: str) -> str:
+    """Returns the line of text that says who drove, and when a test fails."""
+    from roadgpt.road.world import oracle_in_words
+
+    return f"driver {' and '.join(dict.fromkeys(drivers))}, oracle {oracle_in_words(oracle)}"
+
+
+def outside(share: float | None, beyond: float | None) -> str:
+    """Returns how far a car was outside, such as '62 % out, 1.13 m' or 'inside'; empty without a drive."""
+    if share is None:
+        return ""
+    if not share:
+        return "inside"
+    from roadgpt.verdict import percent
+
+    return f"{percent(share)} out" + ("" if beyond is None else f", {beyond:.2f} m")
+
+
+def metres(margin: float) -> str:
+    """Formats a margin to the millimetre, because the margins that decide a verdict are small."""
+    told = f"{margin:+.3f} m"
+    return "below 0 m" if told.startswith("-0.000") else told
+
+
+def spending(spent: "Spent") -> str:
+    """Returns a text with the number of answers from language models, and their tokens, seconds and cost."""
+    money = "price unknown" if spent.cost is None else f"{spent.cost:.4f} USD"
+    answers = f"{spent.calls:,} answer{'s' * (spent.calls != 1)}"
+    return f"{answers}, {spent.usage.total:,} tokens, {spent.seconds:.1f} s, {money}"
+
+
+def _rounded(value: Any) -> Any:
+    # JSON has no infinite numbers
+    if not isinstance(value, float):
+        return value
+    return round(value, 4) if math.isfinite(value) else None
+
+
+def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
+    """Returns for each outcome its name, number and share of roads, least margin, and how far outside."""
+    counted = Counter(row.outcome for row in rows)
+    table = []
+    ranks = [*COLOURS]
+    for outcome, count in sorted(counted.items(), key=lambda item: (ranks.index(_kind(item[0])), item[0])):
+        margins = [row.margin_m for row in rows if row.outcome == outcome and row.margin_m is not None]
+        least = metres(min(margins)) if margins else "-"
+        shares = [row.max_oob for row in rows if row.outcome == outcome and row.max_oob is not None]
+        farthest = [row.beyond_m for row in rows if row.outcome == outcome and row.beyond_m is not None]
+        most = outside(max(shares, default=None), max(farthest, default=None)) or "-"
+        table.append((outcome, count, f"{100 * count / len(rows):.0f} %", least, most))
+    return table
+
+
+def row_of(run: "Run", file: str, name: str = "") -> Row:
+    """Returns the row of a Run; ``file`` is the Run's road file. Lines show ``name``, if given, instead."""
+    return Row(
+        file,
+        run.outcome,
+        run.description,
+        is_valid=run.is_valid,
+        validation_message=run.validation_message,
+        findings=tuple(finding.sentence for finding in run.findings),
+        length_m=run.length if run.road else None,
+        seconds=round(run.seconds.design, 4) + round(run.seconds.drive, 4),  # as tables of tests hold them
+        name=name,
+        spent=run.spent,
+        words=run.words,
+        seed=run.seed,
+        trace=run.trace,
+        **(_measured(run.verdict) if run.verdict else {}),
+    )
+
+
+def row_of_result(result: "Result", words: str, seed: int, name: str) -> Row:
+    """Returns the row of a test from its stored result."""
+    return Row(
+        "",
+        result.outcome,
+        result.description,
+        is_valid=result.outcome not in ("INVALID", "ERROR"),
+        length_m=result.length or None,
+        name=name,
+        words=words,
+        seed=seed,
+        **_measured(result),
+    )
+
+
+def _measured(found: "Verdict | Result") -> dict[str, Any]:
+    measures = {"max_oob": found.max_oob, "beyond_m": found.beyond, "margin_m": found.margin}
+    whose = {"own_share": found.own_share, "handed_to": found.handed_to}
+    return {**measures, **whose, "cause": found.cause, "at_s_m": found.at_s, "side": found.side}
+
+
+def unreadable(file: str, error: Exception) -> Row:
+    """Returns the row of a file from which no road could be read."""
+    return Row(file, "ERROR", str(error), is_valid=False, validation_message=str(error), cause="unreadable")
 
 
 class Screen:
@@ -30,7 +238,7 @@ class Screen:
         self.total, self.as_json, self.quiet, self.verbose = total, as_json, quiet, verbose
         self.request: Request | None = None
         """That of the roads, if there is one; the table of outcomes names its driver and oracle."""
-        self.junit: Path | None = None
+        self.junit: Callable[[Sequence[Row]], None] | None = None
         self.gate: Gate | None = None
         self.rows: list[Row] = []
         if quiet:
@@ -94,11 +302,9 @@ class Screen:
                 self.detail(f"  {run.description}")
 
     def close(self) -> None:
-        """Prints the table of outcomes, and writes the JUnit file if one was requested."""
-        if self.junit is not None and self.request is not None:
-            from roadgpt.cli.junit import write_rows
-
-            write_rows(self.junit, self.request, self.rows)
+        """Calls ``junit`` with the rows, if it is set, and prints the table of outcomes."""
+        if self.junit is not None:
+            self.junit(self.rows)
         if self.gate and self.gate.remark:
             self.say(self.gate.remark)
         if self.quiet or self.as_json or not self.rows:

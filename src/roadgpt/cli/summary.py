@@ -24,7 +24,8 @@ from roadgpt.chat import Spent
 from roadgpt.chat.answer import plain
 from roadgpt.check.measures import ups_and_downs
 from roadgpt.cli.repeat_commands import lines, of_status, replay_lines, to_resume
-from roadgpt.cli.result_row import (
+from roadgpt.cli.roads import NamedRoad, roads_named
+from roadgpt.cli.screen import (
     COLOURS,
     WIDEST,
     Row,
@@ -34,7 +35,6 @@ from roadgpt.cli.result_row import (
     row_of_result,
     spending,
 )  # fmt: skip
-from roadgpt.cli.roads import NamedRoad, roads_named
 from roadgpt.cli.streams import apart, duration, progress, resumable
 from roadgpt.errors import UsageError, command_line
 from roadgpt.road.world import oracle_in_words
@@ -71,12 +71,6 @@ def watch(folder: Path, steps: Iterator[Progress], as_json: bool, quiet: bool, g
         click.echo(tables if is_store(folder) else f"tests and tables: {folder}")
     if gate.remark and not quiet:
         click.echo(gate.remark, err=as_json)
-
-
-def progress_lines(campaign: Path, as_json: bool = False) -> Iterator[str]:
-    """Yields the progress of a campaign as lines of text, or as one JSON object."""
-    status = status_of(campaign)
-    yield from [_as_json(status)] if as_json else _told(status)
 
 
 def _faults_of(status: Status) -> Faults | None:
@@ -182,14 +176,14 @@ def _columns(cell: CellStatus) -> tuple[str, ...]:
     return (cell.name or "-", *(f"{count:,}" for count in counts), margin, what + why)
 
 
-def watch_campaign(campaign: Path, once: bool = False) -> None:
+def watch_campaign(campaign: Path) -> None:
     """Shows the progress of a campaign until it ends or the user presses Ctrl-C; without a terminal, shows it
     once."""
     from rich.console import Console
     from rich.live import Live
 
     console = Console(file=sys.stdout)
-    if once or not sys.stdout.isatty():
+    if not sys.stdout.isatty():
         console.print(_picture(status_of(campaign), console.width))
         return
     with Live(console=console, auto_refresh=False, screen=False) as live:
@@ -236,7 +230,7 @@ def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
     """Yields one JSON object for a whole campaign, or one for each named road."""
     place = selection_of(str(path))
     if place is not None and is_store(place.folder) and not place.cell and choice is None:
-        yield from progress_lines(place.folder, as_json=True)
+        yield _as_json(status_of(place.folder))
         return
     for named in roads_named([str(path)], choice, takes_all=True):
         if named.run is None:

@@ -79,7 +79,6 @@ def main_reason(failed: Counter[str]) -> str:
 
 
 def _wishes_of(outline: Outline) -> str:
-    """Returns the requirements as the start of a sentence that continues with 'not fit'."""
     parts = [group.counted for group in outline.groups if group.feature.kind == "turn"]
     if not parts and 1 < outline.turns.lo < inf:
         parts = [f"{outline.turns} turns"]
@@ -180,7 +179,6 @@ def _asked(brief: Brief) -> float | None:
 
 
 def _scaled(brief: Brief, share: float) -> Brief:
-    """Returns the Brief with a shorter road, or with shorter straights if the road's length is open."""
     if brief.length:
         return brief.model_copy(update={"length": _times(brief.length, share)})
     clauses = tuple(

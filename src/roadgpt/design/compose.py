@@ -1,30 +1,634 @@
-"""Composes a draft from turns, required straights, and further straights that join these elements.
+"""Composes the elements of a road at random, within its requirements.
 
-lead-in | turn | joining straight | turn | required straight | turn | lead-out"""
+A sequence of left and right turns and of the required straights is chosen first. Each turn gets an angle and
+a radius, and each gap between turns the straights that lie in it."""
 
 from collections.abc import Sequence
-from math import inf
+from dataclasses import replace
+from itertools import pairwise
+from math import ceil, degrees, exp, inf, log, radians
+from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt.brief.element import Element
 from roadgpt.brief.map_fit import longest_straight
-from roadgpt.brief.outline import USUALLY_WIDEST, Feature, Outline
-from roadgpt.brief.ranges import Range
-from roadgpt.brief.words import LEAST_STRAIGHT
-from roadgpt.design.draw import (
-    LEAD,
-    SEPARATE,
-    DraftTask,
-    drawn_straight,
-    drawn_turns,
-    free_straight,
-    inside,
-    narrowed_turns,
-    with_one_at_bound,
-)
-from roadgpt.design.sequence import TurnSequence
-from roadgpt.design.windows import Windows
+from roadgpt.brief.model import OTHER_SIDE, Side
+from roadgpt.brief.outline import USUALLY_WIDEST, Feature, Outline, both
+from roadgpt.brief.ranges import Range, overlap
+from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, SHARPNESS, STEEPEST
+from roadgpt.check.matching import LikeGroup, change_of_grade, like_groups, like_straights
+from roadgpt.check.measures import LEAST_TURN, GradeChange
+from roadgpt.check.rules.too_abrupt import MOST
+from roadgpt.design.elements import MOST_TRANSITION, segments_of_turn, turn_element
+from roadgpt.design.vertical import COMFORT
+from roadgpt.errors import DesignError
+from roadgpt.road import World
+
+HAIRPINS = ("hairpin", "switchback")  # names of turns with which a road climbs or descends a slope
+SEVERAL = 3  # hairpins, if their number is open
+USUAL = (0.10, 0.20, 0.26, 0.20, 0.14, 0.10)  # probabilities of 1, 2, ... turns, if the number is open
+MORE = (0.45, 0.30, 0.17, 0.08)  # probabilities of 0, 1, ... turns more than the least required number
+SWITCH = 0.6  # probability that a turn goes to the other side than the one before, if its side is open
+WIDE = 100.0  # degrees: larger turns to one side would coil up, so they mostly alternate
+SWITCH_WIDE = 0.9
+SMALL, LARGE = 27.0, 105.0  # degrees of usual turns, which bound their number if their sum is required
+LONG = 700.0  # m: a shorter road with a few turns fits on the usual map
+ROUNDS = 60  # of drawing sides until the numbers of left and right turns are right
+
+
+OpenTurn = tuple[Feature, bool]
+"""A turn whose side may be open, and whether it must go to the side opposite to the previous turn."""
+
+
+class TurnSequence(NamedTuple):
+    """The left and right turns of a road, and the straights required before, between and after them."""
+
+    turns: tuple[Feature, ...]
+    gaps: tuple[tuple[Feature, ...], ...]
+
+    def is_leg(self, gap: int) -> bool:
+        """Returns whether a gap, counted from 0, lies between two hairpins or switchbacks."""
+        return 0 < gap < len(self.turns) and all(map(is_hairpin, self.turns[gap - 1 : gap + 1]))
+
+
+def is_hairpin(feature: Feature) -> bool:
+    """Returns whether the description calls the turn a hairpin or a switchback."""
+    return feature.name in HAIRPINS
+
+
+def is_long(outline: Outline) -> bool:
+    """Returns whether a length of 700 m or more is required and the number of turns is left open."""
+    return outline.length is not None and outline.length.lo >= LONG and may_repeat_last_turn(outline)
+
+
+def may_repeat_last_turn(outline: Outline) -> bool:
+    """Returns whether the road may have more turns like its last one."""
+    turning = [group for group in outline.groups if group.feature.kind == "turn"]
+    is_last = bool(outline.groups) and outline.groups[-1].feature.kind == "turn" and outline.ends is None
+    if not turning:
+        return outline.turns.hi == inf and outline.ends is None
+    return len(turning) == 1 and is_last and turning[0].hi is None
+
+
+def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> TurnSequence:
+    """Chooses at random what the Outline leaves open: the number of turns, the side of each, and where
+    straights are. If ``plain``, the road has as few turns as the requirements allow. Raises DesignError if
+    the required numbers of left, right and all turns contradict each other."""
+    turns, gaps = _listed(outline, rng, plain) if outline.names_all_turns else _free(outline, rng, plain)
+    _with_ends(outline, turns, gaps)
+    sides = _sides(turns, outline, rng)
+    features = tuple(replace(turn, side=side) for (turn, _), side in zip(turns, sides, strict=True))
+    return TurnSequence(features, tuple(map(tuple, gaps)))
+
+
+def _listed(
+    outline: Outline, rng: np.random.Generator, plain: bool
+) -> tuple[list[OpenTurn], list[list[Feature]]]:
+    turns: list[OpenTurn] = []
+    gaps: list[list[Feature]] = [[]]
+    counts = _group_counts(outline, rng, plain)
+    for group, count in zip(outline.groups, counts, strict=True):
+        feature = group.feature
+        if feature.kind == "straight":
+            gaps[-1] += [feature] * count
+            continue
+        for number in range(count):
+            switches = group.alternating and number > 0
+            turns.append((replace(feature, side=None) if switches else feature, switches))
+            gaps.append([])
+    return turns, gaps
+
+
+def _group_counts(outline: Outline, rng: np.random.Generator, plain: bool) -> list[int]:
+    groups = outline.groups
+    counts = [
+        SEVERAL if not plain and (group.lo, group.hi) == (2, None) and is_hairpin(group.feature) else group.lo
+        for group in groups
+    ]
+    open_ = [i for i, g in enumerate(groups) if g.feature.kind == "turn" and g.hi != g.lo]
+    total = sum(count for count, g in zip(counts, groups, strict=True) if g.feature.kind == "turn")
+    missing = int(max(outline.turns.lo - total, _turned(outline).lo - total, 0))
+    more = 0 if plain or not open_ else int(rng.choice(len(MORE), p=MORE))
+    spare = outline.turns.hi - total
+    for _ in range(int(min(max(missing, more), spare)) if open_ else 0):
+        able = [i for i in open_ if (groups[i].hi is None or counts[i] < (groups[i].hi or 0))]
+        if not able:
+            break
+        counts[able[rng.integers(len(able))]] += 1
+    return counts
+
+
+def _free(
+    outline: Outline, rng: np.random.Generator, plain: bool
+) -> tuple[list[OpenTurn], list[list[Feature]]]:
+    count = _turn_count(outline, rng, plain)
+    turns = [(Feature("turn", "turn"), False)] * count
+    gaps: list[list[Feature]] = [[] for _ in range(count + 1)]
+    straights = [group.feature for group in outline.groups for _ in range(group.lo)]
+    apart = len(straights) <= count + 1
+    where = rng.choice(count + 1, size=len(straights), replace=not apart)
+    for index, feature in zip(sorted(where), straights, strict=True):
+        gaps[index].append(feature)
+    return turns, gaps
+
+
+def _turn_count(outline: Outline, rng: np.random.Generator, plain: bool) -> int:
+    low = int(max(outline.turns.lo, outline.left.lo, 0) if outline.turns.lo > 0 else max(outline.left.lo, 0))
+    low = max(low, int(max(outline.left.lo, 0) + max(outline.right.lo, 0)))
+    high = min(outline.turns.hi, outline.left.hi + outline.right.hi)
+    if low > high:
+        sides = {"left": outline.left, "right": outline.right}
+        asked = " and ".join(f"{span} to the {side}" for side, span in sides.items() if span != Range())
+        raise DesignError(f"no road has turns {outline.turns} in all, {asked}; change one of these numbers")
+    # a road for which only climbs and falls are required gets few turns
+    only_slopes = bool(outline.groups) and all(group.feature.grade for group in outline.groups)
+    enough = _turned(outline)
+    low, high = max(low, int(min(enough.lo, high))), max(low, min(high, enough.hi))
+    if plain or only_slopes:
+        return low
+    if low <= 1:
+        some = 1 + int(rng.choice(len(USUAL), p=USUAL))
+        return int(min(max(some, low), high))
+    return int(min(low + rng.choice(len(MORE), p=MORE), high))
+
+
+def _turned(outline: Outline) -> Range:
+    """Returns the range of the number of turns whose usual angles can have the required sum."""
+    if outline.turning is None:
+        return Range(0)
+    most = outline.turning.hi // SMALL if outline.turning.hi < inf else inf
+    return Range(ceil(max(outline.turning.lo, 0) / LARGE), most)
+
+
+def _with_ends(outline: Outline, turns: list[OpenTurn], gaps: list[list[Feature]]) -> None:
+    for feature, index in ((outline.starts, 0), (outline.ends, -1)):
+        if feature is None:
+            continue
+        if feature.kind == "straight":
+            gap = gaps[index]
+            if not gap or not _shares(gap[index], feature):
+                gap.insert(0 if index == 0 else len(gap), feature)
+            else:
+                gap[index] = both(gap[index], feature)
+        elif turns:
+            one, switches = turns[index]
+            turns[index] = replace(both(one, feature), side=feature.side or one.side), switches
+
+
+def _shares(one: Feature, other: Feature) -> bool:
+    return all(
+        a.lo <= a.hi for a in (overlap(one.length, other.length), overlap(one.grade, other.grade)) if a
+    )
+
+
+def _sides(turns: Sequence[OpenTurn], outline: Outline, rng: np.random.Generator) -> list[Side]:
+    left, right, n = outline.left, outline.right, len(turns)
+    for _ in range(ROUNDS):
+        sides = _drawn_sides(turns, outline, rng)
+        if sides is not None and sides.count("left") in left and n - sides.count("left") in right:
+            return sides
+    raise DesignError(f"the sides asked for the {n} turns contradict each other; leave one of them open")
+
+
+def _drawn_sides(turns: Sequence[OpenTurn], outline: Outline, rng: np.random.Generator) -> list[Side] | None:
+    sides: list[Side] = []
+    for turn, switches in turns:
+        if sides and (switches or outline.alternating):
+            side = OTHER_SIDE[sides[-1]]
+            if turn.side not in (None, side) and not switches:
+                return None
+        else:
+            side = turn.side or _free_side(turn, sides, len(turns), outline, rng)
+        sides.append(side)
+    return sides
+
+
+def _free_side(
+    turn: Feature, sides: Sequence[Side], count: int, outline: Outline, rng: np.random.Generator
+) -> Side:
+    rest = count - len(sides)
+    lefts, rights = sides.count("left"), len(sides) - sides.count("left")
+    if lefts >= outline.left.hi or outline.right.lo - rights >= rest:
+        return "right"
+    if rights >= outline.right.hi or outline.left.lo - lefts >= rest:
+        return "left"
+    if not sides:
+        return "left" if rng.random() < 0.5 else "right"
+    wide = turn.degrees is not None and turn.degrees.lo >= WIDE
+    return OTHER_SIDE[sides[-1]] if rng.random() < (SWITCH_WIDE if wide else SWITCH) else sides[-1]
+
+
+UNDER_LIMIT = 0.4  # percentage points kept off the steepest grade allowed
+MARGIN = 0.5  # percentage points kept off the ends of a required range of grades
+CLEARLY = 0.6  # percentage points between two straights of different grades that go the same way
+MARGIN_SHARE = 0.2  # of the width of the range: no more is kept off
+
+
+class Windows:
+    """The ranges of grade, in percent, that the road and each of its features may have."""
+
+    def __init__(self, outline: Outline, world: World) -> None:
+        limit = min(100 * world.limits.max_grade, STEEPEST) - UNDER_LIMIT
+        if outline.steepest:
+            limit = min(limit, outline.steepest.hi - min(UNDER_LIMIT, 0.2 * outline.steepest.hi))
+        self.limit = Range(-limit, limit)
+        """The grades that are allowed anywhere."""
+        self.comfort = world.limits.speed_limit**2 / COMFORT
+        """The vertical radius in metres that is comfortable at the speed limit."""
+        self.least = world.limits.speed_limit**2 / MOST
+        """The least vertical radius in metres that the rule ``too_abrupt`` allows at the speed limit."""
+        self.base: Range | None = None
+        """The grades of features without a requirement of their own; None if they are free."""
+        self.way = {"up": "uphill", "down": "downhill"}.get(outline.grade or "", "flat")
+        self.allowed = {"up": Range(-1, inf), "down": Range(-inf, 1), "flat": Range(-1, 1)}.get(
+            outline.grade or "", self.limit
+        )
+        if outline.grade == "flat":
+            self.base = Range(-0.4, 0.4, number=0.0)
+        elif outline.grade or outline.grade_range:
+            usual = Range(-12, -3) if outline.grade == "down" else Range(3, 12)
+            self.base = (outline.grade_range or usual).drawn_in(MARGIN, MARGIN_SHARE)
+        if self.base:
+            self.base = overlap(self.base, self.limit) or self.base
+            if self.base.lo > self.base.hi:
+                most = f"the {self.limit.hi + UNDER_LIMIT:.3g} % that it may have"
+                raise DesignError(f"a road of {outline.grade_range} % is steeper than {most}; ask for less")
+
+    def of(self, feature: Feature) -> Range | None:
+        """Returns the range of grades for the design of a feature, a little inside its required range or, if
+        it has none, that for the road; None if that is open as well. Raises DesignError if the required grade
+        is steeper than allowed, or contradicts that of the whole road."""
+        if feature.grade is None:
+            return self.base
+        own = overlap(feature.grade.drawn_in(MARGIN, MARGIN_SHARE), self.limit) or self.limit
+        if own.lo > own.hi:
+            most = f"the {self.limit.hi + UNDER_LIMIT:.3g} % that the road may have"
+            raise DesignError(f"a {feature.name} of {feature.grade} % is steeper than {most}; ask for less")
+        meets = overlap(own, self.base) or own
+        if meets.lo <= meets.hi:
+            return meets
+        if own.hi <= self.allowed.lo or own.lo >= self.allowed.hi:
+            whole = f"a road that is {self.way} all the way"
+            raise DesignError(
+                f"a {feature.name} of {feature.grade} % contradicts {whole}; leave one of them out"
+            )
+        return own
+
+    def row(self, straights: Sequence[Feature]) -> list[Range | None]:
+        """Returns a range of grades per straight; an open grade gets a range unlike that of a neighbour."""
+        out = [self.of(straight) for straight in straights]
+        for i, straight in enumerate(straights):
+            known = out[i - 1] if i else (out[i + 1] if i + 1 < len(out) else None)
+            if straight.grade is None and self.base is None and known:
+                out[i] = self.other(known)
+        for i, (one, other) in enumerate(pairwise(straights)):
+            out[i : i + 2] = _divided(out[i : i + 2], change_of_grade(one.grade, other.grade))
+        return out
+
+    def other(self, grade: Range | None) -> Range:
+        """Returns a range of grades that measurements can distinguish from the range ``grade``."""
+        if self.base and not (self.base.lo <= 0 <= self.base.hi):
+            return Range(0, 0)
+        return Range(0, 0) if grade is None or grade.lo > 1 or grade.hi < -1 else Range(3.5, 6)
+
+    @staticmethod
+    def between(one: Range | None, other: Range | None) -> float:
+        """Returns the least change of grade between two ranges, in percentage points; 0 if they overlap."""
+        return max(one.lo - other.hi, other.lo - one.hi, 0.0) if one and other else 0.0
+
+    def part(self, one: Range | None, other: Range | None) -> bool:
+        """Returns whether the grade must change between two features with these ranges of grade."""
+        return self.between(one, other) > 0
+
+
+def _divided(pair: list[Range | None], change: GradeChange | None) -> list[Range | None]:
+    """Returns the ranges of grade of two straights, clearly apart from the grade between them; unchanged if
+    there is no change, or if one of them would become empty."""
+    one, other = pair
+    if change is None or one is None or other is None:
+        return pair
+    low, high = Range(hi=change.grade - CLEARLY / 2), Range(lo=change.grade + CLEARLY / 2)
+    first, second = (low, high) if change.rises else (high, low)
+    found = [overlap(one, first) or one, overlap(other, second) or other]
+    return [*found] if all(each.lo <= each.hi for each in found) else pair
+
+
+ANY_TURN = Range(25, 120)  # degrees, where nothing is said: the table in brief.words
+AIMS = {meaning.names[0]: meaning.aim for meaning in KINDS.values() if meaning.aim}
+SHARPNESS_AIMS = {meaning.degrees: meaning.aim for meaning in SHARPNESS.values() if meaning.aim}
+WORD_RADII = frozenset(meaning.radius for meaning in (*KINDS.values(), *SHARPNESS.values()))
+"""The ranges of radii of words such as "gentle"; turns named with these words use the whole range."""
+FEWEST_TO_BOUND = 3  # turns of which one is as tight as a bound allows
+NEAR_BOUND = 1.06  # greatest ratio of its radius to the bound
+WIDEST = 115.0  # m, of a radius that nobody asked for
+LONGEST_TURN = 170.0  # m along the curve
+SEEN_ARC = 6.5  # m: a shorter arc is not measured with its own radius, which is averaged over some 9 m
+SHORTEST_TURN = 11.0  # m along the arc, where no radius was asked for: less looks like a kink
+TRANSITIONS = (0.12, 0.34)  # of the arc, for each clothoid
+TRANSITION_LIMITS = (3.0, 16.0)  # m, of tight turns
+RADII_OF_TRANSITION = 9.0  # of wide turns: RAS-L 1995 asks for a parameter A >= R / 3, so A^2 / R >= R / 9
+WIDE_ANGLE = 80.0  # degrees: a turn of a large required radius may be long enough for this angle
+LEAD = 16.5  # m: a straight of this length before the first or after the last turn is measured as 10 m
+SEPARATE = 17.5  # m between two turns to the same side, so that they are measured as two
+NEAR_RADIUS, NEAR_ANGLE, NEAR_SUM = 0.2, 0.1, 0.1  # shares of the tolerance of a number that are used
+NEAR_LENGTH = 0.2  # the same for straights
+OF_TOLERANCE = 0.6  # the share of angles and radii that is used in the greatest haste
+KEPT = 0.5  # degrees by which a turn may differ from its share of a required sum
+OFF_TOP, UP_TO = 0.6, 0.97  # share of its range to which a straight may grow: without haste, and at most
+TIGHTER = 1.35  # ratio of the widest radius of a hard road to its least
+ANGLE_SPREAD = 0.4  # degrees by which the angles of like turns may differ from the one that was drawn
+SPREAD = 0.01  # share by which radii and lengths may differ
+LIKE_JOIN_MEAN = 14.0  # m by which a straight between like turns exceeds its least length on average
+FILLED = (0.5, 1.0)  # share of what the turns leave of the required length that like straights fill
+NARROW = 1.25  # ratio of the ends of a range that was given as one number, which needs no drawing
+
+
+class DraftTask(NamedTuple):
+    """The requirements, the World and the random generator with which the parts of a draft are drawn."""
+
+    outline: Outline
+    windows: Windows
+    world: World
+    rng: np.random.Generator
+    haste: float  # from 0 to 1; the larger it is, the smaller the lengths, angles and radii
+
+
+def narrowed_turns(turns: Sequence[Feature], task: DraftTask) -> list[Feature]:
+    """Returns the turns with the ranges from which their angle, radius, length and grade are chosen. The
+    ranges lie a little inside the required ones. If a number is required, its range lies close around the
+    number; the more haste, the wider. Raises DesignError if a range is empty, for example because the rules
+    forbid a radius as too tight."""
+    narrowed = [_narrowed(turn, task) for turn in turns]
+    return [replace(turn, grade=task.windows.of(turn)) for turn in narrowed]
+
+
+def with_one_at_bound(
+    narrowed: Sequence[Feature], turns: Sequence[Feature], task: DraftTask
+) -> list[Feature]:
+    """Returns the narrowed turns; the radius of a random turn is set to at most 1.06 times the least allowed.
+
+    This needs three turns or more, which all have the same least radius, given as a number. The road then
+    meets both "no radius below 25 m" and "25 m at the tightest". ``turns`` are the same turns with the
+    required ranges."""
+    out, bounds = [*narrowed], {overlap(turn.radius, task.outline.each_turn.radius) for turn in turns}
+    bound = bounds.pop()
+    if bounds or len(turns) < FEWEST_TO_BOUND or bound is None or bound.hi < inf or bound in WORD_RADII:
+        return out
+    at = int(task.rng.integers(len(out)))
+    low = (out[at].radius or bound).lo
+    out[at] = replace(out[at], radius=Range(low, NEAR_BOUND * low))
+    return out
+
+
+def _narrowed(turn: Feature, task: DraftTask) -> Feature:
+    outline, world, haste = task.outline, task.world, task.haste
+    least = max(world.limits.design_radius, 0.8 * world.section.road_width)
+    promised = overlap(turn.radius, outline.each_turn.radius)
+    own = _inside(promised, 0.04).around(_loosened(NEAR_RADIUS, haste)) if promised else Range()
+    radius = overlap(own, Range(least, inf))
+    assert radius is not None
+    if promised and promised.lo > promised.hi:
+        raise DesignError(f"the radius asked for does not go with a {turn.name}; leave one of them out")
+    if radius.lo > radius.hi:
+        raise DesignError(
+            f"a {turn.name} with a radius of {promised} m is tighter than the "
+            f"{world.limits.min_radius:.4g} m that the rules allow; ask for {least + 1:.0f} m or more"
+        )
+    angle = overlap(turn.degrees, outline.each_turn.degrees) or ANY_TURN
+    if angle.lo > angle.hi:
+        raise DesignError(f"no {turn.name} can turn as far as was asked for; leave its degrees open")
+    if angle.hi < LEAST_TURN:
+        raise DesignError(
+            f"a {turn.name} of {angle} degrees is not seen as a turn; ask for {LEAST_TURN + 5:g} or more"
+        )
+    length = overlap(turn.length, outline.each_turn.length)
+    return replace(turn, degrees=_angles(turn, angle, haste), radius=radius, length=length)
+
+
+def _loosened(share: float, haste: float) -> float:
+    """Returns the share of a tolerance that is used if ``share`` of it is used without haste."""
+    return share + haste * (OF_TOLERANCE - share)
+
+
+def _angles(turn: Feature, promised: Range, haste: float) -> Range:
+    """Returns the degrees to choose from: near a given number, usual for a word, or nearly all allowed."""
+    if promised.number is not None:
+        return promised.around(_loosened(NEAR_ANGLE, haste))
+    if promised.hi - promised.lo <= 24:
+        return _inside(promised, 0.25)
+    span = overlap(SHARPNESS_AIMS.get(promised) or AIMS.get(turn.name), promised) or promised
+    if span.lo > span.hi:
+        span = promised
+    return Range(span.lo, min(span.hi, span.lo + 110)).drawn_in(1.5, 0.1)
+
+
+def _inside(span: Range, share: float) -> Range:
+    """Returns a range narrowed at both ends by a share of its width, or of its lower bound if it has no upper
+    one."""
+    return span.drawn_in(share * (span.lo if span.hi == inf else span.hi - max(span.lo, 0.0)), 0.5)
+
+
+def hand_of(turn: Feature) -> int:
+    """Returns -1 for a turn to the right, and 1 for a turn to the left or to either side."""
+    return -1 if turn.side == "right" else 1
+
+
+def drawn_turns(turns: Sequence[Feature], task: DraftTask) -> list[Element]:
+    """Chooses the angle, radius and transitions of each turn at random, from the ranges of
+    ``narrowed_turns``."""
+    rng, turning = task.rng, task.outline.turning
+    ranges = [turn.degrees or ANY_TURN for turn in turns]
+    hands = [hand_of(turn) for turn in turns]
+    angles = [degrees.lo + _share(task) * (degrees.hi - degrees.lo) for degrees in ranges]
+    angles = _uncoiled(angles, ranges, hands, 215 + 115 * rng.random())
+    if turning:
+        angles = _summed(angles, ranges, drawn_target(turning, rng))
+        turns = [replace(t, degrees=Range(a - KEPT, a + KEPT)) for t, a in zip(turns, angles, strict=True)]
+    longest = longest_turn(len(turns), task) * (1 - 0.6 * task.haste)
+    return [drawn_turn(turn, angle, longest, task) for turn, angle in zip(turns, angles, strict=True)]
+
+
+def longest_turn(turns: int, task: DraftTask) -> float:
+    """Returns the greatest length of a turn in metres, for a road with ``turns`` turns."""
+    outline = task.outline
+    wide = outline.each_turn.radius
+    longest = max(LONGEST_TURN, wide.lo * radians(WIDE_ANGLE)) if wide and wide.lo > WIDEST else LONGEST_TURN
+    by_map = min(2.2 * task.world.site.map_size / (turns + 1.2), longest)
+    if outline.length is None or outline.length.hi == inf:
+        return by_map
+    straights = 2 * LEAD + 0.4 * SEPARATE * (turns - 1)
+    return min(by_map, max(1.2 * (0.95 * outline.length.hi - straights) / max(turns, 1), 10.0))
+
+
+def _share(task: DraftTask) -> float:
+    return float(task.rng.random() * (1 - 0.9 * task.haste))
+
+
+def _uncoiled(angles: list[float], ranges: Sequence[Range], hands: Sequence[int], most: float) -> list[float]:
+    """Returns angles, reduced if possible so that the headings of the road span at most ``most`` degrees."""
+    low = _swing([degrees.lo * hand for degrees, hand in zip(ranges, hands, strict=True)])
+    now = _swing([angle * hand for angle, hand in zip(angles, hands, strict=True)])
+    if now <= most or now <= low:
+        return angles
+    f = max((most - low) / (now - low), 0.0)
+    return [degrees.lo + f * (a - degrees.lo) for a, degrees in zip(angles, ranges, strict=True)]
+
+
+def drawn_target(asked: Range, rng: np.random.Generator) -> float:
+    """Chooses the sum of the angles of all turns at random, in degrees, within the required range."""
+    near = asked.around(NEAR_SUM)
+    low = near.lo if near.lo > 0 else 0.6 * near.hi
+    high = near.hi if near.hi < inf else 1.3 * near.lo
+    return low + (high - low) * (0.3 + 0.4 * float(rng.random()))
+
+
+def _summed(angles: list[float], ranges: Sequence[Range], target: float) -> list[float]:
+    missing = target - sum(angles)
+    ends = [degrees.hi if missing > 0 else degrees.lo for degrees in ranges]
+    room_left = sum(ends) - sum(angles)
+    f = min(missing / room_left, 1.0) if room_left else 0.0
+    return [angle + f * (end - angle) for angle, end in zip(angles, ends, strict=True)]
+
+
+def _swing(signed: Sequence[float]) -> float:
+    heading, low, high = 0.0, 0.0, 0.0
+    for angle in signed:
+        heading += angle
+        low, high = min(low, heading), max(high, heading)
+    return high - low
+
+
+def drawn_turn(turn: Feature, angle: float, longest: float, task: DraftTask) -> Element:
+    """Chooses the radius and the transitions of one turn at random, within the ranges of ``narrowed_turns``.
+    On a hard road, the radius is near the smallest one allowed. ``angle``, the change of heading in degrees,
+    may be changed within its range so that the turn is no longer than ``longest`` metres."""
+    rng, hard = task.rng, task.outline.hard
+    asked, radii = turn.degrees or ANY_TURN, turn.radius or Range(0)
+    least, most, is_tight = radii.lo, radii.hi, radii.hi < inf
+    if hard:
+        most = max(min(most, least * TIGHTER), least)
+    if turn.length:
+        low, high = turn.length.lo, min(turn.length.hi, max(LONGEST_TURN, 1.2 * turn.length.lo))
+        low = low if low > 0 else 0.5 * high
+        length = low + (0.35 + 0.3 * rng.random()) * (high - low)
+        transition = 0.1 * length
+        radius = min(max((length - transition) / radians(angle), least), most)
+        angle = min(max(degrees((length - transition) / radius), asked.lo), asked.hi)
+        return turn_element(angle, hand_of(turn), radius, transition, turn.grade, turn.climb)
+    if not is_tight and not hard:
+        least = max(least, SHORTEST_TURN * (1 - task.haste) / radians(angle))
+    wide = max(min(most, WIDEST if most == inf else most), min(least * 1.4, most))
+    if is_tight:  # short turns are measured wider than they are
+        wide = least + 0.85 * (wide - least)
+    radius = exp(log(least) + _share(task) * (log(wide) - log(least)))
+    if radius * radians(angle) > longest:
+        if rng.random() < 0.7:
+            angle = max(asked.lo, min(angle, degrees(longest / radius)))
+        radius = max(least, min(radius, longest / radians(angle)))
+    transition = _transition(is_tight, angle, radius, rng)
+    return turn_element(angle, hand_of(turn), radius, transition, turn.grade, turn.climb)
+
+
+def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Generator) -> float:
+    arc = radius * radians(angle)
+    share = TRANSITIONS[0] + (TRANSITIONS[1] - TRANSITIONS[0]) * rng.random()
+    transition = min(
+        max(share * arc, TRANSITION_LIMITS[0]), max(TRANSITION_LIMITS[1], radius / RADII_OF_TRANSITION)
+    )
+    if is_tight:
+        transition = min(transition, max(arc - SEEN_ARC, 1.0))
+    return min(transition, MOST_TRANSITION * arc / segments_of_turn(angle))
+
+
+def drawn_straight(wish: Feature, least: float, mean: float, task: DraftTask) -> float:
+    """Chooses the length of a required straight at random, in metres. It is at least ``least`` metres if the
+    required range allows that. Without an upper limit, the length exceeds its lower limit by about ``mean``
+    metres on average, and by less in haste."""
+    span = wish.length or Range(10, inf)
+    low, high = span.lo, span.hi
+    if high == inf:
+        low = max(inside(low), 22.0, least)
+        return free_straight(low, mean, task)
+    low = max(low, 0.0)
+    share = 0.5 + (0.4 if span.number is None else NEAR_LENGTH) * (task.rng.random() - 0.5)
+    most = low + min(OFF_TOP + 3 * task.haste, UP_TO) * (high - low)
+    return max(low + share * (high - low), min(least, most))
+
+
+def inside(least: float) -> float:
+    """Returns the length in metres that a straight is given so that ``least`` metres of it are measured."""
+    return 1.05 * least + 3.0
+
+
+def free_straight(least: float, mean: float, task: DraftTask) -> float:
+    """Returns a random length, in metres, of a straight without requirements: ``least`` plus a random part,
+    which is about ``mean`` metres on average without haste."""
+    return least + min(float(task.rng.exponential(mean)), 3 * mean) * (1 - 0.95 * task.haste)
+
+
+def with_like_parts(order: TurnSequence, task: DraftTask) -> TurnSequence:
+    """Returns the sequence with narrow ranges for turns and straights that must be alike, as
+    ``check.matching`` finds them. The others are left as they are."""
+    turns = [*order.turns]
+    for group in like_groups(turns):
+        angles, radii = _like_turn(group, len(turns), task)
+        for place in group:
+            turns[place] = replace(turns[place], degrees=angles, radius=radii)
+    gaps = [[*gap] for gap in order.gaps]
+    arcs = sum(_arc(turn) for turn in turns)
+    for group in like_straights(gaps):
+        length = _like_length(group, gaps, arcs, task)
+        for place in group:
+            named = gaps[place][0] if gaps[place] else group.common
+            gaps[place] = [replace(named, length=length)]
+    return TurnSequence(tuple(turns), tuple(map(tuple, gaps)))
+
+
+def _like_turn(group: LikeGroup, turns: int, task: DraftTask) -> tuple[Range, Range]:
+    (turn,) = narrowed_turns([group.common], task)
+    span = turn.degrees or ANY_TURN
+    if task.outline.turning and len(group) == turns:
+        share = drawn_target(task.outline.turning, task.rng) / turns
+        if share in (group.common.degrees or Range()):
+            span = Range(share, share)
+            turn = replace(turn, degrees=span)
+    angle = span.lo + float(task.rng.random()) * (1 - 0.9 * task.haste) * (span.hi - span.lo)
+    longest = longest_turn(turns, task) * (1 - 0.6 * task.haste)
+    made = drawn_turn(turn, angle, longest, task)
+    angle = abs(made.turn)
+    return (
+        Range(angle - ANGLE_SPREAD, angle + ANGLE_SPREAD),
+        Range(made.radius * (1 - SPREAD), made.radius * (1 + SPREAD)),
+    )
+
+
+def _arc(turn: Feature) -> float:
+    angles, radii = turn.degrees or ANY_TURN, turn.radius or Range(2 * LEAD, 2 * LEAD)
+    radius = radii.lo if radii.hi == inf else (radii.lo + radii.hi) / 2
+    return radians((angles.lo + angles.hi) / 2) * radius
+
+
+def _like_length(group: LikeGroup, gaps: Sequence[Sequence[Feature]], arcs: float, task: DraftTask) -> Range:
+    span = group.common.length
+    if span and span.lo > 0 and span.hi < NARROW * span.lo:
+        return span
+    is_even = span is None
+    least = SEPARATE if is_even else inside((span or Range(LEAST_STRAIGHT)).lo)
+    length = (
+        free_straight(least, LIKE_JOIN_MEAN, task)
+        if is_even
+        else drawn_straight(group.common, LEAD, LIKE_JOIN_MEAN, task)
+    )
+    asked = task.outline.length
+    if asked and asked.hi < inf:
+        others = [place for place in range(len(gaps)) if place not in group]
+        rest = sum(SEPARATE + sum(each.length.lo for each in gaps[at] if each.length) for at in others)
+        left = (max(asked.lo, 0.0) + asked.hi) / 2 - arcs - rest
+        length = max(left / len(group) * float(task.rng.uniform(*FILLED)), least)
+    length = min(length, (span or Range()).hi * (1 - SPREAD))
+    return Range((1 - SPREAD) * length, (1 + SPREAD) * length)
+
 
 LEAD_MEAN = 26.0  # m by which a lead-in or lead-out exceeds its least length on average
 JOIN_MEAN = 16.0  # m by which a straight between turns exceeds its least length on average
@@ -74,9 +678,6 @@ def composed(order: TurnSequence, task: DraftTask) -> list[Element] | None:
 
 
 def _evened(elements: list[Element], wishes: Sequence[Feature]) -> list[Element]:
-    """Returns the elements of a road none of whose turns has a place. The required straights of open length
-    have equal lengths if each has a number for its grade, so that "the first half climbs at 5 percent, the
-    second falls at 5" comes out even, or if they have equal heights."""
     is_free = [element.is_elastic and element.required_length is not None for element in elements]
     free = [element.length for element, may_change in zip(elements, is_free, strict=True) if may_change]
     open_wishes = [wish for wish in wishes if not wish.length or wish.length.hi == inf]
@@ -158,7 +759,6 @@ def _asked_gap(
     mean: float,
     task: DraftTask,
 ) -> list[Element]:
-    """Returns the required straights. A grade that must change at a turn changes a little away from it."""
     out: list[Element] = []
     windows = task.windows
     grades = windows.row(wishes)
@@ -194,12 +794,10 @@ def _room_of_climb(wish: Feature) -> float:
 
 
 def _looks_straight(turn: Element | None) -> float:
-    """Returns how many metres of the transition at either end of a turn bend too little to be seen."""
     return turn.transition * min(turn.radius / USUALLY_WIDEST, 1.0) if turn else 0.0
 
 
 def _ledge(before: Range | None, after: Range | None, windows: Windows) -> Element:
-    """Returns a short straight of another slope, so that its two neighbours are measured as two straights."""
     grade = windows.other(after)
     changes = windows.between(before, grade) + windows.between(grade, after)
     length = max(STEP_ASIDE, windows.least * changes / 100)
@@ -214,7 +812,6 @@ def _change(grade: Range | None, other: Range | None, task: DraftTask) -> float:
 
 
 def _with_hills(elements: list[Element], hills: Range, rng: np.random.Generator) -> list[Element]:
-    """Returns elements whose free straights are long enough for climbs and falls."""
     stretches = int(hills.lo) + 1
     room = sum(max(int(element.length / HILL), 1) for element in elements if element.length > 0.7 * HILL)
     free = [i for i, element in enumerate(elements) if element.is_elastic]
@@ -256,7 +853,6 @@ def _with_length(elements: list[Element], asked: Range, task: DraftTask) -> list
 
 
 def _least(elements: Sequence[Element], index: int, lead: float) -> float:
-    """Returns the least length of a straight in metres."""
     before = elements[index - 1] if index else None
     after = elements[index + 1] if index + 1 < len(elements) else None
     least = lead

@@ -144,17 +144,13 @@ def _groups(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
     """Yields groups of segments: all segments of one turn, or a single straight segment."""
     group = [segments[0]]
     for before, segment in pairwise(segments):
-        if _goes_on(before, segment, group[0].radius):
+        same = (before.turn_degrees, before.incline) == (segment.turn_degrees, segment.incline)
+        if segment.turn_degrees and same and segment.radius in (None, group[0].radius):
             group.append(segment)
         else:
             yield group
             group = [segment]
     yield group
-
-
-def _goes_on(before: Segment, segment: Segment, radius: float | None) -> bool:
-    same = (before.turn_degrees, before.incline) == (segment.turn_degrees, segment.incline)
-    return bool(segment.turn_degrees) and same and (segment.radius is None or segment.radius == radius)
 
 
 def _of_group(group: Sequence[Segment]) -> Iterator[Element]:

@@ -17,10 +17,20 @@ from roadgpt.brief.element import Element, Elements
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.ranges import Range
-from roadgpt.design.compose import NEAR_NUMBER, asked_length, gap_between
-from roadgpt.design.draw import ANY_TURN, DraftTask, drawn_turn, hand_of, longest_turn, narrowed_turns
+from roadgpt.design.compose import (
+    ANY_TURN,
+    NEAR_NUMBER,
+    DraftTask,
+    TurnSequence,
+    asked_length,
+    drawn_turn,
+    gap_between,
+    hand_of,
+    longest_turn,
+    may_repeat_last_turn,
+    narrowed_turns,
+)
 from roadgpt.design.layout import COARSENESS, SPARE, MapPose, PlacedPlan, PlanLine, meets, walk
-from roadgpt.design.sequence import TurnSequence, may_repeat_last_turn
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.nearness import Complex
 from roadgpt.road.road import CONTROL_SPACING, MOST_CONTROL_POINTS
@@ -128,7 +138,6 @@ class _Growth:
         return complex(round(x, 2), round(y, 2)), complex(heading)
 
     def _turn(self, at: int, so_far: float) -> tuple[Feature, Sequence[Feature]] | None:
-        """Returns the ranges of the next turn and the straights required before it; None after the last."""
         named = len(self.order.turns)
         if at < named:
             return self.turns[at], self.order.gaps[at]
@@ -177,7 +186,6 @@ class _Growth:
         return max(left - needed, 0.0) / (turns + 1), min(max(LATE * late, 0.0), 1.0)
 
     def _out(self, way: _Way, before: Element | None) -> _Way | None:
-        """Returns the road with its last straight; None if there is no room for it."""
         wishes = self.order.gaps[-1]
         elements = gap_between(before, wishes, None, self.task._replace(haste=1.0))
         missing = self.target - way.length - sum(element.length for element in elements)
@@ -189,8 +197,6 @@ class _Growth:
         return None
 
     def _is_free(self, way: _Way, line: PlanLine, ahead: float) -> bool:
-        """Returns whether a new part, and ``ahead`` metres straight on from its end, stay on the map and keep
-        clear of the road so far."""
         every = max(1, round(COARSE / float(line.s[1])))
         s, z = line.s[::every], line.z[::every]
         last = line.z[-1] - line.z[-2]
@@ -207,7 +213,6 @@ class _Growth:
 
 
 def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:
-    """Returns elements whose first elastic straight is longer; a new straight if there are no elements."""
     out = list(elements)
     for i, element in enumerate(out):
         if element.is_elastic:
@@ -217,8 +222,6 @@ def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:
 
 
 def _roomy(turn: Feature, metres: float) -> Feature:
-    """Returns a turn whose least radius suits the spacing of the spline's points: the competition's files
-    hold few, on a road of 10 km one every 20 m."""
     if turn.radius is None or turn.radius.number is not None:
         return turn
     spacing = max(CONTROL_SPACING, metres / MOST_CONTROL_POINTS)

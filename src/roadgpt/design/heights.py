@@ -4,7 +4,7 @@ what is not measured as required.
 The parabola that joins the grades of two straights takes up a part of both. A level straight next to a steep
 one is therefore measured shorter than designed, and the mean grade of the steep one falls. So
 ``corrected_draft`` corrects joints and grades of straights by the measured errors, and measures the draft
-again. ``design.fit.grades`` corrects only inclines. Here the lengths of consecutive straights change, too,
+again. ``design.fit`` corrects only inclines. Here the lengths of consecutive straights change, too,
 which moves the joints between them but not the road in plan view."""
 
 from collections.abc import Iterator, Sequence
@@ -20,11 +20,10 @@ from roadgpt.brief.words import STEEPEST
 from roadgpt.check.matching import Complaint
 from roadgpt.check.measures import MeasuredFeature, Measures, measure, way
 from roadgpt.check.rules.promises import complaints
+from roadgpt.design.compose import Windows, is_hairpin
 from roadgpt.design.elements import cut, required_hills, rounded
 from roadgpt.design.layout import PlanLine
-from roadgpt.design.sequence import is_hairpin
 from roadgpt.design.vertical import Pace, joined, softened, too_abrupt
-from roadgpt.design.windows import Windows
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment
 from roadgpt.road.builder import elevation_of
@@ -187,7 +186,6 @@ def drawn_heights(
 def _grades(
     plan: Sequence[Element], outline: Outline, windows: Windows, rng: np.random.Generator
 ) -> list[float]:
-    """Returns a grade per element; joining straights get NaN, and are filled from their neighbours later."""
     if outline.hard and all(element.required_grade in (None, windows.base) for element in plan):
         return _crests(plan, windows, rng)
     if not windows.base and not any(element.required_grade for element in plan):
@@ -224,7 +222,6 @@ def _are_level(plan: Sequence[Element], outline: Outline, windows: Windows) -> l
 
 
 def _crests(plan: Sequence[Element], windows: Windows, rng: np.random.Generator) -> list[float]:
-    """Returns grades by which every bend is entered over a crest: straights climb more than bends."""
     if windows.base is None:
         return [(-1 if element.turn else 1) * _between(CREST, rng) for element in plan]
     middle = (windows.base.lo + windows.base.hi) / 2
@@ -237,7 +234,6 @@ def _between(window: Range, rng: np.random.Generator) -> float:
 
 
 def _free_grades(plan: Sequence[Element], windows: Windows, rng: np.random.Generator) -> list[float]:
-    """Returns grades for a road without required heights: level, of one slope, or rolling."""
     style, top = rng.random(), min(STEEP, windows.limit.hi)
     if style < LEVEL_SHARE:
         return [0.0] * len(plan)
@@ -256,7 +252,6 @@ def _free_grades(plan: Sequence[Element], windows: Windows, rng: np.random.Gener
 
 
 def _is_mountainous(outline: Outline) -> bool:
-    """Returns whether hairpins take the road up or down a slope, and no slope is required otherwise."""
     if outline.grade or outline.hills or any(group.feature.grade for group in outline.groups):
         return False
     return sum(group.lo for group in outline.groups if is_hairpin(group.feature)) > 1
@@ -265,7 +260,6 @@ def _is_mountainous(outline: Outline) -> bool:
 def _steady_grades(
     plan: Sequence[Element], climb: Range | None, windows: Windows, rng: np.random.Generator
 ) -> list[float]:
-    """Returns grades that all climb or all fall, some steeper than others, as the ``climb`` requires."""
     top = min(STEEP, windows.limit.hi)
     low = min(2 * GENTLE, top)
     way = float(rng.choice((-1, 1))) * (low + rng.random() * (top - low))
@@ -309,7 +303,6 @@ def _with_steepest(
     steepest: Range,
     rng: np.random.Generator,
 ) -> Array:
-    """Returns grades of which one, on a long element, is as steep as required."""
     low = steepest.lo + min(0.5, 0.3 * max(min(steepest.hi, STEEPEST) - steepest.lo, 0.0))
     if np.any((np.abs(values) >= low) & (lengths > HILL)):
         return values
@@ -335,7 +328,6 @@ def _drawn_climb(climb: Range, rng: np.random.Generator) -> float:
 
 
 def _joining(drawn: Sequence[list[Element]]) -> list[list[Element]]:
-    """Gives the halves of a joining straight the grades of its neighbours, and a joining turn the mean."""
     out = [*drawn]
     for index, own in enumerate(out):
         if not np.isnan(own[0].incline):
@@ -353,7 +345,6 @@ def _joining(drawn: Sequence[list[Element]]) -> list[list[Element]]:
 
 
 def _steep_kept(values: Array, lengths: Array, limits: Sequence[Range], least: float) -> list[Range]:
-    """Returns limits that keep the longest of the sufficiently steep elements as steep as required."""
     out = [*limits]
     steep = [i for i in sorted(range(len(out)), key=lambda i: -lengths[i]) if abs(values[i]) >= least]
     if steep:
@@ -377,7 +368,6 @@ def _held(row: Sequence[Element], values: Array, limits: Sequence[Range]) -> lis
 
 
 def _one_way(value: float, room: Range) -> Range:
-    """Returns the limit of an element that must go on climbing, or falling."""
     if np.isnan(value) or abs(value) < LEAST_SLOPE:
         return room
     return overlap(room, Range(LEAST_SLOPE) if value > 0 else Range(-inf, -LEAST_SLOPE)) or room
@@ -386,7 +376,6 @@ def _one_way(value: float, room: Range) -> Range:
 def _softened(
     values: Array, lengths: Array, limits: Sequence[Range], pace: Pace, ease: float, bumps: bool
 ) -> Array:
-    """Returns grades, changed so that parabolas fit; half of a joining straight counts to either side."""
     known = np.flatnonzero(~np.isnan(values))
     if len(known) < 2 or np.ptp(values[known]) == 0:
         return values
@@ -450,7 +439,6 @@ def corrected_draft(
 
 
 def _with_radii(elements: Sequence[Element], pace: Pace, ease: float, bumps: bool) -> list[Element]:
-    """Returns the elements with vertical radii for consecutive straights, if one has a fixed length."""
     out, ends = list(elements), np.cumsum([element.length for element in elements])
     for row in _rows(elements):
         if any(elements[i].has_fixed_length for i in row):
@@ -496,8 +484,6 @@ def _pieces(
 
 
 def _corrected(elements: Sequence[Element], ends: Array, found: Measures, limit: Range) -> list[Element]:
-    """Returns the elements with joints and grades of straights corrected by the measured errors. Each element
-    should end at its station in ``ends``."""
     out = list(elements)
     joints = np.cumsum([0.0, *(element.length for element in elements)])
     for row, pieces, runs in _pieces(elements, found):
@@ -514,13 +500,11 @@ def _corrected(elements: Sequence[Element], ends: Array, found: Measures, limit:
 
 
 def _rows(elements: Sequence[Element]) -> list[range]:
-    """Returns the indices of the straights before the first turn, between two turns, and after the last."""
     marks = [-1, *(i for i, element in enumerate(elements) if element.turn), len(elements)]
     return [range(a + 1, b) for a, b in pairwise(marks)]
 
 
 def _with_measured_grade(element: Element, seen: MeasuredFeature, limit: Range) -> Element:
-    """Returns a straight of fixed length, its incline corrected so that the measured grade is as required."""
     asked = element.required_grade
     if not asked or not element.has_fixed_length or 0 in asked or seen.inner_grade in asked:
         return element
@@ -531,7 +515,6 @@ def _with_measured_grade(element: Element, seen: MeasuredFeature, limit: Range) 
 
 
 def _spread(lengths: Array) -> Array:
-    """Returns lengths of the same sum, none below ``SHORTEST`` if there is room for that."""
     spare = np.maximum(lengths - SHORTEST, 0.0)
     room = max(float(lengths.sum()) - SHORTEST * len(lengths), 0.0)
     if not room or (lengths >= SHORTEST).all():

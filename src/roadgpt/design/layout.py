@@ -81,7 +81,6 @@ def bends_of(elements: Sequence[Element]) -> tuple[Array, Array, float]:
 
 
 def _headings(s: Array, knots: Array, bends: Array) -> Array:
-    """Returns the headings in radians at stations, from the values of ``bends_of``."""
     spans = np.diff(knots)
     reached = np.concatenate([[0.0], np.cumsum(spans * (bends[1:] + bends[:-1]) / 2)])
     slopes = np.append(np.diff(bends) / np.maximum(spans, 1e-9), 0.0)
@@ -196,7 +195,6 @@ def moved_onto_map(design: Design, world: World) -> Design | None:
 
 
 def _corners(road: Road, world: World) -> Complex:
-    """Returns the convex hull of the road surface, extended at both ends as far as SBFT's spline may run."""
     half = world.section.road_width / 2
     left, right = sides(road.sample(), world.profile_of(road).edges(road.sample().s))
     behind = [_beyond(road, s, t) for s in (-BEYOND, road.length + BEYOND) for t in (-half, half)]
@@ -213,7 +211,6 @@ def _beyond(road: Road, s: float, t: float) -> Array:
 
 
 def _least_turn(corners: Complex, turns: Array, room: float) -> float | None:
-    """Returns the first of some turns, in degrees, at which the box is no larger than ``room``."""
     if np.abs(corners[:, None] - corners).max() > np.sqrt(2) * room:
         return None
     for some in np.array_split(turns, PORTIONS):
@@ -224,5 +221,4 @@ def _least_turn(corners: Complex, turns: Array, room: float) -> float | None:
 
 
 def _least_move(coordinates: Array, size: float) -> float:
-    """Returns the shortest way in metres along one axis that brings all points onto the map."""
     return float(np.clip(0.0, LEAST_EDGE - coordinates.min(), size - LEAST_EDGE - coordinates.max()))

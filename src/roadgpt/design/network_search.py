@@ -1,53 +1,95 @@
-"""Searches for a route through junctions: tries random drafts until one fits on the map and breaks no rule.
+"""Searches for a network, a route through junctions or a map of roads, by random drafts until one fits on the
+map and breaks no rule, and finds how large the map has to be.
 
-Each road between junctions is drafted like any road, and each junction is drawn within its requirements. A
-road whose climb is required is made steeper, because its ends at junctions are level. The sketch of the whole
-is checked first: nothing may overlap, and it must fit on the map. Then the rules must accept the network that
-is built from it."""
+Each road of a route is drafted like any road, and each junction is drawn within its requirements. A road
+whose climb is required is made steeper, because its ends at junctions are level. The sketch of the whole is
+checked first: nothing may overlap, and it must fit on the map.
 
+A map is a grid, or junctions joined by roads, rotated and moved into a square with sides of ``map_size``,
+with random heights and a random route. If the description says where the route turns, it takes these turns;
+otherwise, it passes several junctions and turns to both sides where possible.
+
+The rules must then accept the network that is built from the draft."""
+
+import cmath
 import math
+import re
 from collections import Counter
-from collections.abc import Sequence
-from itertools import accumulate, pairwise
-from math import inf
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import lru_cache
+from itertools import accumulate, islice, pairwise
+from math import inf, sqrt
 from typing import TypeVar
 
 import numpy as np
 
-from roadgpt.brief.amount import at_least, between, exactly, span
+from roadgpt import check
+from roadgpt.brief.amount import Amount, at_least, between, exactly, span
 from roadgpt.brief.junction_check import check_junction
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
-from roadgpt.brief.model import Brief, Clause
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, Way, side_of
+from roadgpt.brief.map_fit import EDGE
+from roadgpt.brief.model import Brief, Clause, mirrored
 from roadgpt.brief.words import LARGEST_MAP, ROAD_LENGTH_SLACK
+from roadgpt.check.network_measures import measured_map
 from roadgpt.check.network_promises import length_range
-from roadgpt.design.advice import main_reason
+from roadgpt.design.advice import larger_map, main_reason
 from roadgpt.design.elements import start_height
-from roadgpt.design.first_accepted import LANES_DIFFER, RUN_TOGETHER, first_accepted
-from roadgpt.design.junction_draft import drawn_junction
-from roadgpt.design.lane_draft import (
+from roadgpt.design.junction_draft import (
     SHORT_ROAD,
     counted_from_lanes,
     drawn_change,
+    drawn_junction,
     drawn_ramp,
     lanes_of_roads,
     main_roads,
     with_roads_continued,
     with_side_of_change,
 )
-from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, drawn_ground, place, smallest_box
+from roadgpt.design.layout import (
+    MapPose,
+    PlacedPlan,
+    PlanLine,
+    drawn_ground,
+    first_that_fits,
+    place,
+    smallest_box,
+)
+from roadgpt.design.map_draft import (
+    LEAST_BLOCK,
+    MapDraft,
+    Rng,
+    can_be_carved,
+    draft_carved,
+    draft_grid,
+    draft_village,
+)
 from roadgpt.design.network_sketch import is_clear, sketched
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.unbuilt import check_lanes_across
 from roadgpt.design.variety import Shapes
-from roadgpt.errors import DesignError, UsageError
-from roadgpt.network import NetworkDesign, build_route
-from roadgpt.network.design import LanesDesign, PlaceDesign, RampDesign, ends_route
-from roadgpt.network.growing import length_inside
-from roadgpt.network.ramps import BESIDE, length_beside
+from roadgpt.errors import DesignError, RoadGPTError, UsageError
+from roadgpt.network import MapDesign, MapNode, NetworkDesign, Route, build_map, build_route
+from roadgpt.network.building import BESIDE, length_at_ramp, length_beside
+from roadgpt.network.design import ACCELERATION, LanesDesign, PlaceDesign, RampDesign, ends_route
+from roadgpt.network.growing import length_inside, profile_of_map
 from roadgpt.network.stretch import level_ends, profiles_between
 from roadgpt.plural import plural
 from roadgpt.road import Profile, Segment, World
 from roadgpt.road.design import vertical_curves_of
+
+LANES_DIFFER = (
+    "at a junction, lanes of one road would lead nowhere or nothing would lead to them, because the roads "
+    "have different numbers of lanes"
+)
+"""The reason why a draft fails if a lane does not continue at a junction (rule ``unreachable``)."""
+RUN_TOGETHER = "two of its roads would meet where no junction is, and bridges cannot be built yet"
+"""The reason why a draft fails if two roads overlap outside junctions (rule ``conflicting_overlap``)."""
+REASONS = {"unreachable": LANES_DIFFER, "conflicting_overlap": RUN_TOGETHER}
+NUMBER = re.compile(r"\d[\d.]*")
+PLACE = re.compile(r"^at s = [\d.]+ m: | near \([^)]*\)")
+"""Matches the place of a fault in a message; it is cut out, because the user never sees the draft."""
+Draft = TypeVar("Draft", NetworkDesign, MapDesign)
+
 
 STEADY = 1.0  # percent; a road whose mean grade is less remains unchanged
 ROUNDS = 4  # of steepening, since each round also makes the level ends a little longer
@@ -77,7 +119,7 @@ NO_LENGTH = "the length that was asked for leaves too little for the roads betwe
 FOR_ROOM = (TOO_LARGE, OVERLAPS, UNDRAFTED)
 """Reasons for failure that may disappear on a larger map."""
 Asked = TypeVar("Asked", Brief, Clause)
-Draft = tuple[DraftSearch, PlacedPlan]
+RoadDraft = tuple[DraftSearch, PlacedPlan]
 """The search for a road between junctions, and the plan of the road that it found."""
 
 
@@ -108,7 +150,6 @@ def climbing(
 
 
 def _steeper(segment: Segment, factor: float) -> Segment:
-    """Returns the segment with its grade multiplied by ``factor``; its vertical curve keeps its length."""
     radius = segment.vertical_radius
     changed = {
         "incline": round(TENTH * segment.incline * factor) / TENTH,
@@ -118,7 +159,6 @@ def _steeper(segment: Segment, factor: float) -> Segment:
 
 
 def _fitted(segments: tuple[Segment, ...]) -> tuple[Segment, ...]:
-    """Returns the segments with vertical radii reduced where there is too little room for them."""
     found = list(segments)
     for curve in vertical_curves_of(segments):
         asked = found[curve.number].vertical_radius
@@ -128,7 +168,45 @@ def _fitted(segments: tuple[Segment, ...]) -> tuple[Segment, ...]:
     return tuple(found)
 
 
-class NetworkSearch:
+class _Search:
+    """A search for a network. ``failed`` counts the drafts that failed for each reason, and ``boxes`` are the
+    sides in metres of squares around those that were too large."""
+
+    def __init__(self, brief: Brief, world: World, rng: np.random.Generator) -> None:
+        self.brief, self.world, self.rng = brief, world, rng
+        self.failed: Counter[str] = Counter()
+        self.boxes: list[float] = []
+
+    def _first_accepted(
+        self,
+        drafts: Iterable[Draft | None],
+        build: Callable[[Draft, World], Route],
+        most: int,
+        advice: Callable[[str], str],
+    ) -> Draft:
+        """Returns the first draft whose route can be built and breaks no rule.
+
+        A draft of None did not fit on the map, and is skipped; at most ``most`` drafts are built. Reasons for
+        failure that differ only in places and numbers count together, under the first of them; so do findings
+        of one rule. If none was accepted, raises DesignError with the advice for the most frequent reason."""
+        reasons: dict[str, str] = {}
+        for draft in islice((draft for draft in drafts if draft is not None), most):
+            try:
+                findings = check.inspect(build(draft, self.world), self.brief, self.world)
+            except UsageError as error:
+                why = PLACE.sub("", str(error))
+                rule = NUMBER.sub("", why)
+            else:
+                if not findings:
+                    return draft
+                rule = findings[0].rule
+                why = REASONS.get(rule) or PLACE.sub("", findings[0].sentence)
+            self.failed[reasons.setdefault(rule, why)] += 1
+        why, _ = max(self.failed.items(), key=lambda item: item[1], default=("nothing could be drafted", 0))
+        raise DesignError(advice(why))
+
+
+class NetworkSearch(_Search):
     """The search for one route."""
 
     tried = 40
@@ -139,14 +217,12 @@ class NetworkSearch:
         if lanes of a road would lead nowhere at a junction."""
         for clause in brief.junctions:
             check_junction(clause)
-        self.brief, self.world, self.rng = with_roads_continued(brief), world, rng
+        super().__init__(with_roads_continued(brief), world, rng)
         self.has_wide_bends = main_roads(brief.junctions)
         self.usual = LanesDesign(width=world.section.lane_width)
         self.lanes = lanes_of_roads(brief, world.section.lane_width)
         self.others = Shapes().of(())
         check_lanes_across(brief.junctions, self.lanes)
-        self.failed: Counter[str] = Counter()
-        self.boxes: list[float] = []
 
     def run(self, drafts: int | None = None) -> NetworkDesign:
         """Returns the first of up to ``drafts`` drafts that is accepted; None stands for the usual number.
@@ -158,12 +234,9 @@ class NetworkSearch:
         hastes = (max(0.0, (n - calm) / (drafts - calm)) ** 0.5 for n in range(drafts))
         tried = (self._draft(min(max(haste, least), 1.0)) for haste in hastes)
         try:
-            found = first_accepted(tried, build_route, self.brief, self.world, self.failed, BUILT)
+            return self._first_accepted(tried, build_route, BUILT, self._advice)
         except UsageError as error:  # no draft can have such lanes
             raise DesignError(str(error)) from error
-        if found is None:
-            raise DesignError(self._advice())
-        return found
 
     def _draft(self, haste: float) -> NetworkDesign | None:
         junctions = self._places(haste)
@@ -198,7 +271,6 @@ class NetworkSearch:
         return all(each == self.usual for each in self.lanes)
 
     def _places(self, haste: float) -> list[PlaceDesign] | None:
-        """Returns what the route passes; None if a junction cannot be drawn."""
         found: list[PlaceDesign] = []
         # "five junctions, two of them forks" has no third fork
         named = {clause.kind for clause in self.brief.junctions}
@@ -222,7 +294,6 @@ class NetworkSearch:
         return found
 
     def _with_ring_lanes(self, number: int) -> JunctionClause:
-        """Returns what is required of a junction; a ring has as many lanes as the roads that it joins."""
         clause = self.brief.junctions[number]
         if clause.kind != "roundabout" or clause.lanes is not None:
             return clause
@@ -260,7 +331,7 @@ class NetworkSearch:
     def _profiles(self, places: Sequence[PlaceDesign], lengths: Sequence[float]) -> list[Profile]:
         return profiles_between(self.lanes[0], places, lengths, self.world.section.shoulder)
 
-    def _stretches(self, junctions: Sequence[PlaceDesign], haste: float) -> list[Draft] | None:
+    def _stretches(self, junctions: Sequence[PlaceDesign], haste: float) -> list[RoadDraft] | None:
         """Returns a draft of each road between the junctions; None if one of them cannot be drafted. The
         roads of which nothing is required, or else those of which no length is, are drafted last: they make
         up the length of the whole route. If one is required, straight roads of any length do so too."""
@@ -270,7 +341,7 @@ class NetworkSearch:
         if free and rest is not None:
             free = [n for n, brief in enumerate(briefs) if n in free or brief.is_straight_of_any_length]
         free = free or [n for n, brief in enumerate(briefs) if brief.length is None]
-        found: dict[int, Draft] = {}
+        found: dict[int, RoadDraft] = {}
         for n in sorted(range(len(briefs)), key=lambda n: (n in free, n)):
             share = None
             if rest is not None and n in free:
@@ -298,7 +369,6 @@ class NetworkSearch:
         return max(SHORTEST_WITH_LANES * (1 - haste), SHORTEST) if self.lanes[n].forward > 1 else SHORTEST
 
     def _rest(self, junctions: Sequence[PlaceDesign]) -> float | None:
-        """Returns the length in metres that the roads between junctions share; None if it is open."""
         if self.brief.length is None:
             return None
         asked = length_range(self.brief.length)
@@ -310,7 +380,7 @@ class NetworkSearch:
         )
         return float(self.rng.uniform(0.7 * low + 0.3 * high, 0.3 * low + 0.7 * high)) - inside
 
-    def _stretch(self, brief: Brief, n: int, haste: float, length: float | None) -> Draft | None:
+    def _stretch(self, brief: Brief, n: int, haste: float, length: float | None) -> RoadDraft | None:
         """Returns a draft of road number ``n`` between junctions; None if no draft was accepted. If a ramp
         joins or leaves the road, turns that are not required are sweeping. ``length`` is what the road should
         have in metres; None if it is open."""
@@ -340,8 +410,7 @@ class NetworkSearch:
                 return search, found
         return None
 
-    def _segments(self, drafts: Sequence[Draft]) -> list[tuple[Segment, ...]] | None:
-        """Returns the segments of each road; None if one cannot have heights that meet its requirements."""
+    def _segments(self, drafts: Sequence[RoadDraft]) -> list[tuple[Segment, ...]] | None:
         found = []
         for n, (search, drafted) in enumerate(drafts):
             tries = (search.with_heights(drafted) for _ in range(HEIGHTS))
@@ -356,7 +425,6 @@ class NetworkSearch:
         return found
 
     def _open(self, haste: float, shortest: float, is_straight: bool = False) -> Brief:
-        """Returns requirements for a road of which nothing is required: short, and with a turn at most."""
         count = len(self.brief.roads)
         most = min(MOST, ROOM * self.world.site.map_size / PARTS / count)
         most = max(most, shortest)
@@ -365,8 +433,7 @@ class NetworkSearch:
             return Brief(turns=exactly(0), length=between(shortest * (1 - 0.3 * haste), high))
         return Brief(turns=exactly(1), degrees=between(18, 70), length=between(shortest, high + TURNING))
 
-    def _place(self, drafts: Sequence[Draft], junctions: Sequence[PlaceDesign]) -> MapPose | None:
-        """Returns the start of a route on the map; None if it overlaps itself or does not fit."""
+    def _place(self, drafts: Sequence[RoadDraft], junctions: Sequence[PlaceDesign]) -> MapPose | None:
         if any(map(ends_route, junctions)) and not self.brief.roads[-1].is_open:
             self.failed["it turns back, so it cannot go on on another road"] += 1
             return None
@@ -383,8 +450,7 @@ class NetworkSearch:
             self.boxes.append(smallest_box(line))
         return pose
 
-    def _advice(self) -> str:
-        why, _ = max(self.failed.items(), key=lambda item: item[1], default=("nothing could be drafted", 0))
+    def _advice(self, why: str) -> str:
         size = self.world.site.map_size
         if why in FOR_ROOM and size < LARGEST_MAP:
             largest = self.world.changed(map_size=LARGEST_MAP)
@@ -409,7 +475,6 @@ class NetworkSearch:
 
 
 def _without_ramps(asked: Brief, n: int, places: Sequence[PlaceDesign]) -> Brief:
-    """Returns the requirements for the part of the road number ``n`` that is not beside a lane of a ramp."""
     around = [(place, "merge", 0) for place in places[max(n - 1, 0) : n]]
     around += [(place, "diverge", -1) for place in places[n : n + 1]]
     for passed, kind, end in around:
@@ -422,10 +487,339 @@ def _without_ramps(asked: Brief, n: int, places: Sequence[PlaceDesign]) -> Brief
 
 
 def _shorter(asked: Asked, less: float, slack: float) -> Asked:
-    """Returns the requirements with a length that is ``less`` metres shorter and differs by ``slack``."""
     if asked.length is None:
         return asked
     low, high = span(asked.length).lo - less, span(asked.length).hi - less
     if asked.length.exact:
         low, high = low - slack * (low + less), high + slack * (high + less)
     return asked.model_copy(update={"length": between(max(low, 0.0), max(high, SHORT_ROAD))})
+
+
+WALKS = 60  # number of random walks, of which the best is taken
+PASSED = (3, 6)  # number of junctions that a route passes, where possible
+LONG_ROUTE = 120.0  # m; a shorter route counts as worse
+DRAFTS_OF_MAP = 200  # for one map, at most
+BUILT_MAPS = 30  # drafts that fit and break a rule, after which the search is given up
+PER_JUNCTION = 80.0  # m; n junctions fill a map whose side is this length times the square root of n
+NO_HASTE_ON_MAP = 8  # drafts without haste
+HURRIED_MAP = 0.12  # least haste for each junction beyond the first ``FEW``
+FEW = 2.0  # number of junctions that need no haste on the usual map
+ACROSS = 0.2  # side of the smallest map that is tried, as a share of the length of all its roads
+WITHIN = 0.9  # where only one limit of a length is given, the other one is this share of it
+LEANING = 14.0  # degrees, greatest rotation of a grid; its columns still run from south to north
+TURNS = 24  # number of rotations that are tried
+TIGHTEST = 1.05  # least radius of bends, as a multiple of the smallest radius allowed
+CARVED = 0.7  # share of drafts with few dead ends that are carved out of a grid
+LEVEL = 0.4  # share of maps that are level
+TILT = 0.02  # ratio, greatest slope of the plane in which the nodes of a map lie
+
+
+def drawn_route(draft: MapDraft, rng: Rng) -> list[int] | None:
+    """Returns the numbers of the nodes along a random route from one end to another; None if none was found.
+    If the map has fewer than two ends, the route leads from one junction to another, or to an end. No node is
+    passed twice."""
+    ends = [n for n, node in enumerate(draft.nodes) if node.kind == "end"]
+    to_end = len(ends) > 1
+    starts = ends if to_end else [n for n, node in enumerate(draft.nodes) if node.is_junction]
+    if not starts:
+        return None
+    wanted = int(rng.integers(PASSED[0], PASSED[1] + 1))
+    neighbours = draft.neighbours()
+    best: tuple[tuple[float, ...], list[int]] | None = None
+    for _ in range(WALKS):
+        walk = _walk(draft, neighbours, starts[int(rng.integers(len(starts)))], wanted, to_end, rng)
+        if walk is None:
+            continue
+        worth = _worth(draft, walk, wanted)
+        if best is None or worth > best[0]:
+            best = worth, walk
+    return None if best is None else best[1]
+
+
+def named_route(draft: MapDraft, ways: Sequence[Way], rng: Rng) -> list[int] | None:
+    """Returns the numbers of the nodes along a route that turns as ``ways`` says at its junctions, in order;
+    None if there is no such route. It starts and finishes at ends where possible, and otherwise at junctions.
+    No node is passed twice."""
+    neighbours = draft.neighbours()
+    starts = [n for n, node in enumerate(draft.nodes) if node.kind != "bend"]
+    found = [walk for n in starts for walk in _named(draft, neighbours, [n], ways)]
+    if not found:
+        return None
+    ends = [sum(draft.nodes[walk[n]].kind == "end" for n in (0, -1)) for walk in found]
+    best = [walk for walk, number in zip(found, ends, strict=True) if number == max(ends)]
+    return best[int(rng.integers(len(best)))]
+
+
+def _named(
+    draft: MapDraft, neighbours: Sequence[Sequence[int]], walk: list[int], ways: Sequence[Way]
+) -> Iterator[list[int]]:
+    here = draft.nodes[walk[-1]]
+    is_first = len(walk) == 1
+    if not is_first and not ways and here.kind != "bend":
+        yield walk
+        return
+    if here.kind == "end" and not is_first:
+        return
+    passes = here.is_junction and not is_first
+    for other in neighbours[walk[-1]]:
+        if other in walk:
+            continue
+        if passes:
+            z = [draft.nodes[n].z for n in (walk[-2], walk[-1], other)]
+            if side_of(_degrees(z[0], z[1], z[2])) != ways[0]:
+                continue
+        yield from _named(draft, neighbours, [*walk, other], ways[1:] if passes else ways)
+
+
+def _walk(
+    draft: MapDraft, neighbours: Sequence[Sequence[int]], start: int, wanted: int, to_end: bool, rng: Rng
+) -> list[int] | None:
+    walk, passed = [start], 0
+    while True:
+        ways = [n for n in neighbours[walk[-1]] if n not in walk]
+        if not ways:
+            break
+        walk.append(ways[int(rng.integers(len(ways)))])
+        kind = draft.nodes[walk[-1]].kind
+        if kind == "end":
+            return walk
+        if kind != "bend":
+            if not to_end and passed == wanted:
+                return walk
+            passed += 1
+    if to_end:
+        return None
+    while len(walk) > 1 and not draft.nodes[walk[-1]].is_junction:
+        walk.pop()
+    return walk if len(walk) > 1 else None
+
+
+def _worth(draft: MapDraft, walk: Sequence[int], wanted: int) -> tuple[float, ...]:
+    inner = [n for n in range(1, len(walk) - 1) if draft.nodes[walk[n]].is_junction]
+    z = [draft.nodes[n].z for n in walk]
+    sides = {side_of(_degrees(z[n - 1], z[n], z[n + 1])) for n in inner}
+    length = sum(abs(b - a) for a, b in pairwise(z))
+    near = -abs(len(inner) - wanted)
+    turns = len(sides & {"left", "right"})
+    return float(bool(inner)), float(length >= LONG_ROUTE), float(turns), float(near)
+
+
+def _degrees(before: complex, here: complex, after: complex) -> float:
+    return cmath.phase((after - here) / (here - before)) * 180 / cmath.pi
+
+
+class MapSearch(_Search):
+    """The search for one map."""
+
+    tried = 24
+    """Number of drafts in a search that tests whether the World's map is large enough."""
+
+    def __init__(self, brief: Brief, world: World, rng: np.random.Generator) -> None:
+        assert brief.map is not None
+        super().__init__(brief, world, rng)
+        self.asked = brief.map
+
+    def run(self, drafts: int = DRAFTS_OF_MAP) -> MapDesign:
+        """Returns the first of up to ``drafts`` drafts that is accepted. Raises DesignError if none was, and
+        UsageError if the World has lanes or superelevation that networks cannot have."""
+        profile_of_map(None, self.world)
+        hastes = (max(0.0, (n - NO_HASTE_ON_MAP) / (drafts / 2)) ** 0.5 for n in range(drafts))
+        tried = (self._draft(min(max(haste, self._least_haste), 1.0)) for haste in hastes)
+        return self._first_accepted(tried, build_map, BUILT_MAPS, self._advice)
+
+    @property
+    def lacks_room(self) -> bool:
+        """Whether drafts were too large for the map, so that a larger one may help."""
+        return self.failed[TOO_LARGE] > 0
+
+    @property
+    def _least_haste(self) -> float:
+        """The haste of the first drafts, without which many junctions would not fit on the map."""
+        share = PARTS / self.world.site.map_size
+        return HURRIED_MAP * max(_least_count(self.asked) * share**2 - FEW, 0.0)
+
+    def _draft(self, haste: float) -> MapDesign | None:
+        world = self.world
+        room = world.site.map_size - world.section.road_width - 2 * EDGE
+        radius = TIGHTEST * world.limits.min_radius
+        if self.asked.junctions:
+            is_carved = can_be_carved(self.asked) and self.rng.random() < CARVED
+            draft = (
+                draft_carved(self.asked, room, radius, self.rng, haste)
+                if is_carved
+                else draft_village(self.asked, world, radius, self.rng, haste)
+            )
+            turns = self.rng.uniform(0, 360, TURNS)
+        else:
+            draft = draft_grid(self.asked, room, radius, self.rng, haste)
+            turns = self.rng.uniform(-LEANING, LEANING, TURNS) * np.linspace(1, 0, TURNS)
+        length = self.brief.length
+        if draft is None or (length is not None and not self._stretch(draft, length)):
+            self.failed["its roads would overlap or bend too much"] += 1
+            return None
+        if not self._place(draft, turns, room):
+            self.failed[TOO_LARGE] += 1
+            return None
+        ways = self.asked.route
+        route = named_route(draft, ways, self.rng) if ways else drawn_route(draft, self.rng)
+        if route is None:
+            which = f"no route {', '.join(ways)}" if ways else "no route"
+            self.failed[f"{which} leads through it"] += 1
+            return None
+        return _design(draft, self._heights(draft, haste), route)
+
+    def _stretch(self, draft: MapDraft, length: Amount) -> bool:
+        """Makes a draft larger or smaller, so that all its roads together have the required length. Only the
+        roads between its nodes change: junctions and the radii of bends stay as they are. Returns whether the
+        draft can be built, which shows how long its roads are."""
+        route = drawn_route(draft, self.rng)
+        if route is None:
+            return False
+        try:
+            flat = _design(draft, [0.0] * len(draft.nodes), route)
+            built = measured_map(build_map(flat, self.world).network).length
+        except UsageError:
+            return False
+        asked = length_range(length)
+        if built not in asked:
+            low = asked.lo if asked.lo > 0 else WITHIN * asked.hi
+            wanted = (low + min(asked.hi, low / WITHIN)) / 2
+            between = sum(abs(draft.nodes[one].z - draft.nodes[other].z) for one, other in draft.roads)
+            for node in draft.nodes:
+                node.z *= (between + wanted - built) / between
+        return True
+
+    def _place(self, draft: MapDraft, turns: np.ndarray, room: float) -> bool:
+        found = first_that_fits(draft.corners(), turns, room)
+        if found is None:
+            return False
+        turn, left, low, width, height = found
+        spin = np.exp(1j * np.radians(turn))
+        border = (self.world.site.map_size - room) / 2
+        x, y = (
+            border - edge + float(self.rng.random()) * max(room - size, 0.0)
+            for edge, size in ((left, width), (low, height))
+        )
+        for node in draft.nodes:
+            moved = node.z * spin + complex(x, y)
+            node.z = complex(round(moved.real, 2), round(moved.imag, 2))
+        return True
+
+    def _heights(self, draft: MapDraft, haste: float) -> list[float]:
+        ground = drawn_ground(self.world, self.rng)
+        tilt = TILT * (1 - haste) * float(self.rng.random()) if self.rng.random() > LEVEL else 0.0
+        way = np.exp(2j * np.pi * self.rng.random())
+        along = np.array([(node.z * way).real for node in draft.nodes])
+        return [round(float(each), 2) for each in ground + tilt * (along - along.min())]
+
+    def _advice(self, why: str) -> str:
+        size = self.world.site.map_size
+        if why == TOO_LARGE:
+            fewer = "junctions" if self.asked.junctions else "or shorter blocks"
+            return (
+                f"this map of roads found no place on a map of {size:g} m; ask for fewer {fewer}, or give a "
+                "larger map with --map-size"
+            )
+        return f"no draft of this map was accepted: {why}; leave something out or give other numbers"
+
+
+def _design(draft: MapDraft, heights: Sequence[float], route: Sequence[int]) -> MapDesign:
+    nodes = []
+    for node, height in zip(draft.nodes, heights, strict=True):
+        own = {"control": node.control, "kerb": node.kerb} if node.is_junction else {}
+        at = (node.z.real, node.z.imag, height)
+        nodes.append(MapNode.model_validate({"at": at, "kind": node.kind, "radius": node.radius, **own}))
+    return MapDesign(
+        nodes=tuple(nodes),
+        roads=tuple((one + 1, other + 1) for one, other in draft.roads),
+        route=tuple(number + 1 for number in route),
+    )
+
+
+def likely_room_of_map(brief: Brief) -> float:
+    """Returns the side in metres of a square that a map of roads may just fit into."""
+    assert brief.map is not None
+    asked = brief.map
+    if asked.junctions:
+        usual = PER_JUNCTION * sqrt(_least_count(asked))
+    else:
+        length = span(asked.length).lo
+        blocks = max(span(asked.columns).lo, span(asked.rows).lo, 1.0)
+        usual = blocks * (length if 0 < length < inf else LEAST_BLOCK)
+    return max(usual, ACROSS * max(span(brief.length).lo, 0.0))
+
+
+def _least_count(asked: MapClause) -> float:
+    return sum(max(span(each.count).lo, 1.0) for each in asked.junctions)
+
+
+TRIALS = (1, 2)  # seeds of the short searches that test whether a map is large enough
+USUAL_ROAD = 90.0  # m, assumed length of a road whose length is not required
+DIAGONAL = 1.25  # greatest length of a straight route, as a multiple of the side of the map
+WINDING = 3.5  # greatest length of a route with turns, as a multiple of the side of the map
+EDGES = 40.0  # m, kept free at the edges of the map
+
+
+def draft_network(brief: Brief, world: World, rng: np.random.Generator) -> NetworkDesign | MapDesign:
+    """Returns a valid route that meets the Brief, or a valid map of roads if the Brief asks for a map. Raises
+    DesignError if no draft was accepted, BriefError if a junction cannot meet its requirements, and
+    UsageError if the World has lanes or banked bends that a map of roads cannot have."""
+    if not brief.left_hand:
+        return _search(brief, world, rng).run()
+    # traffic on the left is the mirror image of traffic on the right
+    return _search(mirrored(brief), world, rng).run().mirrored(world.site.map_size / 2)
+
+
+def _search(brief: Brief, world: World, rng: np.random.Generator) -> NetworkSearch | MapSearch:
+    return (NetworkSearch if brief.map is None else MapSearch)(brief, world, rng)
+
+
+@lru_cache(maxsize=256)
+def room_for_network(brief: Brief, world: World) -> float | None:
+    """Returns the side in metres of a map that is large enough for a network; None if the World's map is
+    large enough, or if no larger map would help."""
+    if brief.map is not None:
+        likely = likely_room_of_map(brief)
+    else:
+        brief = mirrored(brief) if brief.left_hand else brief  # drafts are made with traffic on the right
+        total = sum(map(_least, (brief, *brief.roads)))
+        likely = max(_straightest(brief) / DIAGONAL + EDGES, total / WINDING)
+    try:
+        failed = _failed(brief, world) if likely <= world.site.map_size else None
+        if likely <= world.site.map_size and (failed is None or not failed.lacks_room):
+            return None
+        return larger_map(brief, world, _failed, likely)
+    except RoadGPTError:  # the design itself refuses what cannot be built, with its reason
+        return None
+
+
+def _failed(brief: Brief, world: World) -> NetworkSearch | MapSearch | None:
+    for seed in TRIALS:
+        search = _search(brief, world, np.random.default_rng(seed))
+        try:
+            search.run(search.tried)
+        except DesignError:
+            return search
+    return None
+
+
+def _straightest(brief: Brief) -> float:
+    """Returns the length in metres of the longest part of a route that must be nearly straight: straights of
+    required length, and roads joined by ramps or by places where lanes change."""
+    longest, run = 0.0, 0.0
+    for passed, road in zip((None, *brief.junctions), brief.roads, strict=True):
+        is_beside = passed is not None and passed.kind in (*RAMPS, *LANE_KINDS)
+        if not is_beside:
+            run = 0.0
+        elif passed is not None and passed.kind in RAMPS:
+            run += length_at_ramp(drawn_ramp(passed, ACCELERATION))
+        run += _least(road) or USUAL_ROAD
+        straights = [span(each.length).lo for each in road.clauses if each.kind == "straight"]
+        straights += [_least(road)] if road.turns is not None and span(road.turns).hi == 0 else []
+        longest = max(longest, run if is_beside else 0.0, *(s for s in straights if s < inf), 0.0)
+    return longest
+
+
+def _least(brief: Brief) -> float:
+    low = span(brief.length).lo
+    return low if 0 < low < inf else 0.0

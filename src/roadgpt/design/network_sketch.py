@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 from roadgpt.design.layout import PlanLine
 from roadgpt.geometry.nearness import Complex, meeting
 from roadgpt.network import JunctionDesign
+from roadgpt.network.building import lines_at_ramp, ring_width
 from roadgpt.network.design import STUB, PlaceDesign, RampDesign
 from roadgpt.network.growing import contact_distances, profiles_of_arms
-from roadgpt.network.ramps import lines_at_ramp
-from roadgpt.network.ring import ring_width
 from roadgpt.road import Profile
 
 STEP = 2.0  # m between points
@@ -143,7 +142,6 @@ def _thinned(z: Complex) -> Complex:
 
 
 def _way(z: Complex) -> complex:
-    """Returns the direction of a line at its end, as a complex number of length 1."""
     step = complex(z[-1] - z[-2])
     return step / abs(step)
 

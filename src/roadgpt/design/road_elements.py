@@ -166,7 +166,6 @@ def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadE
 def _members(
     segments: Sequence[Segment], joints: Array, turn: MeasuredFeature, scale: float
 ) -> tuple[int, int]:
-    """Returns the index of a turn's first segment, and the index after its last segment."""
     low, high = turn.start * scale, turn.end * scale
     hand = 1 if turn.side == "left" else -1
     shared = np.minimum(joints[1:], high) - np.maximum(joints[:-1], low)

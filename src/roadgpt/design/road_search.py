@@ -19,15 +19,12 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.refusal import NoRoomError
 from roadgpt.check.rules.too_abrupt import asks_for_bumps
-from roadgpt.design.compose import composed
-from roadgpt.design.draw import DraftTask
+from roadgpt.design.compose import DraftTask, TurnSequence, Windows, composed, drawn_sequence, is_long
 from roadgpt.design.elements import design_at
 from roadgpt.design.heights import asks_for_heights, corrected_draft, drawn_heights, has_room_for_heights
 from roadgpt.design.layout import MapPose, PlacedPlan, drawn_ground, keeps_clear, place, smallest_box, walk
-from roadgpt.design.sequence import TurnSequence, drawn_sequence, is_long
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
 from roadgpt.design.vertical import EASES, Pace
-from roadgpt.design.windows import Windows
 from roadgpt.errors import DesignError, RoadGPTError
 from roadgpt.road import Design, Road, Segment, World, build
 
@@ -171,7 +168,6 @@ class DraftSearch:
             yield from (*others, *(growths if self.outline.length else ()))
 
     def _is_hopeless(self) -> bool:
-        """Returns whether drafts in the greatest haste, too, are too large for the map."""
         rng = self.rng.spawn(1)[0]  # so that other drafts stay the same
         drafts = [composed(*self._sequence(True, 1.0, rng)) for _ in range(HASTIEST)]
         boxes = [smallest_box(walk(draft)) for draft in drafts if draft is not None]
@@ -185,7 +181,7 @@ class DraftSearch:
         task = DraftTask(self.outline, self.windows, self.world, rng, haste)
         if not self.outline.alike:
             return order, task
-        from roadgpt.design.draw import with_like_parts
+        from roadgpt.design.compose import with_like_parts
 
         return with_like_parts(order, task), task
 
@@ -270,6 +266,5 @@ class DraftSearch:
 
 
 def _has_exact_slope(element: Element) -> bool:
-    """Returns whether numbers were given for both the length and the grade of a straight."""
     length, grade = element.required_length, element.required_grade
     return bool(length and length.number and grade and grade.number)

@@ -22,7 +22,7 @@ def world_for(brief: Brief | None, world: World) -> World:
     if brief.map_size is not None:
         return found.changed(map_size=brief.map_size)
     if brief.is_of_network:
-        from roadgpt.design.network_draft import room_for_network  # a single road does not need it
+        from roadgpt.design.network_search import room_for_network  # a single road does not need it
 
         size = room_for_network(brief, found)
     else:

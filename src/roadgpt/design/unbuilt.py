@@ -51,7 +51,6 @@ def check_lanes_across(places: Sequence[JunctionClause], lanes: "Sequence[LanesD
 
 
 def _crosses_oncoming(brief: Brief, number: int) -> bool:
-    """Returns whether a junction is a ramp on the side of the oncoming lanes of its road."""
     ramp, roads = brief.junctions[number], brief.stretches[number : number + 2]
     if ramp.kind not in RAMPS or ramp.side != ("right" if brief.left_hand else "left"):
         return False
@@ -60,13 +59,12 @@ def _crosses_oncoming(brief: Brief, number: int) -> bool:
 
 
 def _unbuilt(junction: JunctionClause, before: Brief, after: Brief) -> Iterator[str]:
-    """Yields the features of a junction, and of the roads before and behind it, that cannot be built."""
     if junction.kind in RAMPS and junction.take != "main":
         ramp = before if junction.kind == "merge" else after
         if span(ramp.lanes).lo > 1 or span(ramp.against).lo > 0 or ramp.divided:
             yield "a ramp with several lanes or oncoming traffic"
     if junction.kind == "roundabout":
-        from roadgpt.network.ring import MOST_LANES as MOST_RING_LANES
+        from roadgpt.network.building import MOST_LANES as MOST_RING_LANES
 
         lanes = [span(each).lo for road in (before, after) for each in (road.lanes, road.against)]
         if junction.size == "mini" and max(lanes) > 1:

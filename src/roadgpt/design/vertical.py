@@ -60,7 +60,6 @@ class Pace:
 
     @cached_property
     def _squares(self) -> tuple[float, Array]:
-        """Returns the metres between stations, and the square of the expected speed at each, in (m/s)^2."""
         knots, bends, length = self._plan
         s = np.linspace(0.0, length, max(1, round(length / STEP)) + 1)
         bend = np.interp(s, knots, bends, right=0.0)

@@ -225,7 +225,6 @@ class Drive:
 
 
 def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
-    """Raises an exception if the content of a file is not a Drive."""
     if header["format"] != FORMAT:
         raise ValueError(f"its format is {header['format']}, not {FORMAT}")
     if header["ended"] not in get_args(Ended):

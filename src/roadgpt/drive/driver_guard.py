@@ -74,7 +74,6 @@ class DriverGuard:
         return answer, None if by is None or by == self.name else _short(by, quoted=not str(by).isprintable())
 
     def _called(self, method: Any, given: tuple[Any, ...], at: float) -> Any:
-        """Calls a method of the driver, ``at`` seconds after the start of the drive."""
         try:
             return method(*given)
         except (KeyboardInterrupt, RemoteDriverError):
@@ -102,8 +101,6 @@ class DriverGuard:
         return command[0], min(max(command[1], 0.0), 1.0), min(max(command[2], 0.0), 1.0)
 
     def _line(self, error: BaseException) -> str:
-        """Returns as text the innermost line of the traceback that is in the driver's own file, or in any
-        file if the traceback does not contain the driver's own."""
         passed = traceback.extract_tb(error.__traceback__)
         frames = [frame for frame in passed if frame.filename != __file__]
         module = sys.modules.get(type(self._driver).__module__)

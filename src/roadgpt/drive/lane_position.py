@@ -80,7 +80,6 @@ def _clipped(scratch: FloatArray, source: int, count: int, px: float, py: float,
 
 @inlined
 def _with_overlap(area: float, box: FloatArray, a: FloatArray, b: FloatArray, scratch: FloatArray) -> float:
-    """Returns ``area`` plus the area that the box shares with the quadrilateral between the rows a and b."""
     for k in range(4):
         scratch[0, k, 0], scratch[0, k, 1] = box[k, 0], box[k, 1]
     source, count = 0, 4

@@ -55,7 +55,6 @@ def _junction(road: "Road", passage: "Passage") -> tuple[float, float, tuple[str
 
 
 def _beside(profile: "Profile", lane: int) -> tuple[int, int]:
-    """Returns the numbers of driving lanes to the left and right of a lane, for those who drive on it."""
     own, oncoming = profile.along_ids, profile.against_ids
     if not profile.leads_along(lane):
         own, oncoming = oncoming, own

@@ -10,8 +10,7 @@ Each format is a plug-in, for example:
         def save(self, road, path, world, poses=None) -> None
 
 An exporter writes ``path``, and may write further files with the same stem to the same folder. The same
-arguments must always give identical files, so files contain no dates, random numbers or absolute paths.
-"""
+arguments must always give identical files, so files contain no dates, random numbers or absolute paths."""
 
 import shutil
 import tempfile
@@ -43,8 +42,7 @@ class Exporter(Protocol):
 
     An exporter whose attribute ``holds_junctions`` is True also gets routes through junctions
     (``roadgpt.network.Route``). An exporter without this attribute gets single roads only. An exporter whose
-    attribute ``needs_route`` is also True gets no maps without a route (``roadgpt.network.has_no_route``).
-    """
+    attribute ``needs_route`` is also True gets no maps without a route (``roadgpt.network.has_no_route``)."""
 
     name: str
     """Name under which the format is registered as a plug-in."""
@@ -64,8 +62,7 @@ class Exporter(Protocol):
 
         Raises:
             ExportError: The format cannot hold this road, or a program that the exporter needs is missing or
-                fails.
-        """
+                fails."""
         ...
 
 
@@ -101,8 +98,7 @@ def save(
         UsageError: ``name`` cannot be the name of a file.
         ExportError: A format cannot hold this road, a program that an exporter needs is missing or fails, or
             a file cannot be written. No file is written if a format cannot hold the junctions of a Route,
-            or needs a route through a map that has none.
-    """
+            or needs a route through a map that has none."""
     parts = [exporter_of(format_) for format_ in dict.fromkeys(formats)]
     if not name or name == ".." or Path(name).name != name:
         raise UsageError(f"'{name}' cannot name a file; give a name without a folder")
@@ -146,7 +142,6 @@ def doubts(road: Road, formats: Sequence[str], world: World) -> tuple[str, ...]:
 
 
 def _check_holds(road: "Route", part: Exporter) -> None:
-    """Raises ExportError if a format would hold only the route, or if it needs a route and there is none."""
     if getattr(part, "holds_junctions", False):
         if has_no_route(road) and getattr(part, "needs_route", False):
             raise ExportError(

@@ -1,5 +1,6 @@
 """Draws lines along a road, also painted ones, as polylines with few points and a bounded chord error."""
 
+from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from roadgpt.export.markup import finite
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Edges, Profile, Road
+from roadgpt.road.land import Land
 from roadgpt.road.profile import LINE
 
 CHORD = 0.002  # m, most distance between a polyline and the curve it stands for
@@ -32,8 +34,7 @@ def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
         road: The road.
         reach: Greatest offset of a polyline from the centre line, in metres. A greater offset needs more
             points.
-        chord: Greatest allowed distance in metres between the polyline and the curve.
-    """
+        chord: Greatest allowed distance in metres between the polyline and the curve."""
     s = np.linspace(0.0, road.length, max(3, int(np.ceil(road.length / STEP)) + 1))
     finite(road.at(s))
     plan, upright = np.abs(finite(road.curvature(s))), np.abs(finite(road.vertical_curvature(s)))
@@ -68,7 +69,6 @@ def _sway(profile: Profile, s: Array) -> Array:
 
 
 def _with_joints(s: Array, profile: Profile) -> Array:
-    """Adds the stations at which the width of a lane may have a kink, and both sides of a step."""
     widths = [lane.width for lane in (*profile.left, *profile.right)]
     cubics = [width for width in widths if isinstance(width, CubicProfile)]
     joints = np.unique([each for width in cubics for each in width.stations])
@@ -84,8 +84,7 @@ def _with_joints(s: Array, profile: Profile) -> Array:
 
 def fold(road: Road, profile: Profile) -> str | None:
     """Returns a sentence on the place where an edge of a lane or shoulder lies farthest beyond the centre of
-    its bend, so that no polyline shows it rightly; None if there is no such place.
-    """
+    its bend, so that no polyline shows it rightly; None if there is no such place."""
     s = stations(road, profile.reach)
     edges = np.stack([t for side in profile.lane_edges(s) for t in side])
     beyond = road.curvature(s) * edges
@@ -105,8 +104,7 @@ def line(road: Road, s: Array, t: ArrayLike) -> Array:
     There is one point for each station in ``s``.
 
     On the inside of a tight bend, the offset is limited to 0.95 of the radius of the bend, so that the line
-    does not fold back on itself.
-    """
+    does not fold back on itself."""
     k = road.curvature(s)
     inside = k * np.asarray(t) > PINCH
     offsets = np.where(inside, PINCH / np.where(inside, k, 1.0), t)
@@ -116,23 +114,19 @@ def line(road: Road, s: Array, t: ArrayLike) -> Array:
 class NamedLine(NamedTuple):
     """One painted line."""
 
-    number: int
-    """Index of the line in the result of ``Profile.markings``."""
+    number: int  # index of the line in the result of ``Profile.markings``
     place: Place
     """Position of the line: "left" or "right" edge of the carriageway, "middle" for the centre line, or
-    "between" two lanes.
-    """
+    "between" two lanes."""
     is_broken: bool
     edges: Edges
     """The offsets in metres of the left and right edges of the line, at the stations passed to
-    ``named_lines``.
-    """
+    ``named_lines``."""
 
 
 def named_lines(profile: Profile, s: Array) -> list[NamedLine]:
     """Returns the painted lines of a road at stations ``s`` along the whole road: first the edge lines, then
-    the centre line, then lines between lanes.
-    """
+    the centre line, then lines between lanes."""
     carriageway = profile.edges(s)
     found = []
     for number, (marking, edges) in enumerate(profile.markings(s)):
@@ -145,3 +139,46 @@ def named_lines(profile: Profile, s: Array) -> list[NamedLine]:
             place = "middle"
         found.append(NamedLine(number, place, marking == "broken", edges))
     return sorted(found, key=lambda line: ORDER.index(line.place))
+
+
+RUN = 1.7  # horizontal length of a slope, divided by its height
+FOOT = 0.4  # m by which a slope ends below the land
+OUTSIDE = 2.0  # m beyond the edge, where the height of the land is taken
+ACROSS = 7  # points of the edge at an end of the road
+
+
+class Embankment(NamedTuple):
+    """One slope, given by the points of its upper and of its lower edge, ``(n, 3)`` each, in metres."""
+
+    edge: Array
+    foot: Array
+    is_left: bool  # true if the slope is on your left when you follow the points of its upper edge
+
+
+def embankments(road: Road, profile: Profile, s: Array, land: Land) -> Iterator[Embankment]:
+    """Yields the slopes along both edges of a road and across both of its ends.
+
+    The slopes begin at the outer edges of the shoulders, with points at the stations ``s``, and end just
+    below the surface of the surrounding land."""
+    heading, (left, right) = road.heading(s), profile.rims(s)
+    for side, rim in ((-1.0, right), (1.0, left)):
+        edge = line(road, s, rim)
+        near = line(road, s, rim + side * OUTSIDE)
+        outward = side * np.stack([-np.sin(heading), np.cos(heading)], axis=-1)
+        yield bank_from(edge, near, outward, land, is_left=side > 0)
+    for end, sign in ((0.0, -1.0), (road.length, 1.0)):
+        rims = profile.rims(end)
+        across = np.linspace(*(rims if sign > 0 else rims[::-1]), ACROSS)
+        edge = np.stack([line(road, np.array([end]), t)[0] for t in across])
+        to = float(road.heading(end))
+        way = sign * np.array([np.cos(to), np.sin(to)])
+        near = edge[:, :2] + OUTSIDE * way
+        yield bank_from(edge, near, np.repeat(way[None], len(edge), axis=0), land, is_left=True)
+
+
+def bank_from(edge: Array, near: Array, outward: Array, land: Land, is_left: bool) -> Embankment:
+    """Returns the slope from an edge ``(n, 3)`` in the directions ``outward`` ``(n, 2)``, down to just below
+    the land at the points ``near`` ``(n, 2)``."""
+    drop = edge[:, 2] - np.minimum(land.height(near[:, 0], near[:, 1]), edge[:, 2]) + FOOT
+    foot = np.column_stack([edge[:, :2] + RUN * drop[:, None] * outward, edge[:, 2] - drop])
+    return Embankment(edge, foot, is_left)

@@ -1,7 +1,6 @@
 """Defines the ego vehicle of exported files: its dimensions, start, planned speeds, and poses during a drive.
 
-The dimensions are those of BeamNG's ETK 800, a mid-size saloon, which the built-in simulator also uses.
-"""
+The dimensions are those of BeamNG's ETK 800, a mid-size saloon, which the built-in simulator also uses."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -31,8 +30,7 @@ class Poses:
 
     Raises:
         UsageError: The arrays differ in length or contain a number that is not finite, or the times do not
-            increase.
-    """
+            increase."""
 
     time: Array
     x: Array
@@ -60,8 +58,7 @@ class Poses:
         Other columns are ignored.
 
         Raises:
-            UsageError: A column is missing, or the columns are not valid poses.
-        """
+            UsageError: A column is missing, or the columns are not valid poses."""
         missing = [each.name for each in fields(cls) if each.name not in columns]
         if missing:
             raise UsageError(f"the poses have no {', '.join(missing)}; give those columns as well")
@@ -82,14 +79,11 @@ class EgoVehicle:
     front_axle: float = 1.36
     """Position of the front axle in metres ahead of the centre of gravity; negative values are behind it."""
     rear_axle: float = -1.47
-    middle: float = -0.10
-    """Position of the middle of the car in metres ahead of the centre of gravity."""
+    middle: float = -0.10  # position of the middle of the car in metres ahead of the centre of gravity
     gravity_height: float = 0.56
     track: float = 1.58
-    wheel: float = 0.66
-    """Wheel diameter in metres."""
-    lock: float = 0.62
-    """Greatest steering angle of the front wheels in radians."""
+    wheel: float = 0.66  # wheel diameter in metres
+    lock: float = 0.62  # greatest steering angle of the front wheels in radians
 
 
 CAR = EgoVehicle()
@@ -108,10 +102,8 @@ def goal_of(road: Road) -> float:
 class SpeedProfile(NamedTuple):
     """The speeds of a calm driver from a standing start, as arrays of equal length."""
 
-    speed: Array
-    """Speeds in m/s."""
-    time: Array
-    """Times in seconds since the start; the acceleration is constant between stations."""
+    speed: Array  # speeds in m/s
+    time: Array  # times in seconds since the start; the acceleration is constant between stations
 
 
 def calm_speeds(road: Road, world: World, s: Array) -> Array:

@@ -3,8 +3,7 @@
 The corner (0, 0) of the map is placed at 48 N, 9 E, with x to the east. The position is arbitrary. 9 E is the
 centre of a UTM zone, so north on the map is also grid north. Projection: transverse Mercator on WGS 84,
 inverse series after Snyder, Map Projections: A Working Manual (US Geological Survey Professional Paper 1395),
-pp. 60-64; accurate to 0.1 mm within 10 km of the corner.
-"""
+pp. 60-64; accurate to 0.1 mm within 10 km of the corner."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,7 +40,6 @@ def degrees(x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
 
 
 def _meridian(latitude: Array) -> Array:
-    """Returns the distance in metres along the meridian from the equator."""
     e4, e6 = _E2**2, _E2**3
     return np.asarray(
         SEMI_MAJOR
@@ -55,7 +53,6 @@ def _meridian(latitude: Array) -> Array:
 
 
 def _footpoint(y: Array) -> Array:
-    """Returns the latitude in radians of the point ``y`` metres north of the corner on its meridian."""
     start = np.radians(LATITUDE)
     foot = start + y / SEMI_MAJOR
     for _ in range(ROUNDS):

@@ -2,8 +2,7 @@
 lanelets.
 
 Lanelets that lie side by side share the line between them. Consecutive lanelets of a lane share their end
-points. A lane is left out of the sections in which it has no width.
-"""
+points. A lane is left out of the sections in which it has no width."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -35,8 +34,7 @@ class LaneletBound:
 LaneletSection = dict[int, tuple[LaneletBound, LaneletBound]]
 """The driving lanes of one section of a road, from right to left. Maps the id of a lane in OpenDRIVE to the
 right and the left bound of the lane, as seen along the road. Neighbouring lanes share a bound, except across
-a median.
-"""
+a median."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,26 +42,20 @@ class Lanelet:
     """A piece of a lane. Left, right, before and after are as seen by those who drive on the lane."""
 
     id: int
-    road: int
-    """The id of the road; ``ONLY`` for a road that is not part of a network."""
-    lane: int
-    """The id of the lane, as in OpenDRIVE."""
-    section: int
-    """The index of the section, counted from the start of the road."""
+    road: int  # the id of the road; ``ONLY`` for a road that is not part of a network
+    lane: int  # the id of the lane, as in OpenDRIVE
+    section: int  # the index of the section, counted from the start of the road
     left: LaneletBound
     right: LaneletBound
     is_along: bool
     """Whether the lane is driven along the road. If not, the points of the bounds run against the traffic."""
-    before: tuple[int, ...]
-    """The ids of the lanelets that lead to this lanelet."""
-    after: tuple[int, ...]
-    """The ids of the lanelets to which this lanelet leads."""
+    before: tuple[int, ...]  # the ids of the lanelets that lead to this lanelet
+    after: tuple[int, ...]  # the ids of the lanelets to which this lanelet leads
     is_followed_on_road: bool
     """Whether the lane continues in the next section of the road, in driving direction."""
     beside: tuple[tuple[int, bool] | None, tuple[int, bool] | None]
     """For the left and for the right side, the id of the neighbouring lanelet and whether its traffic drives
-    in the same direction; None if there is no neighbour.
-    """
+    in the same direction; None if there is no neighbour."""
 
 
 def lanelets_of(road: Road, world: World) -> list[Lanelet]:
@@ -76,8 +68,7 @@ def lanelets_of(road: Road, world: World) -> list[Lanelet]:
 
 def leading_to(lanelets: Iterable[Lanelet], network: Network, end: RoadEnd) -> list[Lanelet]:
     """Returns the last lanelet of each lane that leads towards ``end``, one of the two ends of a road. The
-    lanes are in order from the centre line outwards.
-    """
+    lanes are in order from the centre line outwards."""
     ids = network.road(end.road).ids_towards(end.contact)
     last = {each.lane: each for each in lanelets if each.road == end.road and not each.is_followed_on_road}
     return [last[lane] for lane in ids if lane in last]
@@ -97,7 +88,6 @@ class _NumberedLanelets:
         self.ids = {place: number for number, place in enumerate(places, 1)}
 
     def _lanes(self, road: int) -> list[int]:
-        """Returns the ids of the driving lanes of a road, first those of the lanes along the road."""
         profile = self.profiles[road]
         return [*profile.along_ids, *profile.against_ids]
 
@@ -109,8 +99,7 @@ class _NumberedLanelets:
     def lanelets(self, joined: Iterable[tuple[int, int]]) -> Iterator[Lanelet]:
         """Yields the lanelets, lane by lane in the order in which they are driven.
 
-        ``joined`` holds the pairs of ids of lanelets that follow each other from one road to another.
-        """
+        ``joined`` holds the pairs of ids of lanelets that follow each other from one road to another."""
         before, after = dict[int, list[int]](), dict[int, list[int]]()
         for one, other in joined:
             after.setdefault(one, []).append(other)

@@ -33,8 +33,7 @@ Value = str | float | int
 def number(value: float) -> str:
     """Returns the shortest decimal that can be read back as the same number.
 
-    Whole numbers below 1e15 are written without a decimal point.
-    """
+    Whole numbers below 1e15 are written without a decimal point."""
     text = repr(float(value) + 0.0)  # -0.0 becomes 0.0
     if text[-1] in "fn":  # inf, nan
         raise ExportError(NOT_FINITE)
@@ -44,15 +43,13 @@ def number(value: float) -> str:
 def escaped(text: str) -> str:
     """Returns text with special characters escaped, for use between tags or in an attribute.
 
-    Characters that XML does not allow are removed.
-    """
+    Characters that XML does not allow are removed."""
     if _UNUSUAL(text) is None:
         return text
     return "".join(filter(_is_allowed, text)).translate(_ESCAPES)
 
 
 def _is_allowed(letter: str) -> bool:
-    """Returns whether XML 1.0 allows a character (production 2 of the standard)."""
     if letter < " ":
         return letter in "\n\t\r"
     return not "\ud800" <= letter <= "\udfff" and letter not in "\ufffe\uffff"
@@ -65,8 +62,7 @@ class XmlElement:
     name: str
     attributes: Mapping[str, Value] = field(default_factory=dict)
     children: list["XmlElement"] = field(default_factory=list)
-    raw: str = ""
-    """Content between the tags, already escaped; ignored if there are children."""
+    raw: str = ""  # content between the tags, already escaped; ignored if there are children
     is_shared: bool = False
     """Whether the element may be in several places of a document, and so must not be changed any more."""
 
@@ -84,8 +80,7 @@ class XmlElement:
     def to_text(self) -> str:
         """Returns the XML document with this element as its root, indented by two spaces per level.
 
-        A shared element, such as equal lanes of many roads, is converted to text only once per level.
-        """
+        A shared element, such as equal lanes of many roads, is converted to text only once per level."""
         lines = [DECLARATION]
         _write(self, "", lines, {})
         return "\n".join(lines) + "\n"
@@ -93,7 +88,6 @@ class XmlElement:
 
 @lru_cache(maxsize=4096)
 def _value(value: Value) -> str:
-    """Returns the text of an attribute; most values occur many times in a document."""
     return escaped(value) if isinstance(value, str) else number(value)
 
 

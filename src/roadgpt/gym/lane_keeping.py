@@ -17,7 +17,7 @@ from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle
 from roadgpt.drive.view import CameraSpec
-from roadgpt.errors import DesignError, UsageError
+from roadgpt.errors import DesignError, UsageError, advice_on
 from roadgpt.gym.observation import LABELS, MOST, Preview
 from roadgpt.road import Road, World
 from roadgpt.run import Setup, brief_of, perform
@@ -195,7 +195,7 @@ def _world_of(fields: Mapping[str, Any]) -> World:
     except ValidationError as error:
         wrong = error.errors()[0]
         name = str(wrong["loc"][-1])
-        raise UsageError(f"the world cannot have {name} = {wrong['input']!r}: {wrong['msg']}") from None
+        raise UsageError(f"the world cannot have {name} = {wrong['input']!r}; {advice_on(wrong)}") from None
 
 
 def _checked(action: Any) -> list[float]:

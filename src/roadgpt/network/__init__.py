@@ -21,9 +21,8 @@ from roadgpt.network.road_or_route import (
 
 if TYPE_CHECKING:
     from roadgpt.network.design import JunctionDesign, NetworkDesign, is_network_design, read_network_design
-    from roadgpt.network.growing import build_route, passing_length
+    from roadgpt.network.growing import build_map, build_route, network_made_from, passing_length
     from roadgpt.network.map_design import AnyDesign, Blueprint, MapDesign, MapNode, read_map_design
-    from roadgpt.network.map_growing import build_map, network_made_from
     from roadgpt.network.network import (
         Arm,
         Connection,
@@ -76,30 +75,18 @@ __all__ = [
 ]
 
 _LATER = {
-    "design": ("JunctionDesign", "NetworkDesign", "is_network_design", "read_network_design"),
-    "growing": ("build_route", "passing_length"),
-    "map_design": ("AnyDesign", "Blueprint", "MapDesign", "MapNode", "read_map_design"),
-    "map_growing": ("build_map", "network_made_from"),
-    "network": (
-        "Arm",
-        "Connection",
-        "Continuation",
-        "Junction",
-        "LaneLink",
-        "Leg",
-        "Network",
-        "NetworkRoad",
-        "RoadEnd",
-        "Roundabout",
-    ),
-    "route": ("Passage", "Route"),
-    "source": ("read_any_design", "read_road", "read_source"),
+    "design": "JunctionDesign NetworkDesign is_network_design read_network_design",
+    "growing": "build_map build_route network_made_from passing_length",
+    "map_design": "AnyDesign Blueprint MapDesign MapNode read_map_design",
+    "network": "Arm Connection Continuation Junction LaneLink Leg Network NetworkRoad RoadEnd Roundabout",
+    "route": "Passage Route",
+    "source": "read_any_design read_road read_source",
 }
 """The names that are loaded when they are first used, by the module that defines them."""
 
 
 def __getattr__(name: str) -> Any:
     for module, names in _LATER.items():
-        if name in names:
+        if name in names.split():
             return getattr(import_module(f"roadgpt.network.{module}"), name)
     raise AttributeError(f"roadgpt.network has no '{name}'; it offers {', '.join(__all__)}")

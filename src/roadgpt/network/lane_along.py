@@ -17,7 +17,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.geometry.elevation import Cubic
 from roadgpt.network.network import Leg, Network
 from roadgpt.road import Road
-from roadgpt.road.profile import Lane, Width, as_cubics
+from roadgpt.road.profile import Width, as_cubics
 
 LONGEST = 65.0  # m, length of a lane change: 4.6 s (Toledo and Zohar 2007) at 50 km/h
 SHARE = 0.8  # largest share of the room for a lane change that the change takes
@@ -53,12 +53,9 @@ def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
     width = _through([right[k] for k in lanes], length, stations)
     left = added([(1, profile.offset), *((1, w) for w in oncoming), (-1, offset)], length)
     outer = added([(1, offset), (-1, width), (-1, profile.offset), *((1, w) for w in right)], length)
-    shoulders = [_shoulder(side, length) for side in (profile.left[count[1] :], profile.right[count[0] :])]
+    beside = profile.left[count[1] :], profile.right[count[0] :]
+    shoulders = [added([(1, lane.width) for lane in side], length) for side in beside]
     return shoulders[0], left, offset, width, outer, shoulders[1]
-
-
-def _shoulder(lanes: Sequence[Lane], length: float) -> Width:
-    return added([(1, lane.width) for lane in lanes], length)
 
 
 def change_windows(length: float, count: int) -> list[tuple[float, float]]:
@@ -168,7 +165,6 @@ def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]
 
 
 def _first(network: Network, road: int, ways: Ways | None, shift: int) -> int:
-    """Returns the lane in which a route begins: the outermost from which it can go on after its change."""
     profile = network.road(road).profile
     target = profile.side if ways is None else max(ways, key=abs)
     return target - shift if profile.leads_along(target) else target + shift
@@ -189,7 +185,6 @@ def _fit(
 
 
 def _beside(network: Network, road: int, lane: int, left: int) -> int:
-    """Returns the lane to the left (1) or to the right (-1) of a lane."""
     profile = network.road(road).profile
     is_along = profile.leads_along(lane)
     beside = lane + left if is_along else lane - left
@@ -200,7 +195,6 @@ def _beside(network: Network, road: int, lane: int, left: int) -> int:
 
 
 def _ways(network: Network, one: int, two: int) -> Ways:
-    """Returns which lanes of one road continue on the next one."""
     if (found := network.connection_of.get(two)) is not None and found[1].incoming.road == one:
         return {way.incoming: way.own for way in found[1].lanes}
     if (found := network.connection_of.get(one)) is not None and found[1].outgoing.road == two:

@@ -67,7 +67,7 @@ class MapNode(FrozenFields):
     kind: NodeKind
     control: Control = "none"
     """The signs of a junction: "lights" for all its roads, "stop" or "yield" for its minor roads; see
-    ``map_growing.signs_at``."""
+    ``growing.signs_at``."""
     kerb: Annotated[float, Field(ge=1, le=100, allow_inf_nan=False)] = KERB
     """Radius in metres of the kerb between two neighbouring roads of a junction; not for roundabouts."""
     radius: Annotated[float, Field(ge=1, le=2000, allow_inf_nan=False)] | None = None
@@ -231,7 +231,6 @@ def _pairs(raw: Any) -> list[Sequence[int]]:
 
 
 def _numbers(raw: Any, what: str, most: int) -> Sequence[int]:
-    """Returns a list of 2 to ``most`` numbers of nodes. Raises UsageError if ``raw`` is no such list."""
     is_list = isinstance(raw, (list, tuple)) and 2 <= len(raw) <= most
     if not is_list or any(isinstance(each, bool) or not isinstance(each, int) for each in raw):
         count = "two" if most == 2 else "two or more"
@@ -266,8 +265,6 @@ def _checked_ends(design: MapDesign) -> dict[int, list[int]]:
 
 
 def _check_node(design: MapDesign, number: int, others: Sequence[int]) -> None:
-    """Raises UsageError unless a node has the roads that its kind needs, with large enough angles between
-    them."""
     kind = design.node(number).kind
     fewest, most = ROADS[kind]
     if not fewest <= len(others) <= most:

@@ -331,7 +331,6 @@ class Network:
 
 
 def _mirrored_junction(junction: Junction) -> Junction:
-    """Returns the mirror image of a junction; its first arm stays the first one."""
     arms = tuple(replace(arm, direction=0.0 - arm.direction) for arm in junction.arms)
     connections = tuple(
         replace(each, lanes=tuple(LaneLink(*(-lane for lane in lanes)) for lanes in each.lanes))

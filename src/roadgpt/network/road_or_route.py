@@ -44,7 +44,7 @@ def made_from(blueprint: "Blueprint", world: World, geometry: Geometry = "arcs")
         return world.lay(build(blueprint, geometry))
     if isinstance(blueprint, Road):
         return world.lay(blueprint)
-    from roadgpt.network.map_growing import network_made_from
+    from roadgpt.network.growing import network_made_from
 
     if geometry != "arcs":
         raise UsageError("a route with junctions is built from arcs; leave out --geometry spline")

@@ -93,7 +93,6 @@ def _place(network: Network, leg: Leg) -> tuple[str, int] | None:
 
 
 def _passage(network: Network, one: Leg, other: Leg, start: float, end: float) -> Passage:
-    """Returns the way through a junction or roundabout from its first leg to its last one."""
     entered, first = network.connection_of[one.road]
     last = network.connection_of[other.road][1]
     ring = network.roundabout_of.get(entered.id)
@@ -181,7 +180,6 @@ def shoulders_on_ground(
 
 
 def _usual(rims: Edges, edges: Edges) -> tuple[float, float]:
-    """Returns the widths of the shoulders outside junctions."""
     return float(rims.left - edges.left), float(edges.right - rims.right)
 
 
@@ -359,8 +357,6 @@ def _parts(network: Network, legs: Sequence[Leg]) -> tuple[list[Road], list[Lane
 
 
 def _profile(roads: Sequence[Road], lanes: Sequence[LaneAlong]) -> Profile:
-    """Returns the cross-section of a route: its own lane, one for all other lanes on each side, and
-    shoulders."""
     starts = [0.0, *accumulate(road.length for road in roads)]
     left_shoulder, left, offset, width, right, right_shoulder = (
         _joined_widths(column, roads, starts) for column in zip(*lanes, strict=True)
@@ -379,7 +375,6 @@ def _profile(roads: Sequence[Road], lanes: Sequence[LaneAlong]) -> Profile:
 
 
 def _joined_widths(widths: Sequence[Width], roads: Sequence[Road], starts: Sequence[float]) -> Width:
-    """Returns the widths of roads that follow each other as one function of the station along all of them."""
     if all(width == widths[0] and not isinstance(width, CubicProfile) for width in widths):
         return widths[0]
     rows: list[tuple[float, Cubic]] = []

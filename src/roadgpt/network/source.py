@@ -99,7 +99,6 @@ def _name(test: Any) -> str:
 
 
 def _source(name: str, data: Any, world: Mapping[str, Any], path: Path) -> RoadSource | UsageError:
-    """Returns the road in the text of a table, or in parsed JSON, or the error if there is none."""
     is_ours = isinstance(data, dict) and ("world" in data or points_in(data) is None)
     try:
         if isinstance(data, dict) and "world" in data:

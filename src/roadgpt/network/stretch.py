@@ -13,7 +13,6 @@ from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, PieceCurve
 from roadgpt.geometry.pieces import joined
-from roadgpt.network.building import width_at
 from roadgpt.network.design import (
     MEDIAN,
     JunctionDesign,
@@ -27,7 +26,7 @@ from roadgpt.plural import plural
 from roadgpt.road import Profile, Road, Segment, World
 from roadgpt.road.builder import elevation_of, pieces_of
 from roadgpt.road.design import CREST_RADIUS, MOST_OF_SEGMENT
-from roadgpt.road.profile import Lane, Marking
+from roadgpt.road.profile import Lane, Marking, width_at
 from roadgpt.road.world import OWN
 
 LEVEL = 1e-9  # ratio; a smaller grade is level
@@ -209,7 +208,6 @@ def profiles_between(
 
 
 def _check_oncoming(number: int, ramp: RampDesign, around: Sequence[LanesDesign]) -> None:
-    """Raises UsageError if a ramp on the left would cross oncoming lanes of the road before or behind it."""
     behind, by_ramp = ramp.kind == "merge", ramp.take == "ramp"
     main = [around[behind]] if by_ramp else around
     if ramp.is_on_left and any(each.backward for each in main):
@@ -295,7 +293,6 @@ def _profile(lanes: LanesDesign, shoulder: float) -> Profile:
 
 
 def _edged(side: Sequence[Lane], marking: Marking) -> tuple[Lane, ...]:
-    """Returns the lanes of one side with another marking at their outer edge, the only one that is solid."""
     return tuple(replace(lane, marking=marking) if lane.marking == "solid" else lane for lane in side)
 
 

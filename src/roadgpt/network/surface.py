@@ -79,7 +79,6 @@ def free_ends(network: Network, road: NetworkRoad) -> tuple[bool, bool]:
 
 
 def _with_shoulders(member: NetworkRoad) -> Road:
-    """Returns a road whose carriageway is as wide as its lanes and shoulders together."""
     profile = member.profile
     sides = [tuple(replace(lane, kind="driving") for lane in side) for side in (profile.left, profile.right)]
     return member.road.with_profile(replace(profile, left=sides[0], right=sides[1]))

@@ -235,7 +235,6 @@ def _shortened(row: str, width: float, size: float, bold: bool, has_more: bool) 
 
 @cache
 def _advance(letter: str, bold: bool) -> float:
-    """Returns the advance of a letter, relative to the font size; 0 if the font lacks the letter."""
     font = get_font(findfont(FontProperties(family="DejaVu Sans", weight="bold" if bold else "normal")))
     if not font.get_char_index(ord(letter)):
         return 0.0

@@ -114,7 +114,6 @@ def _lagging(values: Array, share: float) -> Array:
 
 
 def _ride(road: Road, world: World) -> tuple[Array, dict[str, Array], Array]:
-    """Returns a ride along the middle of the driven lane at a constant speed, from the start to the goal."""
     speed = calm_speed(road, world)
     way = goal_of(road) - start_of(road)
     if way / speed > LONGEST:
@@ -204,82 +203,6 @@ def _rgb(colour: str) -> tuple[int, int, int]:
     return r, g, b
 
 
-@dataclass(frozen=True)
-class Overlay:
-    """Writes a Run's speed, outcome and other text into pictures of one size."""
-
-    run: Run
-    width: int
-    height: int
-
-    @property
-    def scale(self) -> float:
-        """Factor for the sizes of text and its distances from the edges; 1 in a picture of 640 by 360."""
-        return max(LEAST, min(self.height / 360, self.width / 440))
-
-    def _size(self, pixels: int) -> int:
-        return max(7, round(pixels * self.scale))
-
-    def lay(self, frame: Frame, readout: Readout, is_over: bool) -> None:
-        """Writes the text into a frame; ``is_over`` adds the outcome, for frames after the drive."""
-        self._title(frame)
-        self._numbers(frame, readout)
-        if is_over:
-            self._outcome(frame)
-
-    def _title(self, frame: Frame) -> None:
-        u, size = self.scale, self._size(TITLE)
-        rows = fitted(self.run.title, (self.width - 2 * EDGE * u) / POINTS, size, True, 2).split("\n")
-        shade(frame, 0, 0, self.width, (9 + LINE * len(rows)) * u)
-        for k, row in enumerate(rows):
-            write_text(frame, EDGE * u, (LINE * (k + 1)) * u, row, size, WHITE, "bold")
-
-    def _numbers(self, frame: Frame, readout: Readout) -> None:
-        (metres_per_second, s, margin, outside), u = readout, self.scale
-        edge = EDGE * u
-        large, text, small = self._size(LARGE), self._size(TEXT), self._size(SMALL)
-        wide, high = 148 * u, (78 if margin is not None else 52) * u
-        x, y = edge, self.height - edge - high
-        shade(frame, x, y, x + wide, y + high)
-        write_text(frame, x + 8 * u, y + 45 * u, f"at {s:.0f} of {self.run.length:.0f} m", text, PALE)
-        if margin is None:  # the speed of the camera has no meaning
-            write_text(frame, x + 8 * u, y + 24 * u, "not driven", self._size(TITLE), WHITE, "bold")
-            return
-        speed = f"{metres_per_second * 3.6:.0f}"
-        right = x + 62 * u
-        write_text(frame, right - width_of(speed, large, "bold"), y + 29 * u, speed, large, WHITE, "bold")
-        write_text(frame, right + 6 * u, y + 29 * u, "km/h", text, PALE)
-        colour = _rgb(SEVERE[severity(outside)] if margin > 0 else VERMILLION)
-        said = f"margin {margin:.1f} m" if margin > 0 else "out of its lane"
-        if outside > 0 and margin > 0:
-            said += f", {percent(outside)} out"
-        write_text(frame, x + 8 * u, y + 61 * u, said, small if outside > 0 else text, WHITE)
-        share = float(np.clip(margin / WHOLE, 0.0, 1.0)) if margin > 0 else 1.0
-        left, wide = x + 8 * u, wide - 16 * u
-        fill(frame, left, y + 67 * u, left + wide, y + 71 * u, (70, 76, 82))
-        fill(frame, left, y + 67 * u, left + wide * share, y + 71 * u, colour)
-
-    def _outcome(self, frame: Frame) -> None:
-        u, text, bold = self.scale, self._size(TEXT), self._size(LARGE)
-        room = min(self.width - 2 * EDGE * u, 420 * u)
-        rows = fitted(self.run.description, (room - 28 * u) / POINTS, text, lines=3).split("\n")
-        outcome = outcome_of(self.run)
-        if width_of(outcome, bold, "bold") > room - 28 * u:
-            bold = text
-        badge = width_of(outcome, bold, "bold")
-        colour = OUTCOMES.get(outcome, INK)
-        letters = _rgb(LETTERS[colour]) if colour in LETTERS else WHITE
-        wide = max(badge, *(width_of(row, text) for row in rows)) + 28 * u
-        high = (52 + LINE * len(rows)) * u
-        x, y = (self.width - wide) / 2, self.height * 0.155
-        fill(frame, x, y, x + wide, y + high, (255, 255, 255))
-        fill(frame, x, y, x + wide, y + 38 * u, _rgb(colour))
-        write_text(frame, x + (wide - badge) / 2, y + 29 * u, outcome, bold, letters, "bold")
-        for k, row in enumerate(rows):
-            start = x + (wide - width_of(row, text)) / 2
-            write_text(frame, start, y + (38 + 5 + LINE * (k + 0.75)) * u, row, text, _rgb(INK))
-
-
 View = Literal["chase", "bonnet", "both"]
 Watch = Callable[[Iterator[Frame], int], Iterator[Frame]]
 """Takes all frames and their number, and yields the frames; used to show progress."""
@@ -332,9 +255,71 @@ class Pane:
         car = self.trip.car(now)
         pose = self.trip.follower(now) if self.camera.mount == "chase" else car
         frame = self.scene.render(self.camera, pose, car=None if self.run.drive is None else car)
-        overlay = Overlay(self.run, self.camera.width, self.camera.height)
-        overlay.lay(frame, self.trip.readout(now), time >= self.trip.duration)
+        self._title(frame)
+        self._numbers(frame, self.trip.readout(now))
+        if time >= self.trip.duration:
+            self._outcome(frame)
         return frame
+
+    @property
+    def _scale(self) -> float:
+        """Factor for the sizes of text and its distances from the edges; 1 in a picture of 640 by 360."""
+        return max(LEAST, min(self.camera.height / 360, self.camera.width / 440))
+
+    def _size(self, pixels: int) -> int:
+        return max(7, round(pixels * self._scale))
+
+    def _title(self, frame: Frame) -> None:
+        u, size = self._scale, self._size(TITLE)
+        rows = fitted(self.run.title, (self.camera.width - 2 * EDGE * u) / POINTS, size, True, 2).split("\n")
+        shade(frame, 0, 0, self.camera.width, (9 + LINE * len(rows)) * u)
+        for k, row in enumerate(rows):
+            write_text(frame, EDGE * u, (LINE * (k + 1)) * u, row, size, WHITE, "bold")
+
+    def _numbers(self, frame: Frame, readout: Readout) -> None:
+        (metres_per_second, s, margin, outside), u = readout, self._scale
+        edge = EDGE * u
+        large, text, small = self._size(LARGE), self._size(TEXT), self._size(SMALL)
+        wide, high = 148 * u, (78 if margin is not None else 52) * u
+        x, y = edge, self.camera.height - edge - high
+        shade(frame, x, y, x + wide, y + high)
+        write_text(frame, x + 8 * u, y + 45 * u, f"at {s:.0f} of {self.run.length:.0f} m", text, PALE)
+        if margin is None:  # the speed of the camera has no meaning
+            write_text(frame, x + 8 * u, y + 24 * u, "not driven", self._size(TITLE), WHITE, "bold")
+            return
+        speed = f"{metres_per_second * 3.6:.0f}"
+        right = x + 62 * u
+        write_text(frame, right - width_of(speed, large, "bold"), y + 29 * u, speed, large, WHITE, "bold")
+        write_text(frame, right + 6 * u, y + 29 * u, "km/h", text, PALE)
+        colour = _rgb(SEVERE[severity(outside)] if margin > 0 else VERMILLION)
+        said = f"margin {margin:.1f} m" if margin > 0 else "out of its lane"
+        if outside > 0 and margin > 0:
+            said += f", {percent(outside)} out"
+        write_text(frame, x + 8 * u, y + 61 * u, said, small if outside > 0 else text, WHITE)
+        share = float(np.clip(margin / WHOLE, 0.0, 1.0)) if margin > 0 else 1.0
+        left, wide = x + 8 * u, wide - 16 * u
+        fill(frame, left, y + 67 * u, left + wide, y + 71 * u, (70, 76, 82))
+        fill(frame, left, y + 67 * u, left + wide * share, y + 71 * u, colour)
+
+    def _outcome(self, frame: Frame) -> None:
+        u, text, bold = self._scale, self._size(TEXT), self._size(LARGE)
+        room = min(self.camera.width - 2 * EDGE * u, 420 * u)
+        rows = fitted(self.run.description, (room - 28 * u) / POINTS, text, lines=3).split("\n")
+        outcome = outcome_of(self.run)
+        if width_of(outcome, bold, "bold") > room - 28 * u:
+            bold = text
+        badge = width_of(outcome, bold, "bold")
+        colour = OUTCOMES.get(outcome, INK)
+        letters = _rgb(LETTERS[colour]) if colour in LETTERS else WHITE
+        wide = max(badge, *(width_of(row, text) for row in rows)) + 28 * u
+        high = (52 + LINE * len(rows)) * u
+        x, y = (self.camera.width - wide) / 2, self.camera.height * 0.155
+        fill(frame, x, y, x + wide, y + high, (255, 255, 255))
+        fill(frame, x, y, x + wide, y + 38 * u, _rgb(colour))
+        write_text(frame, x + (wide - badge) / 2, y + 29 * u, outcome, bold, letters, "bold")
+        for k, row in enumerate(rows):
+            start = x + (wide - width_of(row, text)) / 2
+            write_text(frame, start, y + (38 + 5 + LINE * (k + 0.75)) * u, row, text, _rgb(INK))
 
 
 @dataclass(frozen=True, eq=False)
@@ -424,7 +409,6 @@ def write(
 
 
 def _times(duration: float, settings: Settings) -> tuple[float, ...]:
-    """Returns the times of the frames; the last one is repeated if the film reaches the end of the drive."""
     if settings.begin >= duration:
         raise UsageError(f"the drive is over after {duration:.1f} s; let the film begin before that")
     wished = duration - settings.begin if settings.seconds is None else settings.seconds

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from roadgpt.brief.junctions import NAMES
 from roadgpt.drive.outlook import passages
 from roadgpt.geometry.curve import Array
-from roadgpt.report.birds_eye import Scale
+from roadgpt.report.birds_eye import STEP, Scale, name_places, places_of
 from roadgpt.report.canvas import (
     BLUE,
     FAINT,
@@ -29,7 +29,6 @@ from roadgpt.report.canvas import (
     new_figure,
     note,
 )
-from roadgpt.report.places import STEP, name_places, places_of
 from roadgpt.report.plan_view import stations_of
 from roadgpt.road import Road
 from roadgpt.run import Run

@@ -143,7 +143,7 @@ def _paved(path: Path) -> Outline | None:
     if not isinstance(data, dict) or "network" not in data:
         return None
     from roadgpt.network.network import network_from_json
-    from roadgpt.report.network_view import path_of
+    from roadgpt.report.plan_view import path_of
 
     return path_of(network_from_json(data["network"]).paved)
 

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from roadgpt.geometry.curve import Array
-from roadgpt.report.birds_eye import SHARE, THESIS, Scale, driven_path, mark
+from roadgpt.report.birds_eye import SHARE, THESIS, Scale, driven_path, mark, places_of
 from roadgpt.report.canvas import (
     FAINT,
     HALO,
@@ -22,7 +22,6 @@ from roadgpt.report.canvas import (
     note,
 )
 from roadgpt.report.height import THESIS_X, THESIS_Z, draw_heights, exaggeration, label_heights
-from roadgpt.report.places import places_of
 from roadgpt.report.plan_view import (
     GROUND,
     Frame,

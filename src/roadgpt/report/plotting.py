@@ -9,10 +9,9 @@ from matplotlib.figure import Figure
 from roadgpt.campaign import Campaign
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.network import MapDesign, NetworkDesign, Route, made_from
-from roadgpt.report.birds_eye import birds_eye, driven_path, mark
+from roadgpt.report.birds_eye import birds_eye, driven_path, mark, places_of
 from roadgpt.report.canvas import encoded, in_our_style, inches_of
 from roadgpt.report.overview import pages
-from roadgpt.report.places import places_of
 from roadgpt.report.plan_view import draw_ends, draw_road, plan_points, stations_of
 from roadgpt.road import Design, Road, World
 from roadgpt.run import Run

@@ -17,13 +17,11 @@ from roadgpt.check import inspect
 from roadgpt.check.measures import measure
 from roadgpt.check.truth import Criterion, Truth, criteria_of
 from roadgpt.errors import RoadGPTError
-from roadgpt.reading import read_json
 from roadgpt.report.canvas import FORMATS
 from roadgpt.report.similarity import Likeness, Spread, likeness, spread
 from roadgpt.road import Road
-from roadgpt.run import Run, read_run
-from roadgpt.run.execution import test_name
-from roadgpt.run.folder import finished, run_folder, slug
+from roadgpt.run import Run
+from roadgpt.run.folder import finished, finished_run_in, slug, test_in
 from roadgpt.verdict import Verdict
 
 Array = NDArray[np.float64]
@@ -161,7 +159,7 @@ def read_part(
 ) -> StudyPartRecord:
     """Returns all roads of the folder of runs ``place``; the other arguments are the fields of the record."""
     roads = tuple(
-        _record_of(read_run(run_folder(place, n)), part, _features(place / test_name(n)))
+        _record_of(finished_run_in(place, n), part, _features(place, n))
         for n in (finished(place) if place.is_dir() else [])
     )
     drawn = next((kind for kind in FORMATS if (place / f"overview.{kind}").is_file()), "")
@@ -213,9 +211,9 @@ def _likeness(road: Road | None) -> Likeness | None:
         return None
 
 
-def _features(test: Path) -> dict[str, float]:
+def _features(place: Path, number: int) -> dict[str, float]:
     try:
-        found = read_json(test).get("features")
+        found = test_in(place, number).get("features")
         return {str(key): float(value) for key, value in (found or {}).items()}
     except (OSError, ValueError, TypeError, AttributeError, OverflowError):
         return {}

@@ -183,7 +183,6 @@ def _enumerated(observed: NDArray[np.intp]) -> Exact:
 
 
 def _drawn(observed: NDArray[np.intp]) -> Exact:
-    """Draws tables with the same sums at random; the observed one counts among them."""
     rng = np.random.default_rng(0)
     source = stats.random_table(observed.sum(axis=1), observed.sum(axis=0))
     tables = min(DRAWN, max(FEWEST, MOST_CELLS // observed.size))
@@ -195,7 +194,6 @@ def _drawn(observed: NDArray[np.intp]) -> Exact:
 
 
 def _log_weight(tables: NDArray[Any]) -> Array:
-    """Returns the logarithm of the probability of tables with the same sums, up to a constant."""
     return np.asarray(-special.gammaln(tables + 1.0).sum(axis=(-2, -1)))
 
 

@@ -7,14 +7,13 @@ offset ``t`` is the distance from the centre line, positive to the left."""
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from roadgpt.road.builder import Geometry, build, in_short_segments
-from roadgpt.road.design import Design, Segment, read_design
-from roadgpt.road.profile import Edges, Profile
-from roadgpt.road.road import Road, Samples, moved
-from roadgpt.road.world import ORACLES, CrossSection, Limits, Site, World
-
 if TYPE_CHECKING:
+    from roadgpt.road.builder import build, in_short_segments
+    from roadgpt.road.design import Design, Segment, read_design
     from roadgpt.road.opendrive import ImportedRoad, read_opendrive
+    from roadgpt.road.profile import Edges, Profile
+    from roadgpt.road.road import Road, Samples, moved
+    from roadgpt.road.world import ORACLES, CrossSection, Geometry, Limits, Site, World
 
 __all__ = [
     "ORACLES",
@@ -38,7 +37,18 @@ __all__ = [
 ]
 
 
+_MODULES = {
+    "builder": "build in_short_segments",
+    "design": "Design Segment read_design",
+    "opendrive": "ImportedRoad read_opendrive",
+    "profile": "Edges Profile",
+    "road": "Road Samples moved",
+    "world": "ORACLES CrossSection Geometry Limits Site World",
+}
+
+
 def __getattr__(name: str) -> Any:
-    if name in ("ImportedRoad", "read_opendrive"):  # most commands read no OpenDRIVE files
-        return getattr(import_module("roadgpt.road.opendrive"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module = next((module for module, names in _MODULES.items() if name in names.split()), None)
+    if module is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"roadgpt.road.{module}"), name)

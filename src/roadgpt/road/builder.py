@@ -19,7 +19,7 @@ shift roads by (5, 5) m."""
 import math
 from collections.abc import Sequence
 from itertools import accumulate
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.geometry.pieces import joined
 from roadgpt.road.design import Design, Segment, vertical_curves_of
 from roadgpt.road.road import Road, check_length
+from roadgpt.road.world import Geometry
 
 TRANSITION_SHARE = 0.25  # share of the distance, for each clothoid whose length the design leaves open
 LONGEST_TRANSITION = 12.0  # m, for a clothoid whose length the design leaves open
@@ -35,7 +36,6 @@ MOST_TRANSITION = 0.45  # share of the distance, for each clothoid of a turn wit
 ROUNDS = 60  # of the fixed-point iteration; each brings neighbouring curvatures closer
 SETTLED = 1e-12  # 1/m
 EQUAL = 1e-9  # 1/m; curvatures closer than this need no clothoid between them
-Geometry = Literal["arcs", "spline"]
 STUB = 5.0  # m, level, before the first segment of a spline, so that the car starts on level ground
 GROWS = 2  # segments with a reduced grade after the stub
 MOST_HOPS = 500
@@ -103,7 +103,6 @@ def _solve(bend: _TurnSpec, entry: float, exit_: float) -> _TurnLayout:
 
 
 def _with_radius(bend: _TurnSpec, own: float, entry: float, exit_: float) -> _TurnLayout | None:
-    """Returns the layout whose arc has the curvature ``own``; None if it does not fit between its joints."""
     first = bend.ramp if entry < own - EQUAL else 0.0
     last = bend.ramp if exit_ < own - EQUAL else 0.0
     turned = first * (own + entry) / 2 + last * (own + exit_) / 2
@@ -115,7 +114,6 @@ def _with_radius(bend: _TurnSpec, own: float, entry: float, exit_: float) -> _Tu
 
 
 def _pieces(bend: _TurnSpec, entry: float, exit_: float) -> list[Piece]:
-    """Returns clothoid, arc and clothoid; the remaining length is straight, at ends with a curvature of 0."""
     own, first, arc, last, spare = _solve(bend, entry, exit_)
     free = (entry == 0) + (exit_ == 0)
     k, k_in, k_out = bend.hand * own, bend.hand * entry, bend.hand * exit_

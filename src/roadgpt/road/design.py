@@ -203,7 +203,6 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
 
 
 def _unfit(segments: Sequence[Segment]) -> Iterator[str]:
-    """Yields a sentence for each vertical radius for which there is too little room."""
     for parabola in vertical_curves_of(segments):
         asked = segments[parabola.number].vertical_radius
         if asked and parabola.radius < FITS * asked:

@@ -73,7 +73,6 @@ class Land:
 
 
 def _lowest(road: Road, profile: Profile, line: Array) -> Array:
-    """Returns the centre line ``(n, 3)`` at the height of the lowest point of the road's cross-section."""
     if profile.superelevation_angle is None:
         return line
     s = np.linspace(0.0, road.length, len(line))
@@ -106,14 +105,12 @@ def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple
 
 
 def _hills(x: Array, y: Array, cell: float) -> Array:
-    """Returns waves of several lengths in metres, without those that are too short for the cells."""
     swell = np.sin(x / 37 + 1.3) * np.sin(y / 43 + 0.4) * (cell < 44)
     swell = swell + 0.5 * np.sin(x / 17 - y / 21) * (cell < 20)
     return np.asarray(3.4 * (swell - 0.3) + 5.5 * np.sin(x / 71 + 2.0) * np.sin(y / 83 + 0.9))
 
 
 def _widened(x: Array, y: Array, heights: Array, away: Array) -> tuple[Array, Array, Array, Array]:
-    """Adds far rows and columns on all sides, which gradually reach 4 m below the mean height."""
     far = np.array(FAR)
     pad = len(far)
     mean = float(heights.mean())

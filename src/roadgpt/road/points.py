@@ -102,7 +102,6 @@ def points_of_table(text: str) -> Points:
 
 
 def _named(head: list[str]) -> list[int]:
-    """Returns the columns of x, y and, if there is one, z."""
     names = [cell.lower() for cell in head]
     found = [next((i for i, name in enumerate(names) if name in known), None) for known in (X, Y, Z)]
     if found[0] is None or found[1] is None:

@@ -283,7 +283,6 @@ def control_stations(s: Array, curvature: Array) -> Array:
 
 
 def _profile(data: Mapping[str, Any]) -> tuple[ElevationProfile, list[float]]:
-    """Returns the elevation that ``to_json`` wrote, and all numbers in it."""
     if "cubics" in data:
         rows = [(float(s), (float(a), float(b), float(c), float(d))) for s, a, b, c, d in data["cubics"]]
         return CubicProfile.of_rows(rows), [v for s, cubic in rows for v in (s, *cubic)]

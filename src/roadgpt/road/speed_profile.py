@@ -19,8 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roadgpt.geometry.curve import Array
-from roadgpt.road.profile import Profile
-from roadgpt.road.superelevation import superelevation_for
+from roadgpt.road.profile import Profile, superelevation_for
 from roadgpt.road.world import World
 
 GRAVITY = 9.81  # m/s^2

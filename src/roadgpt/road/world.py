@@ -1,25 +1,27 @@
 """Defines the World, which all roads of a campaign share: a Site, a CrossSection and Limits, and the oracles
 by name: when a drive fails because the car is out of its lane.
 
-Files keep the values of all three in one flat table, in the order of ``FIELDS``."""
+Files keep the values of all three in one flat table, in the order of ``FIELDS``. Options of commands and keys
+of settings files are made from the fields that have a ``description``, also from those of ``Parts``. So that
+help texts load nothing heavy, geometry is imported when it is needed."""
 
 import re
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, model_serializer, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_serializer, model_validator
 
+from roadgpt.brief.amount import Frozen
+from roadgpt.brief.model import CentreLine
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
 from roadgpt.errors import UsageError
-from roadgpt.geometry import CubicProfile
-from roadgpt.road.design import FrozenFields
-from roadgpt.road.profile import Marking, Profile
-from roadgpt.road.road import Road
-from roadgpt.road.superelevation import superelevation
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
+    from roadgpt.geometry import CubicProfile
+    from roadgpt.road.profile import Profile
+    from roadgpt.road.road import Road
 
 ORACLES: dict[str, dict[str, Any]] = {
     "half": {"oob_tolerance": 0.5, "lane_departure": False},
@@ -117,14 +119,58 @@ def bank_in(value: str | float, most: float = STEEPEST, unit: str = "a ratio") -
 
 
 Lanes = Annotated[str, AfterValidator(lanes_in)]
+Geometry = Literal["arcs", "spline"]
+WHOLE = ConfigDict(frozen=True, extra="forbid")
+KMH = 3.6
+RARE: dict[str, Any] = {"rare": True}
+DRIVE: dict[str, Any] = {"heading": "Drive and verdict"}
+LANE: dict[str, Any] = {"within": LANE_WIDTHS}
 
 
-class Site(FrozenFields):
+class Parts(Frozen):
+    """The plug-ins that make and drive roads, by name, and how they work."""
+
+    reader: str = Field(
+        "model",
+        description="Reads the description: model (neural networks), chat (a language model), plan (plans "
+        "only).",
+    )
+    designer: str = Field(
+        "planner",
+        description="Designs roads: planner (a search), or thesis (a language model, as in RoadGPT's "
+        "thesis).",
+    )
+    rules: Literal["strict", "sbft"] = Field(
+        "strict", json_schema_extra=RARE,
+        description="Which rules a road must satisfy: RoadGPT's own (strict), or those of the SBFT tool "
+        "competition.",
+    )  # fmt: skip
+    driver: str = Field("lane_centring", description="A name, or FILE.py:CLASS.", json_schema_extra=DRIVE)
+    simulator: str = Field("mujoco", description="What simulates the car.", json_schema_extra=DRIVE)
+    geometry: Geometry = Field(
+        "arcs", json_schema_extra=RARE,
+        description="How a design becomes a road: arcs (lines, arcs, clothoids), or spline (as in RoadGPT's "
+        "thesis).",
+    )  # fmt: skip
+    keep_driving: bool = Field(
+        False, description="Continue to the end after the car leaves its lane.", json_schema_extra=DRIVE
+    )
+
+
+class Site(BaseModel):
     """The map on which roads are built: its size, its ground, and the friction of its asphalt."""
 
-    map_size: Annotated[float, Field(ge=SMALLEST_MAP, le=LARGEST_MAP)] = USUAL_MAP
+    model_config = WHOLE
+
+    map_size: float = Field(
+        USUAL_MAP, ge=SMALLEST_MAP, le=LARGEST_MAP,
+        description="Side of the map, m. [default: 250, more if needed]",
+    )  # fmt: skip
     """Side length of the square map in metres. One corner of the map is at (0, 0)."""
-    friction: Annotated[float, Field(gt=FRICTIONS[0], le=FRICTIONS[1])] = 1.0
+    friction: float = Field(
+        1.0, gt=FRICTIONS[0], le=FRICTIONS[1],
+        description="Friction coefficient: dry 1, wet 0.6, snow 0.35.", json_schema_extra={"open": True},
+    )  # fmt: skip
     """Friction coefficient: 1.0 for dry asphalt, about 0.6 wet, 0.35 on snow, 0.1 on ice. If no value is
     given here, a description that names a surface, such as "wet", sets the friction: see
     ``World.on_surface_of``."""
@@ -132,39 +178,51 @@ class Site(FrozenFields):
     """Height in metres of the flat ground of the simulator's map."""
 
 
-class CrossSection(FrozenFields):
+class CrossSection(BaseModel):
     """The lanes, shoulders and banked bends of roads that have no Profile of their own. A CrossSection is the
     same for roads of all lengths; ``profile`` makes the Profile of one road from it."""
 
-    lanes: Lanes = "1+1"
+    model_config = WHOLE
+
+    lanes: Lanes = Field("1+1", description="Own + oncoming lanes. [default: 1+1, or as described]")
     """Number of lanes along the road, and number of oncoming lanes, such as "2+1". The tested car keeps to
     the rightmost lane."""
-    lane_width: Positive = 4.0
-    """Width of every lane in metres."""
-    lane_width_end: Positive | None = None
+    lane_width: Positive = Field(4.0, description="Width of every lane, m.", json_schema_extra=LANE)
+    lane_width_end: float | None = Field(
+        None, gt=0, allow_inf_nan=False, json_schema_extra=RARE | LANE,
+        description="Lane width at the road's end, m, reached gradually. [default: the same]",
+    )  # fmt: skip
     """Width of every lane in metres at the end of the road, reached smoothly from ``lane_width`` at the
     start; None for a constant width."""
-    centre_line: Marking | None = None
+    centre_line: CentreLine | None = None
     """The line between the directions; None for a broken line on a road with one lane in each direction, and
     for a solid one on any other road."""
-    bank: Annotated[str | float, AfterValidator(bank_in)] = "none"
+    bank: Annotated[str | float, AfterValidator(bank_in)] = Field(
+        "none", description="Bank of bends: none, auto, or in %.", json_schema_extra={"unit": 100.0}
+    )
     """Superelevation of bends: "none", "auto" for the values of the design guide CD 109, or one ratio for all
     bends."""
-    shoulder: NotNegative = 3.0
+    shoulder: NotNegative = Field(
+        3.0, json_schema_extra=RARE | {"within": (0.0, 100.0)},
+        description="Width of the firm ground along each side of the road, m; 0: none.",
+    )  # fmt: skip
     """Width in metres of the firm shoulder beside the carriageway. With 0 the road floats above the ground,
     as in the RoadGPT thesis."""
 
-    def profile(self, length: float) -> Profile:
+    def profile(self, length: float) -> "Profile":
         """Returns the Profile of a road that is ``length`` metres long, without superelevation."""
+        from roadgpt.road.profile import Profile
+
         forward, backward = map(int, self.lanes.split("+"))
         made = Profile.of(forward, backward, self._width(length), self.shoulder)
         return made if self.centre_line is None else replace(made, centre_marking=self.centre_line)
 
-    def _width(self, length: float) -> float | CubicProfile:
-        """Returns the width of the lanes, which changes from start to end without a kink."""
+    def _width(self, length: float) -> "float | CubicProfile":
         first, last = self.lane_width, self.lane_width_end
         if last is None or last == first:
             return first
+        from roadgpt.geometry import CubicProfile
+
         return CubicProfile.smooth([(0.0, first), (length, last)])
 
     @property
@@ -179,15 +237,27 @@ class CrossSection(FrozenFields):
         return 2 * count * max(self.lane_width, self.lane_width_end or 0.0)
 
 
-class Limits(FrozenFields):
+class Limits(BaseModel):
     """Defines what the validity rules allow, and when a test fails. Most defaults are those of the RoadGPT
     thesis."""
 
-    speed_limit: Positive = 70 / 3.6
+    model_config = WHOLE
+
+    speed_limit: Positive = Field(
+        70 / KMH, description="Speed limit, km/h.",
+        json_schema_extra=DRIVE | {"unit": KMH, "key": "speed_limit_kmh", "within": SPEEDS},
+    )  # fmt: skip
     """Speed limit in m/s. The default is the competition's 70 km/h."""
-    oob_tolerance: Annotated[float, Field(gt=0, le=1)] = oracle_limits()["oob_tolerance"]
+    oob_tolerance: float = Field(
+        oracle_limits()["oob_tolerance"], gt=0, le=1,
+        description="Share of the car that may be outside its lane. [default: that of --oracle]",
+        json_schema_extra=DRIVE | RARE,
+    )  # fmt: skip
     """Fraction of the car's area, 0 to 1, that may be outside its lane before the test fails."""
-    lane_departure: bool = False
+    lane_departure: bool = Field(
+        False, description="Also fail if a front tyre crosses the lane marking.",
+        json_schema_extra=DRIVE | RARE,
+    )  # fmt: skip
     """Whether the test also fails as soon as a front tyre crosses the outer edge of a lane marking. Source:
     UN Regulation No. 157, 5.2.1."""
     min_radius: Positive = 14.326
@@ -228,9 +298,11 @@ def _in_parts(values: Mapping[str, Any]) -> dict[str, Any]:
     return out | flat
 
 
-class World(FrozenFields):
+class World(BaseModel):
     """Everything that the roads of a run or a campaign share: a Site, a CrossSection and Limits. Files have
     the fields of all three in one flat table, and ``World.model_validate`` reads such a table."""
+
+    model_config = WHOLE
 
     site: Site = Site()
     section: CrossSection = CrossSection()
@@ -244,7 +316,6 @@ class World(FrozenFields):
 
     @model_serializer
     def _to_file(self) -> dict[str, Any]:
-        """Returns the flat table of files, without the defaults of ``OWN``."""
         values = self.values().items()
         return {
             KEYS.get(name, name): value for name, value in values if name not in OWN or value != OWN[name]
@@ -284,7 +355,7 @@ class World(FrozenFields):
         changes = {name: value for name, value in wanted.items() if value is not None and name not in given}
         return self.changed(**changes) if changes else self
 
-    def profile_of(self, road: Road) -> Profile:
+    def profile_of(self, road: "Road") -> "Profile":
         """Returns the Profile of a road: ``road.profile`` or, if that is None, one made from ``section``.
         Raises UsageError if bends are banked here, and the road was not passed through ``lay``."""
         if road.profile is not None:
@@ -293,7 +364,7 @@ class World(FrozenFields):
             raise UsageError("the road has no superelevation yet; use the road that world.lay(road) returns")
         return self.section.profile(road.length)
 
-    def lay(self, road: Road) -> Road:
+    def lay(self, road: "Road") -> "Road":
         """Returns the road with the lanes and banked bends of this World's ``section``. A road that has a
         Profile of its own keeps it. If ``section`` has two lanes of constant width with the default centre
         line and no banked bends, the road is returned unchanged."""
@@ -302,6 +373,8 @@ class World(FrozenFields):
             return road
         profile = section.profile(road.length)
         if section.bank != "none":
+            from roadgpt.road.profile import superelevation
+
             angle = superelevation(
                 road.plan, profile.paved_reach, self.limits.speed_limit, section.bank_ratio
             )

@@ -3,7 +3,8 @@ not at all and read back as an equal Run.
 
 campaign/
   campaign.json            the request, so that the campaign can be resumed
-  test.0001.json           written last: if it exists, the Run is finished
+  runs.sqlite              one row for each test that has ended, see ``run.store``; the files are made from it
+  test.0001.json           the test as the SBFT competition writes it
   runs/0001/
     brief.json design.json road.json drive.npz verdict.json    the Run's values, each in its own format
     run.json               outcome, findings, seed, versions, and the full request
@@ -19,6 +20,7 @@ import unicodedata
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, Any, ClassVar, Literal, Protocol
 
 from pydantic import ConfigDict, Field, ValidationError
@@ -31,7 +33,8 @@ from roadgpt.design import DesignReport
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError, explained
 from roadgpt.network import road_from_json
-from roadgpt.reading import LARGEST, read_json, read_model, read_text, strictly
+from roadgpt.reading import LARGEST, json_of, read_json, read_model, read_text, strictly
+from roadgpt.run import store
 from roadgpt.run.atomic import json_text, refuse_links, to_bytes, whole_folder, write_whole
 from roadgpt.run.execution import test_name, test_text
 from roadgpt.run.model import Outcome, Request, Run, Seconds
@@ -174,7 +177,10 @@ def _card(run: Run) -> dict[str, Any]:
 
 
 def finished(campaign: Path) -> list[int]:
-    """Returns the numbers of the finished Runs in a campaign's folder, in ascending order."""
+    """Returns the numbers of the finished Runs in a campaign's folder, in ascending order: those in its
+    record or, without one, those whose files are there."""
+    if store.is_kept(campaign):
+        return store.numbers(campaign)
     numbers = (path.name.split(".")[1] for path in campaign.glob("test.*.json"))
     indices = sorted({int(number) for number in numbers if number.isdecimal()})
     return [
@@ -182,6 +188,37 @@ def finished(campaign: Path) -> list[int]:
         for index in indices
         if (campaign / test_name(index)).is_file() and run_folder(campaign, index).is_dir()
     ]
+
+
+def finished_run_in(campaign: Path, index: int) -> Run:
+    """Returns one of the ``finished`` Runs; raises UsageError, see ``read_run``."""
+    place = run_folder(campaign, index)
+    if not store.is_kept(campaign):
+        return read_run(place)
+    with TemporaryDirectory() as folder:
+        for name, content in store.files_of(campaign, index).items():
+            (Path(folder) / name).write_bytes(content)
+        return _read_as(Path(folder), place)
+
+
+def write_again(campaign: Path, index: int, out: Path) -> None:
+    """Writes the files of a finished Run into the folder ``out``. A folder of the Run that is there keeps
+    its pictures and other files."""
+    files = store.files_of(campaign, index)
+    test = files.pop(store.TEST, b"")
+    place = run_folder(out, index)
+    refuse_links(out / RUNS, place, *(place / name for name in files))
+    place.mkdir(parents=True, exist_ok=True)
+    for name, content in files.items():
+        write_whole(place / name, content)
+    write_whole(out / test_name(index), test)
+
+
+def test_in(campaign: Path, index: int) -> Any:
+    """Returns the data of a test's ``test.NNNN.json``; raises OSError, ValueError or UsageError."""
+    if not store.is_kept(campaign):
+        return read_json(campaign / test_name(index))
+    return json_of(store.files_of(campaign, index).get(store.TEST, b"").decode())
 
 
 def is_run(path: Path) -> bool:
@@ -199,13 +236,18 @@ def read_run(path: Path | str) -> Run:
         UsageError: there is no Run, one of its files cannot be read, or another version of RoadGPT wrote it.
     """
     folder = _folder_of(Path(path))
+    return _read_as(folder, folder)
+
+
+def _read_as(folder: Path, place: Path) -> Run:
+    """Returns the Run whose files lie in a folder; messages name ``place``."""
     card = _loaded(folder / "run.json")
     if not isinstance(card, dict) or card.get("format") != FORMAT:
-        raise UsageError(f"{folder} was written by another version of roadgpt; make the road again")
+        raise UsageError(f"{place} was written by another version of roadgpt; make the road again")
     try:
-        return _read(folder, card)
+        return _read(folder, card, place)
     except (KeyError, TypeError, ValueError, ValidationError) as error:
-        raise UsageError(f"the run in {folder} cannot be read ({error!r}); make the road again") from error
+        raise UsageError(f"the run in {place} cannot be read ({error!r}); make the road again") from error
 
 
 def run_of_test(path: Path) -> Path | None:
@@ -230,7 +272,7 @@ def _folder_of(path: Path) -> Path:
     raise UsageError(f"there is no run in {path}; give a folder like DIR/runs/0001")
 
 
-def _read(folder: Path, card: dict[str, Any]) -> Run:
+def _read(folder: Path, card: dict[str, Any], place: Path) -> Run:
     def value(name: str) -> Any:
         return _loaded(folder / name) if (folder / name).is_file() else None
 
@@ -240,7 +282,7 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
     brief, design, road, verdict = (value(f"{n}.json") for n in ("brief", "design", "road", "verdict"))
     trace = folder / "error.txt"
     return Run(
-        request=Request.model_validate(card["request"]).came_with(folder / "run.json"),
+        request=Request.model_validate(card["request"]).came_with(place / "run.json"),
         index=data.index,
         seed=data.seed,
         outcome=data.outcome,

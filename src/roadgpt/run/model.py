@@ -12,9 +12,10 @@ from roadgpt.brief.model import Brief, Frozen
 from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
 from roadgpt.design import DesignReport
-from roadgpt.drive import permission
+from roadgpt.drive.loading import driver_from_file, split_spec
 from roadgpt.errors import GivenUpError, UsageError
-from roadgpt.road import Design, Geometry, Road, World
+from roadgpt.road import Design, Road, World
+from roadgpt.road.world import Parts
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
@@ -26,18 +27,9 @@ Outcome = Literal["PASS", "FAIL", "INVALID", "ERROR", "VALID"]
 SEED_BITS = 53  # so that a seed survives every JSON reader
 
 
-class Setup(Frozen):
+class Setup(Parts):
     """Names the plug-ins that make and drive roads, with their options."""
 
-    reader: str = "model"
-    designer: str = "planner"
-    rules: Literal["strict", "sbft"] = "strict"
-    driver: str = "lane_centring"
-    """Name of a driver plug-in, or FILE.py:CLASS."""
-    simulator: str = "mujoco"
-    geometry: Geometry = "arcs"
-    keep_driving: bool = False
-    """Whether a drive goes on after the car has left its lane."""
     drives: bool = True
     """Whether roads are driven; if False, they are only designed and checked."""
     chat: ChatSettings | None = None
@@ -53,14 +45,14 @@ class Setup(Frozen):
         """Returns a copy that is marked as coming from a file of unknown origin, see ``roadgpt.provenance``:
         a driver in a Python file and the language model's server are used only if the user names or permits
         them."""
-        driver = permission.driver_from_file(self.driver, file)
+        driver = driver_from_file(self.driver, file)
         chat = self.chat and self.chat.came_with(file)
         return self.model_copy(update={"driver": driver, "chat": chat})
 
 
 def permissions(setups: Sequence[Setup], asks: bool = False) -> list[str]:
     """Returns the options that permit drivers' files and, if a command ``asks`` language models, servers."""
-    pairs = [("--driver", setup.driver) for setup in setups if permission.split_spec(setup.driver)[0]]
+    pairs = [("--driver", setup.driver) for setup in setups if split_spec(setup.driver)[0]]
     chats = [setup.chat for setup in setups if setup.chat and asks]
     pairs += [("--base-url", chat.base_url) for chat in chats if chat.base_url]
     return [word for pair in dict.fromkeys(pairs) for word in pair]

@@ -21,8 +21,7 @@ class Pose(NamedTuple):
     names as the columns of a Drive.
 
     Positions are those of the centre of gravity in metres. Angles are in radians: heading counter-clockwise
-    from +x, pitch positive with the nose up, roll positive with the left side up.
-    """
+    from +x, pitch positive with the nose up, roll positive with the left side up."""
 
     x: float
     y: float
@@ -30,25 +29,18 @@ class Pose(NamedTuple):
     heading: float
     pitch: float = 0.0
     roll: float = 0.0
-    steer: float = 0.0
-    """Angle of the front wheels in rad, left positive."""
-    speed: float = 0.0
-    """Speed in m/s."""
-    brake: float = 0.0
-    """Brake pedal, from 0 (released) to 1 (full braking)."""
-    wheel: float = 0.0
-    """Angle in rad by which the wheels have rotated about their axles."""
+    steer: float = 0.0  # angle of the front wheels in rad, left positive
+    speed: float = 0.0  # speed in m/s
+    brake: float = 0.0  # brake pedal, from 0 (released) to 1 (full braking)
+    wheel: float = 0.0  # angle in rad by which the wheels have rotated about their axles
 
 
 class CameraPlacement(NamedTuple):
     """Position and tilt of a camera on its car."""
 
-    ahead: float
-    """Metres ahead of the car's centre of gravity."""
-    up: float
-    """Metres above the ground under the car."""
-    tilt: float
-    """Pitch in rad relative to the car, positive upwards."""
+    ahead: float  # metres ahead of the car's centre of gravity
+    up: float  # metres above the ground under the car
+    tilt: float  # pitch in rad relative to the car, positive upwards
 
 
 MOUNTS: dict[str, CameraPlacement] = {
@@ -63,23 +55,18 @@ car without rolling, or look down from above with the car's nose at the top of t
 class CameraPose(NamedTuple):
     """A pinhole camera in world coordinates."""
 
-    position: Array
-    """Position in metres, shape (3,)."""
-    axes: Array
-    """Unit vectors to the right, downwards and forward as rows, shape (3, 3)."""
-    focal: float
-    """Focal length in pixels."""
+    position: Array  # position in metres, shape (3,)
+    axes: Array  # unit vectors to the right, downwards and forward as rows, shape (3, 3)
+    focal: float  # focal length in pixels
 
 
 @dataclass(frozen=True)
 class Camera:
     """A pinhole camera with square pixels, mounted on a car."""
 
-    width: int = 640
-    """Width of the image in pixels."""
+    width: int = 640  # width of the image in pixels
     height: int = 360
-    field_of_view: float = math.radians(70)
-    """Horizontal field of view in rad."""
+    field_of_view: float = math.radians(70)  # horizontal field of view in rad
     mount: Mount = "bonnet"
     placement: CameraPlacement | None = None
     """Position and tilt on the car; None for those of ``mount`` in MOUNTS."""

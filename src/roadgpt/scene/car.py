@@ -2,8 +2,7 @@
 cross-sections, a cabin with windows, wheels that roll and steer, and brake lights.
 
 The model's coordinates are in metres. Their origin is on the ground below the middle of the car's length; x
-points forward, y to the left and z up.
-"""
+points forward, y to the left and z up."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -83,14 +82,11 @@ def body() -> Iterator[Patch]:
 
 
 def _ring(x: float, *numbers: float) -> Array:
-    """Returns a closed cross-section, from the underside up the right side to the deck and down the left
-    side."""
     half = np.column_stack([np.full(8, x), _half(*numbers)])
     return np.concatenate([half * [1, -1, 1], half[-2::-1]])
 
 
 def _half(*numbers: float) -> Array:
-    """Returns the left half ``(8, 2)``, y and z, of a cross-section, from the underside to the deck."""
     low, sill, wide, wide_z, shoulder, shoulder_z, deck, deck_z, middle = numbers
     side = [(0, low), (sill, low), (sill + 0.04, low + 0.12), (wide, wide_z), (shoulder, shoulder_z)]
     return np.array([*side, (deck, deck_z), (deck / 2, middle - 0.25 * (middle - deck_z)), (0, middle)])
@@ -126,8 +122,7 @@ def _glazed(
         along: shares (0 to 1) of the length of the edges at which the wall is divided.
         up: shares of the way from the lower to the upper edge at which the wall is divided.
         glazed: indices along the edges of the cells that are glass in the second row from below.
-        is_turned: whether to reverse the direction in which the wall bulges and its front faces point.
-    """
+        is_turned: whether to reverse the direction in which the wall bulges and its front faces point."""
     a, b = np.array(along), np.array(up)
     foot = low[0] + a[:, None] * (low[1] - low[0])
     head = top[0] + a[:, None] * (top[1] - top[0])
@@ -244,8 +239,7 @@ def _circle(radius: float, outward: float, angles: Array, side: float) -> Array:
 class Saloon:
     """The surface of the car in its rest position, and the points that rotate with each wheel."""
 
-    mesh: Mesh
-    """The triangles of the car; the attributes of each point are the components of its normal."""
+    mesh: Mesh  # the triangles of the car; the attributes of each point are the components of its normal
     gloss: Array
     shade: Array
     """Fraction of the light, 0 to 1, that reaches each point; it is less than 1 near the ground and under the
@@ -255,8 +249,7 @@ class Saloon:
 
     def placed(self, pose: Pose, eye: CameraPose) -> Mesh:
         """Returns the mesh of a car at ``pose`` in world coordinates. The three attributes of a point
-        are the light that the point reflects to the camera ``eye``, an unused number, and the brightness.
-        """
+        are the light that the point reflects to the camera ``eye``, an unused number, and the brightness."""
         points, normals = self.mesh.points.copy(), self.mesh.attributes.copy()
         for part, hub, steers in self.wheels:
             turn = _turn(pose.wheel, pose.steer if steers else 0.0)

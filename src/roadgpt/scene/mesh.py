@@ -14,15 +14,12 @@ ROAD, GRASS, POST, PLAIN = 0, 1, 2, 3
 class Patch(NamedTuple):
     """Triangles that lie close together."""
 
-    points: Array
-    """Points in metres, (n, 3)."""
+    points: Array  # points in metres, (n, 3)
     attributes: Array
     """Attributes of each point, (n, 3): two surface coordinates, and the brightness of the light. Parts of
     the car have their normals here, because their light depends on the car's pose."""
-    triangles: NDArray[np.int64]
-    """Indices of points, (m, 3), counter-clockwise as seen from the visible side."""
-    kinds: NDArray[np.int64]
-    """Surface type of each triangle, such as grass or paint, as a number, (m,)."""
+    triangles: NDArray[np.int64]  # indices of points, (m, 3), counter-clockwise as seen from the visible side
+    kinds: NDArray[np.int64]  # surface type of each triangle, such as grass or paint, as a number, (m,)
 
 
 class Mesh(NamedTuple):
@@ -34,10 +31,8 @@ class Mesh(NamedTuple):
     kinds: NDArray[np.int64]
     ranges: NDArray[np.int64]
     """Index ranges of each patch, (p, 4): first point, end of the points, first triangle, end of the
-    triangles.
-    """
-    spheres: Array
-    """Centre and radius in metres of a bounding sphere of each patch, (p, 4)."""
+    triangles."""
+    spheres: Array  # centre and radius in metres of a bounding sphere of each patch, (p, 4)
 
     @classmethod
     def of(cls, patches: list[Patch]) -> "Mesh":
@@ -81,6 +76,5 @@ def grid(points: Array, attributes: Array, kind: int) -> Patch:
 
 def attributes(u: ArrayLike, v: ArrayLike, light: ArrayLike) -> Array:
     """Returns the attributes of points, as in ``Patch``, as one array ``(..., 3)``: the surface coordinates
-    ``u`` and ``v``, and the brightness ``light``. The three are broadcast to one shape.
-    """
+    ``u`` and ``v``, and the brightness ``light``. The three are broadcast to one shape."""
     return np.stack(np.broadcast_arrays(*(np.asarray(a, float) for a in (u, v, light))), axis=-1)

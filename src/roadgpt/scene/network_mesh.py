@@ -3,20 +3,21 @@
 The colours of asphalt and shoulders depend on a station s, an offset t, and the offsets of lane boundaries
 at this station. All roads of a network lie one after another on one axis of stations. The last two stretches
 of this axis are for junctions: on the first, boundaries are so far away that nothing is painted; on the
-second, the carriageway ends at t = 0.
-"""
+second, the carriageway ends at t = 0."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.export.embankments import OUTSIDE, bank_from, embankments
+from roadgpt.export.edges import OUTSIDE, bank_from, embankments
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Network, NetworkRoad, RoadEnd, Route, has_no_route
-from roadgpt.network.arrows import arrows
-from roadgpt.network.markings import between_crosswalks, signs, strokes
+from roadgpt.network.markings import JunctionSign, arrows, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area
 from roadgpt.network.surface import (
     ROUND,
@@ -27,7 +28,6 @@ from roadgpt.network.surface import (
     triangulated,
 )
 from roadgpt.road.profile import LINE as PAINTED
-from roadgpt.scene.junction_signs import SignColour, faces_of
 from roadgpt.scene.light import (
     BLACK,
     CONCRETE,
@@ -52,6 +52,7 @@ OVERLAP = 0.05  # m by which the edge line of a junction lies on that of a road
 BARE = 0.8  # m beside the carriageway of a junction, beyond which its shoulder is all grass
 LEAST_OFFSET = 1e-6  # m
 CHECKS = 8  # squares across the lane at the end of the route
+SignColour = Literal["grey", "white", "red", "yellow", "green", "black", "dim red", "dim yellow"]
 COLOURS: dict[SignColour, int] = {
     "grey": RIM, "white": WHITE, "red": RED, "yellow": YELLOW, "green": GREEN, "black": BLACK,
     "dim red": DIM_RED, "dim yellow": DIM_YELLOW,
@@ -62,12 +63,9 @@ COLOURS: dict[SignColour, int] = {
 class StationAxis:
     """The axis of stations on which all roads of a network lie, and the boundaries of lanes along it."""
 
-    starts: dict[int, float]
-    """The station at which each road begins, by the id of the road."""
-    plain: float
-    """The first station of the stretch on which nothing is painted."""
-    kerb: float
-    """The first station of the stretch on which the carriageway ends at offset 0."""
+    starts: dict[int, float]  # the station at which each road begins, by the id of the road
+    plain: float  # the first station of the stretch on which nothing is painted
+    kerb: float  # the first station of the stretch on which the carriageway ends at offset 0
     lanes: LaneBoundaries
 
     @classmethod
@@ -95,16 +93,13 @@ def _three(network: Network, member: NetworkRoad, s: Array) -> Array:
     """Returns the offsets ``(n, 3)`` of left edge, centre line and right edge.
 
     If ``_has_broken_line_only`` is False, the lines within the carriageway are drawn as separate patches, and
-    the left edge takes the place of the centre line.
-    """
+    the left edge takes the place of the centre line."""
     found = [t for _, t in member.profile.boundaries(s)]
     centre = np.zeros_like(s) if _has_broken_line_only(network, member) else found[0]
     return np.stack([found[0], centre, found[-1]], axis=1)
 
 
 def _has_broken_line_only(network: Network, member: NetworkRoad) -> bool:
-    """Returns whether the only inner line is a broken one along the reference line, which no crosswalk
-    interrupts."""
     if network.crossed & {RoadEnd(member.id, "start"), RoadEnd(member.id, "end")}:
         return False
     profile = member.profile
@@ -181,8 +176,7 @@ def _shoulder(area: JunctionSurface, station: float) -> list[Patch]:
     """Returns the shoulder of a junction: gravel that turns into grass, and grass farther away.
 
     All corners of the whole may lie at the carriageway, as those between two ways do; between corners without
-    any distance from it, it would be all gravel.
-    """
+    any distance from it, it would be all gravel."""
     near, far = near_and_far(area)
     out = [] if near.is_empty else [_level(near, area.height, ROAD, station, area.paved)]
     return out if far.is_empty else [*out, _level(far, area.height, GRASS, 0.0)]
@@ -217,7 +211,6 @@ def _wall(ring: Array, foot: float, high: float) -> Patch:
 
 
 def _strip(right: Array, left: Array, light: float, kind: int) -> Patch:
-    """Returns a strip between two lines ``(n, 3)``, seen from the side on which they are right and left."""
     values = attributes(0.0, 0.0, np.full((len(right), 2), light))
     return grid(np.stack([right, left], axis=1), values, kind)
 
@@ -234,8 +227,7 @@ def _kerb_line(points: Array, station: float) -> Patch:
     """Returns asphalt with an edge line; the carriageway lies to the left of the points.
 
     Where the line is open, it begins and ends a little on the road: as it lies above the road, the asphalt
-    before it would be seen as a gap between it and the road's own line.
-    """
+    before it would be seen as a gap between it and the road's own line."""
     if not np.array_equal(points[0], points[-1]):
         steps = points[[0, -1]] - points[[1, -2]]
         steps *= OVERLAP / np.linalg.norm(steps, axis=1, keepdims=True)
@@ -253,7 +245,6 @@ def _painted(points: Array, width: float, kind: int = WHITE) -> Patch:
 
 
 def _start_and_goal(route: Route) -> list[Patch]:
-    """Returns a white line where the lane of the route begins, and a chequered band where it ends."""
     if has_no_route(route):
         return []
     assert route.profile is not None
@@ -282,7 +273,6 @@ def _patch(points: Array, light: float, triangles: NDArray[np.int64], kind: int)
 
 
 def _banks(area: JunctionSurface, terrain: LitTerrain) -> list[Patch]:
-    """Returns slopes from the outer edge of a junction's ground down to the land."""
     import shapely
 
     whole = shapely.union_all([area.paved, area.shoulder, *area.kerbed, *area.green])
@@ -296,3 +286,120 @@ def _banks(area: JunctionSurface, terrain: LitTerrain) -> list[Patch]:
         bank = bank_from(edge, near, (near - edge)[:, :2] / OUTSIDE, terrain.land, is_left=False)
         out.append(_strip(bank.foot, bank.edge, level_light(), GRASS))
     return out
+
+
+POLE, POLE_SIDES = 0.04, 6  # radius of a post in m, and number of its sides
+FOOT = 0.5  # m by which a post reaches into the ground
+LAYER = 0.012  # m between two colours of a sign
+MIDDLE = {"stop": 2.45, "yield": 2.4, "priority": 2.35, "lights": 2.75}
+"""Height in metres of the middle of each sign above the foot of its post."""
+OCTAGON = np.pi / 8 + np.arange(8) * np.pi / 4
+TRIANGLE = np.pi / 2 + np.arange(3) * 2 * np.pi / 3 + np.pi
+DIAMOND = np.arange(4) * np.pi / 2
+CIRCLE = np.arange(24) * np.pi / 12
+BAR = 0.045  # m, width of the bars of letters
+TALL, WIDE = 0.26, 0.13  # m, of a letter
+LETTERS = {
+    "S": ("top", "upper left", "middle", "lower right", "foot"),
+    "T": ("top", "centre"),
+    "O": ("top", "upper left", "lower left", "upper right", "lower right", "foot"),
+    "P": ("top", "upper left", "lower left", "upper right", "middle"),
+}
+"""The bars of the letters of a stop sign, in the order of the word."""
+APART = 0.18  # m, from the middle of a letter to that of the next
+BOX, LENS = (0.42, 1.2, 0.25), 0.15  # m: width, height and depth of a traffic light; radius of a lens
+LENS_APART, BOARD, FACE_RIM = 0.38, 0.09, 0.13  # m: lens to lens; board and its white rim, beyond the box
+
+
+class SignFace(NamedTuple):
+    """One flat polygon of a sign."""
+
+    colour: SignColour
+    points: Array
+    """Corners ``(n, 3)`` in metres, counter-clockwise as seen from the visible side; the polygon is
+    convex."""
+
+
+def faces_of(sign: JunctionSign) -> Iterator[SignFace]:
+    """Yields the faces of a sign and of its post. Of two overlapping faces, the rear one is yielded first."""
+    top = MIDDLE[sign.control]
+    yield from _tube(sign, POLE, -FOOT, top)
+    if sign.control == "lights":
+        yield from _lights(sign, top)
+        return
+    for layer, (colour, outline) in enumerate(_layers(sign)):
+        ahead = POLE + LAYER * (min(layer, 2) + 1)
+        if not layer:
+            yield SignFace("grey", _placed(sign, outline[::-1], top, ahead))
+        yield SignFace(colour, _placed(sign, outline, top, ahead))
+
+
+def _layers(sign: JunctionSign) -> list[tuple[SignColour, Array]]:
+    """Returns the colours of a sign's front, from back to front, each with its outline ``(n, 2)``."""
+    if sign.control == "stop":
+        letters: list[tuple[SignColour, Array]] = [("white", bar) for bar in _word()]
+        return [("white", _polygon(OCTAGON, 0.48)), ("red", _polygon(OCTAGON, 0.44)), *letters]
+    if sign.control == "yield":
+        return [("red", _polygon(TRIANGLE, 0.52)), ("white", _polygon(TRIANGLE, 0.33))]
+    return [("white", _polygon(DIAMOND, 0.45)), ("yellow", _polygon(DIAMOND, 0.33))]
+
+
+def _word() -> Iterator[Array]:
+    half, wide, tall = BAR / 2, WIDE / 2, TALL / 2
+    up, across = tall - half, wide - half
+    boxes = {  # left, right, lower and upper edge
+        "top": (-wide, wide, up - half, tall),
+        "middle": (-wide, wide, -half, half),
+        "foot": (-wide, wide, -tall, half - up),
+        "centre": (-half, half, -tall, tall),
+        "upper left": (-wide, half - across, 0.0, tall),
+        "lower left": (-wide, half - across, -tall, 0.0),
+        "upper right": (across - half, wide, 0.0, tall),
+        "lower right": (across - half, wide, -tall, 0.0),
+    }
+    for number, bars in enumerate(LETTERS.values()):
+        for left, right, low, high in map(boxes.__getitem__, bars):
+            corners = np.array([[left, low], [right, low], [right, high], [left, high]])
+            yield corners + [(number - (len(LETTERS) - 1) / 2) * APART, 0.0]
+
+
+def _polygon(angles: Array, radius: float) -> Array:
+    return radius * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def _placed(sign: JunctionSign, outline: Array, height: float, ahead: float) -> Array:
+    """Returns a polygon that faces the traffic; x of the outline points to the right as drivers see it."""
+    c, s = np.cos(sign.heading), np.sin(sign.heading)
+    right, towards = np.array([s, -c, 0.0]), np.array([-c, -s, 0.0])
+    up = np.array([0.0, 0.0, 1.0])
+    foot = np.array(sign.place)
+    return np.asarray(foot + outline[:, :1] * right + (outline[:, 1:] + height) * up + ahead * towards)
+
+
+def _tube(sign: JunctionSign, radius: float, low: float, high: float) -> Iterator[SignFace]:
+    angles = np.arange(POLE_SIDES + 1) * 2 * np.pi / POLE_SIDES
+    ring = np.array(sign.place) + np.column_stack(
+        [radius * np.cos(angles), radius * np.sin(angles), 0 * angles]
+    )
+    for one, two in pairwise(ring):
+        down, up = np.array([0, 0, low]), np.array([0, 0, high])
+        yield SignFace("grey", np.array([one + down, two + down, two + up, one + up]))
+
+
+def _lights(sign: JunctionSign, middle: float) -> Iterator[SignFace]:
+    """Yields a box before a black board with a white rim, and three lenses, of which the green one is lit."""
+    wide, high, deep = BOX
+    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    board, rim = (corners * [wide / 2 + more, high / 2 + more] for more in (BOARD, FACE_RIM))
+    yield SignFace("grey", _placed(sign, rim[::-1], middle, POLE))
+    yield SignFace("white", _placed(sign, rim, middle, POLE))
+    yield SignFace("black", _placed(sign, board, middle, POLE + LAYER))
+    back, front = (_placed(sign, corners * [wide / 2, high / 2], middle, ahead) for ahead in (POLE, deep))
+    yield SignFace("black", front)
+    for k in range(4):
+        n = (k + 1) % 4
+        yield SignFace("black", np.array([back[k], back[n], front[n], front[k]]))
+    lens = _polygon(CIRCLE, LENS)
+    colours: tuple[SignColour, ...] = ("green", "dim yellow", "dim red")
+    for k, colour in enumerate(colours):
+        yield SignFace(colour, _placed(sign, lens + [0.0, (k - 1) * LENS_APART], middle, deep + LAYER))

@@ -1,6 +1,5 @@
 """Creates seeded noise at several resolutions, and computes in compiled code its value at the resolution of a
-pixel, and the fraction of a pixel that a marking covers.
-"""
+pixel, and the fraction of a pixel that a marking covers."""
 
 import math
 from collections.abc import Callable
@@ -23,8 +22,7 @@ def noise() -> NDArray[np.float32]:
     """Returns three noise tiles ``(3, n)`` of mean 0 and standard deviation 1; each row holds one tile
     with all its mipmap levels, down to 1 texel.
 
-    The three tiles look like the grain of stone, like clouds of all sizes, and like tufts of grass.
-    """
+    The three tiles look like the grain of stone, like clouds of all sizes, and like tufts of grass."""
     rng = np.random.default_rng(SEED)
     grain = _shaped(rng, lambda f: np.exp(-((f / 0.42) ** 2)) + 1.9 * np.exp(-((f / 0.13) ** 2)))
     cloud = _shaped(rng, lambda f: np.maximum(f, 1.0 / SIDE) ** -1.55)
@@ -34,7 +32,6 @@ def noise() -> NDArray[np.float32]:
 
 
 def _shaped(rng: np.random.Generator, gain: Callable[[Array], Array]) -> Array:
-    """Returns white noise filtered by ``gain``, a function of frequency in cycles per texel."""
     f = np.hypot(np.fft.fftfreq(SIDE)[:, None], np.fft.fftfreq(SIDE)[None, :])
     spectrum = np.fft.fft2(rng.standard_normal((SIDE, SIDE))) * gain(f)
     spectrum[0, 0] = 0.0
@@ -44,8 +41,7 @@ def _shaped(rng: np.random.Generator, gain: Callable[[Array], Array]) -> Array:
 
 def mipmapped(picture: Array) -> Array:
     """Returns the pixels of a picture ``(side, side, ...)``, followed by the pixels of smaller and smaller
-    copies. Each copy has half the side of the copy before; the last copy is 1 pixel.
-    """
+    copies. Each copy has half the side of the copy before; the last copy is 1 pixel."""
     rest = picture.shape[2:]
     levels = [picture.reshape(-1, *rest)]
     while len(picture) > 1:

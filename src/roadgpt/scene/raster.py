@@ -4,8 +4,7 @@ Let a triangle have the corners P0, P1, P2 in camera coordinates (right, down, f
 varies linearly over the triangle then satisfies q / w = g . ray, where w is the depth, and ray = (x, y, 1) is
 the direction of a pixel. The vector g follows from the values q_i at the corners: P_i . g = q_i. This also
 holds for corners behind the camera, so that only the outline of the triangle in the image needs clipping.
-Source: M. Olano and T. Greer, Triangle scan conversion using 2D homogeneous coordinates, 1997.
-"""
+Source: M. Olano and T. Greer, Triangle scan conversion using 2D homogeneous coordinates, 1997."""
 
 from typing import NamedTuple
 
@@ -29,18 +28,13 @@ Numbers = NDArray[np.int32]
 class RenderBuffers(NamedTuple):
     """Working memory for one image. Each thread has its own buffers, so that threads can render at once."""
 
-    depth: Depth
-    """Inverse depth of each sample in 1/m, ``(4 * height, width)``."""
-    ids: Numbers
-    """Number of the triangle that each sample shows, same shape as ``depth``; -1 for the sky."""
+    depth: Depth  # inverse depth of each sample in 1/m, ``(4 * height, width)``
+    ids: Numbers  # number of the triangle that each sample shows, same shape as ``depth``; -1 for the sky
     planes: Array
     """Plane equations ``(n, PLANE)`` of the drawn triangles; the numbers in ``ids`` are indices of rows."""
-    kinds: NDArray[np.int64]
-    """Surface types ``(n,)`` of these triangles."""
-    seen: Array
-    """The points of one patch in camera coordinates, (n, 3)."""
-    picture: NDArray[np.float32]
-    """The image in linear light, (height, width, 3)."""
+    kinds: NDArray[np.int64]  # surface types ``(n,)`` of these triangles
+    seen: Array  # the points of one patch in camera coordinates, (n, 3)
+    picture: NDArray[np.float32]  # the image in linear light, (height, width, 3)
 
 
 @inlined
@@ -126,7 +120,6 @@ def _outline(three: Array, focal: float, middle_x: float, middle_y: float, x: Ar
 
 @inlined
 def _holds_samples(x: Array, y: Array, corners: int, rows: int, columns: int) -> bool:
-    """Returns whether the outline may contain a sample; distant triangles often contain none."""
     left, right, top, bottom = x[0], x[0], y[0], y[0]
     for k in range(1, corners):
         left, right = min(left, x[k]), max(right, x[k])
@@ -145,7 +138,6 @@ def _to_camera(
     points: Array, first: int, end: int, eye: Array, reach_x: float, reach_y: float, seen: Array,
     codes: NDArray[np.uint8],
 ) -> None:  # fmt: skip
-    """Writes the points in camera coordinates, and the borders of the image that each lies beyond."""
     for n in range(first, end):
         dx, dy, dz = points[n, 0] - eye[0], points[n, 1] - eye[1], points[n, 2] - eye[2]
         m = n - first
@@ -191,8 +183,7 @@ def draw(mesh: Mesh, eye: Array, buffers: RenderBuffers, count: int) -> int:
     the number of triangles that earlier calls have drawn. Returns ``count`` plus the number drawn here.
 
     ``eye`` has the shape (13,): the camera's position, its axes to the right, downwards and forward, and its
-    focal length in pixels.
-    """
+    focal length in pixels."""
     triangles, ranges = mesh.triangles, mesh.ranges
     depth, planes, seen = buffers.depth, buffers.planes, buffers.seen
     rows, columns = depth.shape

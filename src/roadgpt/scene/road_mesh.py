@@ -8,8 +8,7 @@ from itertools import pairwise
 import numpy as np
 from scipy import ndimage
 
-from roadgpt.export.edges import line, normals, stations
-from roadgpt.export.embankments import FOOT, Embankment, embankments
+from roadgpt.export.edges import FOOT, Embankment, embankments, line, normals, stations
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.land import Land
@@ -63,8 +62,7 @@ class LitTerrain:
 
 def road_patches(road: Road, world: World, terrain: LitTerrain) -> list[Patch]:
     """Returns the triangle patches of the road: its surface, and what is around it. A road with shoulders has
-    embankments and posts; a road without shoulders has the slab of a floating road.
-    """
+    embankments and posts; a road without shoulders has the slab of a floating road."""
     profile = world.profile_of(road)
     s = stations_between(road, profile.reach)
     if not profile.has_shoulders:
@@ -78,8 +76,7 @@ def stations_between(road: Road, rim: float) -> Array:
     """Returns the stations ``(n,)`` in metres at which lines along the road need points.
 
     The stations are at most ``LONGEST`` apart. Take a curve at most ``rim`` metres beside the centre
-    line: a polyline with points at these stations deviates from the curve by at most about ``CHORD``.
-    """
+    line: a polyline with points at these stations deviates from the curve by at most about ``CHORD``."""
     s = stations(road, rim, CHORD)
     parts = np.maximum(1, np.ceil(np.diff(s) / LONGEST)).astype(int)
     steps = np.repeat(np.diff(s) / parts, parts)
@@ -87,7 +84,6 @@ def stations_between(road: Road, rim: float) -> Array:
 
 
 def _blocks(rows: Array, values: Array, kind: int) -> list[Patch]:
-    """Divides rows of points across the road into patches along it."""
     return [
         grid(rows[i : i + BLOCK + 1], values[i : i + BLOCK + 1], kind) for i in range(0, len(rows) - 1, BLOCK)
     ]
@@ -185,7 +181,6 @@ def posts(road: Road, profile: Profile, is_free: Callable[[Array], bool] = lambd
 
 @cache
 def _post() -> tuple[Patch, Array]:
-    """Returns one post at the origin, and the normals of its sides."""
     half = POST_WIDE / 2
     ring = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) * [half, half * 0.8]
     outward = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])

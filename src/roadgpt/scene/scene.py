@@ -82,8 +82,7 @@ class Scene:
             camera: the camera.
             pose: pose of the car that carries the camera.
             out: contiguous array of bytes to write the image to; None for a new array.
-            car: pose of the car that is drawn, with its shadow; None to draw no car.
-        """
+            car: pose of the car that is drawn, with its shadow; None to draw no car."""
         if not all(np.abs(each).max() <= FARTHEST for each in (pose, car) if each is not None):
             raise UsageError("a number of a pose is not finite, or beyond 10,000 km")
         shape = (camera.height, camera.width, 3)
@@ -125,7 +124,6 @@ class Scene:
 
 
 def _shade_of(car: Pose | None) -> NDArray[np.float64]:
-    """Returns the shadow of a car as the ``numbers`` of ``shade``."""
     out = np.zeros(9)
     if car is not None:
         forward, _, up = axes_of(car.heading, car.pitch, car.roll)

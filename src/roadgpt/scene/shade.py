@@ -2,8 +2,7 @@
 
 Colours are computed from coordinates on the surface instead of texture images: the fraction of a pixel that
 markings cover is computed exactly, and noise is filtered to the size of the pixel. Colours are linear until
-`to_screen`.
-"""
+`to_screen`."""
 
 import math
 from typing import Any, NamedTuple
@@ -66,16 +65,11 @@ Colour = tuple[float, float, float]
 class LaneBoundaries(NamedTuple):
     """The boundaries of all lanes, from left to right, at equally spaced stations."""
 
-    offsets: Array
-    """Offsets of the k boundaries in metres at each of n stations, (n, k)."""
-    marks: NDArray[np.int64]
-    """Type of lane marking on each boundary: NONE, SOLID or BROKEN, (k,)."""
-    driven: int
-    """Index of the left boundary of the lane in which the car drives."""
-    spacing: float
-    """Distance between the stations, metres."""
-    length: float
-    """Length of the road, metres."""
+    offsets: Array  # offsets of the k boundaries in metres at each of n stations, (n, k)
+    marks: NDArray[np.int64]  # type of lane marking on each boundary: NONE, SOLID or BROKEN, (k,)
+    driven: int  # index of the left boundary of the lane in which the car drives
+    spacing: float  # distance between the stations, metres
+    length: float  # length of the road, metres
 
     @classmethod
     def of(cls, profile: Profile, length: float) -> "LaneBoundaries":
@@ -138,8 +132,7 @@ def _bound(lanes: LaneBoundaries, s: float, j: int) -> float:
 def asphalt(tiles: Tiles, s: float, t: float, lanes: LaneBoundaries, level: float) -> float:
     """Returns the brightness of asphalt at station s and offset t in metres, with grain and patches.
 
-    The wheel tracks and the oily middle of a lane are darker. ``level`` is as in ``grass``.
-    """
+    The wheel tracks and the oily middle of a lane are darker. ``level`` is as in ``grass``."""
     grain = fine_noise(tiles, GRAIN, s * STONE, t * STONE, level + 6.5)
     patches = plain_noise(tiles, CLOUD, 0, SIDE, s * 1.3, t * 5.1)
     lane = WHEEL + TRACK  # m to the middle of the nearest lane
@@ -168,8 +161,7 @@ def paved(
 ) -> Colour:
     """Returns the colour of the carriageway with its markings at station s and offset t in metres.
 
-    The pixel is ``wide_s`` metres long and ``wide_t`` metres wide. ``level`` is as in ``grass``.
-    """
+    The pixel is ``wide_s`` metres long and ``wide_t`` metres wide. ``level`` is as in ``grass``."""
     tone, length = asphalt(tiles, s, t, lanes, level), lanes.length
     r, g, b = tone, tone * 1.005, tone * 1.03
     paint, last = 0.0, lanes.offsets.shape[1] - 1
@@ -228,8 +220,7 @@ def road(
 ) -> Colour:
     """Returns the colour of the carriageway or the shoulder at station s and offset t in metres.
 
-    (x, y) is the same point in world coordinates. The other arguments are as in ``paved``.
-    """
+    (x, y) is the same point in world coordinates. The other arguments are as in ``paved``."""
     beside = max(t - _bound(lanes, s, 0), _bound(lanes, s, lanes.offsets.shape[1] - 1) - t)
     if beside < -0.3 - wide_t:
         return paved(tiles, s, t, wide_s, wide_t, level, lanes)
@@ -293,8 +284,7 @@ def hazy(r: float, g: float, b: float, thin: float, warm: float) -> Colour:
 @inlined
 def air(distance: float, toward: float) -> tuple[float, float]:
     """Returns ``thin`` and ``warm`` for `hazy` at a distance in metres; ``toward`` is the cosine of the angle
-    between the line of sight and the sun.
-    """
+    between the line of sight and the sun."""
     d = distance * (1.0 / HAZE)
     toward = max(toward, 0.0)
     return 1.0 / (1.0 + d * (0.9 + 2.2 * d)), 0.10 * toward * toward
@@ -350,8 +340,7 @@ def _gather(
     represents it.
 
     A sample represents a later one that shows the same triangle, or the same kind of ground at almost the
-    same depth.
-    """
+    same depth."""
     for k in range(4):
         shares[k] = 1
         n, near = ids[4 * row + k, i], depth[4 * row + k, i]

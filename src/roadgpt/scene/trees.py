@@ -1,6 +1,5 @@
 """Plants trees beside the road, creates their pictures, and draws them upright over the image, from the
-farthest to the nearest. The trees are so far from the road that cars cannot reach them.
-"""
+farthest to the nearest. The trees are so far from the road that cars cannot reach them."""
 
 import math
 from functools import cache
@@ -32,22 +31,17 @@ BORDER = 4  # outermost rows and columns of the land on each side, where no tree
 class Trees(NamedTuple):
     """The trees of a scene: upright pictures that face the camera."""
 
-    places: Array
-    """Position of the foot of each tree in metres, (n, 3)."""
-    sizes: Array
-    """Height and width of each tree in metres, (n, 2)."""
-    looks: NDArray[np.int64]
-    """Index of the picture of each tree, (n,)."""
-    tints: Array
-    """Factor by which the brightness of each tree's picture is multiplied, (n,)."""
+    places: Array  # position of the foot of each tree in metres, (n, 3)
+    sizes: Array  # height and width of each tree in metres, (n, 2)
+    looks: NDArray[np.int64]  # index of the picture of each tree, (n,)
+    tints: Array  # factor by which the brightness of each tree's picture is multiplied, (n,)
 
 
 def plant(line: Array, reach: float, land: Land) -> Trees:
     """Returns trees in loose groups on the terrain, none of them near a road.
 
     ``line`` has points ``(n, 2)`` on the centre lines of the roads, and ``reach`` is the greatest distance
-    from them to the outer edge of a shoulder, all in metres.
-    """
+    from them to the outer edge of a shoulder, all in metres."""
     rng = np.random.default_rng(SEED)
     x0, x1, y0, y1 = land.x[BORDER], land.x[-BORDER - 1], land.y[BORDER], land.y[-BORDER - 1]
     count = int(min(MOST, (x1 - x0) * (y1 - y0) / EACH))
@@ -77,7 +71,6 @@ def pictures() -> NDArray[np.float32]:
 
 
 def _crown(rng: np.random.Generator) -> tuple[Array, Array, Array]:
-    """Returns tufts of a broad-leaved tree: places with x, y in -1..1 and z in 0..1, normals, and radii."""
     boughs = rng.normal(size=(14, 3))
     boughs *= (0.62 * rng.random(14) ** 0.4 / np.linalg.norm(boughs, axis=1))[:, None]
     tufts = boughs[rng.integers(14, size=420)]
@@ -88,7 +81,6 @@ def _crown(rng: np.random.Generator) -> tuple[Array, Array, Array]:
 
 
 def _cone(rng: np.random.Generator) -> tuple[Array, Array, Array]:
-    """Returns the twigs of a conifer, in tiers that are wider below: positions, normals, and radii."""
     up = 1.0 - rng.random(520) ** 0.62
     tier = 0.78 + 0.22 * (1.0 - (up * 9.0) % 1.0)
     turn = rng.uniform(0, 2 * np.pi, 520)
@@ -146,7 +138,6 @@ def _texel(
 
 @inlined
 def _mip_level(high: float) -> tuple[int, int]:
-    """Returns first texel and side of the smallest copy that is sharp enough for this height in pixels."""
     side, start = SIDE, 0
     while side > 1 and side > 1.4 * high:
         start += side * side
@@ -156,8 +147,6 @@ def _mip_level(high: float) -> tuple[int, int]:
 
 @inlined
 def _range(a: float, b: float, reach: float, size: int) -> tuple[int, int]:
-    """Returns first pixel and end of a range, extended by ``reach`` on both sides and limited to 0 and
-    ``size``."""
     return max(0, int(min(a, b) - reach)), min(size, int(max(a, b) + reach) + 1)
 
 
@@ -179,8 +168,7 @@ def overlay(
 ) -> None:
     """Draws trees over the image, except where nearer surfaces hide them.
 
-    ``order`` has the indices of the trees, the farthest first; ``eye`` is the camera, as in `raster.draw`.
-    """
+    ``order`` has the indices of the trees, the farthest first; ``eye`` is the camera, as in `raster.draw`."""
     places, sizes, looks, tints = trees
     depth, picture = buffers.depth, buffers.picture
     rows, columns = picture.shape[0], picture.shape[1]

@@ -95,15 +95,8 @@ def level_road(
     road: Road, world: World, seed: int, materials: Materials = OWN, lift: float = 0.0, prefix: str = ""
 ) -> LevelRoad:
     """Returns the mesh roads and decal roads of a road with its shoulder and markings, and the start and goal
-    of the drive.
-
-    The same arguments always give the same result.
-
-    Args: road: The road. world: The World, which defines lane width and shoulder width. seed: Seed of the
-    random shifts of mesh nodes that prevent flicker. materials: Names of materials that exist in the level.
-    lift: Metres by which everything is raised, for a level whose ground is not at ``world.site.z_floor``.
-    prefix: Prefix of the strips' names; all names in a level must differ.
-    """
+    of the drive. ``seed`` sets the random shifts against flicker; everything is raised by ``lift`` metres,
+    for a level whose ground is not at ``world.site.z_floor``; ``prefix`` keeps the names in a level apart."""
     rng = np.random.default_rng(seed)
     s = np.linspace(0.0, road.length, max(3, int(np.ceil(road.length / SPACING)) + 1))
     up = np.array([0.0, 0.0, lift])

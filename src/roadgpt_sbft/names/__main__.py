@@ -1,5 +1,4 @@
-"""Runs a generator in its own interpreter, which may be as old as Python 3.8. ``roadgpt compete sbft`` starts
-this program."""
+"""Runs a generator in its own interpreter, from Python 3.8 on; ``roadgpt compete sbft`` starts it."""
 
 import sys
 

@@ -63,9 +63,7 @@ def received(line: bytes) -> Optional[Message]:
 
 
 def plain(value: Any) -> Any:
-    """Converts numbers and arrays of other libraries, such as numpy, to plain Python values, and any other
-    value to text.
-    """
+    """Converts numbers and arrays of other libraries to plain Python values, and any other value to text."""
     listed = getattr(value, "tolist", None)
     return listed() if callable(listed) else str(value)
 
@@ -74,12 +72,8 @@ class RoadGPT:
     """A process that runs RoadGPT in its own Python environment and answers requests."""
 
     def __init__(self, python: Optional[str] = None) -> None:
-        """Starts the process.
-
-        Args:
-            python: the interpreter that RoadGPT is installed in; None: the one that ROADGPT_PYTHON names, or
-                else the one that runs this code.
-        """
+        """Starts the interpreter that RoadGPT is installed in; None: the one that ROADGPT_PYTHON names, or
+        else the one that runs this code."""
         self.python = python or os.environ.get(PYTHON) or _own()
         self._lock = threading.Lock()
         self._owner = os.getpid()
@@ -125,8 +119,7 @@ class RoadGPT:
 
     @property
     def is_ours(self) -> bool:
-        """Whether this process started the RoadGPT process; False in a process that was forked after the
-        start."""
+        """False in a process that was forked after the start."""
         return self._owner == os.getpid()
 
     def close(self) -> None:
@@ -158,9 +151,7 @@ class ClientTestGenerator:
     designer: Optional[str] = None
     reader: Optional[str] = None
     search: Optional[bool] = None
-    """False: roads are drafted one after another, without regard to outcomes. None: RoadGPT's default, a
-    search.
-    """
+    """False: roads are drafted one after another, without regard to outcomes. None: they are searched for."""
     python: Optional[str] = None
     """Path of the interpreter in which RoadGPT is installed; ROADGPT_PYTHON takes precedence."""
 
@@ -170,11 +161,8 @@ class ClientTestGenerator:
         self._roadgpt: Optional[RoadGPT] = None
 
     def start(self) -> None:
-        """Submits tests to the executor, one after another, until the budget is used up.
-
-        Raises:
-            ClientError: RoadGPT does not start, the description cannot be read, or no road can be designed.
-        """
+        """Submits tests to the executor, one after another, until the budget is used up. Raises ClientError
+        if RoadGPT does not start, cannot read the description, or finds no road."""
         factory = import_module("code_pipeline.tests_generation").RoadTestFactory
         for points in self.roads():
             if self.executor.is_over():
@@ -200,9 +188,8 @@ class ClientTestGenerator:
         distances: Sequence[float],
         outside: Optional[Sequence[float]] = None,
     ) -> None:
-        """Reports the outcome of the last road as ``tell`` does, with the records as two columns: the angle
-        of the steering wheel in degrees, and ``oob_distance`` in metres. ``outside`` is the position of the
-        record with the smallest ``oob_distance``, if known."""
+        """Does the same as ``tell`` with columns: the angle of the steering wheel in degrees, and
+        ``oob_distance`` in metres; ``outside`` is the position of its smallest value, if known."""
         if self._roadgpt is not None:
             told = {"outcome": outcome, "steering": steering, "distances": distances, "outside": outside}
             self._roadgpt.ask("tell", **told)

@@ -1,5 +1,1 @@
-"""Implements a tool for the SDC testing competition, as a service that selects or prioritises roads by their
-predicted risk.
-
-To use it, install the extra ``roadgpt[sdc]`` and import ``roadgpt_sbft.sdc.service``.
-"""
+"""A service for the SDC testing competition, which selects or prioritises roads by risk: ``service``."""

@@ -1,11 +1,10 @@
 """Predicts how likely a road is to make the car leave its lane, from the line that the driver plans.
 
 In the competition, BeamNG's AI drives with a risk factor of 1.5 at up to 120 km/h; a test fails if more than
-half of the car is outside its lane. RoadGPT's driver ``beamng_like`` imitates BeamNG's AI. No drive is
-simulated; only the line that this driver plans is computed. The distance between this line and the middle of
-the lane predicts recorded failures at least as well as a simulated drive does (docs/reference/benchmarks.md),
-and computing it takes a fortieth of the time. If outcomes of tests are known, logistic regression weights all
-features. Otherwise the score is only this distance.
+half of the car is outside its lane. The distance between the line that ``beamng_like``, an imitation of this
+AI, plans and the middle of the lane predicts recorded failures at least as well as a simulated drive does
+(docs/reference/benchmarks.md), in a fortieth of the time. If outcomes of tests are known, logistic regression
+weights all features; otherwise the score is only this distance.
 """
 
 import logging
@@ -59,8 +58,7 @@ UNKNOWN = RiskFeatures(*[np.nan] * len(RiskFeatures._fields))
 
 
 def risk_features(points: Sequence[Sequence[float]], world: World = PLAIN) -> RiskFeatures:
-    """Returns the features of a road with these control points in metres; UNKNOWN if the road cannot be
-    used."""
+    """Returns the features of a road through these points in metres; UNKNOWN if it cannot be used."""
     try:
         road = Road.through(_apart(points))
         if not road.length < LONGEST:
@@ -110,19 +108,16 @@ class RiskModel:
     """Fraction of failures among the tests with known outcomes, 0 to 1; None if no outcomes are known."""
 
     def scores(self, features: Sequence[RiskFeatures]) -> Array:
-        """Returns the scores ``(n,)`` of n roads. A larger score means that a failure is more likely; roads
-        with UNKNOWN features get the median score."""
+        """Returns the scores ``(n,)`` of n roads, larger ones for riskier roads, and the median for
+        UNKNOWN."""
         scores = (_table(features) - self.mean) / self.scale @ self.weights[:-1] + self.weights[-1]
         known = np.isfinite(scores)
         return np.asarray(np.where(known, scores, np.median(scores[known]) if known.any() else 0.0))
 
     def select(self, features: Sequence[RiskFeatures]) -> list[int]:
-        """Returns the indices of the tests that are most likely to fail, in ascending order.
-
-        First selects the riskiest 5 % of all tests. Then adds tests in order of risk, until the selection is
-        expected to contain three failures, or until the next test is no more likely to fail than the average
-        test. ``LINE_ONLY``, which uses no outcomes, selects 10 % of all tests.
-        """
+        """Returns the indices of the riskiest 5 % of the tests in ascending order, and of more, until three
+        failures are expected or the next test is no more likely to fail than the average. ``LINE_ONLY``,
+        which uses no outcomes, selects 10 %."""
         scores = self.scores(features)
         first = order(scores)
         if self.share is None:
@@ -150,10 +145,8 @@ def order(scores: Array) -> NDArray[np.intp]:
 
 
 def fit_model(features: Sequence[RiskFeatures], failed: Sequence[bool]) -> RiskModel:
-    """Fits the weights of the features to the outcomes of tests, and returns the model.
-
-    Returns LINE_ONLY if fewer than 20 tests have known features, or if all tests have the same outcome.
-    """
+    """Fits the weights of the features to the outcomes of tests; LINE_ONLY if fewer than 20 tests have known
+    features, or all have the same outcome."""
     table, outcome = _table(features), np.asarray(failed, float)
     known = np.isfinite(table).all(axis=1)
     table, outcome = table[known], outcome[known]

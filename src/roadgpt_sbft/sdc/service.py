@@ -93,10 +93,7 @@ class Service:
         return message("NameReply")(name=NAME)
 
     def initialize(self, requests: Iterable[Any], context: Any) -> Any:
-        """Fits the risk model to the received tests and their outcomes.
-
-        If there are more than 5000 tests, only every n-th test is used.
-        """
+        """Fits the risk model to the received tests and outcomes; of more than 5000, to every n-th."""
         oracles = list(requests)
         chosen = oracles[:: max(1, -(-len(oracles) // MOST_OUTCOMES))]
         features = [_features_of(oracle.testCase) for oracle in chosen]

@@ -6,22 +6,23 @@ from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 
+import numpy as np
+
 from roadgpt import __version__
 from roadgpt.errors import RoadGPTError, UsageError, command_line, explained
 from roadgpt.report.chapters.wording import row
-from roadgpt.report.page import write
+from roadgpt.report.page import unformulated, write
 from roadgpt.report.page.model import Block, Details, Figure, Page, Section, Table, TableCell, cell
-from roadgpt.report.statistics import LEVEL, conover, friedman, spearman, wilcoxon
-from roadgpt.run.atomic import write_whole
+from roadgpt.report.statistics import LEVEL, conover, friedman, spearman, wilcoxon, wilson
+from roadgpt.run.atomic import csv_text, write_whole
 from roadgpt_study.survey.answers import (
+    AnswerRow,
     Answers,
-    Counts,
     RatingTally,
     Unit,
     about_counts,
     alpha_of,
     answers_of_raters,
-    csv_of,
     score_matrix,
     synthetic,
     tally,
@@ -37,14 +38,14 @@ TESTS = (
     "Friedman with Conover's post-hoc test (Holm), Wilcoxon, Spearman; Krippendorff's alpha, ordinal; "
     "intervals of shares: Wilson, 95 %"
 )
+FAVOURABLE = 4  # lowest score that is in favour of the road, or of the two roads being similar
 MADE_UP = "SYNTHETIC: made-up raters. Nobody was asked; this tries out the analysis and contains no data."
 
 
 def load_answers(
     folder: Path | str, number: int | None = None, seed: int = 0, agreement: float = 0.8
 ) -> Answers:
-    """Returns the answers that people gave to a survey. If ``number`` is given, returns the answers of this
-    number of simulated raters instead, and does not open the file of people's answers."""
+    """Returns the answers that people gave to a survey, or those of a ``number`` of simulated raters."""
     folder = Path(folder)
     survey = read_survey(folder)
     if number is not None:
@@ -66,9 +67,8 @@ def load_answers(
 
 
 def analyse(answers: Answers, out: Path | str, command: str = "") -> Path:
-    """Writes ``report.html``, the answers as CSV, ``tables/`` and ``figures/`` into a folder, and returns the
-    path of the HTML page. Answers of people and of simulated raters are kept apart: a folder holds only one
-    kind."""
+    """Writes ``report.html``, the answers as CSV, ``tables/`` and ``figures/`` into a folder, which holds
+    either answers of people or of simulated raters; returns the path of the HTML page."""
     out = Path(out)
     other = TABLES["people" if answers.source == "synthetic" else "synthetic"]
     if (out / other).exists():
@@ -78,7 +78,8 @@ def analyse(answers: Answers, out: Path | str, command: str = "") -> Path:
         )
     with explained(RoadGPTError, f"cannot write into {out}", "name another folder with --out"):
         (out / FIGURES).mkdir(parents=True, exist_ok=True)
-        write_whole(out / TABLES[answers.source], csv_of(answers.rows), is_private=True)
+        rows = ([unformulated(value) for value in row] for row in answers.rows)
+        write_whole(out / TABLES[answers.source], csv_text(AnswerRow._fields, rows), is_private=True)
         page = page_of(answers, out / FIGURES, command)
     return write(page, out)
 
@@ -90,7 +91,9 @@ def page_of(answers: Answers, figures: Path, command: str = "") -> Page:
     counts = about_counts(answers)
     who: list[Block] = [_raters(answers)]
     if counts:
-        who += [about_bars(counts, figures, is_synthetic), _about(counts)]
+        said = [row(text, answer, count) for text, each in counts for answer, count in each if count]
+        table = Table("about", "Who answered", ("question", "answer", "raters"), said)
+        who += [about_bars(counts, figures, is_synthetic), Details("The same as a table", [table])]
     sections = [Section("Who answered", who)]
     titles = (("Do roads match their descriptions?", match), ("How similar are two roads?", alike))
     for title, found in titles:
@@ -138,7 +141,7 @@ def _summary(answers: Answers, match: RatingTally, alike: RatingTally) -> list[s
     for found, says in ratings:
         scores = [score for unit in found.overall for score in unit.given]
         if scores:
-            share, alpha = sum(score >= 4 for score in scores) / len(scores), alpha_of(found.overall)
+            share, alpha = sum(score >= FAVOURABLE for score in scores) / len(scores), alpha_of(found.overall)
             agreed = f"; Krippendorff's alpha is {_number(alpha)}" if isfinite(alpha) else ""
             lines.append(
                 f"Overall, {share:.0%} of {len(scores)} ratings say {says} (one of the two highest answers)"
@@ -160,12 +163,6 @@ def _raters(answers: Answers) -> Table:
     return Table("raters", "Raters", ("", "number"), [row(*each) for each in numbers.items()])
 
 
-def _about(counts: Counts) -> Details:
-    rows = [row(text, answer, count) for text, answers in counts for answer, count in answers if count]
-    table = Table("about", "Who answered", ("question", "answer", "raters"), rows)
-    return Details("The same as a table", [table])
-
-
 def _ratings(found: RatingTally) -> Table:
     answers = found.units[0].question.answers
     firsts = {unit.item.id: unit.question.id for unit in reversed(found.units)}
@@ -183,8 +180,9 @@ def _rating(unit: Unit, is_first: bool) -> list[TableCell]:
     counts = row(*item, unit.criterion, unit.number, *unit.counts)
     if not unit.number:
         return [*counts, *row(None, None, None, None)]
-    (low, middle, high), (count, (lo, hi)) = unit.quartiles, unit.favourable
-    share = count / unit.number
+    low, middle, high = np.quantile(unit.given, [0.25, 0.5, 0.75]).tolist()
+    count = int((unit.given >= FAVOURABLE).sum())
+    share, (lo, hi) = count / unit.number, wilson(count, unit.number)
     favourable = (cell(round(share, 4), f"{share:.0%}"), f"{lo:.0%} to {hi:.0%}")
     return [*counts, *row(_rounded(middle, 1), f"{low:g} to {high:g}", *favourable)]
 
@@ -239,8 +237,6 @@ def _agreements(tallies: Sequence[RatingTally]) -> Table:
 
 
 def _measurements(tallies: Sequence[RatingTally]) -> list[Block]:
-    """Returns, for each part of the survey, the rank correlation between people's mean scores and the
-    measured scores, and a table of both."""
     blocks: list[Block] = []
     heads = ("item", "description", "criterion", "people, mean of 1 to 5", "machine, 0 to 1")
     for found in tallies:

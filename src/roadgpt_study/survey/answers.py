@@ -10,9 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.errors import UsageError
-from roadgpt.report.page import unformulated
-from roadgpt.report.statistics import Interval, krippendorff, wilson
-from roadgpt.run.atomic import csv_text
+from roadgpt.report.statistics import krippendorff
 from roadgpt_study.survey.store import code_of
 from roadgpt_study.survey.survey import CHECK, MATCHES, OVERALL, Item, Part, Question, Rated, Survey
 
@@ -23,7 +21,6 @@ Counts = Sequence[tuple[str, Sequence[tuple[str, int]]]]
 Attention = Literal["passed", "failed", "not asked", "not answered"]
 MOST = 10_000
 FAILING = 0.05  # share that fails the attention check
-FAVOURABLE = 4  # lowest score that is in favour of the road, or of the two roads being similar
 REMARK = "synthetic remark of a made-up rater"
 
 
@@ -37,20 +34,18 @@ class AnswerRow(NamedTuple):
     item: str
     prompt: str
     criterion: str
-    """The criterion that is rated, or "overall"; empty if the question is not a rating."""
     question: str
     answer: str
     score: int | None
     """The score of a rating, 1 to 5; None if the question is not a rating."""
     page_of_rater: int
-    """Number of the page, counted from 1, on which this rater saw the question; raters see pages in
-    different orders."""
+    """Number of the page, from 1, on which this rater saw the question; raters see pages in different
+    orders."""
 
 
 @dataclass(frozen=True)
 class Answers:
-    """All answers to a survey, and the numbers of raters who were invited, who take part (``agreed``), and
-    who withdrew."""
+    """All answers to a survey, and how many raters were invited, take part (``agreed``), and withdrew."""
 
     survey: Survey
     source: Source
@@ -94,14 +89,18 @@ class Answers:
 def answers_of_raters(
     survey: Survey, given: Mapping[str, Mapping[str, str]], source: Source, invited: int, withdrawn: int = 0
 ) -> Answers:
-    """Returns the answers of several raters as table rows; ``given`` maps each rater's digest to the
-    rater's answers by question."""
+    """Returns the answers of several raters; ``given`` has those of each digest by question."""
     rows = [row for digest in sorted(given) for row in _rows(survey, digest, given[digest], source)]
     return Answers(survey, source, tuple(rows), invited, len(given), withdrawn)
 
 
 def _rows(survey: Survey, digest: str, given: Mapping[str, str], source: Source) -> list[AnswerRow]:
-    attention = _attention(survey, given)
+    if not survey.has_check:
+        attention: Attention = "not asked"
+    elif "check" not in given:
+        attention = "not answered"
+    else:
+        attention = "passed" if given["check"] == MATCHES[CHECK] else "failed"
     return [
         AnswerRow(
             source=source,
@@ -120,20 +119,6 @@ def _rows(survey: Survey, digest: str, given: Mapping[str, str], source: Source)
         for question in page.questions
         if question.id in given
     ]
-
-
-def _attention(survey: Survey, given: Mapping[str, str]) -> Attention:
-    if not survey.has_check:
-        return "not asked"
-    if "check" not in given:
-        return "not answered"
-    return "passed" if given["check"] == MATCHES[CHECK] else "failed"
-
-
-def csv_of(rows: Sequence[AnswerRow]) -> str:
-    """Returns the rows as CSV; text that a spreadsheet would evaluate as a formula is prefixed with an
-    apostrophe."""
-    return csv_text(AnswerRow._fields, ([unformulated(value) for value in row] for row in rows))
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,17 +149,6 @@ class Unit:
     def counts(self) -> tuple[int, ...]:
         """Number of raters who gave each answer of the scale."""
         return tuple(int((self.given == score).sum()) for score in range(1, len(self.question.answers) + 1))
-
-    @property
-    def quartiles(self) -> list[float]:
-        """Lower quartile, median and upper quartile of the scores of one rater or more."""
-        return [float(value) for value in np.quantile(self.given, [0.25, 0.5, 0.75])]
-
-    @property
-    def favourable(self) -> tuple[int, Interval]:
-        """Number of scores 4 and 5, and Wilson's interval of their proportion among all scores."""
-        count = int((self.given >= FAVOURABLE).sum())
-        return count, wilson(count, self.number)
 
     @property
     def measured(self) -> float | None:
@@ -238,21 +212,17 @@ def score_matrix(units: Sequence[Unit]) -> Array:
 
 
 def alpha_of(units: Sequence[Unit]) -> float:
-    """Returns Krippendorff's alpha of the ratings as ordinal data; NaN if it is undefined, as for a
-    single unit."""
+    """Returns Krippendorff's alpha of ordinal ratings; NaN if it is undefined, as for a single unit."""
     return krippendorff(score_matrix(units)) if len(units) > 1 else float("nan")
 
 
 def synthetic(
     survey: Survey, number: int, seed: int = 0, agreement: float = 0.8, failing: float = FAILING
 ) -> Answers:
-    """Returns the answers of simulated raters.
-
-    Every rating question has a hidden true answer, which differs from road to road. A rater gives the true
-    answer with the probability ``agreement`` and otherwise a random answer. Krippendorff's alpha is therefore
-    1 if ``agreement`` is 1, and near 0 if ``agreement`` is 0. The fraction ``failing`` of the raters fails
-    the attention check and answers at random.
-    """
+    """Returns the answers of simulated raters. Every rating question has a hidden true answer, which differs
+    from road to road; a rater gives it with the probability ``agreement``, and otherwise a random answer. So
+    Krippendorff's alpha is 1 if ``agreement`` is 1, and near 0 if it is 0. The fraction ``failing`` of the
+    raters fails the attention check and answers at random."""
     if not 1 <= number <= MOST or not 0 <= agreement <= 1 or not 0 <= failing <= 1:
         raise UsageError(f"made-up raters are 1 to {MOST:,}, and shares lie between 0 and 1")
     rng = np.random.default_rng(seed)
@@ -261,13 +231,17 @@ def synthetic(
     for rater in range(number):
         digest = hashlib.sha256(f"synthetic {seed} {rater}".encode()).hexdigest()
         is_awake = bool(rng.random() >= failing)
-        given[digest] = _answers(survey, truth, agreement if is_awake else 0.0, is_awake, rng)
+        agrees = agreement if is_awake else 0.0
+        said = {id_: _answer(question, truth, agrees, rng) for id_, question in survey.questions.items()}
+        if "check" in said:
+            said["check"] = MATCHES[CHECK] if is_awake else MATCHES[0]
+        given[digest] = {id_: value for id_, value in said.items() if value}
     return answers_of_raters(survey, given, "synthetic", number)
 
 
 def _truths(survey: Survey, rng: np.random.Generator) -> dict[str, int]:
-    """Returns the index of each rating's true answer: random for the first road, separately for each
-    criterion, and one more from road to road. Without differences, agreement could not be measured."""
+    """Returns the index of each rating's true answer: random for the first road and each criterion, and one
+    more from road to road. Without differences, agreement could not be measured."""
     start: dict[tuple[str, str], int] = {}
     truth: dict[str, int] = {}
     for item in survey.items:
@@ -277,15 +251,6 @@ def _truths(survey: Survey, rng: np.random.Generator) -> dict[str, int]:
                 truth[question.id] = start.setdefault(key, int(rng.integers(size))) % size
                 start[key] += 1
     return truth
-
-
-def _answers(
-    survey: Survey, truth: Mapping[str, int], agreement: float, is_awake: bool, rng: np.random.Generator
-) -> dict[str, str]:
-    said = {id_: _answer(question, truth, agreement, rng) for id_, question in survey.questions.items()}
-    if "check" in said:
-        said["check"] = MATCHES[CHECK] if is_awake else MATCHES[0]
-    return {id_: value for id_, value in said.items() if value}
 
 
 def _answer(question: Question, truth: Mapping[str, int], agreement: float, rng: np.random.Generator) -> str:

@@ -5,10 +5,8 @@ DIR/
   media/            plots (PNG), films (MP4) and 3-D views (HTML)
   answers.sqlite    the answers; created when the survey is first served
 
-What raters see contains no verdict and no measurements. The plots of all roads of a survey have the same
-axes, as in RoadGPT's thesis, so that roads can be compared by size. If all roads fit, the axes are those of
-the thesis: x and y from 0 to 220 m in the bird's-eye view, and 200 m along the road by 20 m of height in the
-height plot.
+What raters see contains no verdict and no measurements. All plots have the same axes, as in RoadGPT's thesis,
+so that roads can be compared by size: those of the thesis, if all roads fit on them.
 """
 
 import hashlib
@@ -57,13 +55,16 @@ ALIKE = MATCH | {CRITERIA["order"]: "sequence", CRITERIA["length"]: "length"}
 
 
 def make_survey(plan: SurveyPlan, base: Path, out: Path | str, tell: Tell = lambda _: None) -> Survey:
-    """Makes the folder ``out`` of a survey. An earlier survey in ``out`` is replaced if it was never served.
-
-    Existing films are kept, so that an interrupted call can be repeated without filming again. Paths of runs
-    in the plan are relative to ``base``; ``tell`` is called with a sentence before every step.
+    """Makes the folder ``out`` of a survey, in place of one that was never served; films that are there are
+    not made again. Paths of runs are relative to ``base``; ``tell`` gets a sentence before every step.
     """
     out = Path(out)
-    _must_be_free(out)
+    if (out / ANSWERS).exists():
+        raise UsageError(f"people were invited to the survey in {out}; make the new one in another folder")
+    if out.exists() and not out.is_dir():
+        raise UsageError(f"{out} is a file; name a folder")
+    if out.is_dir() and any(path.name not in {CARD, MEDIA, "SURVEY.toml"} for path in out.iterdir()):
+        raise UsageError(f"{out} contains other files; name another folder")
     named: list[tuple[str, RoadPlan | PairPlan]]
     named = [(f"a{n}", road) for n, road in enumerate(plan.alignment, 1)]
     named += [(f"s{n}", pair) for n, pair in enumerate(plan.similarity, 1)]
@@ -91,15 +92,6 @@ def make_survey(plan: SurveyPlan, base: Path, out: Path | str, tell: Tell = lamb
                 path.unlink()
         write_whole(out / CARD, json_text(survey.model_dump(mode="json")))
     return survey
-
-
-def _must_be_free(out: Path) -> None:
-    if (out / ANSWERS).exists():
-        raise UsageError(f"people were invited to the survey in {out}; make the new one in another folder")
-    if out.exists() and not out.is_dir():
-        raise UsageError(f"{out} is a file; name a folder")
-    if out.is_dir() and any(path.name not in {CARD, MEDIA, "SURVEY.toml"} for path in out.iterdir()):
-        raise UsageError(f"{out} contains other files; name another folder")
 
 
 def _run(base: Path, name: str) -> Run:
@@ -161,8 +153,7 @@ def can_film() -> bool:
 
 
 def make_film(runs: Sequence[Run], path: Path, view: str) -> None:
-    """Writes an MP4 film of one run's drive, or of two drives in a split screen. The film ends before the
-    outcome is visible. ``view`` is the camera: "chase" or "bonnet" (the hood camera)."""
+    """Writes a film of one drive, or of two in a split screen, which ends before the outcome is visible."""
     longest = max(run.drive.duration for run in runs if run.drive is not None)
     settings = Settings(seconds=max(longest - BEFORE_THE_END, BEFORE_THE_END))
     if len(runs) == 1:
@@ -189,7 +180,12 @@ class _ItemBuilder:
 
     def item(self, name: str, plan: RoadPlan | PairPlan, runs: list[Run]) -> Item:
         """Makes the item of a road and its description, or of two roads, one shown above the other."""
-        prompt, is_pair = _prompt(plan.prompt or runs[0].words, plan.names[0]), len(runs) > 1
+        prompt, is_pair = (plan.prompt or runs[0].words).strip(), len(runs) > 1
+        if not prompt:
+            raise UsageError(
+                f"{plan.names[0]} was not made from a description; "
+                'add prompt = "..." to it in the survey\'s file'
+            )
         self._begin(prompt + (" (two roads)" if is_pair else ""))
         media: list[Medium] = []
         for number, (run, place) in enumerate(zip(runs, PLACES, strict=False), 1):
@@ -230,7 +226,9 @@ class _ItemBuilder:
             return []
         made = []
         for camera, said in CAMERAS.items():
-            path = self.folder / f"{name}-{camera}-{_mark(runs)}.mp4"
+            drives = b"".join(run.drive.to_bytes() for run in runs if run.drive is not None)
+            mark = hashlib.sha256(drives).hexdigest()[:10]  # a film is made again if its run has changed
+            path = self.folder / f"{name}-{camera}-{mark}.mp4"
             if not path.is_file():
                 self.tell(f"  {said}")
                 make_film(runs, path, camera)
@@ -252,23 +250,9 @@ def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _prompt(words: str, name: str) -> str:
-    if not words.strip():
-        raise UsageError(
-            f'{name} was not made from a description; add prompt = "..." to it in the survey\'s file'
-        )
-    return words.strip()
-
-
-def _mark(runs: list[Run]) -> str:
-    """Returns a hash of the drives, so that a film is made again if its run has changed."""
-    drives = b"".join(run.drive.to_bytes() for run in runs if run.drive is not None)
-    return hashlib.sha256(drives).hexdigest()[:10]
-
-
 def match_scores(run: Run, prompt: str) -> dict[str, float]:
-    """Returns, for each criterion of the thesis, 1 if a road meets it and 0 if not; empty if the road was not
-    made from the description ``prompt``."""
+    """Returns 1 or 0 for each criterion of the thesis that a road meets or not; empty if it was not made from
+    the description ``prompt``."""
     if run.road is None or run.brief is None or prompt != run.words.strip():
         return {}
     kept = {str(name): good for name, good in kept_of(run).items()}
@@ -276,8 +260,7 @@ def match_scores(run: Run, prompt: str) -> dict[str, float]:
 
 
 def similarity_scores(one: Run, other: Run) -> dict[str, float]:
-    """Returns, for each criterion, how similar two roads are (0 to 1); empty if one of them cannot be
-    compared."""
+    """Returns how similar two roads are by each criterion, 0 to 1; empty if they cannot be compared."""
     if one.road is None or other.road is None:
         return {}
     try:

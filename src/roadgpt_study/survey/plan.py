@@ -143,11 +143,8 @@ def _toml(value: Any) -> str:
 
 
 def criteria_of(brief: Brief | None) -> tuple[str, ...]:
-    """Returns the criteria that a description mentions: "turns", "incline", "order".
-
-    A general description such as "a road" mentions no criterion: its roads are rated only as a whole, as in
-    the thesis.
-    """
+    """Returns the criteria that a description mentions: "turns", "incline", "order". Roads of a description
+    that mentions none, such as "a road", are rated only as a whole, as in the thesis."""
     if brief is None:
         return ()
     clauses = [*brief.clauses, *filter(None, (brief.starts, brief.ends))]
@@ -171,11 +168,8 @@ def _has_a_number(clause: Clause) -> bool:
 
 def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pairs: int = 2) -> SurveyPlan:
     """Returns the plan of a survey, with valid roads selected at random from each folder of runs in
-    ``study``; the same seed selects the same roads.
-
-    For up to ``pairs`` descriptions, raters also compare two roads with each other. If a description has only
-    two valid roads, one of these roads is also compared with the description.
-    """
+    ``study``. For up to ``pairs`` descriptions, two roads are also compared with each other; one of them is
+    also the one that is compared with the description, if there are no more."""
     study = Path(study).resolve()
     alignment, similarity = list[RoadPlan](), list[PairPlan]()
     campaigns = {card.parent for depth in range(DEEPEST) for card in study.glob(f"{'*/' * depth}{CARD}")}

@@ -24,8 +24,7 @@ WAITS_FOR_CLIENT = (h11.IDLE, h11.SEND_BODY)
 
 
 class LimitedConnection(H11Protocol):
-    """One connection of a rater. It is closed if the rater's browser takes too long to send or to receive
-    data."""
+    """One connection of a rater, which is closed if it takes too long to send or to receive data."""
 
     def __init__(self, *args: Any, **more: Any) -> None:
         super().__init__(*args, **more)
@@ -54,9 +53,7 @@ class LimitedConnection(H11Protocol):
         self._watch()
 
     def pause_writing(self) -> None:
-        """Pauses sending until the rater's browser has received most of what was sent; limits how long this
-        may take.
-        """
+        """Limits how long the rater's browser may take to receive most of what was sent."""
         super().pause_writing()
         self._start("answer", PATIENCE)
 
@@ -87,8 +84,7 @@ class LimitedConnection(H11Protocol):
 
 
 class Server:
-    """Serves one survey. The constructor starts listening; requests are answered while ``serve_forever``
-    runs."""
+    """Serves one survey; it listens at once, and answers requests while ``serve_forever`` runs."""
 
     def __init__(
         self, app: SurveyApp, host: str = "127.0.0.1", port: int = 0, most: int = MOST_AT_ONCE
@@ -123,11 +119,9 @@ class Server:
         self._has_ended = Event()
 
     def serve_forever(self) -> None:
-        """Answers requests until ``stop`` is called or a KeyboardInterrupt is raised in this thread.
-
-        uvicorn runs in a separate thread. Otherwise, it would treat a KeyboardInterrupt that is raised during
-        a request as an error of the application, and continue.
-        """
+        """Answers requests until ``stop`` is called or a KeyboardInterrupt is raised in this thread. uvicorn
+        has another thread, or it would take a KeyboardInterrupt for an error of the application, and
+        continue."""
         thread = Thread(target=self._run, daemon=True)
         try:
             thread.start()

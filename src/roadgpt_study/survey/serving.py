@@ -25,8 +25,8 @@ Tell = Callable[[str], None]
 
 
 def open_server(folder: Path | str, host: str, port: int, is_open: bool = False) -> "Server":
-    """Returns a server for the survey in a folder. It already listens, on a free port if ``port`` is 0; call
-    ``serve_forever`` to answer requests. If ``is_open``, anyone may join by a shared link."""
+    """Returns a server that listens, on a free port if ``port`` is 0. If ``is_open``, anyone may join by a
+    shared link."""
     try:
         from roadgpt_study.survey.app import SurveyApp
         from roadgpt_study.survey.server import Server
@@ -51,14 +51,9 @@ def serve(
     is_open: bool = False,
     url: str = "",
 ) -> None:
-    """Serves a survey as ``open_server`` does, until Ctrl-C. The raters' links are reported first, and
-    written into ``links.txt``.
-
-    Args: folder: the survey's folder. tell: called with each line of output. host: address to listen on.
-    port: port to listen on. raters: number of raters with a personal link, including raters who were invited
-    earlier. is_open: True if anyone may join. url: address at which raters reach the server; empty: host and
-    port.
-    """
+    """Serves a survey until Ctrl-C. First it tells the raters' links, and writes them into ``links.txt``:
+    ``raters`` of them, including those of earlier. ``url`` is the address at which raters reach the server;
+    empty: host and port."""
     server = open_server(folder, host, port, is_open)
     store = server.app.store
     try:

@@ -82,24 +82,22 @@ class AnswerStore:
             self._file.close()
 
     def add_rater(self, joined: bool = False, token: str = "") -> str:
-        """Adds a rater and returns the rater's token, which is not stored; ``joined`` is True if the rater
-        joined by the shared link."""
+        """Adds a rater and returns the rater's token, which is not stored; some ``joined`` by the shared
+        link."""
         token = token or new_token()
         with self._writing() as file:
             file.execute("INSERT INTO raters (digest, joined) VALUES (?, ?)", (digest_of(token), joined))
         return token
 
     def rater_of(self, token: str) -> Rater | None:
-        """Returns the rater to whom a token belongs; None if it belongs to nobody. The search takes equally
-        long for every token."""
+        """Returns the rater of a token, or None; this takes equally long for every token."""
         digest = digest_of(token)
         found = self._read("SELECT digest, state, agreed_on FROM raters WHERE digest = ?", digest)
         rater = Rater(*found[0]) if found else NOBODY
         return rater if hmac.compare_digest(rater.digest, digest) else None
 
     def shared(self) -> str:
-        """Returns the token of the shared link. The first call creates the token; later calls return the
-        same one."""
+        """Returns the token of the shared link, which the first call makes."""
         with self._writing() as file:
             row = file.execute("SELECT token FROM doors").fetchone()
             token = str(row[0]) if row else new_token()
@@ -125,8 +123,8 @@ class AnswerStore:
             )
 
     def save(self, rater: Rater, answers: Mapping[str, str]) -> bool:
-        """Saves a rater's answers by question, all or none; an empty answer deletes the earlier answer.
-        Returns True if the answers are on the disk, False if the rater has not agreed or has withdrawn."""
+        """Saves a rater's answers by question, all or none; an empty one deletes an earlier one. Returns
+        False if the rater has not agreed or has withdrawn."""
         with self._writing() as file:
             state = file.execute("SELECT state FROM raters WHERE digest = ?", (rater.digest,)).fetchone()
             if state != ("agreed",):
@@ -141,8 +139,7 @@ class AnswerStore:
         return dict(self._read("SELECT question, value FROM answers WHERE rater = ?", rater.digest))
 
     def withdraw(self, rater: Rater) -> None:
-        """Deletes all answers of a rater permanently: their bytes in the file and in its journal are
-        overwritten."""
+        """Deletes all answers of a rater: their bytes in the file and in its journal are overwritten."""
         with self._writing() as file:
             file.execute("DELETE FROM answers WHERE rater = ?", (rater.digest,))
             file.execute(
@@ -167,8 +164,7 @@ def new_token() -> str:
 
 
 def code_of(digest: str) -> str:
-    """Returns a short name for a digest. With 10,000 raters, the probability that two get the same name is
-    less than one in five million."""
+    """Returns a short name; two of 10,000 raters share one with a probability below one in five million."""
     return digest[:12]
 
 

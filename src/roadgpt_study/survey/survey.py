@@ -80,8 +80,7 @@ class Question(Frozen):
         return bool(self.criterion)
 
     def takes(self, value: str) -> bool:
-        """Returns whether a value is a valid answer. An empty value, which deletes an earlier answer, is
-        always valid."""
+        """Returns whether a value is an answer; an empty one deletes an earlier answer."""
         return value in self.answers or not value if self.answers else len(value) <= MOST_LETTERS
 
     def score(self, value: str) -> int:
@@ -90,37 +89,27 @@ class Question(Frozen):
 
 
 RATHER_NOT = "I would rather not say"
-HOW_OFTEN = ("never", "occasionally", "regularly", RATHER_NOT)
+HOW_OFTEN = ("never", "occasionally", "regularly")
 ABOUT = tuple(
-    Question(id=f"about.{name}", text=text, answers=answers)
+    Question(id=f"about.{name}", text=text, answers=(*answers, RATHER_NOT))
     for name, text, answers in (
         (
-            "age",
-            "How old are you?",
-            ("under 20", "20 to 29", "30 to 39", "40 to 49", "50 to 59", "60 or older", RATHER_NOT),
+            "age", "How old are you?",
+            ("under 20", "20 to 29", "30 to 39", "40 to 49", "50 to 59", "60 or older"),
         ),
         (
-            "occupation",
-            "What is your occupation?",
-            (
-                "student",
-                "researcher",
-                "engineer or developer",
-                "teacher or lecturer",
-                "something else",
-                RATHER_NOT,
-            ),
+            "occupation", "What is your occupation?",
+            ("student", "researcher", "engineer or developer", "teacher or lecturer", "something else"),
         ),
-        ("licence", "Do you have a driver's licence?", ("yes", "no", RATHER_NOT)),
+        ("licence", "Do you have a driver's licence?", ("yes", "no")),
         (
-            "countries",
-            "In how many countries have you driven?",
-            ("none", "1", "2 to 3", "4 to 6", "7 or more", RATHER_NOT),
+            "countries", "In how many countries have you driven?",
+            ("none", "1", "2 to 3", "4 to 6", "7 or more"),
         ),
         ("ai", "How often do you use generative AI (chat and the like)?", HOW_OFTEN),
         ("simulators", "How often do you use driving simulators?", HOW_OFTEN),
     )
-)
+)  # fmt: skip
 """The thesis' six questions about the rater."""
 
 
@@ -159,8 +148,7 @@ class Item(Frozen):
 
     @property
     def questions(self) -> tuple[Question, ...]:
-        """The questions about the road or the pair of roads: an overall rating, a rating for each criterion,
-        and remarks."""
+        """An overall rating, a rating for each criterion, and remarks."""
         overall, each, what = ASKED[self.part]
         answers, in_each = (MATCHES, MATCHES) if self.part == "alignment" else (ALIKE, ALIKE_IN)
         remarks = f"Do you have any remarks about {what}? (optional)"
@@ -210,8 +198,7 @@ class Survey(Frozen):
 
     @cached_property
     def pages(self) -> tuple[QuestionPage, ...]:
-        """All pages in a fixed order: questions about the rater, roads, pairs of roads, attention check, end.
-        ``pages_for`` returns them in the order in which one rater sees them."""
+        """All pages: questions about the rater, roads, pairs of roads, attention check, end."""
         pages = [QuestionPage(part="about", questions=self.about)] if self.about else []
         pages += [
             QuestionPage(part=item.part, questions=item.questions, item=item)
@@ -223,13 +210,8 @@ class Survey(Frozen):
 
     def pages_for(self, digest: str) -> tuple[QuestionPage, ...]:
         """Returns all pages in the order in which one rater sees them, which depends only on the digest of
-        the rater's token.
-
-        The page about the rater comes first, then the roads in random order, then the pairs of roads in
-        random order, then the last page. The attention check is placed at random among the roads, or among
-        the pairs if there are no roads. If there are two or more roads (or pairs), at least one precedes the
-        attention check and at least one follows.
-        """
+        the rater's token: roads and pairs of roads in random order, and the attention check at random between
+        two roads, or between two pairs if there are no roads."""
         rng = np.random.default_rng(int(digest, 16))
         about, roads, check, pairs, end = (
             [page for page in self.pages if page.part == part]

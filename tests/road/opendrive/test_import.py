@@ -59,7 +59,7 @@ def apart(one: Road, other: Road) -> float:
 
 
 @given(designs())
-@settings(max_examples=40)
+@settings(max_examples=20)
 def test_what_we_export_comes_back_as_it_was(
     tmp_path_factory: pytest.TempPathFactory, design: object
 ) -> None:

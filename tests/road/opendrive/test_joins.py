@@ -172,7 +172,7 @@ def pens(draw: st.DrawFn) -> Pen:
 
 
 @given(pens())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 def test_any_line_is_read_or_refused_in_a_sentence(
     tmp_path_factory: pytest.TempPathFactory, pen: Pen
 ) -> None:

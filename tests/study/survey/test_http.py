@@ -355,7 +355,7 @@ BODIES = st.one_of(
 )
 
 
-@settings(max_examples=120, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(method=st.sampled_from(["GET", "POST", "PUT"]), path=PATHS | st.text(max_size=20).map("/{}".format),
        kind=st.sampled_from([FORM, JSON, "text/plain", ""]), body=BODIES)  # fmt: skip
 @example(method="POST", path="/answer", kind=JSON, body=b"[" * 60_000)

@@ -15,6 +15,7 @@ from roadgpt.brief.change.clashes import refuse_clashes
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import EditRequest
 from roadgpt.brief.change.spoken import spoken
+from roadgpt.brief.languages import pattern_of
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.readers.model.trained import DOUBT
 from roadgpt.brief.refusal import MOST_CHARACTERS, causes_of
@@ -23,17 +24,6 @@ from roadgpt.chat import ChatSettings
 from roadgpt.errors import BriefError, EditError
 
 ADVICE = "say for example: make the second turn sharper"
-SURFACE_WORDS = {
-    "wet": r"wet|rainy|nass\w*|nässe|regennass\w*|mouillée?s?|mojad[oa]s?|bagnat[oaie]",
-    "snow": r"snow\w*|schnee\w*|verschneit\w*|neige|enneigée?s?|nieve|nevad[oa]s?|neve|innevat[oaie]",
-    "ice": r"ice|icy|eis|eisig\w*|vereist\w*|glatteis|verglas|verglacée?s?|hielo|helad[oa]s?|ghiacci\w+",
-}
-"""The words that name a surface in a change request, as regular expressions, by the surface's name."""
-DENIALS = (
-    r"not?|n't|never|without|instead|than|dry|nicht|kein\w*|ohne|statt|trocken\w*|pas|sans|sec|sèche|sin|sec[oa]|non|senza|"
-    r"asciutt[oa]"
-)
-"""Words with which a surface may be denied; it is then left as it is, and listed as not understood."""
 SHOWN = 60
 """The largest number of letters of a request that a message repeats."""
 
@@ -100,11 +90,9 @@ def _surface_in(words: str) -> tuple[str, tuple[str, ...]]:
     """Returns the slipperiest surface that the words ask for, and the words that name a surface. The surface
     is "" if there is none, or if the words may deny it.
     """
-    found = {
-        name: tuple(re.findall(rf"\b(?:{stems})\b", words, re.I)) for name, stems in SURFACE_WORDS.items()
-    }
+    found = {name: tuple(pattern_of(name, "surfaces", re.I).findall(words)) for name in SURFACES}
     named = [name for name, those in found.items() if those]
-    is_denied = re.search(rf"\b(?:{DENIALS})\b", words, re.I)
+    is_denied = pattern_of("denials", flags=re.I).search(words)
     slipperiest = min(named, key=lambda name: SURFACES[name].friction, default="")
     return "" if is_denied else slipperiest, tuple(word for name in named for word in found[name])
 

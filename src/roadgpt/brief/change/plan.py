@@ -11,6 +11,7 @@ from collections.abc import Container, Iterator, Mapping
 from dataclasses import replace
 from typing import Any, Literal, cast, get_args
 
+from roadgpt.brief.amount import figure
 from roadgpt.brief.change.request import (
     HALVES,
     MUCH,
@@ -42,7 +43,7 @@ def _change(change: Change) -> str:
 def _wish(change: Change) -> Iterator[str]:
     if change.what == "count":
         low, high = ("..", "") if change.bound < 0 else ("", ".." if change.bound else "")
-        yield f"x{low}{_number(change.to or 0)}{high}"
+        yield f"x{low}{figure(change.to or 0, 6)}{high}"
         return
     if change.what == "move":
         assert change.place is not None
@@ -66,12 +67,12 @@ def _value(change: Change) -> Iterator[str]:
     if place and not change.is_compared:
         yield {-1: f"..{place}", 0: f"={place}", 1: f"{place}.."}[change.bound]
     elif change.to is not None:
-        number = _number(change.to)
+        number = figure(change.to, 6)
         yield {-1: f"..{number}", 0: f"={number}", 1: f"{number}.."}[change.bound]
     elif change.by is not None:
-        yield f"{'+' if change.more > 0 else '-'}{_number(change.by)}"
+        yield f"{'+' if change.more > 0 else '-'}{figure(change.by, 6)}"
     elif change.times is not None:
-        yield f"x{_number(change.times)}"
+        yield f"x{figure(change.times, 6)}"
     elif change.more:
         yield from (word for word, dose in DOSES.items() if dose == change.dose)
         yield "more" if change.more > 0 else "less"
@@ -87,7 +88,7 @@ def _added(change: Change) -> Iterator[str]:
     yield from (word for word in (change.side, change.sharpness, change.slope) if word)
     for key, field in NUMBERS.items():
         if (value := getattr(change, field)) is not None:
-            yield f"{key}={_number(value)}"
+            yield f"{key}={figure(value, 6)}"
     if change.is_whole:
         yield "whole"
     if change.place:
@@ -113,15 +114,11 @@ def _place(target: Target) -> str:
     words += [word for word in (target.side, target.sharpness, target.way, target.size) if word]
     for key in ("deg", "len"):
         if (value := getattr(target, NUMBERS[key])) is not None:
-            words.append(f"{key}={_number(value)}")
+            words.append(f"{key}={figure(value, 6)}")
     words += [name for name, half in HALVES.items() if half == target.half]
     words += [_position(target.place)] if target.place else []
     words += [f"but({_place(target.but)})"] if target.but else []
     return " ".join(words)
-
-
-def _number(value: float) -> str:
-    return f"{value:.6f}".rstrip("0").rstrip(".")
 
 
 def read_change_plan(line: str) -> EditRequest:
@@ -274,8 +271,8 @@ class ChangeParser:
         if self._take("-"):
             return self._of(replace(change, more=-1, by=self._figure()))
         if self._take("x"):
-            figure = self._figure()
-            return self._of(replace(change, times=figure / 100 if self._take("%") else figure))
+            factor = self._figure()
+            return self._of(replace(change, times=factor / 100 if self._take("%") else factor))
         if self._next() in (*NOUNS, *KINDS):
             change = self._to(replace(change, bound=1))
             self._need("..")

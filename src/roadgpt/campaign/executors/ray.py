@@ -19,13 +19,12 @@ from roadgpt.campaign.workers import (
     VALUE,
     Worker,
     WorkerConfig,
-    WorkerEndedError,
     WorkerPool,
     answer,
-    pickled,
     portable,
     unpickled,
 )
+from roadgpt.drive.isolation.process import GoneError, pickled
 from roadgpt.errors import RoadGPTError, UsageError, to_install
 
 ANSWER = 10.0  # s for the head of a cluster to accept a connection
@@ -88,12 +87,13 @@ class Actor(Worker):
         try:
             kind, what = self._ray.get(promised, timeout=patience)
         except errors.GetTimeoutError:
-            raise WorkerEndedError(f"took longer than {patience:g} s") from None
+            raise GoneError(f"took longer than {patience:g} s", is_late=True) from None
         except errors.RayError as error:
             alive = {node["NodeID"] for node in self._ray.nodes() if node["Alive"]}
             reason = str(error).strip().partition("\n")[0]
             how = f"ended: {reason}" if reason else "ended"
-            raise WorkerEndedError(how, not self._node or self._node in alive) from None
+            is_off = bool(self._node) and self._node not in alive
+            raise GoneError(how, is_blameless=is_off) from None
         return kind, what
 
     def ask_to_end(self) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 _MODULES = {
     "faults_in": "fault",
-    "reason_of": "reason",
+    "reason_of": "failures",
     "repeated": "stability",
     "simplest": "minimise",
     "smallest_change": "minimise",

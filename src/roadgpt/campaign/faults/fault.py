@@ -11,12 +11,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from roadgpt.campaign.faults.failures import LocatedFailure, failures_of, groups_of, typical
-from roadgpt.campaign.faults.reason import Way
+from roadgpt.campaign.faults.failures import LocatedFailure, Way, failures_of, groups_of, typical
 from roadgpt.campaign.faults.remedy import (
     REMEDIES,
     Removed,
-    TriedGroup,
     faults_by_remedy,
     has_remedies,
     stored_remedies,
@@ -227,8 +225,7 @@ def _joined(groups: Sequence[Fault], tested: Tested) -> list[Fault]:
     for those in systems.values():
         joined: dict[str, list[Fault]] = {}
         tried = [
-            TriedGroup(len(one.members), tuple(tested[it.name] for it in one.members if it.name in tested))
-            for one in those
+            (len(one.members), [tested[it.name] for it in one.members if it.name in tested]) for one in those
         ]
         remedies = faults_by_remedy(tried)
         for group, remedy in zip(those, remedies, strict=True):

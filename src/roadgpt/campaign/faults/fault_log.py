@@ -21,10 +21,9 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from roadgpt.campaign.faults.failures import between
+from roadgpt.campaign.faults.failures import FailureReason, between, reason_of
 from roadgpt.campaign.faults.fault import Fault, Faults
 from roadgpt.campaign.faults.minimise import simplest
-from roadgpt.campaign.faults.reason import FailureReason, reason_of
 from roadgpt.campaign.faults.remedy import FOLDER, made_folder, page_of, stored
 from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
 from roadgpt.campaign.folder_record import kept_run

@@ -10,7 +10,7 @@ the car fail.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 from roadgpt.brief.model import Brief
 from roadgpt.check import inspect
@@ -29,15 +29,8 @@ ROUNDED = (
 Change = Callable[[Segment], Segment | None]  # returns the simplified segment, or None to remove the segment
 
 
-class Simplification(NamedTuple):
-    """One simplification of one segment."""
-
-    segment: int  # index of the segment, from 0, in the Design that is simplified
-    change: Change
-
-
-Simplifier = Callable[[Design], list[Simplification]]
-"""Lists the simplifications of one type for every segment of a Design."""
+Simplification = tuple[int, Change]
+"""One simplification of one segment, whose index from 0 in the Design comes first."""
 
 
 @dataclass(frozen=True)
@@ -156,17 +149,17 @@ def _reduced(design: Design, steps: Sequence[Simplification], trial: Trial) -> D
 def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None:
     """Returns the Design with all the given simplifications applied; None if no segment would be left."""
     segments: list[Segment | None] = list(design.segments)
-    for step in steps:
-        segment = segments[step.segment]
+    for index, change in steps:
+        segment = segments[index]
         if segment is not None:
-            segments[step.segment] = step.change(segment)
+            segments[index] = change(segment)
     left = tuple(segment for segment in segments if segment is not None)
     return design.model_copy(update={"segments": left}) if left else None
 
 
 def _dropping(design: Design) -> list[Simplification]:
     # the last segment first: what comes after the departure matters least
-    return [Simplification(index, lambda segment: None) for index in reversed(range(len(design.segments)))]
+    return [(index, lambda segment: None) for index in reversed(range(len(design.segments)))]
 
 
 def _straight(segment: Segment) -> Segment:
@@ -178,22 +171,18 @@ def _straight(segment: Segment) -> Segment:
     )
 
 
-def _changing(field: str, change: Change, unit: float = 0.0) -> Simplifier:
-    """Returns a Simplifier that changes every segment whose ``field`` is not 0, and no multiple of ``unit``
-    where one is given."""
+def _changing(field: str, change: Change, unit: float = 0.0) -> Callable[[Design], list[Simplification]]:
+    """Returns a function that lists a change of every segment whose ``field`` is not 0, and no multiple of
+    ``unit`` where one is given."""
 
     def way(design: Design) -> list[Simplification]:
         values = [getattr(segment, field) for segment in design.segments]
-        return [
-            Simplification(index, change)
-            for index, value in enumerate(values)
-            if value and (not unit or value % unit)
-        ]
+        return [(index, change) for index, value in enumerate(values) if value and (not unit or value % unit)]
 
     return way
 
 
-def _rounding(field: str, unit: float) -> Simplifier:
+def _rounding(field: str, unit: float) -> Callable[[Design], list[Simplification]]:
     def rounded(segment: Segment) -> Segment:
         value = round(getattr(segment, field) / unit) * unit
         return segment.model_copy(update={field: value}) if value else segment
@@ -201,7 +190,7 @@ def _rounding(field: str, unit: float) -> Simplifier:
     return _changing(field, rounded, unit)
 
 
-SIMPLIFIERS: tuple[Simplifier, ...] = (
+SIMPLIFIERS: tuple[Callable[[Design], list[Simplification]], ...] = (
     _dropping,
     _changing("incline", lambda segment: segment.model_copy(update={"incline": 0.0})),
     _changing("turn_degrees", _straight),

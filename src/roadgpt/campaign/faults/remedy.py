@@ -14,7 +14,6 @@ changes their curvature or grade; the road after them moves accordingly. The cha
 drive only, so it may leave the map or overlap itself.
 """
 
-from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, combinations, pairwise
@@ -23,8 +22,7 @@ from typing import Any, NamedTuple, Self, TypeVar
 
 import numpy as np
 
-from roadgpt.campaign.faults.failures import AROUND, LocatedFailure
-from roadgpt.campaign.faults.reason import STRAIGHT, bend_at
+from roadgpt.campaign.faults.failures import AROUND, STRAIGHT, LocatedFailure, bend_at
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.errors import RoadGPTError, UsageError, explained
@@ -109,9 +107,10 @@ class Alignment:
             grade=np.insert(self.grade, at, np.full(count, self.grade[at])),
         )
 
-    def levelled(self, factor: float) -> Self:
-        """Returns a copy in which all grades are multiplied by ``factor``."""
-        return replace(self, grade=self.grade * factor)
+    def levelled(self, factor: float) -> Self | None:
+        """Returns a copy in which all grades are multiplied by ``factor``; None for a level road."""
+        is_hilly = np.abs(self.grade).max() > HILLY
+        return replace(self, grade=self.grade * factor) if is_hilly else None
 
     def road(self, like: Road) -> Road:
         """Builds the road, with the same start position, start heading and start height as ``like``."""
@@ -150,8 +149,6 @@ class FailurePlace(NamedTuple):
 
 T = TypeVar("T")
 
-Change = Callable[[FailurePlace], Alignment | None]
-
 
 @dataclass(frozen=True)
 class Remedy:
@@ -159,7 +156,7 @@ class Remedy:
 
     name: str  # kind and size, such as 'wider 15'
     sentence: str  # the change as text for users, which completes 'it disappears with ...'
-    change: Change  # returns the changed alignment; None if the change does not apply
+    change: Callable[[FailurePlace], Alignment | None]  # None if the change does not apply
     limit: float = 1.0  # factor of the speed limit
 
     @property
@@ -168,52 +165,42 @@ class Remedy:
         return self.name.split()[0]
 
 
-def _of_bend(
-    bend_of: Callable[[FailurePlace], Bend | None],
-    change: Callable[[Alignment, Bend, float], Alignment],
-    size: float,
-) -> Change:
-    def changed(place: FailurePlace) -> Alignment | None:
-        bend = bend_of(place)
-        return change(place.alignment, bend, size) if bend else None
-
-    return changed
-
-
 def _remedies(percent: int, metres: int, flatter: float, grades: str) -> Iterator[Remedy]:
     """Yields a change of each kind: radii and speed limits by some percent, metres of straight or of averaged
     curvature, and grades times ``flatter``, which the name of the remedy calls ``grades``."""
-    more, less = 1 + percent / 100, 1 - percent / 100
-    bigger = f"a {percent} % larger radius of the bend"
-
-    def apart(place: FailurePlace) -> Alignment | None:
-        return place.alignment.with_straight(place.bend, metres) if place.bend and place.before else None
-
-    def flat(place: FailurePlace) -> Alignment | None:
-        is_hilly = np.abs(place.alignment.grade).max() > HILLY
-        return place.alignment.levelled(flatter) if is_hilly else None
-
-    def here(change: Callable[[Alignment, Bend, float], Alignment], size: float) -> Change:
-        return _of_bend(lambda place: place.bend, change, size)
-
-    before = _of_bend(lambda place: place.before, Alignment.widened, more)
-    after = _of_bend(lambda place: place.after, Alignment.widened, more)
-    yield Remedy(f"wider {percent}", bigger, here(Alignment.widened, more))
-    yield Remedy(
-        f"shorter {percent}",
-        f"a bend that turns {percent} % less",
-        here(Alignment.shortened, less),
-    )
-    yield Remedy(
-        f"eased {metres}",
-        f"curvature that changes over {metres} m more",
-        here(Alignment.eased, metres),
-    )
-    yield Remedy(f"apart {metres}", f"{metres} m of straight between the bend and the one before", apart)
-    yield Remedy(f"before {percent}", f"{bigger} before", before)
-    yield Remedy(f"after {percent}", f"{bigger} after", after)
-    yield Remedy(f"flatter {grades}", f"a road {'half as steep' if flatter else 'without slopes'}", flat)
-    yield Remedy(f"slower {percent}", f"a speed limit {percent} % lower", lambda its: its.alignment, less)
+    more, less, bigger = 1 + percent / 100, 1 - percent / 100, f"a {percent} % larger radius of the bend"
+    slopes = "half as steep" if flatter else "without slopes"
+    for name, sentence, change in (
+        (f"wider {percent}", bigger, lambda its: its.bend and its.alignment.widened(its.bend, more)),
+        (
+            f"shorter {percent}",
+            f"a bend that turns {percent} % less",
+            lambda its: its.bend and its.alignment.shortened(its.bend, less),
+        ),
+        (
+            f"eased {metres}",
+            f"curvature that changes over {metres} m more",
+            lambda its: its.bend and its.alignment.eased(its.bend, metres),
+        ),
+        (
+            f"apart {metres}",
+            f"{metres} m of straight between the bend and the one before",
+            lambda its: its.bend and its.before and its.alignment.with_straight(its.bend, metres),
+        ),
+        (
+            f"before {percent}",
+            f"{bigger} before",
+            lambda its: its.before and its.alignment.widened(its.before, more),
+        ),
+        (
+            f"after {percent}",
+            f"{bigger} after",
+            lambda its: its.after and its.alignment.widened(its.after, more),
+        ),
+        (f"flatter {grades}", f"a road {slopes}", lambda its: its.alignment.levelled(flatter)),
+        (f"slower {percent}", f"a speed limit {percent} % lower", lambda its: its.alignment),
+    ):
+        yield Remedy(name, sentence, change, less if name.startswith("slower") else 1.0)
 
 
 Removed = Mapping[str, bool | None]
@@ -350,11 +337,8 @@ LARGER = 0.8  # weight of a failure that needs a larger change: small changes sa
 EPS = 1e-9
 
 
-class TriedGroup(NamedTuple):
-    """A group of similar failures, of which some were tested."""
-
-    size: int  # number of failures in the group
-    removed: tuple[Removed, ...]  # for each tested failure: which changes make it disappear
+TriedGroup = tuple[int, Sequence[Removed]]
+"""The number of failures in a group of similar ones, and what removes each of those that were tested."""
 
 
 def faults_by_remedy(groups: Sequence[TriedGroup]) -> list[str | None]:
@@ -365,25 +349,24 @@ def faults_by_remedy(groups: Sequence[TriedGroup]) -> list[str | None]:
     ``ACROSS`` and ``FEWEST``, the one whose faults have most failures is taken, where a failure that needs a
     larger change counts 0.8; of equally good ones that with the fewest and smallest changes.
     """
-    shares = np.array([[_share(group, remedy.name) for remedy in REMEDIES] for group in groups])
+    sizes = np.array([size for size, _ in groups], float)
+    shares = np.array([[_share(removed, remedy.name) for remedy in REMEDIES] for _, removed in groups])
     best: list[int | None] = [None] * len(groups)
     most = 0.0
     every = range(len(REMEDIES))
     for chosen in chain.from_iterable(combinations(every, count) for count in range(1, MOST + 1)):
         found = _assigned(shares, chosen)
-        sizes = Counter[int]()
-        for group, at in zip(groups, found, strict=True):
-            if at is not None:
-                sizes[at] += group.size
-        value = sum(size * (1.0 if at < SMALL else LARGER) for at, size in sizes.items())
-        is_seen_often = len(groups) == 1 or all(size >= FEWEST for size in sizes.values())
-        if value > most and is_seen_often and _is_apart(groups, shares, found):
+        members = {at: [i for i, own in enumerate(found) if own == at] for at in found if at is not None}
+        counts = {at: sizes[its].sum() for at, its in members.items()}
+        value = float(sum(size * (1.0 if at < SMALL else LARGER) for at, size in counts.items()))
+        is_seen_often = len(groups) == 1 or all(size >= FEWEST for size in counts.values())
+        if value > most and is_seen_often and _is_apart(members, sizes, shares):
             best, most = found, value
     return [None if at is None else REMEDIES[at].name for at in best]
 
 
-def _share(group: TriedGroup, name: str) -> float:
-    return sum(bool(each[name]) for each in group.removed) / len(group.removed) if group.removed else 0.0
+def _share(removed: Sequence[Removed], name: str) -> float:
+    return sum(bool(each[name]) for each in removed) / len(removed) if removed else 0.0
 
 
 def _assigned(shares: Array, chosen: Sequence[int]) -> list[int | None]:
@@ -396,10 +379,8 @@ def _assigned(shares: Array, chosen: Sequence[int]) -> list[int | None]:
     return found
 
 
-def _is_apart(groups: Sequence[TriedGroup], shares: Array, found: Sequence[int | None]) -> bool:
+def _is_apart(members: Mapping[int, list[int]], sizes: Array, shares: Array) -> bool:
     """Tells whether the faults keep to ``WITHIN`` and ``ACROSS``; each group counts by its size."""
-    members = {at: [i for i, own in enumerate(found) if own == at] for at in found if at is not None}
-    sizes = np.array([group.size for group in groups], float)
 
     def removed(at: int, by: int) -> float:
         return float(np.average(shares[members[at], by], weights=sizes[members[at]]))

@@ -6,25 +6,21 @@ attributed to chance.
 """
 
 from collections import deque
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from inspect import signature
 from typing import Any
 
 import numpy as np
-from scipy.stats import beta
 
 from roadgpt import plugins
-from roadgpt.drive import Command, Simulator, View, simulate
+from roadgpt.drive import Command, View, simulate
 from roadgpt.drive.isolation import driver_of
-from roadgpt.drive.permission import require_permission
 from roadgpt.errors import DriverError, SimulationError, SimulatorError
 from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.run.model import LostDrives
 from roadgpt.verdict import Verdict, judge
 
-SURE = 0.95  # confidence level of the interval
 STABLE = 0.5  # share of drives that fail, from which a failure counts as stable
 GRIP = 0.05  # standard deviation of friction, as a share: patches of one dry road differ by this much
 START = 0.10  # m, standard deviation of the lateral start position: a positioning system with corrections
@@ -115,14 +111,6 @@ class Stability:
         return self.share >= STABLE
 
     @property
-    def interval(self) -> tuple[float, float]:
-        """95 % confidence interval of ``share``, after Clopper and Pearson (Biometrika 26, 1934)."""
-        n, k = len(self.drives), self.failed
-        low = float(beta.ppf((1 - SURE) / 2, k, n - k + 1)) if k else 0.0
-        high = float(beta.ppf((1 + SURE) / 2, k + 1, n - k)) if k < n else 1.0
-        return low, high
-
-    @property
     def sentence(self) -> str:
         """The result as text for users."""
         if self.failed == len(self.drives):
@@ -131,17 +119,14 @@ class Stability:
         return f"fails in {share} drives with friction, start and sensors slightly disturbed"
 
 
-def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = map) -> Stability:
+def repeated(run: Run, times: int) -> Stability:
     """Drives the road of a valid Run ``times`` times, each time with a disturbance derived from the Run's
-    seed and its number. ``spread`` runs the drives: the built-in ``map``, or that of a pool."""
-    require_permission(run.request.setup.driver)  # other processes do not know who named the driver
-    return Stability(tuple(spread(once, [(run, number) for number in range(1, times + 1)])))
+    seed and its number. A DriverError or a SimulationError counts as a failure; after a SimulatorError, the
+    drive is repeated."""
+    return Stability(tuple(_once(run, number) for number in range(1, times + 1)))
 
 
-def once(task: tuple[Run, int]) -> Repeated:
-    """Drives a Run's road once with the disturbance of a number. A DriverError or a SimulationError counts as
-    a failure; after a SimulatorError, the drive is repeated."""
-    run, number = task
+def _once(run: Run, number: int) -> Repeated:
     disturbance = disturbance_of(run.seed, number)
     losses: LostDrives[int] = LostDrives()
     while True:
@@ -162,17 +147,11 @@ def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
     road, world, setup = run.road, run.world, run.request.setup
     assert road is not None
     driver = LateDriver(driver_of(setup.driver), disturbance.delay, world)
-    heeds = "friction" not in getattr(plugins.find("simulators", setup.simulator), "ignores", ())
+    part: Any = plugins.find("simulators", setup.simulator)
+    heeds = "friction" not in getattr(part, "ignores", ())
     grip = world.site.friction * (disturbance.friction if heeds else 1.0)
     slippery = world.changed(friction=grip)
-    drive = simulate(road, slippery, driver, run.seed, _engine(setup.simulator, disturbance), False)
+    is_shifted = isinstance(part, type) and "start_offset" in signature(part).parameters
+    engine = part(start_offset=disturbance.offset) if is_shifted else part
+    drive = simulate(road, slippery, driver, run.seed, engine, False)
     return judge(road, drive, slippery)
-
-
-def _engine(name: str, disturbance: Disturbance) -> Simulator | str:
-    """Returns the simulator with the disturbed start position; just its name if it has no such setting."""
-    part = plugins.find("simulators", name)
-    if not isinstance(part, type) or "start_offset" not in signature(part).parameters:
-        return name
-    engine: Simulator = part(start_offset=disturbance.offset)
-    return engine

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.brief.element import Elements
-from roadgpt.campaign.archive import Archive, Predictions, is_far, select, spread_out, stacked
+from roadgpt.campaign.archive import Archive, is_far, select, spread_out, stacked
 from roadgpt.campaign.behaviour import DRIVEN
 from roadgpt.campaign.boundary_pairs import paired
 from roadgpt.campaign.model import GOALS, Cell, Goal, Pool, Proposal, Result
@@ -72,8 +72,7 @@ class QualityDiversity(SearchGenerator):
         self._maps = [Archive(axes, self._wanted.cells, self._wanted.archive) for axes in self._wanted.maps]
         self._driven = [axis for axis in self._setting.axes if axis in DRIVEN]
         self._results: dict[int, Result] = {}
-        self._looks: dict[int, Sketch] = {}
-        self._shapes: dict[int, PlanShape] = {}
+        self._looks: dict[int, tuple[Sketch, PlanShape]] = {}
         self._roads: dict[int, Elements] = {}
         self._elites: list[int] = []
 
@@ -105,16 +104,14 @@ class QualityDiversity(SearchGenerator):
         """Sketches the roads added since the last call; keeps those of the last 1500."""
         known = list(self._results)[-MOST:]
         self._looks = {number: self._looks[number] for number in known if number in self._looks}
-        self._shapes = {number: self._shapes[number] for number in self._looks}
         new = [number for number in known if number not in self._looks]
         found = pool.map(sketch_of, [(self._design(number), self._setting) for number in new])
-        for number, (look, shape) in zip(new, found, strict=True):
-            self._looks[number], self._shapes[number] = look, shape
+        self._looks |= dict(zip(new, found, strict=True))
 
     def _built(self, sketches: Sequence[Sketch], n: int, pool: Pool) -> list[Candidate]:
         """Returns the first n sketches that keep every requirement and rule and resemble no tested road."""
         found: list[Candidate] = []
-        tested = stacked([*self._shapes.values()]) if self._shapes else None
+        tested = stacked([shape for _, shape in self._looks.values()]) if self._looks else None
         at = 0
         while len(found) < n and at < len(sketches):
             some = sketches[at : at + n - len(found)]
@@ -154,29 +151,28 @@ class QualityDiversity(SearchGenerator):
         features = [one.surrogate_features for one in sketches]
         if len(self._looks) < FEWEST:
             return [sketches[i] for i in spread_out(features, n, hazard_of(features))]
-        is_coverage = self._goal == "coverage"
-        counts = [each.tests if is_coverage else each.failures for each in self._maps]
-        return [sketches[i] for i in select(self._goal, n, self._expected(sketches), counts)]
-
-    def _expected(self, sketches: Sequence[Sketch]) -> Predictions:
         results = [self._results[number] for number in self._looks]
         known, fresh = self._seen(results, sketches)
         columns = (*STEERING, *range(len(NAMES), known.shape[1] - 1))
         guesses = {1 + self._driven.index("STD_SA"): columns} if "STD_SA" in self._driven else {}
-        model = Surrogate([*known], [self._outcome(result) for result in results], guesses)
+        driven = [[its.features.get(axis, 0.0) for axis in self._driven] for its in results]
+        targets = [target_of(its.margin or 0.0, its.failed) for its in results]
+        outcomes = [[one, *others] for one, others in zip(targets, driven, strict=True)]
+        model = Surrogate([*known], outcomes, guesses)
         opinions = model.opinions([*fresh])
-        cells = tuple(self._cells(each, opinions, sketches) for each in self._maps)
-        return Predictions(opinions[..., 0], cells)
+        cells = [self._cells(each, opinions, sketches) for each in self._maps]
+        counts = [each.tests if self._goal == "coverage" else each.failures for each in self._maps]
+        return [sketches[i] for i in select(self._goal, n, opinions[..., 0], cells, counts)]
 
     def _seen(self, results: Sequence[Result], sketches: Sequence[Sketch]) -> tuple[Array, Array]:
         """Returns what the trees see of the driven roads, and of sketches: a row for each road."""
-        looks = [*self._looks.values()]
+        looks = [look for look, _ in self._looks.values()]
         known, fresh = (np.array([one.surrogate_features for one in some]) for some in (looks, sketches))
         told = [at for at, one in enumerate(results) if not one.failed or one.at_s is not None]
         if sum(results[at].failed for at in told) < FEWEST_FAILURES:
             return known, fresh
         places = DepartureModel([looks[at].stations for at in told], [results[at].at_s for at in told])
-        here, there = (places.predict([one.stations for one in some]).table() for some in (looks, sketches))
+        here, there = (places.predict([one.stations for one in some]) for some in (looks, sketches))
         return np.concatenate([known, here], axis=1), np.concatenate([fresh, there], axis=1)
 
     def _cells(self, archive: Archive, opinions: Array, sketches: Sequence[Sketch]) -> NDArray[np.intp]:
@@ -188,11 +184,6 @@ class QualityDiversity(SearchGenerator):
             else:
                 places[..., column] = [one.features.get(axis, 0.0) for one in sketches]
         return archive.cells(places.reshape(-1, places.shape[-1])).reshape(places.shape[:2])
-
-    def _outcome(self, result: Result) -> list[float]:
-        assert result.margin is not None
-        driven = [result.features.get(axis, 0.0) for axis in self._driven]
-        return [target_of(result.margin, result.failed), *driven]
 
     def _bisected(self, batch: int, n: int, pool: Pool) -> list[Candidate]:
         """Returns roads that lie between a passed test and the most similar failed test."""

@@ -1,17 +1,14 @@
 """Asks any server with OpenAI's protocol: OpenAI, Azure, Ollama, llama.cpp, vLLM, LM Studio and others.
 
-A server may not support schemas, may silently ignore them, or may reject a parameter. There are three ways of
-asking for JSON: with a schema that the server enforces; as any JSON object, with the schema in the prompt; as
-plain text, from which the JSON is extracted. The provider tries these ways in turn, beginning with the
-strictest, and remembers which parameters and formats the server accepts, so that each process has to find
-this out only once. The reply is always validated."""
+A server may not support schemas, may silently ignore them, or may reject a parameter. JSON is asked for with
+a schema that the server enforces and, if that does not work, as plain text with the schema in the prompt.
+What the server accepts is remembered, so that each process has to find it out only once. The reply is always
+validated."""
 
 import json
 import time
-from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from enum import IntEnum
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -25,16 +22,7 @@ from roadgpt.chat.model import ChatSettings, Message, Reply, Spent, Usage
 from roadgpt.errors import ChatError, RefusedError, UnparsableError
 
 FULL = ("context_length", "context window", "too long", "maximum context")
-# after so many unusable replies in a row in one format, the server is taken not to support it
-UNUSABLE_IN_A_ROW = 2
-
-
-class ResponseFormat(IntEnum):
-    """The ways of asking for JSON, from the strictest to the loosest."""
-
-    SCHEMA = 0
-    OBJECT = 1
-    TEXT = 2
+UNUSABLE_IN_A_ROW = 2  # replies, after which the server is taken not to support schemas
 
 
 @dataclass
@@ -44,18 +32,10 @@ class ServerQuirks:
     caps: tuple[str, ...]
     """Names that the server may use for the parameter that limits the length of a reply; the first is
     tried first."""
-    response_format: ResponseFormat = ResponseFormat.SCHEMA
+    takes_schema: bool = True
     takes_temperature: bool = True
-    unusable: Counter[int] = field(default_factory=Counter)
-    """How many replies in a row were unusable, by response format."""
-
-    def worked(self, response_format: ResponseFormat, refused: set[ResponseFormat]) -> None:
-        """Notes that a reply in this response format was usable. If all stricter formats were rejected or
-        failed repeatedly, this one is tried first from now on."""
-        self.unusable[response_format] = 0
-        above = range(self.response_format, response_format)
-        if all(one in refused or self.unusable[one] >= UNUSABLE_IN_A_ROW for one in above):
-            self.response_format = max(self.response_format, response_format)
+    unusable: int = 0
+    """How many replies in a row did not fit the schema that was sent."""
 
 
 @cache
@@ -73,7 +53,7 @@ forget = quirks_of.cache_clear
 
 ABOUT_FORMAT = ("response_format", "json", "schema", "grammar", "format", "structured", "guided")
 OTHER_WAY = {400, 404, 415, 422, 500, 501}  # statuses after which another response format may work
-MOST_REQUESTS = 8  # for one question: three response formats, a second try, and dropped parameters
+MOST_REQUESTS = 8  # for one question: two formats, a second try, and dropped parameters
 
 
 class OpenAI:
@@ -105,37 +85,36 @@ class OpenAI:
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
         """Returns the answer, in whatever format the server supports; raises the errors of ``Chat.ask``.
 
-        If the server may have rejected the format of a request, or the answer is not usable, the question is
-        asked in the next looser format. If an answer in plain text lacks the JSON, the
-        question is asked once more in plain text."""
-        before = self.spent
-        answer, why = Answer(), ""
-        way = self._quirks.response_format if schema is not None else ResponseFormat.TEXT
-        refused = set[ResponseFormat]()
-        asked = messages
-        is_last = schema is None  # the next unusable reply in plain text ends the attempts
+        If the server may have rejected the schema, or the answer is not usable, the question is asked again
+        in plain text; if its answer lacks the JSON, once more."""
+        before, quirks = self.spent, self._quirks
+        answer, why, asked = Answer(), "", messages
+        by_schema = schema is not None and quirks.takes_schema
+        is_refused, is_last = False, schema is None
         for _ in range(MOST_REQUESTS):
             try:
-                answer = self._exchange(asked, schema, way)
+                answer = self._exchange(asked, schema, by_schema)
                 data = _data(answer, schema)
             except RequestError as fault:
                 if self._adapts(fault):
                     continue
-                if way == ResponseFormat.TEXT or not _is_about_format(fault):
+                if not (by_schema and _is_about_format(fault)):
                     raise ChatError(fault.sentence) from None
-                refused.add(way)
-                way = ResponseFormat(way + 1)
+                by_schema, is_refused = False, True
             except NotReadableError as error:
                 why = str(error)
-                self._quirks.unusable[way] += 1
-                if way == ResponseFormat.TEXT and is_last:
+                if is_last:
                     break
-                is_last = way == ResponseFormat.TEXT
-                way = ResponseFormat(min(way + 1, ResponseFormat.TEXT))
+                is_last = not by_schema
+                quirks.unusable += by_schema
+                by_schema = False
                 complaint = f"(The answer before this could not be used: {why}. Answer with JSON alone.)"
                 asked = [*messages, Message(role="user", text=complaint)]
             else:
-                self._quirks.worked(way, refused)
+                if by_schema:
+                    quirks.unusable = 0
+                elif is_refused or quirks.unusable >= UNUSABLE_IN_A_ROW:
+                    quirks.takes_schema = False
                 return self._reply(answer, data, before)
         raise UnparsableError(
             f"no answer of the model '{plain(self._model)}' can be used: {why}", answer.text
@@ -156,17 +135,26 @@ class OpenAI:
         )
 
     def _exchange(
-        self, messages: Sequence[Message], schema: type[BaseModel] | None, response_format: ResponseFormat
+        self, messages: Sequence[Message], schema: type[BaseModel] | None, by_schema: bool
     ) -> Answer:
         form = None if schema is None else schema_of(schema)
         told = list(messages)
-        if form is not None and response_format > ResponseFormat.SCHEMA:
+        if form is not None and not by_schema:
             told.append(_instruction(form))
         prompt = tokens_in(*(message.text for message in told))
         room = self._account.meter.reply_tokens(told, self._settings, self._model)
+        body: dict[str, Any] = {"model": self._model}
+        body["messages"] = [{"role": message.role, "content": message.text} for message in told]
+        if self._quirks.caps:
+            body[self._quirks.caps[0]] = room
+        if self._settings.temperature is not None and self._quirks.takes_temperature:
+            body["temperature"] = self._settings.temperature
+        if by_schema:
+            named = {"name": "answer", "schema": form, "strict": True}
+            body["response_format"] = {"type": "json_schema", "json_schema": named}
         begun = time.perf_counter()
         try:
-            answer = self._sent(told, self._body(form, response_format, room))
+            answer = from_chat(self._client.send(body))
         except NotReadableError:  # too long an answer: its cost is not known
             usage = Usage(prompt=prompt, completion=room)
             self._account.count(self._model, usage, time.perf_counter() - begun)
@@ -175,26 +163,6 @@ class OpenAI:
         usage = answer.usage if answer.usage.total else guessed
         self._account.count(answer.model, usage, time.perf_counter() - begun)
         return answer
-
-    def _sent(self, messages: Sequence[Message], body: dict[str, Any]) -> Answer:
-        said = [{"role": message.role, "content": message.text} for message in messages]
-        return from_chat(self._client.send({**body, "messages": said}))
-
-    def _body(
-        self, form: dict[str, Any] | None, response_format: ResponseFormat, room: int
-    ) -> dict[str, Any]:
-        quirks = self._quirks
-        body: dict[str, Any] = {"model": self._model}
-        if quirks.caps:
-            body[quirks.caps[0]] = room
-        if self._settings.temperature is not None and quirks.takes_temperature:
-            body["temperature"] = self._settings.temperature
-        if form is None or response_format == ResponseFormat.TEXT:
-            return body
-        is_schema = response_format == ResponseFormat.SCHEMA
-        named: dict[str, Any] = {"name": "answer", "schema": form, "strict": True}
-        kind = {"type": "json_schema", "json_schema": named} if is_schema else {"type": "json_object"}
-        return {**body, "response_format": kind}
 
     def _adapts(self, fault: RequestError) -> bool:
         """Returns True if a rejected parameter can be left out or renamed; later requests then do this."""

@@ -9,12 +9,10 @@ import math
 from itertools import combinations
 
 from roadgpt.brief.junctions import RAMPS
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, junction_finding, name_of
 from roadgpt.check.footprint import footprint
-from roadgpt.check.network_places import junction_finding, name_of
 from roadgpt.network import Network, RoadEnd, Route
-from roadgpt.network.building import edges_at
-from roadgpt.network.crossing import OPPOSITE
+from roadgpt.network.building import OPPOSITE, edges_at
 from roadgpt.road import World
 
 KERB = 1.0  # m

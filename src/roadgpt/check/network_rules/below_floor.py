@@ -2,8 +2,7 @@
 
 The limit is that of the rule ``below_floor`` for single roads."""
 
-from roadgpt.check.finding import Finding
-from roadgpt.check.network_places import road_finding
+from roadgpt.check.finding import Finding, road_finding
 from roadgpt.check.rules.below_floor import low_place
 from roadgpt.network import Network, Route
 from roadgpt.road import World

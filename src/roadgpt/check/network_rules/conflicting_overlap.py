@@ -5,9 +5,8 @@ single roads. Connecting roads of one junction may overlap; roads of one roundab
 ``ring_too_small``. Source: as for ``no_overlap``; an overlap outside junctions would be a crossing that no
 connection describes."""
 
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, owner_of, road_finding, station_near
 from roadgpt.check.footprint import footprint
-from roadgpt.check.network_places import owner_of, road_finding, station_near
 from roadgpt.check.rules.no_overlap import overlap_with_itself
 from roadgpt.network import Network, NetworkRoad, Route
 from roadgpt.road import World

@@ -5,9 +5,8 @@ Then its outer front wheel runs on a radius of 5.5 m, and the middle of the car 
 
 from collections.abc import Iterator
 
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, bends_below
 from roadgpt.check.network_measures import tightest_radius
-from roadgpt.check.network_places import bends_below
 from roadgpt.network import Junction, Network, Route
 from roadgpt.road import World
 

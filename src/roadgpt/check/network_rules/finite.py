@@ -2,8 +2,7 @@
 
 import math
 
-from roadgpt.check.finding import Finding
-from roadgpt.check.network_places import road_finding
+from roadgpt.check.finding import Finding, road_finding
 from roadgpt.check.rules.finite import missing_number
 from roadgpt.geometry import CubicProfile, GradeProfile, PieceCurve
 from roadgpt.network import Network, NetworkRoad, Route
@@ -23,7 +22,6 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
 
 
 def _sum(member: NetworkRoad) -> float:
-    """Returns the sum of all numbers that define a road; it is finite only if all of them are."""
     plan, heights, profile = member.road.plan, member.road.elevation, member.profile
     assert isinstance(plan, PieceCurve)
     found = plan.x + plan.y + plan.heading0

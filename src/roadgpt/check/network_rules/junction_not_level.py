@@ -9,9 +9,8 @@ import math
 
 import numpy as np
 
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, junction_finding
 from roadgpt.check.footprint import EndPose, footprint
-from roadgpt.check.network_places import junction_finding
 from roadgpt.geometry import GradeProfile
 from roadgpt.network import Junction, Network, RoadEnd, Route
 from roadgpt.road import World

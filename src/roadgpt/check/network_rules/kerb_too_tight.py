@@ -7,9 +7,8 @@ Source: Urban Street Design Guide (NACTO, 2013), corner radii: standard curb rad
 
 from collections.abc import Iterator
 
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, bends_below
 from roadgpt.check.network_measures import tightest_radius
-from roadgpt.check.network_places import bends_below
 from roadgpt.network import Junction, Network, Route
 from roadgpt.road import World
 
@@ -24,7 +23,6 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
 
 
 def _kerbs(network: Network, junction: Junction) -> Iterator[float]:
-    """Yields the least radius of each kerb of a junction; traffic must drive on the right."""
     ends = [arm.end for arm in junction.arms]
     following = dict(zip(ends, [*ends[1:], *ends[:1]], strict=True))
     for each in junction.connections:

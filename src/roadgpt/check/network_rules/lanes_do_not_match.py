@@ -8,12 +8,11 @@ Source: OpenDRIVE 1.8, road linkage: linked lanes connect without gaps."""
 import math
 from functools import lru_cache
 
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, junction_finding
 from roadgpt.check.footprint import footprint
-from roadgpt.check.network_places import junction_finding
 from roadgpt.network import Connection, LaneLink, Network, RoadEnd, Route
-from roadgpt.network.building import width_at
 from roadgpt.road import World
+from roadgpt.road.profile import width_at
 
 MOST = 1e-3  # m
 
@@ -74,7 +73,6 @@ def _gap(network: Network, one: LaneEnd, other: LaneEnd) -> float:
 
 @lru_cache(maxsize=2)
 def _points(network: Network) -> dict[LaneEnd, tuple[Point, Point]]:
-    """Returns the points of the inner and of the outer edge of every lane at both ends of its road."""
     found: dict[LaneEnd, tuple[Point, Point]] = {}
     for end, pose in footprint(network).ends.items():
         member = network.road(end.road)

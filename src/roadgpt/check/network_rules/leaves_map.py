@@ -5,9 +5,8 @@ shoulders may extend beyond it. A carriageway that comes within 11 mm of the bor
 
 import numpy as np
 
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, owner_of, station_on
 from roadgpt.check.footprint import SLACK, footprint
-from roadgpt.check.network_places import owner_of, station_on
 from roadgpt.network import Network, Route
 from roadgpt.road import World
 

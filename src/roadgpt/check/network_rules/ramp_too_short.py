@@ -5,9 +5,8 @@ Source: Toledo and Zohar, Modeling duration of lane changes (2007): 1 to 13 s, 4
 
 from roadgpt.brief.junction_check import LEAST_BESIDE_RAMP
 from roadgpt.brief.junctions import RAMPS
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, junction_finding
 from roadgpt.check.network_measures import lengths_beside_ramp
-from roadgpt.check.network_places import junction_finding
 from roadgpt.network import Network, Route
 from roadgpt.road import World
 

@@ -6,9 +6,8 @@ Source: Merkblatt für die Anlage von Kreisverkehren (FGSV, 2006): mini roundabo
 
 import math
 
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, junction_finding
 from roadgpt.check.footprint import footprint
-from roadgpt.check.network_places import junction_finding
 from roadgpt.geometry import PieceCurve
 from roadgpt.network import Network, NetworkRoad, Roundabout, Route
 from roadgpt.road import World
@@ -38,7 +37,6 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
 
 
 def _diameter(member: NetworkRoad) -> float:
-    """Returns the outer diameter in metres of a piece of a ring at its tightest bend to the left."""
     plan = member.road.plan
     assert isinstance(plan, PieceCurve)
     bend = max(max(piece.k0, piece.k1) for piece in plan.pieces)
@@ -59,7 +57,6 @@ def _turning(network: Network, ring: Roundabout) -> float:
 
 
 def _overlaps(network: Network, ring: Roundabout) -> bool:
-    """Returns whether two roads of a roundabout overlap, apart from roads of the same mouth."""
     ring_of = network.roundabout_of.get
     return any(
         ring_of(one.id) is ring and ring_of(other.id) is ring and area > OVERLAP

@@ -3,8 +3,7 @@
 The limit and the expected speed are those of the rule for single roads. The route is checked as one road, so
 the turns at its junctions limit the speed. On every other road the car starts from rest."""
 
-from roadgpt.check.finding import Finding
-from roadgpt.check.network_places import road_finding
+from roadgpt.check.finding import Finding, road_finding
 from roadgpt.check.rules.too_abrupt import abrupt_place
 from roadgpt.check.rules.too_abrupt import inspect as inspect_road
 from roadgpt.geometry import GradeProfile

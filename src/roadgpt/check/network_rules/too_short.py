@@ -4,8 +4,7 @@ A road must be at least as long as the car, 4.7 m. The first road of a route nee
 of the car starts 2.5 m along it. The last road needs 8 m, because the car has arrived 8 m before its end. The
 limit for the whole route is that of the SBFT competition."""
 
-from roadgpt.check.finding import Finding
-from roadgpt.check.network_places import road_finding
+from roadgpt.check.finding import Finding, road_finding
 from roadgpt.check.rules.too_short import shorter_than_allowed, without_room
 from roadgpt.network import Network, Route
 from roadgpt.road import World

@@ -1,7 +1,6 @@
 """Requires grades of at most 15 % on all roads outside junctions, as the rule for single roads does."""
 
-from roadgpt.check.finding import Finding
-from roadgpt.check.network_places import road_finding
+from roadgpt.check.finding import Finding, road_finding
 from roadgpt.check.rules.too_steep import steep_place
 from roadgpt.geometry import GradeProfile
 from roadgpt.network import Network, Route

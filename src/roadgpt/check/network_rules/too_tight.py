@@ -3,8 +3,7 @@
 This is the limit of the SBFT competition, as in the rule for single roads. Connecting roads may be tighter:
 see ``connection_too_tight``."""
 
-from roadgpt.check.finding import Finding
-from roadgpt.check.network_places import road_finding
+from roadgpt.check.finding import Finding, road_finding
 from roadgpt.check.rules.too_tight import tight_place
 from roadgpt.network import Network, Route
 from roadgpt.road import World

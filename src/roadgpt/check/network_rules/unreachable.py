@@ -4,8 +4,7 @@ A lane that ends at a junction without a connection would be a trap for traffic,
 reaches would stay empty. In a network of several roads, each road must meet a junction or another road.
 Source: OpenDRIVE 1.8, junctions: connections describe all ways through a junction."""
 
-from roadgpt.check.finding import Finding
-from roadgpt.check.network_places import junction_finding, road_finding
+from roadgpt.check.finding import Finding, junction_finding, road_finding
 from roadgpt.network import Network, RoadEnd, Route
 from roadgpt.road import World
 

@@ -83,7 +83,6 @@ def _slopes(found: Measures, asked: Outline) -> Iterator[Complaint]:
 
 
 def _ends(found: Measures, asked: Outline) -> Iterator[Complaint]:
-    """Checks the first and the last feature; a straight at an end counts only if one was asked for."""
     for feature, index, says in ((asked.starts, 0, "start"), (asked.ends, -1, "end")):
         if feature is None:
             continue

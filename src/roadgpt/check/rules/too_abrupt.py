@@ -57,7 +57,6 @@ def bumps_asked(road: Road, brief: Brief | None) -> list[tuple[float, float]]:
 
 
 def _turns_before(brief: Brief, index: int) -> int | None:
-    """Returns the number of turns before the clause at ``index``; None if the Brief leaves it open."""
     if not outline(brief).names_all_turns:
         return None
     before = outline(brief.model_copy(update={"clauses": brief.clauses[:index]})).groups

@@ -11,9 +11,8 @@ from roadgpt import plugins
 from roadgpt.cli import options
 from roadgpt.cli.option import PATH, Argument, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.result_row import Row, row_of
 from roadgpt.cli.roads import LANES, UNREADABLE, each_road, open_page, roads_in, source_of
-from roadgpt.cli.screen import Screen
+from roadgpt.cli.screen import Row, Screen, row_of
 from roadgpt.errors import command_line
 
 INVALID = 1  # exit status, so that a script can ask
@@ -73,9 +72,9 @@ def report(folder: Path, opens: bool, junit: Path | None) -> None:
     roadgpt report roadgpt-runs/an-uphill-road-with-3-turns-7 --open"""
     page = write_report(folder)
     if junit is not None:
-        from roadgpt.cli.junit import write_folder
+        from roadgpt.cli.junit import suites_of, write_junit
 
-        write_folder(junit, folder, {})
+        write_junit(junit, [*suites_of(folder, {})])
     click.echo(str(page))
     if opens:
         open_page(page)

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from roadgpt.network.source import RoadSource
 
 TO = "Name a format: --to opendrive; 'roadgpt config plugins' lists them."
-FORMATS = "Formats to write: opendrive, csv, ...; 'roadgpt config plugins' lists them."
+FORMATS = "Formats to write: opendrive, csv, ...; 'roadgpt config plugins' lists them; or runs."
+RUNS = "runs"  # the format of which the folders of runs are
 EXPORT_OPTIONS = (
     Argument("files...", "RUN|ROAD...", "Name one or more folders of runs, or road files."),
     options.formats_option("--to formats", FORMATS, required=True, advice=TO),
@@ -39,6 +40,9 @@ def export(
     unless an option changes them. Each file is named after its RUN or ROAD, and replaces a file of the same
     name. The names of the files are printed.
 
+    The format runs writes the tests of a campaign as folders of runs, or the folders and tables of RUN again,
+    in RUN itself if --out is left out.
+
     \b
     roadgpt export roadgpt-runs/hairpins-7 --to opendrive
     roadgpt export CAMPAIGN --failures --to opendrive,openscenario
@@ -46,6 +50,8 @@ def export(
     from roadgpt.export import exporter_of
     from roadgpt.run.exporting import export
 
+    if RUNS in formats:
+        return _write_runs(files, formats, out, quiet)
     for format_ in formats:
         exporter_of(format_)
     choice = options.choice_of(rest)
@@ -71,6 +77,22 @@ def export(
             click.echo("\n".join(map(str, written)))
 
     return roads.use_each(files, choice, write, takes_all=True)
+
+
+def _write_runs(files: tuple[str, ...], formats: tuple[str, ...], out: Path, quiet: bool) -> int:
+    from roadgpt.campaign.folder_record import is_store, write_runs
+
+    if len(formats) > 1:
+        raise UsageError("runs are whole folders, not files of roads; ask for them alone: --to runs")
+    is_named = "out" in options.typed(click.get_current_context())
+    for file in map(Path, files):
+        if not file.is_dir():
+            raise UsageError(f"{file} is no folder; give a campaign, or a folder of runs")
+        place = out / file.resolve().name if is_named or is_store(file) else file
+        for folder in write_runs(file, place):
+            if not quiet:
+                click.echo(folder)
+    return 0
 
 
 IMPORT_OPTIONS = (

@@ -5,6 +5,7 @@ import secrets
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import redirect_stdout
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,9 +14,8 @@ import click
 from roadgpt.cli import options
 from roadgpt.cli.option import ROADS, Argument, Heading, Option, folder, named, whole
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.result_row import Row, row_of, spending
 from roadgpt.cli.roads import UNREADABLE, each_road, made, roads_in, roads_named, source_of
-from roadgpt.cli.screen import Screen
+from roadgpt.cli.screen import Row, Screen, row_of, spending
 from roadgpt.cli.streams import crashes_go_to, warn
 from roadgpt.errors import GivenUpError, UsageError
 
@@ -106,7 +106,8 @@ def carry_out(
         seed = secrets.randbelow(SEEDS)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         work = campaign(brief, roads, seed, world, setup, out, draw, meter, again)
-    screen.request, screen.junit = work.request, junit
+    screen.request = work.request
+    screen.junit = partial(_write_junit, junit, work.request) if junit else None
     screen.say(understood(brief, work.request.world, world))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
@@ -117,6 +118,12 @@ def carry_out(
         screen.say(f"{len(work.kept)} roads were finished before; continuing")
     _watch(work, pictures, screen)
     gate.close()
+
+
+def _write_junit(path: Path, request: "Request", rows: Sequence[Row]) -> None:
+    from roadgpt.cli.junit import LONGEST, UNKNOWN, properties_of, write_junit
+
+    write_junit(path, [(request.words[:LONGEST] or UNKNOWN, properties_of(request), rows)])
 
 
 def understood(brief: "Brief", world: "World", given: "World") -> str:
@@ -336,7 +343,7 @@ def edit_road(
     from roadgpt.brief.change.plan import read_change_plan
     from roadgpt.chat import Meter, counting
     from roadgpt.design.edit import edit
-    from roadgpt.drive.permission import check_named_drivers, require_permission
+    from roadgpt.drive.loading import check_named_drivers, require_permission
     from roadgpt.run import prove
     from roadgpt.run.editing import folder_for, original_of, reject_used, write_edit
     from roadgpt.run.execution import test_name
@@ -462,7 +469,8 @@ def drive(
     asked = Request(seed=seed, world=world, setup=setup)
     roads = roads_in(files)
     screen = Screen(len(roads), as_json, quiet, verbose)
-    screen.request, screen.junit, screen.gate = asked, junit, gate
+    screen.request, screen.gate = asked, gate
+    screen.junit = partial(_write_junit, junit, asked) if junit else None
     losses: LostDrives[str] = LostDrives()
     each_road(roads, screen, lambda file: _driven(screen, file, asked, losses, out))
     gate.close()
@@ -520,7 +528,7 @@ def drive_again(
     from roadgpt.campaign.folder_record import is_same, run_again, setups_of
     from roadgpt.campaign.model import NumberedTest
     from roadgpt.chat.answer import plain
-    from roadgpt.drive.permission import check_named_drivers
+    from roadgpt.drive.loading import check_named_drivers
     from roadgpt.run import write_run
     from roadgpt.run.atomic import refuse_links
 

@@ -214,7 +214,7 @@ def faults(place: Path, driver: tuple[str, ...], **rest: Any) -> None:
     roadgpt faults roadgpt-runs/hairpins-7
     roadgpt faults roadgpt-runs/hairpins-7 --repeat 30 --minimise -j 2"""
     from roadgpt.campaign.folder_record import setups_of
-    from roadgpt.drive.permission import check_named_drivers
+    from roadgpt.drive.loading import check_named_drivers
 
     check_named_drivers(driver, {setup.driver for setup in setups_of(place)}, place)
     analyse_failures(place, AnalysisOptions(formats=options.pictures_of(rest), **rest))
@@ -309,13 +309,13 @@ def work_to_the_end(
     steps = work(folder, given["workers"], given["executor"], given["address"], chat, draw, again)
     watch(folder, steps, given["as_json"], given["quiet"], given["gate"])
     if given["junit"] is not None:
-        from roadgpt.cli.junit import write_folder
+        from roadgpt.cli.junit import suites_of, write_junit
 
-        write_folder(given["junit"], folder, given["gate"].worse)
+        write_junit(given["junit"], [*suites_of(folder, given["gate"].worse)])
     if is_store(folder):
         with Record.opened(folder) as record:
             if record.plan().paired:
-                from roadgpt.report.chapters.same_roads import compared
+                from roadgpt.report.campaign_report import compared
 
                 page = write_report(folder)
                 if not given["quiet"]:
@@ -331,7 +331,7 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
     """Returns the plan in a file."""
     from roadgpt.campaign.plan import read_plan
     from roadgpt.chat.config import Layer, configured
-    from roadgpt.drive.permission import check_named_drivers
+    from roadgpt.drive.loading import check_named_drivers
 
     typed = options.typed(ctx)
     wrong = typed - BESIDE_A_FILE - {flag.field for flag in options.CHAT}
@@ -342,7 +342,7 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
     check_named_drivers(rest["drivers"] if "drivers" in typed else (), {*written.plan.drivers}, path)
     if not written.plan.asks_a_model:
         return written.plan
-    chat = configured(options.chat_values(rest), Layer(str(path), written.chat))
+    chat = configured(options.chat_values(rest), Layer(str(path), tables={"chat": written.chat}))
     return written.plan.model_copy(update={"chat": chat})
 
 
@@ -422,7 +422,7 @@ def resume(folder: Path, driver: tuple[str, ...], base_url: str | None, axes: "S
     roadgpt resume roadgpt-runs/an-uphill-road-with-3-turns-7 -j 2"""
     from roadgpt.campaign.folder_record import open_record
     from roadgpt.chat.config import trust_server
-    from roadgpt.drive.permission import check_named_drivers
+    from roadgpt.drive.loading import check_named_drivers
 
     rest["gate"] = options.gate_of(rest, folder)
     with open_record(folder) as record:

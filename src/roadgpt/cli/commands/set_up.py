@@ -10,8 +10,10 @@ import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import click
 
@@ -22,19 +24,12 @@ from roadgpt.cli.option_groups import CommandGroup
 from roadgpt.cli.streams import warn
 from roadgpt.errors import PartError, RoadGPTError
 
-
-class InstalledPlugin(NamedTuple):
-    """An installed plug-in: its kind (such as readers), the package that provides it, and what it does."""
-
-    shelf: str
-    name: str
-    origin: str
-    about: str
-    works: bool
+PLUGIN = ("shelf", "name", "origin", "about", "works")
 
 
-def installed() -> list[InstalledPlugin]:
-    """Returns every installed plug-in; if a plug-in cannot be loaded, its description gives the reason."""
+def installed() -> list[tuple[str, str, str, str, bool]]:
+    """Returns every installed plug-in: its kind (such as readers), name, package, what it does (or why it
+    cannot be loaded), and whether it can be."""
     found = []
     for shelf in plugins.KINDS:
         for name in plugins.names(shelf):
@@ -42,7 +37,7 @@ def installed() -> list[InstalledPlugin]:
                 about, works = _first_sentence(plugins.find(shelf, name)), True
             except PartError as error:
                 about, works = str(error), False
-            found.append(InstalledPlugin(shelf, name, plugins.origin(shelf, name), about, works))
+            found.append((shelf, name, plugins.origin(shelf, name), about, works))
     return found
 
 
@@ -132,48 +127,43 @@ def plugins_command(as_json: bool) -> None:
     Each line shows the name to use in options, the package that provides the plug-in, and what it does."""
     parts = installed()
     if as_json:
-        click.echo(json.dumps([part._asdict() for part in parts], indent=2))
+        click.echo(json.dumps([dict(zip(PLUGIN, part, strict=True)) for part in parts], indent=2))
         return
-    wide = max(len(part.name) for part in parts)
-    for shelf in plugins.KINDS:
+    wide = max(len(name) for _, name, *_ in parts)
+    for shelf, its in groupby(parts, key=itemgetter(0)):
         click.secho(shelf, bold=True)
-        for part in parts:
-            if part.shelf == shelf:
-                line = f"  {part.name:<{wide}}  {part.origin:<16}  {part.about}"
-                click.secho(line, fg=None if part.works else "red")
+        for _, name, origin, about, works in its:
+            click.secho(f"  {name:<{wide}}  {origin:<16}  {about}", fg=None if works else "red")
 
 
 LIBRARIES = ("numpy", "scipy", "numba", "mujoco-core", "matplotlib", "shapely", "pydantic", "click", "rich")
 TEST_ROAD = [[40.0, 100.0], [60.0, 100.0], [80.0, 100.0]]  # m; a straight, driven in a few seconds
 
 
-class CheckResult(NamedTuple):
-    """The result of one check of the installation."""
-
-    about: str
-    is_fine: bool
-    sentence: str
+CHECK = ("about", "is_fine", "sentence")
+Checked = tuple[str, bool, str]
 
 
-def examined() -> Iterator[CheckResult]:
-    """Runs all checks and yields the result of each; a failed check is a result, not an exception."""
+def examined() -> Iterator[Checked]:
+    """Yields for each check what was looked at, whether it is fine, and a sentence; a failed check is a
+    result, not an exception."""
     from roadgpt.chat.client import diagnose
 
-    yield CheckResult("roadgpt", True, f"{__version__} in {Path(__file__).resolve().parents[2]}")
+    yield ("roadgpt", True, f"{__version__} in {Path(__file__).resolve().parents[2]}")
     fits = sys.version_info >= (3, 11)
-    yield CheckResult("Python", fits, f"{platform.python_version()} on {platform.platform()}")
+    yield ("Python", fits, f"{platform.python_version()} on {platform.platform()}")
     for name in LIBRARIES:
         yield _tried(name, partial(_library, name))
     try:
         parts = installed()
     except RoadGPTError as error:
-        yield CheckResult("plug-ins", False, str(error))
+        yield ("plug-ins", False, str(error))
     else:
-        broken = [part for part in parts if not part.works]
-        for part in broken:
-            yield CheckResult(f"{part.shelf}: {part.name}", False, part.about)
+        broken = [part for part in parts if not part[-1]]
+        for shelf, name, _, about, _ in broken:
+            yield (f"{shelf}: {name}", False, about)
         told = f"{len(parts) - len(broken)} of {len(parts)} can be used (roadgpt config plugins)"
-        yield CheckResult("parts", not broken, told)
+        yield ("parts", not broken, told)
     yield _tried("model", diagnose)  # fine if none is configured
     yield _tried("numba", _numba)
     yield _tried("test drive", _drive)
@@ -181,13 +171,13 @@ def examined() -> Iterator[CheckResult]:
         yield _tried(f"folder {place}", partial(_writable, place))
 
 
-def _tried(about: str, look: Callable[[], str]) -> CheckResult:
+def _tried(about: str, look: Callable[[], str]) -> Checked:
     try:
-        return CheckResult(about, True, look())
+        return (about, True, look())
     except RoadGPTError as error:
-        return CheckResult(about, False, str(error))
+        return (about, False, str(error))
     except Exception as error:
-        return CheckResult(about, False, f"{type(error).__name__}: {error}")
+        return (about, False, f"{type(error).__name__}: {error}")
 
 
 def _library(name: str) -> str:
@@ -238,11 +228,12 @@ def doctor(ctx: click.Context, /, as_json: bool) -> None:
     for answer in examined():
         answers.append(answer)
         if not as_json:
-            mark = click.style("ok     ", fg="green") if answer.is_fine else click.style("PROBLEM", fg="red")
-            click.echo(f"{mark}  {answer.about:<14} {answer.sentence}")
+            about, is_fine, sentence = answer
+            mark = click.style("ok     ", fg="green") if is_fine else click.style("PROBLEM", fg="red")
+            click.echo(f"{mark}  {about:<14} {sentence}")
     if as_json:
-        click.echo(json.dumps([answer._asdict() for answer in answers], indent=2))
-    problems = sum(not answer.is_fine for answer in answers)
+        click.echo(json.dumps([dict(zip(CHECK, answer, strict=True)) for answer in answers], indent=2))
+    problems = sum(not is_fine for _, is_fine, _ in answers)
     if problems:
         raise RoadGPTError(f"{problems} of {len(answers)} checks found a problem; see those marked above")
     if not as_json:

@@ -33,7 +33,7 @@ class Planner:
         of notes matters, because this number changes the seed. For errors see ``roadgpt.draft``."""
         rng = np.random.default_rng([seed, len(notes)])
         if brief.is_of_network:
-            from roadgpt.design.network_draft import draft_network
+            from roadgpt.design.network_search import draft_network
 
             return draft_network(brief, world, rng)
         design, road = DraftSearch(brief, world, self._shapes.of(earlier), rng).run()

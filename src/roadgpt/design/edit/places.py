@@ -66,7 +66,6 @@ def stretch_of(target: Target, elements: RoadElements) -> RoadStretch | None:
 
 
 def _named_ends(target: Target, whole: float) -> RoadStretch | None:
-    """Returns the stations that a target names, on a road of this length; None if it names none."""
     if target.is_distance:
         station = _station(target, whole)
         return RoadStretch(station, whole) if target.noun == "end" else RoadStretch(0.0, station)
@@ -112,7 +111,6 @@ def _outside_bends(station: float, length: float, elements: RoadElements) -> flo
 
 
 def _bends(elements: RoadElements) -> Iterator[tuple[float, float]]:
-    """Yields the stations at which each turn, and each bend too slight for a turn, begins and ends."""
     for element, at in with_stations(elements):
         if element.is_turn:
             yield at, at + element.length
@@ -146,19 +144,16 @@ def pieces(
 
 
 def _segment_stations(segments: Sequence[Segment], at: float) -> Iterator[tuple[Segment, float]]:
-    """Yields segments, each with the station at which it begins; the first begins at ``at``."""
     for segment in segments:
         yield segment, at
         at += segment.distance
 
 
 def _is_in_turn(segments: Sequence[Segment], index: int) -> bool:
-    """Returns whether a segment goes on with the turn of the segment before it."""
     return segments[index - 1].turn_degrees * segments[index].turn_degrees > 0
 
 
 def _cut(segments: Sequence[Segment], index: int, at: float, station: float) -> Sequence[Segment]:
-    """Returns a segment, which begins at station ``at``, in two parts if it is to be cut at ``station``."""
     segment = segments[index]
     if segment.turn_degrees:
         return _arc_cut(segments, index, at, station) or [segment]
@@ -267,7 +262,6 @@ def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElemen
 
 
 def _half(elements: RoadElements, half: int) -> list[RoadElement]:
-    """Returns the elements whose middle lies in the first or in the second half of the road."""
     middle = sum(element.length for element in elements) / 2
     return [
         element
@@ -288,7 +282,6 @@ def around_middle(gaps: Sequence[RoadElement], elements: RoadElements) -> RoadEl
 
 
 def _of_stretch(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
-    """Returns the elements of "the last 80 m"; only their slope and their climb can be changed together."""
     if what not in OF_SLOPE:
         raise EditError(
             f"'{target.words}' is a distance, and only its slope or its climb can be changed; name turns or "
@@ -329,7 +322,6 @@ def among(target: Target, found: Sequence[RoadElement], elements: RoadElements) 
 
 
 def _spared(target: Target, found: list[RoadElement], elements: RoadElements) -> list[RoadElement]:
-    """Returns the elements without the exceptions that the target names."""
     if target.but is None:
         return found
     but = replace(target.but, noun=target.but.noun or target.noun)
@@ -338,7 +330,6 @@ def _spared(target: Target, found: list[RoadElement], elements: RoadElements) ->
 
 
 def _ways(element: RoadElement, grade: float) -> set[Way]:
-    """Returns whether an element climbs, falls or is level; a straight with several slopes does several."""
     parts = defaultdict[Way, float](float)
     for segment in element.segments:
         parts[way(segment.incline)] += segment.distance
@@ -401,7 +392,6 @@ def named(target: Target) -> Target:
 
 
 def _chosen(target: Target, found: Sequence[RoadElement], noun: str) -> list[RoadElement]:
-    """Chooses by superlative, middle or number, or takes all; refuses several if only one was meant."""
     told = _told(target, noun)
     if not found:
         raise EditError(f"there is no {told} on this road")
@@ -519,7 +509,6 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
 
 
 def _swapped(change: Change, like: Target, elements: RoadElements) -> PlacedChange:
-    """Returns a swap of two things that are named each by itself, with both of them."""
     assert change.target is not None
     own = pointed(change.target, elements, "length"), pointed(named(like), elements, "length")
     if any(len(each) != 1 for each in own) or own[0] == own[1]:
@@ -534,7 +523,6 @@ def too_short_for_hill(change: Change, found: str = "") -> str:
 
 
 def _on_straight(placed: PlacedChange, elements: RoadElements) -> PlacedChange:
-    """Returns the addition of a crest or a dip, with the straight that gets it."""
     place = placed.change.place
     how = place.how if place else "end"
     if how == "on":
@@ -628,7 +616,6 @@ def _with_value_of(change: Change, model: RoadElement, others: Sequence[Change])
 def _new_value(
     change: Change, other: Change, value: float, direction: Way | None
 ) -> tuple[float, Way | None]:
-    """Returns the value and the way of a model that another change has given it."""
     if other.way == "flat":
         return 0.0, "flat"
     if other.to is not None:
@@ -654,7 +641,6 @@ def is_beyond(change: Change, element: RoadElement) -> bool:
 
 
 def _marks(place: Place | None, elements: RoadElements) -> tuple[RoadElements, RoadElement | None]:
-    """Returns the elements next to which something comes, and the second one if it comes between two."""
     if place is None or place.target is None or place.how in ("start", "end", "middle"):
         return (), None
     marks = tuple(pointed(named(place.target), elements, "length"))

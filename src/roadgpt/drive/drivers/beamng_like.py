@@ -6,8 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.drive.driving_line import FloatArray, line_along, pursuit_curvature, smoothed, stations
-from roadgpt.drive.turning import EASY_BRAKING, StopSigns, highest_speeds, kept_in_lane
+from roadgpt.drive.driving_line import (
+    EASY_BRAKING,
+    FloatArray,
+    StopSigns,
+    highest_speeds,
+    kept_in_lane,
+    line_along,
+    pursuit_curvature,
+    smoothed,
+    stations,
+)
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
@@ -43,7 +52,7 @@ class BeamngLike:
     plans for a dry road (``assumed_friction``), and its planned speed takes superelevation into account.
 
     No recording has a junction. Inside junctions and roundabouts the driver drives as people do
-    (``roadgpt.drive.turning``). The middle of the car keeps at least 1.5 m from both edges of a lane that is
+    (``drive.driving_line``). The middle of the car keeps at least 1.5 m from both edges of a lane that is
     3 m wide or wider. The car is at most as fast as people are on a line of the same radius, and brakes
     for this speed with at most 3.4 m/s^2. The car stops at stop signs.
 

@@ -121,15 +121,12 @@ class LaneCentring:
         )
 
     def _look(self, view: View) -> None:
-        """Sets the curvature to steer and the speed to drive; both stay where the camera sees nothing of the
-        lane."""
         seen = self._speeds_in_sight(view)
         if seen:
             self._speed = min(self._speed_limit, *seen)
             self._bend = self._curvature(view, max(self.headway * view.speed, self.nearest))
 
     def _speeds_in_sight(self, view: View) -> list[float]:
-        """Returns the present speed that each place in sight allows, in m/s."""
         line, cos, sin = self._line, math.cos(view.heading), math.sin(view.heading)
         eye = self._heights[line.place(view.s)[0]] + self.eye_height
         highest, distance, out = -math.inf, 0.0, list[float]()
@@ -150,7 +147,6 @@ class LaneCentring:
         return out
 
     def _curvature(self, view: View, reach: float) -> float:
-        """Returns the curvature that takes the car back to its line within ``reach`` metres, in 1/m."""
         line = self._line
         i, share = line.place(view.s)
         bend = line.curvature[i]

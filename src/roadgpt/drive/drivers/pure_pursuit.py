@@ -4,8 +4,14 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from roadgpt.drive.driving_line import line_along, pedals, pursuit_curvature, stations
-from roadgpt.drive.turning import StopSigns, highest_speeds
+from roadgpt.drive.driving_line import (
+    StopSigns,
+    highest_speeds,
+    line_along,
+    pedals,
+    pursuit_curvature,
+    stations,
+)
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
@@ -18,7 +24,7 @@ class PurePursuit:
     """Steers along a circle to a point ahead in the middle of the lane; ignores tyre slip.
 
     It cuts bends at low speed and runs wide at high speed: a weak baseline. In junctions it drives no faster
-    than people do, and it stops at stop signs (``roadgpt.drive.turning``).
+    than people do, and it stops at stop signs (``roadgpt.drive.driving_line``).
 
     Args:
         risk: planned lateral acceleration in bends, in g; at most 0.95 times the friction.

@@ -5,8 +5,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from roadgpt.drive.driving_line import line_along, pedals, stations
-from roadgpt.drive.turning import StopSigns, highest_speeds
+from roadgpt.drive.driving_line import StopSigns, highest_speeds, line_along, pedals, stations
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import GRAVITY, DrivingLimits, plan_speed
 
@@ -25,7 +24,7 @@ class Reference:
     steady-state steering angle for the bend ahead, plus feedback on the lateral error at a point ahead of the
     car, with the slip angle taken into account. The planned speed respects the friction circle, and takes
     grades, crests and superelevation into account. In junctions it drives no faster than people do, and it
-    stops at stop signs (``roadgpt.drive.turning``).
+    stops at stop signs (``roadgpt.drive.driving_line``).
 
     Args:
         risk: planned lateral acceleration in bends, in g; at most 0.72 times the friction.

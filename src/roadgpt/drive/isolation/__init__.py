@@ -10,10 +10,7 @@ its own drive fails. One process serves many drives, one after another; the driv
 from typing import Any
 
 from roadgpt import plugins
-from roadgpt.drive.loading import load_driver
-from roadgpt.drive.permission import require_permission, split_spec
-
-__all__ = ["driver_of"]
+from roadgpt.drive.loading import load_driver, require_permission, split_spec
 
 OURS = "roadgpt."  # prefix of the modules whose drivers run in this process, beside the simulator
 
@@ -23,17 +20,7 @@ def driver_of(spec: str) -> Any:
     separate process.
 
     If only a stored file (of a run, a campaign or a plan) names a driver's file, the driver runs only after
-    the user has agreed (see ``drive.permission``).
-
-    Args:
-        spec: the name of a driver plug-in, or PATH.py:CLASS.
-
-    Raises:
-        PartError: there is no driver plug-in of that name.
-        UsageError: the file or the class is missing, the file cannot be run, the class is not a driver, or
-            the user did not permit RoadGPT to run the file.
-        DriverError: the driver hung while it was created.
-    """
+    the user has agreed (see ``drive.loading``). ``spec`` names a driver plug-in, or is PATH.py:CLASS."""
     require_permission(spec)
     path, _ = split_spec(spec)
     module = "" if path else plugins.module_of("drivers", spec)

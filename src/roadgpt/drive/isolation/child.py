@@ -6,19 +6,17 @@ may therefore use alarms, signals and threads as it likes.
 
 import json
 import os
-import pickle
-import signal
 import sys
 import threading
 import traceback
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 from roadgpt import children
 from roadgpt.drive.camera_sensor import camera_of
 from roadgpt.drive.driver_files import DriverFiles
 from roadgpt.drive.driver_guard import DriverGuard
+from roadgpt.drive.isolation.process import serve
 from roadgpt.drive.loading import load_driver
 from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.view import View
@@ -30,11 +28,11 @@ MOST_SAID, MOST_TRACE = 4_000, 40_000  # characters of an error's message and tr
 
 
 class _DriverHost:
-    """Holds one driver at a time; its methods answer the requests of the same names."""
+    """Holds one driver at a time; its other methods answer the requests of the same names."""
 
     def __init__(self) -> None:
         os.umask(mask := os.umask(0o022))
-        self._mask, self._threads = mask, threading.active_count()
+        self._mask, self._threads = mask, threading.active_count() + 1  # and the one of ``serve``
         self._files: Any = None
         self._guard: Any = None
         self._road: Any = None
@@ -42,15 +40,31 @@ class _DriverHost:
         self._picture: Any = None
         self._outlook: Any = None
 
+    def answer(self, request: tuple[Any, ...]) -> dict[str, Any]:
+        """Answers one request; errors are answered as texts."""
+        what, *given = request
+        try:
+            answer: dict[str, Any] = getattr(self, what)(*given)
+        except (DriverError, UsageError) as error:
+            return _failed(error, str(error), isinstance(error, UsageError))
+        except BaseException as error:  # also KeyboardInterrupt, which is the driver's own here
+            what_failed = f"the driver raised {type(error).__name__}: {error}".rstrip(": ")
+            return _failed(error, what_failed, is_users=what == "make")
+        return answer
+
     def make(self, spec: str, folder: str, environment: dict[str, str], path: list[str]) -> dict[str, Any]:
-        """Creates a driver, in the folder and with the environment and module path of RoadGPT's process."""
+        """Creates a driver, in the folder and with the environment and module path of RoadGPT's process. If
+        the driver before it has left threads or a compiled module, ends the process, so that a new one is
+        started."""
+        self._guard = self._road = self._world = self._picture = self._outlook = None
         os.umask(self._mask)
         os.chdir(folder)
+        self._files = self._files or DriverFiles(spec)  # a process serves one spec alone
+        if not self._files.begin() or threading.active_count() > self._threads:
+            os._exit(0)
         os.environ.clear()
         os.environ.update(environment)
         sys.path[:] = path
-        self._files = self._files or DriverFiles(spec)  # a process serves one spec alone
-        self._files.begin()
         driver = load_driver(spec)
         camera = camera_of(driver)
         self._guard = DriverGuard(driver)
@@ -58,8 +72,8 @@ class _DriverHost:
         return {"name": self._guard.name, "camera": camera, "files": self._files.told()}
 
     def files(self) -> dict[str, Any]:
-        """Returns the names of all files that the process has used for drivers so far."""
-        return dict(self._files.told(is_early=False))
+        """Returns the names of all files that the driver has used so far."""
+        return dict(self._files.told())
 
     def show(self, road: Road, world: World) -> dict[str, Any]:
         """Keeps the road and the world for the views to come."""
@@ -81,53 +95,17 @@ class _DriverHost:
         view = View._make((*place, self._road, self._world, *motion, picture, *ahead))
         return {"command": self._guard.ask(view), "handed_to": self._guard.handed_to}
 
-    def forget(self) -> None:
-        """Discards the driver; if it has left threads running, ends the process."""
-        self._guard = self._road = self._world = self._picture = self._outlook = None
-        if threading.active_count() > self._threads:
-            os._exit(0)
-
 
 def main() -> None:
     """Answers the requests of RoadGPT's process until that process closes the connection."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the asking process handles Ctrl-C and ends this one
     sys.dont_write_bytecode = True  # else a quick edit goes unnoticed
-    heard, said = children.private_streams()
-    children.ends_with_parent()
-    with suppress(OSError):
-        # If memory runs out, the system ends this process first.
-        Path("/proc/self/oom_score_adj").write_text("1000", "ascii")
-    host = _DriverHost()
-    while True:
-        try:
-            what, *given = pickle.load(heard)  # noqa: S301 - ours
-        except (EOFError, OSError, pickle.UnpicklingError):
-            _leave()
-        if what == "forget":
-            host.forget()
-            continue
-        try:
-            answer = getattr(host, what)(*given)
-        except (DriverError, UsageError) as error:
-            answer = _failed(error, str(error), isinstance(error, UsageError))
-        except BaseException as error:  # also KeyboardInterrupt, which is the driver's own here
-            what_failed = f"the driver raised {type(error).__name__}: {error}".rstrip(": ")
-            answer = _failed(error, what_failed, is_users=what == "make")
-        try:
-            said.write(json.dumps(answer).encode() + b"\n")
-            said.flush()
-        except OSError:
-            _leave()
+    serve(_DriverHost().answer, lambda answer: json.dumps(answer).encode() + b"\n")
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(Exception):
+            stream.flush()
+    children.end_with_all()  # without waiting for the driver's threads
 
 
 def _failed(error: BaseException, said: str, is_users: bool) -> dict[str, Any]:
     trace = "".join(traceback.format_exception(error))
     return {"said": said[:MOST_SAID], "is_users": is_users, "trace": trace[-MOST_TRACE:]}
-
-
-def _leave() -> None:
-    """Ends the process at once, without waiting for the driver's threads."""
-    for stream in (sys.stdout, sys.stderr):
-        with suppress(Exception):
-            stream.flush()
-    os._exit(0)

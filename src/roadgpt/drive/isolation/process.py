@@ -1,181 +1,158 @@
-"""Manages the processes in which drivers run: sends requests to them, limits their time and memory, ends
-them, and keeps them for reuse.
+"""Child processes that answer messages one by one, within limits of time and memory: drivers of users, and
+workers of campaigns.
 
-RoadGPT sends requests as pickles. A driver's process answers with a line of JSON, which can be read without
-running the driver's code.
+A Child is this process's end of the connection, ``serve`` the other one. A process that is late, ends or
+takes too much memory costs one answer; whoever asked starts another one. All that a process has started ends
+with it, and it ends with its parent.
 """
 
-import json
 import os
 import pickle
+import signal
+import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from contextlib import suppress
-from pathlib import Path
-from subprocess import PIPE, SubprocessError, run
-from typing import Any
+from typing import IO, Any
 
 from roadgpt import children
-from roadgpt.drive.driver_files import WRITTEN, folder_of
-from roadgpt.reading import digest
 
 TICK = 0.2  # s between two checks of the clock and the memory
-SHARE = 0.5  # of the machine's memory that a driver may take
-MOST_IDLE = 4  # maximum number of idle processes that are kept for later drivers
-MOST = 1 << 24  # bytes, the longest answer
+GRACE = 1.0  # s for a busy process to end the processes that it has started, and itself
 
 
 class GoneError(Exception):
-    """Raised when a driver's process has ended; its message continues a sentence that starts with the
-    driver's name, such as "ended its own process"."""
+    """A process has ended. The message says how, in words that can follow its name."""
 
-    def __init__(self, why: str, is_late: bool = False) -> None:
-        super().__init__(why)
+    def __init__(self, how: str, is_late: bool = False, is_blameless: bool = False) -> None:
+        super().__init__(how)
         self.is_late = is_late
+        self.is_blameless = (
+            is_blameless  # true if it had ended before it was asked, so that no answer cost it
+        )
 
 
-class DriverProcess:
-    """A child process that holds one driver at a time, and no other than ``spec``."""
+class Child:
+    """A Python process that answers messages one by one."""
 
-    def __init__(self, spec: str) -> None:
-        """Starts the process; raises OSError if the system cannot."""
-        self._process = children.python("roadgpt.drive.isolation.child", stderr=None)
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        self._down, self._up = self._process.stdin, self._process.stdout
-        self._due: float | None = None
-        self._why, self._is_late = "", False
-        self._most = memory_limit()
-        self.is_broken = False
-        self.spec, self.files = spec, dict[str, str]()  # digests of the files that its drivers have used
-        self.has_served = False
-        """Whether the process has already held a driver."""
+    ended = "{}"  # words for a process that ended by itself, with how it did
+
+    def __init__(self, entry: str, **how: Any) -> None:
+        """Starts a process that runs ``main()`` of a module, which calls ``serve``; ``how`` is as in
+        ``children.start``, but ``env`` is added to the environment. Raises OSError if the system cannot."""
+        # -P: modules in the user's current folder do not replace ours
+        words = [sys.executable, "-P", "-c", f"from {entry} import main; main()"]
+        env = {**os.environ, **how.pop("env", {}), "PYTHONUNBUFFERED": "1", "MPLBACKEND": "Agg"}
+        streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+        self.process = children.start(words, env=env, **streams, **how)
+        assert self.process.stdin is not None
+        assert self.process.stdout is not None
+        self._down, self._up = self.process.stdin, self.process.stdout
+        self._most = children.memory_limit()
+        self._due = float("inf")  # of the answer that is waited for, seconds of the monotonic clock
+        self._why, self._is_late = "", False  # why it was killed
         self._ends = threading.Event()
-        threading.Thread(target=self._watch, name="roadgpt-driver", daemon=True).start()
-
-    def ask(self, seconds: float, what: str, *given: Any) -> dict[str, Any]:
-        """Calls the method ``what`` in the driver's process, on the object that holds the driver, and
-        returns the answer.
-
-        After an error in that process, the keys of the answer are ``said`` (the message), ``is_users``
-        (whether to raise a UsageError) and ``trace`` (the traceback).
-
-        Raises:
-            GoneError: the process ended, or was ended because it did not answer within ``seconds``, took too
-                much memory or sent an invalid answer.
-        """
-        self._due = time.monotonic() + seconds
-        try:
-            self._send(what, *given)
-            answer: dict[str, Any] = dict(json.loads(self._up.readline(MOST)))
-        except (OSError, EOFError, ValueError, TypeError, RecursionError):
-            self.end()
-            status = children.ending(self._process.returncode)
-            raise GoneError(self._why or f"ended its own process (it {status})", self._is_late) from None
-        except BaseException:  # this process is asked to stop; a late answer must not be read by others
-            self.end()
-            raise
-        self._due = None
-        return answer
-
-    def forget(self) -> None:
-        """Tells the process to discard its driver, without waiting for it."""
-        with suppress(OSError):
-            self._send("forget")
-
-    def _send(self, *request: Any) -> None:
-        pickle.dump(request, self._down, pickle.HIGHEST_PROTOCOL)
-        self._down.flush()
-
-    def end(self) -> None:
-        """Ends the process immediately."""
-        self.is_broken = True
-        self._due = None
-        self._ends.set()
-        children.end(self._process)
+        threading.Thread(target=self._watch, name=entry, daemon=True).start()
 
     @property
     def is_alive(self) -> bool:
-        """Whether the process is running and can take requests."""
-        return not self.is_broken and self._process.poll() is None
+        """Whether the process is running and can take messages."""
+        return not self._ends.is_set() and self.process.poll() is None
+
+    def ask(self, seconds: float, message: Any) -> Any:
+        """Returns the answer to a message; raises GoneError if the process has ended, or was ended because it
+        did not answer within ``seconds`` or took too much memory."""
+        is_blameless = not self.is_alive
+        self._due = time.monotonic() + seconds
+        try:
+            self._down.write(pickled(message))
+            self._down.flush()
+            answer = self.read(self._up)
+        except Exception:  # most often EOFError or OSError; whatever it is, there is no answer
+            self.end()
+            status = self.process.returncode
+            how = f"was ended by signal {-status}" if (status or 0) < 0 else f"ended with status {status}"
+            why = f"took longer than {seconds:g} s" if self._is_late else self._why
+            raise GoneError(why or self.ended.format(how), self._is_late, is_blameless) from None
+        except BaseException:  # this process is asked to stop; a late answer must not be read by others
+            self.end()
+            raise
+        self._due = float("inf")
+        return answer
+
+    def read(self, stream: IO[bytes]) -> Any:
+        """Reads one answer."""
+        return pickle.load(stream)  # noqa: S301 - from our own process
+
+    def ask_to_end(self) -> None:
+        """Asks a busy process, and those it has started in sessions of their own, to end; does not wait. On
+        Windows, where ``children.kill`` reaches these, nothing is done."""
+        if os.name == "posix" and self.process.poll() is None:
+            with suppress(OSError):
+                self.process.terminate()
+
+    def kill(self) -> None:
+        """Ends a busy process and those it has started; after a second, by force."""
+        self.ask_to_end()
+        with suppress(subprocess.TimeoutExpired):
+            self.process.wait(GRACE)
+        children.kill(self.process)
+
+    def end(self) -> None:
+        """Ends the process at once."""
+        self._ends.set()
+        children.end(self.process)
+
+    def close(self) -> None:
+        """Lets an idle process end, which sees the end of its input, and cleans up after it."""
+        with suppress(OSError, ValueError):
+            self._down.close()
+        with suppress(subprocess.TimeoutExpired):
+            self.process.wait(children.FAREWELL)
+        self.end()
+        self._up.close()
 
     def _watch(self) -> None:
-        """Kills a process that is late, uses too much memory, or has ended and left children that hold its
+        """Kills a process that is late, takes too much memory, or has ended and left children that hold its
         pipes open."""
         last = time.monotonic()
-        while not self._ends.wait(TICK):
-            now, due = time.monotonic(), self._due
-            if due is not None and now - last > 10 * TICK:  # this process was suspended: the clock was too
-                self._due = due + now - last
-            elif due is not None and now > due:
+        while self.process.poll() is None:
+            if self._ends.wait(TICK):
+                return
+            now = time.monotonic()
+            if now - last > 10 * TICK:  # this process was suspended: the clock was too
+                self._due += now - last
+            elif now > self._due:
                 self._is_late = True
-                children.kill(self._process)
-            elif (taken := _memory(self._process.pid)) > self._most:
-                self._why = (
-                    f"took {taken / 1e9:.1f} GB of memory, more than {SHARE:.0%} of this machine's: "
-                    "let it keep less"
-                )
-                children.kill(self._process)
-            elif self._process.poll() is not None:
-                children.kill(self._process)
+                self.kill()
+            elif (taken := children.memory_of(self.process.pid)) > self._most:
+                share = f"more than {children.SHARE:.0%} of this machine's: let it keep less"
+                self._why = f"took {taken / 1e9:.1f} GB of memory, {share}"
+                self.kill()
             last = now
+        children.kill(self.process)
 
 
-def memory_limit() -> float:
-    """Returns the memory limit of a driver in bytes: half of the memory of the machine or the container,
-    whichever is smaller. If the system does not state its memory, there is no limit (infinity)."""
-    found = []
-    with suppress(ValueError, OSError, AttributeError):
-        found.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    with suppress(ValueError, OSError):
-        found.append(int(Path("/sys/fs/cgroup/memory.max").read_text()))
-    return SHARE * min(found) if found else float("inf")
+def pickled(value: Any) -> bytes:
+    """Returns a value as bytes."""
+    return pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
 
 
-def _memory(pid: int) -> int:
-    """Returns the bytes of memory that a process uses; 0 where the system does not say (Windows)."""
-    if sys.platform == "linux":
-        with suppress(OSError, ValueError, IndexError):
-            pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
-            return pages * os.sysconf("SC_PAGE_SIZE")
-    elif os.name == "posix":
-        words = ["/bin/ps", "-o", "rss=", "-p", str(pid)]
-        with suppress(OSError, ValueError, SubprocessError):
-            told = run(words, stdout=PIPE, timeout=10, check=False)  # noqa: S603 - the system's own
-            return 1024 * int(told.stdout)
-    return 0
+def serve(answer: Callable[[Any], Any], written: Callable[[Any], bytes] = pickled) -> None:
+    """Answers the messages of a Child in its process, until the parent ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C, and ends this process
+    signal.signal(signal.SIGTERM, lambda *_: children.end_with_all())
+    threading.Thread(target=_stay_while, args=(os.getppid(),), daemon=True).start()
+    heard, said = children.private_streams()
+    with suppress(EOFError, OSError, pickle.UnpicklingError):
+        while True:
+            said.write(written(answer(pickle.load(heard))))  # noqa: S301 - from our own process
+            said.flush()
 
 
-_idle: list[DriverProcess] = []
-_lock = threading.Lock()
-
-
-def take(spec: str) -> DriverProcess:
-    """Returns an idle process of a driver, or starts a new one; raises OSError if the system cannot."""
-    with _lock:
-        for process in [each for each in _idle if each.spec == spec]:
-            _idle.remove(process)
-            files = process.files.items()  # it may have loaded them, so they must still be the same
-            is_current = all(its in (WRITTEN, digest(folder_of(spec) / name)) for name, its in files)
-            if process.is_alive and is_current:
-                return process
-            process.end()
-    return DriverProcess(spec)
-
-
-def give_back(process: DriverProcess) -> None:
-    """Discards the driver of a process, and keeps the process for the next drive. If more than MOST_IDLE
-    processes are idle then, the one that has been idle longest is ended."""
-    if not process.is_alive:
-        process.end()
-        return
-    process.forget()
-    with _lock:
-        _idle.append(process)
-        if len(_idle) > MOST_IDLE:
-            _idle.pop(0).end()
-
-
-if hasattr(os, "register_at_fork"):  # a fork of this process must not use its pipes
-    os.register_at_fork(after_in_child=_idle.clear)
+def _stay_while(parent: int) -> None:
+    while os.getppid() == parent:
+        time.sleep(1.0)
+    children.end_with_all()

@@ -1,17 +1,19 @@
 """Represents a driver that runs in another process; simulators use it like any other driver."""
 
+import json
 import os
 import sys
+import threading
 import weakref
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
 from roadgpt.drive.driver_files import WRITTEN, folder_of
 from roadgpt.drive.driver_guard import BEFORE_START, ONE_ANSWER, RemoteDriverError
-from roadgpt.drive.isolation.process import DriverProcess, GoneError, give_back, take
+from roadgpt.drive.isolation.process import Child, GoneError
 from roadgpt.drive.loading import absolute_spec
 from roadgpt.drive.view import CameraSpec, Command, View
 from roadgpt.errors import DriverError, RoadGPTError, UsageError
@@ -21,6 +23,53 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 MAKING = 30.0  # s for a new process to import what it needs, on top of the driver's own limit
+MOST_ANSWER = 1 << 24  # bytes
+MOST_IDLE = 4  # processes that are kept for later drivers
+
+
+class DriverProcess(Child):
+    """A process that holds one driver at a time, and no other than ``spec``."""
+
+    ended = "ended its own process (it {})"
+
+    def __init__(self, spec: str) -> None:
+        """Starts the process; raises OSError if the system cannot."""
+        super().__init__("roadgpt.drive.isolation.child", stderr=None)
+        self.spec = spec
+        self.has_served = False  # whether the process has already held a driver
+
+    def read(self, stream: IO[bytes]) -> dict[str, Any]:
+        """Reads one answer: a line of JSON, so that no code of the driver runs here."""
+        return dict(json.loads(stream.readline(MOST_ANSWER)))
+
+
+_idle: list[DriverProcess] = []
+_lock = threading.Lock()
+if hasattr(os, "register_at_fork"):  # a fork of this process must not use its pipes
+    os.register_at_fork(after_in_child=_idle.clear)
+
+
+def take(spec: str) -> DriverProcess:
+    """Returns an idle process of a driver, or starts a new one; raises OSError if the system cannot."""
+    with _lock:
+        for process in [each for each in _idle if each.spec == spec]:
+            _idle.remove(process)
+            if process.is_alive:
+                return process
+            process.end()
+    return DriverProcess(spec)
+
+
+def give_back(process: DriverProcess) -> None:
+    """Keeps a process for the next drive. If more than MOST_IDLE processes are idle then, the one that has
+    been idle longest is ended."""
+    if not process.is_alive:
+        process.end()
+        return
+    with _lock:
+        _idle.append(process)
+        if len(_idle) > MOST_IDLE:
+            _idle.pop(0).end()
 
 
 class _TraceError(Exception):
@@ -35,8 +84,7 @@ class IsolatedDriver:
 
     def __init__(self, spec: str, limit: float = BEFORE_START) -> None:
         """Creates the driver in another process; ``files`` has the digests of the files that the driver uses
-        until its ``start`` ends, by their names (see ``drive.driver_files``).
-        """
+        until its ``start`` ends, by their names (see ``drive.driver_files``)."""
         self._road: Road | None = None
         self._world: World | None = None
         self._picture: Any = None
@@ -54,38 +102,30 @@ class IsolatedDriver:
                 raise RoadGPTError(f"no process for a driver can be started: {error.strerror}") from error
             is_used = process.has_served
             try:
-                answer = process.ask(limit + (0.0 if is_used else MAKING), "make", *task)
+                answer = process.ask(limit + (0.0 if is_used else MAKING), ("make", *task))
             except GoneError as error:
                 if is_used and not error.is_late:
                     continue  # something that the previous driver left behind has ended it
                 raise _not_made(spec, limit, error) from None
-            except BaseException:
-                process.end()
-                raise
             process.has_served = True
             if "said" in answer:
                 process.end()  # it may have loaded modules that the user will correct
                 raise _error(answer) from _TraceError(answer["trace"])
             self.name: str = answer["name"]
             self.camera = None if answer["camera"] is None else CameraSpec(*answer["camera"])
-            self._note(process, answer["files"])
+            self.files = _digests(spec, answer["files"])
             return process
 
-    def _note(self, process: DriverProcess, names: dict[str, list[str]]) -> None:
-        found = {name: digest(folder_of(process.spec) / name) for name in names["used"]}
-        process.files = found | dict.fromkeys(names["written"], WRITTEN)
-        self.files = {name: process.files[name] for name in names["early"]}
-
     def all_files(self) -> dict[str, str]:
-        """Returns the digests of all files that the driver's process has used, also in earlier drives."""
+        """Returns the digests of all files that the driver has used until now, also while it steered."""
         with suppress(GoneError):
-            self._note(self._process, self._process.ask(BEFORE_START, "files"))
-        return self._process.files
+            return _digests(self._process.spec, self._process.ask(BEFORE_START, ("files",)))
+        return self.files
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Sends the road to the driver and calls its ``start``."""
         self._show(road, world)
-        self._note(self._process, self._asked(BEFORE_START, 0.0, "start", seed)["files"])
+        self.files = _digests(self._process.spec, self._asked(BEFORE_START, 0.0, "start", seed)["files"])
 
     def steer(self, view: View) -> Command:
         """Returns the driver's command."""
@@ -106,7 +146,7 @@ class IsolatedDriver:
 
     def _asked(self, seconds: float, at: float, what: str, *given: Any) -> dict[str, Any]:
         try:
-            answer = self._process.ask(seconds, what, *given)
+            answer: dict[str, Any] = self._process.ask(seconds, (what, *given))
         except GoneError as error:
             why = str(error)
             if error.is_late:
@@ -122,6 +162,12 @@ class IsolatedDriver:
         if "said" in answer:
             raise _error(answer) from _TraceError(answer["trace"])
         return answer
+
+
+def _digests(spec: str, names: dict[str, bool]) -> dict[str, str]:
+    return {
+        name: WRITTEN if is_written else digest(folder_of(spec) / name) for name, is_written in names.items()
+    }
 
 
 def _not_made(spec: str, limit: float, error: GoneError) -> RoadGPTError:

@@ -3,8 +3,7 @@ intersections, and the task to reach the end.
 
 Source: CommonRoad, Documentation of the XML Format, version 2020a. The format can hold heights, but
 CommonRoad's planners, road boundaries and plots fail if points have heights (commonroad-io 2024.3), so no
-heights are written.
-"""
+heights are written."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
@@ -54,7 +53,6 @@ class Crossings:
 
     @cached_property
     def _signed(self) -> dict[int, tuple[int, Junction, Arm]]:
-        """The id of the sign or light of each lanelet that has one, with its junction and its arm."""
         signed = [each for each in self.arms if each[1].control != "none"]
         return {
             lanelet.id: (self.first_free + n, junction, arm)
@@ -67,8 +65,7 @@ class Crossings:
         other lanelet.
 
         Where traffic gives way to a roundabout, the element has no points, which means that the line is at
-        the end of the lanelet.
-        """
+        the end of the lanelet."""
         if lanelet not in self._signed:
             return
         _, junction, arm = self._signed[lanelet]
@@ -121,8 +118,7 @@ class Crossings:
         """Returns the side to which a connection leads.
 
         A connection that stays on the ring of a roundabout leads straight on. At a diverge, a connection that
-        turns by more than 1 degree leads to the side of this turn.
-        """
+        turns by more than 1 degree leads to the side of this turn."""
         ring = self.network.roundabout_of.get(junction.id)
         if ring is not None and {way.incoming.road, way.outgoing.road} <= {*ring.ring}:
             return "straight"
@@ -166,8 +162,7 @@ class CommonRoad:
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the scenario.
 
-        ``poses`` is ignored, because CommonRoad stores drives in a separate solution format.
-        """
+        ``poses`` is ignored, because CommonRoad stores drives in a separate solution format."""
         path.write_bytes(document(road, world).to_text().encode())
 
 
@@ -175,8 +170,7 @@ def document(road: Road, world: World) -> XmlElement:
     """Returns the XML document: lanelets, signs, lights, intersections and planning problem.
 
     Lanelets are numbered road by road and lane by lane: first the lanes in the direction of the road, from
-    the centre line outwards, then the oncoming lanes.
-    """
+    the centre line outwards, then the oncoming lanes."""
     lanelets = lanelets_of(road, world)
     sign = len(lanelets) + 1
     root = XmlElement(
@@ -209,7 +203,6 @@ def document(road: Road, world: World) -> XmlElement:
 
 
 def _goal(road: Road, world: World, lanelets: Sequence[Lanelet]) -> int:
-    """Returns the id of the last lanelet of the lane that the tested car drives."""
     if isinstance(road, Route):
         number, lane = road.legs[-1]
     else:
@@ -219,7 +212,6 @@ def _goal(road: Road, world: World, lanelets: Sequence[Lanelet]) -> int:
 
 
 def _lanelet(lanelet: Lanelet, sign: int, junctions: Crossings | None) -> XmlElement:
-    """Returns a lanelet, with left and right as seen by drivers; ``sign`` is the id of the speed limit."""
     out = XmlElement("lanelet", {"id": lanelet.id})
     for name, bound in (("leftBound", lanelet.left), ("rightBound", lanelet.right)):
         element = out.add(name)

@@ -1,8 +1,7 @@
 """Exports the road surface as ASAM OpenCRG 1.2 in ASCII form, for tyre and vehicle dynamics models.
 
 Source: ASAM OpenCRG 1.2.0, user guide and file format. The surface is smooth: it has
-the heights of the road and no roughness.
-"""
+the heights of the road and no roughness."""
 
 import math
 from pathlib import Path
@@ -42,8 +41,7 @@ class Crg:
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the surface of lanes and shoulders.
 
-        ``poses`` is ignored, because OpenCRG cannot hold a drive.
-        """
+        ``poses`` is ignored, because OpenCRG cannot hold a drive."""
         path.write_bytes(document(road, world).encode("ascii"))
 
 
@@ -55,8 +53,7 @@ def document(road: Road, world: World) -> str:
 
     Raises:
         ExportError: The radius of a bend is less than the distance from the centre line to an edge of the
-            carriageway, or a number is not finite.
-    """
+            carriageway, or a number is not finite."""
     count = min(MOST, max(1, math.ceil(road.length / STEP)))
     step = road.length / count
     points = finite(road.at(np.linspace(0.0, road.length, count + 1)))
@@ -124,8 +121,7 @@ def _headings(points: list[list[float]], step: float) -> list[float]:
 
     A program that reads the file computes each point from the previous one by a step of constant length in
     the given direction. Each direction therefore points from the computed point, not from the exact one, to
-    the next point of the road, so that errors across the road do not add up.
-    """
+    the next point of the road, so that errors across the road do not add up."""
     x, y = points[0]
     out = []
     for target_x, target_y in points[1:]:

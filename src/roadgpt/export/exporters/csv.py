@@ -22,8 +22,7 @@ class Csv:
     The default cross-section is level and has one lane of constant width in each direction. For any other
     cross-section, the table also contains the superelevation, and the offset of the outer edge of each lane
     and shoulder. Lanes are numbered as in OpenDRIVE. For a route through a network, the table contains only
-    the route.
-    """
+    the route."""
 
     name = "csv"
     suffix = ".csv"

@@ -32,8 +32,7 @@ class GeoJson:
 
         ``roadgpt.export.georeference`` defines the geographic position of the map. For a route through
         junctions, the paved area of the whole network takes the place of the lanes. A map without a route has
-        no centre line.
-        """
+        no centre line."""
         s = road.sample(STEP).s
         about = {"length_m": road.length, "speed_kmh": world.limits.speed_limit * 3.6}
         beside = _paved(road, world) if isinstance(road, Route) else _lanes(road, world, s)
@@ -51,8 +50,7 @@ def _lanes(road: Road, world: World, s: Array) -> Iterator[dict[str, Any]]:
     """Yields one polygon for each driving lane: first those on the right, then those on the left, each from
     the centre line outwards.
 
-    If there are several lanes on a side, their names contain numbers, from 1 at the centre line.
-    """
+    If there are several lanes on a side, their names contain numbers, from 1 at the centre line."""
     profile = world.profile_of(road)
     edges = profile.lane_edges(s)
     counts = profile.count[::-1] if profile.left_hand else profile.count

@@ -4,8 +4,7 @@ shoulder ______|____________:____________|______ shoulder   the slabs of road an
         |______|_________________________|______|           lines and path lie a little above them
 
 The file has one buffer with all numbers, and JSON that describes its contents. Textures are noise: they tile
-without a seam, and are the same for every road. Source: Khronos Group, glTF 2.0 (ISO/IEC 12113:2022).
-"""
+without a seam, and are the same for every road. Source: Khronos Group, glTF 2.0 (ISO/IEC 12113:2022)."""
 
 import io
 import json
@@ -20,9 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from PIL import Image
 
-from roadgpt.export.edges import line, named_lines, normals, stations
+from roadgpt.export.edges import Embankment, embankments, line, named_lines, normals, stations
 from roadgpt.export.ego import Poses, goal_of, on_the_ground, start_of
-from roadgpt.export.embankments import Embankment, embankments
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.land import FAR, Land
@@ -53,8 +51,7 @@ MATERIALS = {
 class Grain(NamedTuple):
     """A texture that varies the brightness of a surface."""
 
-    metres: float
-    """Side length in metres of the square area that the texture covers."""
+    metres: float  # side length in metres of the square area that the texture covers
     seed: int
     octaves: tuple[tuple[int, float], ...]
     """Layers of noise: for each, the number of noise cells along a side of the texture, and the amplitude
@@ -77,17 +74,13 @@ class TriangleMesh:
 
     name: str
     material: str
-    points: Array
-    """Points of shape (n, 3) in metres."""
-    normals: Array
-    """Unit normals of shape (n, 3)."""
+    points: Array  # points of shape (n, 3) in metres
+    normals: Array  # unit normals of shape (n, 3)
     texture: Array
     """Texture coordinates of shape (n, 2) in metres, across and along the surface.
 
-    The texture of the material is repeated in both directions.
-    """
-    triangles: np.ndarray
-    """Indices of points, of shape (m, 3), counter-clockwise seen from outside."""
+    The texture of the material is repeated in both directions."""
+    triangles: np.ndarray  # indices of points, of shape (m, 3), counter-clockwise seen from outside
 
 
 _Band = tuple[Array, Array, Array, np.ndarray]
@@ -103,16 +96,14 @@ class Gltf:
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the scene.
 
-        It shows the path of the drive, or the middle of the right lane if there is no drive.
-        """
+        It shows the path of the drive, or the middle of the right lane if there is no drive."""
         path.write_bytes(to_bytes(meshes(road, world, poses), road.at(0.0)))
 
 
 def meshes(road: Road, world: World, poses: Poses | None = None) -> list[TriangleMesh]:
     """Returns the meshes of a road: slabs, lines, the path and, if the road has shoulders, the ground.
 
-    The path is the drive ``poses``, or the middle of the driven lane if ``poses`` is None.
-    """
+    The path is the drive ``poses``, or the middle of the driven lane if ``poses`` is None."""
     profile = world.profile_of(road)
     s = stations(road, profile.reach)
     edges, rims = profile.edges(s), profile.rims(s)
@@ -268,8 +259,7 @@ def to_bytes(meshes: Sequence[TriangleMesh], near: Array) -> bytes:
     Args:
         meshes: The meshes of the scene; each becomes a separate node of the file.
         near: A point of the scene, (x, y, z) in metres. Coordinates are stored relative to it, because single
-            precision is too coarse far from the origin.
-    """
+            precision is too coarse far from the origin."""
     origin = np.round(near)
     used = list(dict.fromkeys(mesh.material for mesh in meshes))
     data = _scene(meshes, origin, used)

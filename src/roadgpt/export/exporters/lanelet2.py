@@ -2,8 +2,7 @@
 
 Source: Lanelet2, documentation of its primitives and tags; F. Poggenhans et al., Lanelet2: A High-Definition
 Map Framework for the Future of Automated Driving, ITSC 2018. Lanelet2's usual UTM projector converts
-the geographic coordinates back to the metres of the map.
-"""
+the geographic coordinates back to the metres of the map."""
 
 from itertools import count, groupby
 from math import cos, pi, sin
@@ -57,8 +56,7 @@ class Lanelet2:
 def document(road: Road, world: World) -> XmlElement:
     """Returns the XML document of the map.
 
-    Bounds may point against the direction of traffic; programs that read Lanelet2 maps detect this.
-    """
+    Bounds may point against the direction of traffic; programs that read Lanelet2 maps detect this."""
     map_ = _MapBuilder(f"{world.limits.speed_limit * 3.6:.6g} km/h")
     lanelets = sorted(lanelets_of(road, world), key=lambda each: (each.road, each.section, each.lane))
     ways: dict[LaneletBound, int] = {}
@@ -95,8 +93,7 @@ class _MapBuilder:
     def way(self, points: Array, tags: dict[str, str]) -> int:
         """Adds a way and returns its id.
 
-        Ways that begin or end at the same point share a node, so that they are connected.
-        """
+        Ways that begin or end at the same point share a node, so that they are connected."""
         begun, ended = self._at(points[0]), self._at(points[-1])
         inner = points[begun is not None : len(points) - (ended is not None)]
         made = self._add_nodes(inner)

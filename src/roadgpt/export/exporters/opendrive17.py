@@ -1,7 +1,6 @@
 """Exports roads as ASAM OpenDRIVE 1.7, for programs that do not read version 1.8 yet.
 
-Source: ASAM OpenDRIVE 1.7.0, user guide and XML schema.
-"""
+Source: ASAM OpenDRIVE 1.7.0, user guide and XML schema."""
 
 from roadgpt.export.exporters.opendrive import OpenDrive
 

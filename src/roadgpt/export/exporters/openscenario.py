@@ -2,8 +2,7 @@
 and a second one that replays a recorded drive.
 
 Source: ASAM OpenSCENARIO 1.2.0, user guide and XML schema. An entity's origin is the middle of its rear axle
-on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855).
-"""
+on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855)."""
 
 from bisect import bisect_right
 from collections.abc import Mapping
@@ -31,8 +30,7 @@ DECIMALS = 6
 
 class OpenScenario:
     """ASAM OpenSCENARIO 1.2 with OpenDRIVE: the car follows its lane or route, or replays its recorded
-    drive.
-    """
+    drive."""
 
     name = "openscenario"
     suffix = ".xosc"
@@ -42,8 +40,7 @@ class OpenScenario:
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the scenario, and beside it NAME.xodr (the road) and NAME.route.json (the lanes to drive).
 
-        If ``poses`` is not None, a second scenario, NAME.drive.xosc, replays this drive.
-        """
+        If ``poses`` is not None, a second scenario, NAME.drive.xosc, replays this drive."""
         stem = path.name.removesuffix(self.suffix)
         map_ = path.with_name(stem + OpenDrive.suffix)
         OpenDrive().save(road, map_, world)
@@ -58,8 +55,7 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
     the road or of the route. ``map_`` is the path of the OpenDRIVE file, relative to the scenario.
 
     The waypoints of a route are its start, the middle of each lane between the first and the last, and its
-    end. The scenario also ends if the car drives for too long.
-    """
+    end. The scenario also ends if the car drives for too long."""
     plan = calm_profile(road, world)
     # stations are those of the rear axle
     start, near = max(start_of(road) + CAR.rear_axle, 0.0), road.length - (goal_of(road) + CAR.rear_axle)
@@ -112,8 +108,7 @@ def _of_ego(condition: XmlElement) -> XmlElement:
 
 def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
     """Returns a scenario in which the car replays a recorded drive as a trajectory with time stamps.
-    ``map_`` is the path of the OpenDRIVE file, relative to the scenario.
-    """
+    ``map_`` is the path of the OpenDRIVE file, relative to the scenario."""
     time = np.round(poses.time - poses.time[0], DECIMALS) + 0.0
     ground = on_the_ground(poses, CAR.rear_axle)
     exact = np.column_stack([ground, poses.heading, -poses.pitch, poses.roll])
@@ -139,14 +134,12 @@ def _drives_off(ground: Array) -> int:
     """Returns the index of the last pose in which the car still stands at its start; 0 if it never moves.
 
     The car waits until then, and the trajectory begins there: players may merge poses that are close
-    together, as esmini does within 0.1 m, and a standing car would then move at once.
-    """
+    together, as esmini does within 0.1 m, and a standing car would then move at once."""
     away = np.linalg.norm(ground - ground[0], axis=1) > STANDS
     return max(int(np.argmax(away)) - 1, 0)
 
 
 def _frame(world: World, map_: str, description: str) -> tuple[XmlElement, XmlElement, XmlElement]:
-    """Returns the document, and its elements for the car's first actions and for the story."""
     root = XmlElement("OpenSCENARIO")
     header: dict[str, Value] = {
         "revMajor": 1,
@@ -167,7 +160,6 @@ def _frame(world: World, map_: str, description: str) -> tuple[XmlElement, XmlEl
 
 
 def _vehicle() -> XmlElement:
-    """Returns the description of the ego vehicle; positions are relative to the rear axle."""
     out = XmlElement("Vehicle", {"name": "saloon", "vehicleCategory": "car", "mass": CAR.mass})
     box = out.add("BoundingBox")
     box.add("Center", {"x": round(CAR.middle - CAR.rear_axle, 3), "y": 0, "z": CAR.height / 2})
@@ -183,8 +175,6 @@ def _vehicle() -> XmlElement:
 
 
 def _act(story: XmlElement, name: str, begin: float = 0.0) -> XmlElement:
-    """Adds to the story an empty private action of the car, ``begin`` seconds after the start, and returns
-    it."""
     act = story.add("Act", {"name": f"{name} act"})
     group = act.add("ManeuverGroup", {"name": f"{name} group", "maximumExecutionCount": 1})
     group.add("Actors", {"selectTriggeringEntities": "false"}).add("EntityRef", {"entityRef": EGO})
@@ -220,7 +210,6 @@ def _after(seconds: float) -> XmlElement:
 
 
 def _speed(target: float) -> XmlElement:
-    """Returns the action that sets a speed at once."""
     out = XmlElement("LongitudinalAction")
     action = out.add("SpeedAction")
     shape: dict[str, Value] = {"dynamicsShape": "step", "value": 0, "dynamicsDimension": "time"}
@@ -248,7 +237,6 @@ def _in_lane(lane: int, s: float, road: int = ROAD) -> XmlElement:
 
 
 def _in_world(row: Array) -> XmlElement:
-    """Returns the position of a row of x, y, z, heading, pitch, roll."""
     out = XmlElement("Position")
     out.add("WorldPosition", dict(zip("xyzhpr", row.tolist(), strict=True)))
     return out

@@ -1,6 +1,5 @@
 """Exports roads as tests of the SBFT tool competition, with an additional list of points that have
-heights.
-"""
+heights."""
 
 import json
 from pathlib import Path

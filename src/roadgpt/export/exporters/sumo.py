@@ -1,7 +1,6 @@
 """Exports roads for SUMO: nodes, edges, a trip and settings, and the network if netconvert is installed.
 
-Source: SUMO user documentation, "PlainXML", "netconvert", "Definition of Vehicles".
-"""
+Source: SUMO user documentation, "PlainXML", "netconvert", "Definition of Vehicles"."""
 
 import os
 import re
@@ -37,8 +36,7 @@ class Sumo:
     netconvert is installed.
 
     A lane in SUMO has a single width and a level cross-section: if the width of a lane varies, its mean is
-    written, and superelevation is left out.
-    """
+    written, and superelevation is left out."""
 
     name = "sumo"
     suffix = ".nod.xml"
@@ -46,8 +44,7 @@ class Sumo:
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes NAME.nod.xml, .edg.xml, .netccfg, .rou.xml and .sumocfg; also .net.xml if netconvert is
-        installed.
-        """
+        installed."""
         stem = path.name.removesuffix(self.suffix)
         shape = np.round(line(road, stations(road, world.profile_of(road).paved_reach), 0.0), DECIMALS) + 0.0
         limits = speed_zones(road, world)
@@ -78,8 +75,7 @@ class Sumo:
 def netconvert() -> str | None:
     """Returns the path of SUMO's netconvert; None if it is not installed.
 
-    The function searches PATH, SUMO_HOME and the Python package eclipse-sumo.
-    """
+    The function searches PATH, SUMO_HOME and the Python package eclipse-sumo."""
     places = [Path(os.environ["SUMO_HOME"])] if os.environ.get("SUMO_HOME") else []
     package = find_spec("sumo")
     if package is not None:
@@ -100,10 +96,8 @@ def _nodes(shape: Array) -> XmlElement:
 class SpeedZone(NamedTuple):
     """A stretch of road with one speed limit; it ends where the next zone starts."""
 
-    start: float
-    """Station in metres where the zone starts."""
-    speed: float
-    """Speed limit in m/s."""
+    start: float  # station in metres where the zone starts
+    speed: float  # speed limit in m/s
 
 
 def speed_zones(road: Road, world: World) -> list[SpeedZone]:
@@ -111,8 +105,7 @@ def speed_zones(road: Road, world: World) -> list[SpeedZone]:
     within the zone, rounded down to a multiple of 5 km/h, but at least 5 km/h.
 
     A zone is at least SHORTEST metres long; a shorter road is a single zone. Cars in SUMO brake in time for
-    the speed limit of the next zone, so they drive bends at a suitable speed.
-    """
+    the speed limit of the next zone, so they drive bends at a suitable speed."""
     count = max(1, int(road.length / SHORTEST))
     ends = np.linspace(0.0, road.length, count + 1)
     out: list[SpeedZone] = []
@@ -125,7 +118,6 @@ def speed_zones(road: Road, world: World) -> list[SpeedZone]:
 
 
 def _edges(shape: Array, road: Road, world: World, limits: Sequence[SpeedZone]) -> XmlElement:
-    """Returns one edge for each direction of driving along the centre line, split where limits change."""
     along = float(np.hypot(*np.diff(shape[:, :2], axis=0).T).sum())
     ends = [*(limit.start for limit in limits[1:]), along]
     back = [SpeedZone(along - end, limit.speed) for end, limit in zip(ends, limits, strict=True)][::-1]
@@ -155,8 +147,6 @@ def _edges(shape: Array, road: Road, world: World, limits: Sequence[SpeedZone]) 
 
 
 def _widths(road: Road, profile: Profile) -> tuple[list[float], list[float]]:
-    """Returns the mean widths in metres of the lanes along the road and of the oncoming ones, each from the
-    centre line outwards."""
     forward, backward = profile.count
     s = road.sample().s
     sides = profile.right[:forward], profile.left[:backward]
@@ -183,7 +173,6 @@ def _trip(limits: Sequence[SpeedZone], profile: Profile) -> XmlElement:
 
 
 def _configuration(sections: Mapping[str, Mapping[str, Value]]) -> XmlElement:
-    """Returns the settings of one of SUMO's programs: the values of options, by section."""
     out = XmlElement("configuration")
     for name, options in sections.items():
         section = out.add(name)

@@ -94,7 +94,6 @@ def _by_prompt(parts: Parts, designer: str) -> Table:
 
 
 def _broken(road: RoadRecord) -> str:
-    """Returns the criteria that a road does not meet; "general" only if there is no other."""
     wrong = [criterion for criterion, good in road.kept.items() if not good]
     names = [ASKED[criterion] for criterion in wrong if criterion != "general"]
     return ", ".join(names or wrong)

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from roadgpt.campaign.faults.failures import FailureReason, reason_of
 from roadgpt.campaign.faults.fault import DEFINED, GROUPED, Fault, Faults
 from roadgpt.campaign.faults.fault_log import TABLE, FailureAnalysis, kept_analysis
-from roadgpt.campaign.faults.reason import FailureReason, reason_of
 from roadgpt.campaign.faults.remedy import FOLDER
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest

@@ -60,7 +60,6 @@ def overview(parts: Sequence[StudyPartRecord], size: float) -> Section | None:
 
 
 def _card(part: StudyPartRecord, size: float) -> FigureCard:
-    """Returns a picture of up to nine roads: those on which the car left its lane come first."""
     first = sorted(part.roads, key=lambda road: (not road.has_left, road.index))[: SIDE * SIDE]
     chosen = sorted(first, key=lambda road: road.index)
     label = f"{plural(len(chosen), 'road')} of “{part.words}”"

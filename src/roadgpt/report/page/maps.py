@@ -12,8 +12,7 @@ import numpy as np
 from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
-from roadgpt.network.arrows import arrows
-from roadgpt.network.markings import strokes
+from roadgpt.network.markings import arrows, strokes
 from roadgpt.report.overview import Thumbnail
 from roadgpt.road import Road, World
 from roadgpt.verdict import percent, severity

@@ -4,7 +4,9 @@ The page needs no server and no network: it contains its scripts, styles and dat
 policy forbids requests. The scripts are in ``page/`` and are joined in the order of SCRIPTS; three.js is in
 ``three/``, with its licence."""
 
+import base64
 import html
+import io
 import json
 import re
 from collections.abc import Mapping, Sequence
@@ -12,10 +14,38 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from roadgpt.errors import RoadGPTError, UsageError, explained
-from roadgpt.report.view.scene import scene, scenery
+import numpy as np
+from PIL import Image
+
+from roadgpt.brief import sentence
+from roadgpt.brief.junctions import NAMES
+from roadgpt.check.describing import describe
+from roadgpt.errors import ExportError, RoadGPTError, UsageError, explained
+from roadgpt.export.edges import FOOT, OUTSIDE, RUN, stations
+from roadgpt.export.ego import CAR
+from roadgpt.geometry.curve import Array
+from roadgpt.network import Route, has_no_route
+from roadgpt.network.markings import PaintedStroke, arrows, between_crosswalks, signs, strokes
+from roadgpt.network.paved import Area
+from roadgpt.network.route import ground_of
+from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
+from roadgpt.report.birds_eye import minor_places_of, places_of
+from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
+from roadgpt.road import Profile, Road, World
+from roadgpt.road.land import Land
+from roadgpt.road.profile import DASH, GAP, LINE
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
+from roadgpt.scene.camera import MOUNTS
+from roadgpt.scene.car import saloon
+from roadgpt.scene.light import CONCRETE, DIRECT, GLASS, PAINT, PALETTE, SHINING, SUN, daylight, screen_table
+from roadgpt.scene.mesh import PLAIN
+from roadgpt.scene.network_mesh import COLOURS, faces_of, near_and_far
+from roadgpt.scene.patterns import noise
+from roadgpt.scene.scene import landscape
+from roadgpt.scene.shade import AIR, ASPHALT, DRIER, LUSH, PAINTED, STONES, panorama, to_screen
+from roadgpt.scene.trees import SIDE, Trees, pictures
+from roadgpt.verdict.verdict import MOSTLY, PARTLY
 
 __all__ = ["page", "page_of", "scene", "write"]
 
@@ -85,3 +115,337 @@ def embedded(data: object) -> str:
 @cache
 def _part(name: str) -> str:
     return (HERE / name).read_text(encoding="utf-8")
+
+
+FINEST = 400  # heights of the land are told to this part of the distance between two of its columns
+MOST_STEPS = 6000  # of a drive; drives of up to 2 minutes are complete, longer drives are thinned
+MILLIMETRES, FINE = 3, 5  # digits
+DRIVE = {
+    "time": 3,
+    "x": MILLIMETRES,
+    "y": MILLIMETRES,
+    "z": MILLIMETRES,
+    "heading": FINE,
+    "pitch": FINE,
+    "roll": FINE,
+    "speed": MILLIMETRES,
+    "steer": FINE,
+    "throttle": 2,
+    "brake": 2,
+    "s": MILLIMETRES,
+    "t": MILLIMETRES,
+    "outside": 4,
+}
+"""Columns of a drive that the page uses, and their decimals."""
+WORLD = ("map_size", "friction", "speed_limit", "oob_tolerance", "z_floor")
+SCALE = {"partly": PARTLY, "mostly": MOSTLY, "colours": [*SEVERE.values()][1:], "failed": VERMILLION}
+"""The colours that show how far the car is outside its lane, and the shares of the car outside from which the
+page says "partly" and "mostly"."""
+OF_FIRST_ROAD = "; height and curvature are those of the first road of the map"
+"""Text that the page adds for a map without a route."""
+CENTIMETRES = 2  # digits, of outlines that are only drawn on the plan
+NEAR, ROUGH = 0.01, 0.05  # m, by which outlines may be simplified: in 3-D, and on the plan
+CHORD = 0.01  # m, largest distance between the road and the drawn lines
+
+
+def scene(run: Run) -> dict[str, Any]:
+    """Returns everything that the HTML page shows of a Run, in metres, seconds and radians."""
+    if run.road is None:
+        raise UsageError(f"there is no road to show: {run.description}")
+    more = {"network": network_values(run.road)} if isinstance(run.road, Route) else {}
+    return {
+        "title": run.title,
+        "outcome": outcome_of(run),
+        "colour": OUTCOMES.get(outcome_of(run), INK),
+        "letters": LETTERS.get(OUTCOMES.get(outcome_of(run), INK), "#ffffff"),
+        "description": run.description,
+        "about": origin(run) + (OF_FIRST_ROAD if has_no_route(run.road) else ""),
+        "words": _words(run.road),
+        "road": _road(run.road, run.world),
+        "land": _land(*landscape(run.world.lay(run.road), run.world)),
+        "world": {name: run.world.values()[name] for name in WORLD},
+        "marking": {"width": LINE, "dash": DASH, "gap": GAP},
+        "severe": SCALE,
+        "drive": _drive(run),
+        "places": _places(run),
+        **more,
+    }
+
+
+def _words(road: Road) -> str:
+    if has_no_route(road):
+        return ""
+    try:
+        return sentence(describe(road))
+    except UsageError:
+        return ""
+
+
+def _road(road: Road, world: World) -> dict[str, Any]:
+    """Returns the values of a road; a route's edges stand for its rims, as the ground is the network's."""
+    profile = world.profile_of(road)
+    if not isinstance(road, Route):
+        return road_columns(road, profile)
+    made = road_columns(road, profile, profile.paved_reach)
+    bounds = made["lanes"]["bounds"]
+    made["lanes"]["rims"] = {"left": bounds[0]["t"], "right": bounds[-1]["t"]}
+    return made
+
+
+def _land(land: Land, trees: Trees) -> dict[str, Any]:
+    """Returns heights row by row from south to north, each in units of ``unit`` metres as its difference from
+    west + south - south-west, which is short; and of each tree x, y, z, height and width in decimetres, the
+    number of its picture, and its brightness in percent."""
+    unit = land.cell / FINEST
+    steps = np.diff(np.diff(np.rint(land.heights / unit), axis=0, prepend=0), axis=1, prepend=0)
+    of_trees = [10 * trees.places, 10 * trees.sizes, trees.looks[:, None], 100 * trees.tints[:, None]]
+    return {
+        "x": rounded(land.x, 1),
+        "y": rounded(land.y, 1),
+        "unit": unit,
+        "heights": steps.astype(int).reshape(-1).tolist(),
+        "trees": np.rint(np.concatenate(of_trees, axis=1)).astype(int).reshape(-1).tolist(),
+    }
+
+
+def _drive(run: Run) -> dict[str, Any] | None:
+    drive, road = run.drive, run.road
+    if drive is None or road is None:
+        return None
+    every = -(-len(drive) // MOST_STEPS)
+    kept = np.unique(np.r_[np.arange(0, len(drive), every), len(drive) - 1])
+    columns = {name: drive[name][kept] for name in DRIVE}
+    columns["heading"] = np.unwrap(columns["heading"])
+    height = drive["z"][0] - float(road.at(drive["s"][0], drive["t"][0])[2])
+    return {
+        "driver": drive.driver,
+        "simulator": drive.simulator,
+        "ended": drive.ended,
+        "car": {**drive.car._asdict(), "height": round(float(height), MILLIMETRES)},
+        "columns": {name: rounded(column, DRIVE[name]) for name, column in columns.items()},
+    }
+
+
+def _places(run: Run) -> list[dict[str, Any]]:
+    found = []
+    for place in [*minor_places_of(run), *places_of(run)]:  # the last one is drawn on top
+        time = None if run.drive is None or place.step is None else float(run.drive["time"][place.step])
+        named = {name: getattr(place, name) for name in ("x", "y", "s", "text", "colour", "letters")}
+        found.append({**named, "time": time, "isMinor": place.is_minor})
+    return found
+
+
+def network_values(route: Route) -> dict[str, Any]:
+    """Returns everything that the HTML page shows of the network of a route, in metres."""
+    network, parts = route.network, NetworkSurface.of(route.network)
+    roads = []
+    for each in parts.roads:
+        columns = road_columns(each.road, each.profile, median=between_crosswalks(network, each))
+        roads.append({**columns, "ends": list(free_ends(network, each))})
+    return {
+        "roads": roads,
+        "areas": [_area(area) for area in parts.areas],
+        "strokes": [
+            {"kind": stroke.kind, "width": stroke.width, "points": _points(_simple(stroke))}
+            for stroke in strokes(network)
+        ],
+        "arrows": [
+            {"points": _points(arrow.points), "corners": arrow.corners.reshape(-1).tolist()}
+            for arrow in arrows(network)
+        ],
+        "signs": [
+            {"colour": face.colour, "points": _points(face.points)}
+            for sign in signs(network)
+            for face in faces_of(sign)
+        ],
+        "plan": {
+            "ground": _rings(ground_of(network)) if parts.shoulder > 0 else [],
+            "paved": _rings(network.paved),
+            "kerbed": [ring for area in parts.areas for island in area.kerbed for ring in _rings(island)],
+            "green": [ring for area in parts.areas for island in area.green for ring in _rings(island)]
+            if parts.shoulder > 0
+            else [],
+        },
+        "stretches": [
+            {
+                "from": round(each.start, MILLIMETRES),
+                "to": round(each.end, MILLIMETRES),
+                "name": NAMES[each.entered.kind][0],
+            }
+            for each in route.passages
+        ],
+        "hasRoute": bool(route.legs),
+        "shoulder": round(parts.shoulder, MILLIMETRES),
+    }
+
+
+def _area(area: JunctionSurface) -> dict[str, Any]:
+    import shapely
+    from shapely.geometry.polygon import orient
+
+    has_ground = not area.shoulder.is_empty
+    whole = shapely.union_all([area.paved, area.shoulder, *area.kerbed, *area.green])
+    rims = [orient(shapely.Polygon(part.exterior)) for part in shapely.get_parts(whole)]
+    return {
+        "z": round(area.height, MILLIMETRES),
+        "paved": _triangles(area.paved),
+        "shoulder": [_triangles(part) for part in near_and_far(area) if not part.is_empty],
+        "green": [_triangles(island) for island in area.green] if has_ground else [],
+        "kerbed": [{**_triangles(island), "rim": _rings(orient(island), NEAR)[0]} for island in area.kerbed],
+        "rims": [_rings(rim, NEAR)[0] for rim in rims],
+    }
+
+
+def _triangles(area: Area) -> dict[str, Any]:
+    import shapely
+
+    # corners that are rounded only later would turn thin triangles over
+    points, corners = triangulated(shapely.set_precision(shapely.simplify(area, NEAR), 10.0**-MILLIMETRES))
+    return {"points": rounded(points.reshape(-1), MILLIMETRES), "corners": corners.reshape(-1).tolist()}
+
+
+def _simple(stroke: PaintedStroke) -> Array:
+    import shapely
+
+    if stroke.road is not None or len(stroke.points) < 3:
+        return stroke.points
+    flat = shapely.get_coordinates(shapely.simplify(shapely.LineString(stroke.points[:, :2]), NEAR))
+    return np.column_stack([flat, np.full(len(flat), stroke.points[0, 2])])
+
+
+def _points(points: Array) -> list[float]:
+    return rounded(points.reshape(-1), MILLIMETRES)
+
+
+def _rings(area: Area, tolerance: float = ROUGH) -> list[list[float]]:
+    import shapely
+
+    parts = shapely.get_parts(shapely.simplify(area, tolerance))
+    rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
+    return [rounded(np.asarray(ring.coords, float)[:-1, :2].reshape(-1), CENTIMETRES) for ring in rings]
+
+
+def road_columns(
+    road: Road, profile: Profile, reach: float | None = None, median: tuple[float, float] | None = None
+) -> dict[str, Any]:
+    """Returns a road's cross-section, and its geometry at stations close enough to draw the road. Values are
+    in metres and radians, the curvature is in 1/m, and the grade is a ratio.
+
+    ``reach`` is the largest offset of any line that is drawn along the road; None: the profile's ``reach``.
+    ``median`` is the first and the last station of grass on the profile's median; None: the whole road."""
+    try:
+        s = stations(road, profile.reach if reach is None else reach, CHORD)
+    except ExportError as error:
+        raise UsageError("the road has a number that is not finite; check it before it is shown") from error
+    points = road.at(s)
+    return {
+        "length": road.length,
+        "s": rounded(s, MILLIMETRES),
+        "x": rounded(points[:, 0], MILLIMETRES),
+        "y": rounded(points[:, 1], MILLIMETRES),
+        "z": rounded(points[:, 2], MILLIMETRES),
+        "heading": rounded(np.unwrap(road.heading(s)), FINE),
+        "curvature": rounded(road.curvature(s), FINE),
+        "grade": rounded(road.grade(s), FINE),
+        "lanes": {**_lanes(profile, s), "median": _median(profile, median or (0.0, road.length))},
+    }
+
+
+def _median(profile: Profile, span: tuple[float, float]) -> dict[str, float] | None:
+    if not profile.median:
+        return None
+    at = profile.count[0] if profile.left_hand else profile.count[1]
+    return {"strip": at, "from": round(span[0], MILLIMETRES), "to": round(span[1], MILLIMETRES)}
+
+
+def _lanes(profile: Profile, s: Array) -> dict[str, Any]:
+    rims, edges = profile.rims(s), profile.edges(s)
+    shoulder = min((rims.left - edges.left).min(), (edges.right - rims.right).min())
+    return {
+        "bounds": [{"marking": mark, "t": _offsets(t)} for mark, t in profile.boundaries(s)],
+        "driven": profile.boundaries_to_left,
+        "middle": _offsets(profile.middle(s)),
+        "rims": {"left": _offsets(rims.left), "right": _offsets(rims.right)},
+        "shoulder": round(float(shoulder), MILLIMETRES),
+        "reach": round(profile.reach, MILLIMETRES),
+        "bank": None if profile.superelevation_angle is None else rounded(profile.superelevation(s), FINE),
+    }
+
+
+def _offsets(t: Array) -> float | list[float]:
+    found = rounded(t, MILLIMETRES)
+    return found[0] if len(set(found)) == 1 else found
+
+
+def rounded(values: Array, digits: int) -> list[float]:
+    """Returns the values as a list of numbers rounded to ``digits`` decimals."""
+    return [round(float(value), digits) for value in values]
+
+
+LOWEST = -0.03  # rad, elevation of the lowest row of the sky's picture
+SKY, QUALITY = (224, 1536, 3), 70  # rows and columns of the sky's picture; its quality as JPEG
+HUES = 32  # colours of the trees' picture
+COLOUR = 4  # digits of a colour
+
+
+@cache
+def scenery() -> dict[str, Any]:
+    """Returns what all pages share, as values for JSON."""
+    below, above = daylight(np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]))
+    plain = [rounded(row[:3] + row[3:], COLOUR) for row in PALETTE]
+    named = {name: plain[kind - PLAIN] for name, kind in [*COLOURS.items(), ("concrete", CONCRETE)]}
+    return {
+        "light": {"sun": SUN.tolist(), "direct": DIRECT, "above": above - DIRECT * SUN[2], "below": below},
+        "colours": named
+        | {"asphalt": [ASPHALT] * 3, "paint": PAINTED, "gravel": STONES, "haze": AIR}
+        | {"lush": LUSH, "dry": np.add(LUSH, DRIER).tolist()},
+        "plain": plain,
+        "mounts": {name: MOUNTS[name]._asdict() for name in ("bonnet", "chase")},
+        "car": _car(),
+        "banks": {"run": RUN, "foot": FOOT, "outside": OUTSIDE},
+        "sky": {"lowest": LOWEST, "picture": _sky()},
+        "trees": _trees(),
+    }
+
+
+def _car() -> dict[str, Any]:
+    """Returns the points of the car's hull in millimetres and, from number ``wheel`` on, those of its first
+    wheel; and the hubs of all wheels: x, y, z, and whether the wheel steers."""
+    wheels, mesh = saloon().wheels, saloon().mesh
+    first = wheels[0][0]
+    inside = (mesh.triangles < first.stop).all(axis=1)
+    return {
+        "points": np.rint(1000 * mesh.points[: first.stop]).astype(int).reshape(-1).tolist(),
+        "corners": mesh.triangles[inside].reshape(-1).tolist(),
+        "kinds": (mesh.kinds[inside] - PLAIN).tolist(),
+        "wheel": first.start,
+        "hubs": [[*rounded(hub, COLOUR), steers] for _, hub, steers in wheels],
+        "length": CAR.length,
+        "width": CAR.width,
+        "braking": SHINING,
+        "glossy": [PAINT - PLAIN, GLASS - PLAIN],
+    }
+
+
+def _sky() -> str:
+    sky, shown = np.empty(SKY, np.float32), np.empty(SKY, np.uint8)
+    panorama(noise(), LOWEST, sky)
+    to_screen(sky, screen_table(), shown)
+    return _address(Image.fromarray(shown), "jpeg", quality=QUALITY)
+
+
+def _trees() -> str:
+    table = screen_table()
+    drawn = np.concatenate([*pictures()[:, : SIDE * SIDE].reshape(-1, SIDE, SIDE, 4)], axis=1)
+    shown = table[np.rint(np.clip(drawn, 0, 1) * (len(table) - 1)).astype(int)]
+    is_tree = drawn[..., 3] > 0
+    shown[..., 3] = 255 * is_tree
+    shown[~is_tree, :3] = shown[is_tree, :3].mean(axis=0)  # no dark rims when filtered
+    few = Image.fromarray(shown, "RGBA").quantize(HUES, method=Image.Quantize.FASTOCTREE)
+    return _address(few, "png")
+
+
+def _address(image: Image.Image, kind: str, **options: Any) -> str:
+    data = io.BytesIO()
+    image.save(data, kind, optimize=True, **options)
+    return f"data:image/{kind};base64,{base64.b64encode(data.getvalue()).decode('ascii')}"

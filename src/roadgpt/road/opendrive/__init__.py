@@ -18,8 +18,6 @@ import numpy as np
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, SplineCurve
 from roadgpt.geometry.curve import Array
-from roadgpt.road.opendrive.heights import carried_over, edge_heights, elevation, jumps, plain
-from roadgpt.road.opendrive.lanes import NEAR, Lanes, read_lanes
 from roadgpt.road.opendrive.line import (
     KINK,
     GeometryElement,
@@ -33,11 +31,19 @@ from roadgpt.road.opendrive.line import (
     walk,
 )
 from roadgpt.road.opendrive.profile import (
+    NEAR,
     Carry,
     FileProfile,
+    Lanes,
+    carried_over,
     checked,
     closed,
+    edge_heights,
+    elevation,
     friction,
+    jumps,
+    plain,
+    read_lanes,
     read_profile,
     speed_limit,
 )
@@ -169,7 +175,6 @@ def _carried(own: FileProfile, carry: Carry, length: float, is_reversed: bool) -
 
 
 def _grown(node: Element, line: list[GeometryElement], lanes: Lanes) -> tuple[Road, Carry, list[str]]:
-    """Returns the road without its cross-section, the conversion of cubics to its stations, and remarks."""
     heights, length = elevation(node), line[-1].s + line[-1].length
     step = jumps(heights, length)
     remarks = [step] if step else []
@@ -269,7 +274,6 @@ def _parts(choice: Choice, profile: FileProfile) -> Iterator[str]:
 
 
 def _further_lanes(road: Element, used: Container[int]) -> Counter[str]:
-    """Counts the lanes that are not in the profile; a lane in several sections counts once."""
     sides = [road.findall(f"lanes/laneSection/{side}/lane") for side in ("left", "right")]
     lanes = [lane for side in sides for lane in side if id(lane) not in used]
     found = {(number(lane, "id"), lane.get("type", "")) for lane in lanes}

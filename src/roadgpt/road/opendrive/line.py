@@ -20,7 +20,7 @@ from roadgpt.geometry import Piece, PieceCurve, wrap_angle
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.elevation import Cubic
 from roadgpt.geometry.pieces import advance, joined
-from roadgpt.road.opendrive.lanes import Lanes
+from roadgpt.road.opendrive.profile import Lanes
 from roadgpt.road.opendrive.tree import number
 from roadgpt.road.road import check_length
 
@@ -69,7 +69,6 @@ class Polynomial:
 
     @cached_property
     def _walked(self) -> tuple[Array, Array]:
-        """Returns values of the parameter p, and the arc length in metres up to each."""
         rough = np.linspace(0.0, self.end, 65)
         length = float(np.hypot(*np.diff(self._at(rough), axis=1)).sum())
         count = int(min(MOST_PLACES, max(64, length / FINE)))
@@ -322,7 +321,6 @@ def _away_from_joins(line: SampledLine) -> Array:
 
 
 def _thinned(s: Array, kept: Array) -> Array:
-    """Returns the indices of the kept poses, no two closer together than clothoids can resolve."""
     out = [0]
     for i in np.flatnonzero(kept)[1:].tolist():
         if s[i] - s[out[-1]] >= CLOSEST:
@@ -406,7 +404,6 @@ def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
 
 
 def _parts(element: GeometryElement, joints: Array, lanes: Lanes | None) -> Iterator[tuple[Array, Array]]:
-    """Yields the parts, with both ends, into which joints cut an element: stations and poses ``(n, 3)``."""
     start, end = element.s, element.s + element.length
     count = max(FEWEST, int(np.ceil(element.length / STEP)))
     if isinstance(element.shape, Polynomial):

@@ -1,9 +1,13 @@
-"""Reads the cross-section of a road: lanes, shoulders and road marks beside the centre line, and the
-superelevation.
+"""Reads the lane sections of an OpenDRIVE road, its heights, and the cross-section: lanes, shoulders and road
+marks beside the centre line, and the superelevation.
 
-The centre line is the inner edge of the innermost driving lane. Lanes of successive lane sections are joined
-in order, beginning with the innermost. A lane narrower than 0.25 m where two sections meet is not joined
-there. In sections where a joined lane does not exist, its width is 0."""
+The driven side is the right-hand side, or the left-hand side if driving lanes cover more than twice as much
+length there. The inner edge of the innermost driving lane on the driven side becomes the centre line of the
+Road.
+
+Lanes of successive lane sections are joined in order, beginning with the innermost. A lane narrower than
+0.25 m where two sections meet is not joined there. In sections where a joined lane does not exist, its
+width is 0."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -16,12 +20,274 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from roadgpt.errors import UsageError
-from roadgpt.geometry import CubicProfile, shifted
+from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile, shifted
+from roadgpt.geometry.curve import Array
 from roadgpt.geometry.elevation import Cubic
-from roadgpt.road.opendrive.lanes import BESIDE, LaneElement, Lanes, Span
-from roadgpt.road.opendrive.tree import DRIVING, number
+from roadgpt.road.opendrive.tree import DRIVING, cubics, number
 from roadgpt.road.profile import MOST_LANES, MOST_ROWS, STEEPEST, WIDEST, Kind, Lane, Marking, Profile, Width
 from roadgpt.road.world import FRICTIONS, LANE_WIDTHS, SPEEDS
+
+BESIDE = ("shoulder", "border")
+EDGES = ("width", "border")  # elements of a lane that state its outer edge
+NEAR = 1.0  # m; shorter parts without a driving lane are not reported
+MOST_SECTIONS = 5_000
+MOST_ACROSS = 200  # lanes on one side of a section
+
+
+@dataclass(frozen=True)
+class LaneElement:
+    """One lane of a section, with either its width or its ``border``, the offset of its outer edge."""
+
+    node: Element
+    kind: str
+    width: CubicProfile | None
+    border: CubicProfile | None
+
+
+@dataclass(frozen=True)
+class LaneSection:
+    """One lane section, with its lanes on both sides, ordered from the inside out."""
+
+    s: float
+    lanes: tuple[LaneElement, ...]  # the lanes on the driven side
+    others: tuple[LaneElement, ...]  # the lanes on the side opposite to the driven side
+    centre: tuple[Element, ...]  # lane 0, if there is one
+    first: int  # index in ``lanes`` of the innermost driving lane; ``len(lanes)`` if there is none
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether there is a driving lane on the driven side."""
+        return self.first < len(self.lanes)
+
+
+class Span(NamedTuple):
+    """A lane section that has a driving lane, with the stations in metres at which it begins and ends."""
+
+    section: LaneSection
+    start: float
+    end: float
+
+
+@dataclass(frozen=True)
+class Lanes:
+    """The lane sections of a road."""
+
+    side: int  # -1 if the driven side is to the right of the reference line, 1 if it is to the left
+    sections: tuple[LaneSection, ...]
+    offset: CubicProfile | None
+    angle: CubicProfile | None
+    """The superelevation in radians, positive where the surface falls to the right of the reference line."""
+    length: float
+
+    def edge(self, s: Array) -> tuple[Array, Array]:
+        """Returns offset and slope of the inner edge of the driving lanes at stations ``s``. The offset is in
+        metres to the left of the reference line and is measured in plan; the slope is its change per metre.
+        """
+        t, slope = self.edge_on_surface(s)
+        if self.angle is None:
+            return t, slope
+        cos, sin = np.cos(self.angle.height(s)), np.sin(self.angle.height(s))
+        return t * cos, slope * cos - t * sin * self.angle.grade(s)
+
+    def edge_on_surface(self, s: Array) -> tuple[Array, Array]:
+        """Returns offset and slope as ``edge`` does, but measured along the inclined road surface."""
+        t, slope = _both(self.offset, s)
+        starts = np.array([section.s for section in self.sections])
+        index = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(starts) - 1)
+        for i in np.unique(index):
+            section, some = self.sections[i], index == i
+            if section.is_driven:
+                across, lean = self._outer(section, section.first - 1, s[some])
+                t[some] += self.side * across
+                slope[some] += self.side * lean
+        return t, slope
+
+    def _outer(self, section: LaneSection, last: int, s: Array) -> tuple[Array, Array]:
+        """Returns the distance of the outer edge of ``section.lanes[last]`` from lane 0, and its slope."""
+        across, lean = np.zeros(len(s)), np.zeros(len(s))
+        for lane in section.lanes[: last + 1]:
+            if lane.width is None and lane.border is not None:
+                across, lean = _both(lane.border, s)
+                across, lean = np.abs(across), np.where(across < 0, -lean, lean)
+            else:
+                more, leaning = _both(lane.width, s)
+                across, lean = across + more, lean + leaning
+        return across, lean
+
+    def joints(self) -> list[float]:
+        """Returns the stations at which the inner edge of the driving lanes may have a kink."""
+        found = [section.s for section in self.sections]
+        found += self.offset.stations if self.offset else ()
+        found += self.angle.stations if self.angle else ()
+        for section in self.sections:
+            for lane in section.lanes[: section.first]:
+                for profile in (lane.width, lane.border):
+                    found += profile.stations if profile else ()
+        return found
+
+    def spans(self) -> list[Span]:
+        """Returns the sections that have a driving lane and a length above 0, in order."""
+        ends = [section.s for section in self.sections[1:]] + [self.length]
+        starts = [max(section.s, 0.0) for section in self.sections]
+        return [
+            Span(section, start, end)
+            for section, start, end in zip(self.sections, starts, ends, strict=True)
+            if section.is_driven and end > start
+        ]
+
+    def stretches(self) -> list[tuple[float, float]]:
+        """Returns the first and last station in metres of each continuous stretch with a driving lane."""
+        found: list[tuple[float, float]] = []
+        for _, start, end in self.spans():
+            joins = bool(found) and start - found[-1][1] < NEAR
+            found = [*found[:-1], (found[-1][0], end)] if joins else [*found, (start, end)]
+        return found
+
+
+def read_lanes(road: Element, length: float) -> Lanes:
+    """Returns the lane sections of a road that is ``length`` metres long. Raises UsageError if it has no
+    driving lane."""
+    nodes = road.findall("lanes/laneSection")
+    if not nodes:
+        raise UsageError("it has no lane section; add <lanes>")
+    if len(nodes) > MOST_SECTIONS:
+        raise UsageError(f"it has more than {MOST_SECTIONS:,} lane sections; cut out the part that you need")
+    offset = cubics(road.findall("lanes/laneOffset"), "s")
+    angle = cubics(road.findall("lateralProfile/superelevation"), "s")
+    starts = [number(node, "s") for node in nodes]
+    centres = [tuple(node.findall("center/lane")) for node in nodes]
+    on_right, on_left = (
+        [_elements(node, side, s) for node, s in zip(nodes, starts, strict=True)]
+        for side in ("right", "left")
+    )
+    right, left = (
+        Lanes(side, tuple(map(_section, starts, lanes, others, centres)), offset, angle, length)
+        for side, lanes, others in ((-1, on_right, on_left), (1, on_left, on_right))
+    )
+    along, against = (sum(end - start for start, end in lanes.stretches()) for lanes in (right, left))
+    if along or against:
+        return right if along >= against / 2 else left
+    kinds = {lane.get("type", "?") for node in nodes for lane in node.findall("left/lane")}
+    kinds |= {lane.get("type", "?") for node in nodes for lane in node.findall("right/lane")}
+    told = ", ".join(sorted(kinds)[:6]) or "none"
+    raise UsageError(f"it has no lane of type driving (its lanes are: {told}); take another road")
+
+
+def _section(
+    s: float, lanes: tuple[LaneElement, ...], others: tuple[LaneElement, ...], centre: tuple[Element, ...]
+) -> LaneSection:
+    first = next((i for i, lane in enumerate(lanes) if lane.kind in DRIVING), len(lanes))
+    return LaneSection(s, lanes, others, centre, first)
+
+
+def _elements(section: Element, side: str, s: float) -> tuple[LaneElement, ...]:
+    nodes = sorted(section.findall(f"{side}/lane"), key=lambda lane: abs(number(lane, "id")))
+    if len(nodes) > MOST_ACROSS:
+        raise UsageError(f"its lane section at s = {s:g} has more than {MOST_ACROSS} lanes on one side")
+    return tuple(
+        LaneElement(lane, lane.get("type", ""), *(cubics(lane.findall(tag), "sOffset", s) for tag in EDGES))
+        for lane in nodes
+    )
+
+
+def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:
+    if profile is None:
+        return np.zeros(len(s)), np.zeros(len(s))
+    return profile.height(s), profile.grade(s)
+
+
+SAME_HEIGHT = 1e-9  # m, and as a ratio: heights and grades closer than this are treated as equal
+CLOSE = 1e-6  # m between the starts of two cubics
+STEP = 0.05  # m; a remark is made about a larger step
+APART = 1.0  # m between the stations of the heights of a centre line beside the reference line
+
+
+def elevation(road: Element) -> CubicProfile:
+    """Returns the height of a road as a function of its station; 0 if the file states no elevation."""
+    return cubics(road.findall("elevationProfile/elevation"), "s") or CubicProfile.constant(0.0)
+
+
+def plain(profile: CubicProfile, length: float) -> ElevationProfile:
+    """Returns a profile of constant grades and parabolas as a GradeProfile, and any other one unchanged."""
+    stations = [s for s in profile.stations if s < length - SAME_HEIGHT]
+    stations = [0.0, *(s for s in stations if s > SAME_HEIGHT)]
+    table = profile.cubics(np.array(stations))
+    if np.abs(table[:, 3]).max() > 0:
+        return profile
+    rows = list(zip(stations, table.tolist(), strict=True))
+    for (s, (a, b, c, _)), (end, (z, grade, _, _)) in pairwise(rows):
+        u = end - s
+        if (
+            abs(a + u * (b + u * c) - z) > SAME_HEIGHT * max(1.0, abs(z))
+            or abs(b + 2 * u * c - grade) > SAME_HEIGHT
+        ):
+            return profile
+    (s, (_, b, c, _)) = rows[-1]
+    grades = (*table[:, 1].tolist(), b + 2 * (length - s) * c)
+    return GradeProfile(float(table[0, 0]), (*stations, length), grades)
+
+
+def jumps(profile: CubicProfile, length: float) -> str | None:
+    """Returns a sentence about the largest step in height; None if no step is larger than 5 cm."""
+    worst, where = 0.0, 0.0
+    for s, end in pairwise(profile.stations):
+        if end < length:
+            step = abs(float(profile.height(end) - profile.height(np.nextafter(end, s))))
+            worst, where = max((worst, where), (step, end))
+    return f"its height jumps by {worst:.2f} m at s = {where:.1f}" if worst > STEP else None
+
+
+def edge_heights(heights: CubicProfile, lanes: Lanes) -> CubicProfile:
+    """Returns the heights of the inner edge of the driving lanes, as functions of the station in the file.
+    ``heights`` are those of the reference line. The edge has other heights than this line only where the road
+    has superelevation and the edge lies beside this line."""
+    if lanes.angle is None or not any(any(cubic) for cubic in lanes.angle.coefficients):
+        return heights
+    even = np.linspace(0.0, lanes.length, max(2, round(lanes.length / APART) + 1))
+    joints = [s for s in (*lanes.joints(), *heights.stations) if 0.0 < s < lanes.length]
+    s = np.unique(np.r_[even, joints])
+    s = s[np.r_[True, np.diff(s) > CLOSE]]
+    if np.abs(lanes.edge_on_surface(s)[0]).max() < SAME_HEIGHT:
+        return heights
+    length = np.diff(s)
+    inside = np.minimum(CLOSE, length / 4)
+    z0, g0 = _edge_height(heights, lanes, s[:-1] + inside)
+    z1, g1 = _edge_height(heights, lanes, s[1:] - inside)
+    z0, z1 = z0 - inside * g0, z1 + inside * g1
+    rise = (z1 - z0) / length
+    c, d = (3 * rise - 2 * g0 - g1) / length, (g0 + g1 - 2 * rise) / length**2
+    return CubicProfile.of_table(s[:-1].tolist(), np.column_stack([z0, g0, c, d]))
+
+
+def _edge_height(heights: CubicProfile, lanes: Lanes, s: Array) -> tuple[Array, Array]:
+    assert lanes.angle is not None
+    t, slope = lanes.edge_on_surface(s)
+    angle, grade = lanes.angle.height(s), heights.grade(s)
+    steep = np.hypot(1.0, grade)
+    rise = t * np.sin(angle)
+    change = (
+        slope * np.sin(angle) + t * np.cos(angle) * lanes.angle.grade(s)
+    ) * steep + rise * grade * heights.vertical_curvature(s) / steep
+    return heights.height(s) + rise * steep, grade + change
+
+
+def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfile:
+    """Converts cubic functions of the station in the file to functions of the station on the Road. The two
+    stations differ where the centre line is longer or shorter than the reference line.
+
+    ``s`` are increasing stations of the file in metres, ``stations`` the corresponding stations of the Road.
+    In between, the conversion is linear."""
+    cuts = np.array(profile.stations)
+    behind = np.clip(np.searchsorted(s, cuts), 1, len(s) - 1)
+    apart = np.minimum(cuts - s[behind - 1], s[behind] - cuts)
+    places, s = s, np.sort(np.r_[s, cuts[apart > CLOSE]])
+    stations = np.interp(s, places, stations)
+    # evaluated in the middle: rounding may put a start just before the cubic that begins there
+    half = np.diff(s) / 2
+    table = shifted(profile.cubics(s[:-1] + half), -half)
+    scale = (np.diff(s) / np.diff(stations))[:, None] ** np.arange(4)
+    return CubicProfile.of_table(stations[:-1].tolist(), table * scale)
+
 
 Row = tuple[float, Cubic]
 """A station in metres, and the cubic that begins there."""
@@ -87,7 +353,6 @@ def limited(rows: Sequence[Row], end: float, low: float, high: float) -> list[Ro
 
 
 def _cuts(row: Row, end: float, low: float, high: float) -> list[tuple[float, float]]:
-    """Returns the parts of a row inside which its cubic crosses no limit."""
     start, (a, b, c, d) = row
     reach = end - start
     swing = reach * (abs(b) + reach * (abs(c) + reach * abs(d)))
@@ -306,13 +571,11 @@ def read_profile(road: Element, lanes: Lanes) -> FileProfile:
 
 
 def _outward(span: Span) -> Iterator[WideLane]:
-    """Yields the lanes from the centre line outwards on the driven side."""
     lanes = span.section.lanes
     return (WideLane(lanes[n], _width(lanes, n, span)) for n in range(span.section.first, len(lanes)))
 
 
 def _inward(span: Span) -> Iterator[WideLane]:
-    """Yields the lanes from the centre line towards the side not driven on, except lanes without a width."""
     lanes, others = span.section.lanes, span.section.others
     inner = (WideLane(lanes[n], _width(lanes, n, span)) for n in reversed(range(span.section.first)))
     beyond = (WideLane(others[n], _width(others, n, span)) for n in range(len(others)))
@@ -325,7 +588,6 @@ def _is_wide(rows: list[Row], end: float) -> bool:
 
 
 def _width(lanes: Sequence[LaneElement], place: int, span: Span) -> list[Row]:
-    """Returns the width of a lane in one section. A border is the offset of the outer edge from lane 0."""
     lane = lanes[place]
     parts: list[tuple[float, CubicProfile]] = []
     if lane.width is not None:
@@ -365,7 +627,6 @@ def _oncoming(spans: Sequence[Span]) -> tuple[list[_SectionSide], list[str]]:
 def _joined(
     spans: Sequence[Span], sides: Sequence[_SectionSide], length: float, remarks: list[str]
 ) -> list[JoinedLane]:
-    """Returns the lanes of one side, joined over all sections: first driving lanes, then shoulders."""
     driving = _aligned(spans, [lanes for lanes, _ in sides])[:MOST_LANES]
     shoulders = _aligned(spans, [lanes for _, lanes in sides])[: MOST_LANES - len(driving)]
     return [
@@ -425,7 +686,6 @@ def checked(cubics: CubicProfile) -> CubicProfile:
 
 
 def _rightmost(right: Sequence[JoinedLane]) -> int:
-    """Returns the index of the outermost driving lane that is wide enough everywhere; 0 if none is."""
     wide = [
         number
         for number, slot in enumerate(right)
@@ -442,7 +702,6 @@ def _kept(
     remarks: list[str],
     unit: tuple[float, str] = (1.0, "m"),
 ) -> CubicProfile:
-    """Returns the rows as cubics within the limits, and adds a remark if a value had to be limited."""
     whole, (low, high) = checked(closed(rows, length)), limits
     found = whole.beyond(low, high)
     if found is None:
@@ -464,7 +723,6 @@ def _superelevation(lanes: Lanes, remarks: list[str]) -> CubicProfile | None:
 def _painted(
     road: Element, spans: Sequence[Span], right: Sequence[JoinedLane], left: Sequence[JoinedLane]
 ) -> tuple[list[JoinedLane], list[JoinedLane], Marking, list[str]]:
-    """Returns the lanes with their markings, the marking of the centre line, and a remark if some differ."""
     if any(True for _ in road.iter("roadMark")):
         found = [[marking(slot.parts) for slot in side] for side in (right, left)]
         centre, centre_changes = marking([MarkedLane(s, _inner(s)) for s in spans if s.section.centre])
@@ -485,7 +743,6 @@ def _painted(
 
 
 def _inner(span: Span) -> Element:
-    """Returns the lane whose outer edge is the centre line, and that has a width or a mark, or lane 0."""
     section = span.section
     for place in reversed(range(section.first)):
         lane = section.lanes[place]

@@ -1,6 +1,4 @@
-"""Provides classes and functions that generators of the SBFT tool competition import. Those that this package
-lacks are imported from a checkout of the competition's code, if one is on Python's search path.
-"""
+"""What generators of the SBFT tool competition import; what is missing comes from a checkout of its code."""
 
 from pkgutil import extend_path
 

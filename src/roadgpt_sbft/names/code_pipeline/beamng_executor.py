@@ -1,14 +1,11 @@
-"""Defines the executor that a generator receives. Its class has the same name as the competition's executor
-for BeamNG.
-
-The executor sends road points to RoadGPT, which validates and drives the road, and returns the results to
-the generator. ``validate_test`` validates a test without driving it and without this exchange of messages.
+"""Defines the executor that a generator receives, under the name of the competition's executor for BeamNG. It
+sends road points to RoadGPT, which validates and drives the road, and returns the results to the generator.
 """
 
 from __future__ import annotations
 
 import time
-from typing import Any, Dict, Optional, Tuple
+from typing import Any, Optional, Tuple
 
 from code_pipeline.executors import HANDED, AbstractTestExecutor, TestResult, settle
 from code_pipeline.tests_generation import RoadTestFactory
@@ -19,9 +16,8 @@ KMH = 3.6
 
 
 class BeamngExecutor(AbstractTestExecutor):
-    """Sends tests to ``roadgpt compete sbft``. A deep copy of the executor shares its connection and its
-    budget's count of tests, but counts outcomes separately.
-    """
+    """Sends tests to ``roadgpt compete sbft``. A deep copy shares the connection and the budget's count of
+    tests, but counts outcomes separately."""
 
     def __init__(
         self,
@@ -50,19 +46,27 @@ class BeamngExecutor(AbstractTestExecutor):
         self._connection = connection
 
     def execute_test(self, the_test: Any) -> TestResult:
-        """Validates and drives a test; returns (outcome, description, execution data).
-
-        Raises:
-            SystemExit: the budget is used up; the test is discarded, as in the competition.
-        """
+        """Validates and drives a test, as ``AbstractTestExecutor`` says."""
         with self._connection.turn:
             generating = time.monotonic() - self.start_generation_time
-            answer = (
-                {} if self.time_budget.is_over() else self._connection.ask(_question(the_test, generating))
-            )
+            is_test = type(the_test) is RoadTestFactory.RoadTest
+            asked = {
+                "op": "test",
+                "is_test": is_test,
+                "id": getattr(the_test, "id", None) if is_test else None,
+                "points": [[float(x), float(y)] for x, y in the_test.road_points] if is_test else [],
+                "generating": generating,
+            }
+            answer = {} if self.time_budget.is_over() else self._connection.ask(asked)
             if not answer or answer["is_over"]:
                 self._leave()
-            tried = _settled(the_test, answer)
+            records = [SimulationDataRecord(*record) for record in answer["records"]]
+            outcome, description = answer["outcome"], answer["description"]
+            if is_test:
+                the_test.set_validity(answer["is_valid"], answer["message"])
+                if answer["is_valid"]:
+                    settle(the_test, outcome, description, records, answer["features"])
+            tried = outcome, description, [] if outcome == "ERROR" else records
             self.time_budget.tests += 1
             self._count(tried, generating, answer["seconds"])
             if self.road_visualizer:
@@ -75,32 +79,4 @@ class BeamngExecutor(AbstractTestExecutor):
     def end_iteration(self) -> None:
         """Does nothing; it exists because generators call it."""
 
-    def _close(self) -> None:
-        """Does nothing."""
-
-
-def _is_test(the_test: Any) -> bool:
-    return type(the_test) is RoadTestFactory.RoadTest
-
-
-def _question(the_test: Any, generating: float) -> Dict[str, Any]:
-    """Returns the message with a test; it has no points if ``the_test`` is not a test."""
-    is_test = _is_test(the_test)
-    return {
-        "op": "test",
-        "is_test": is_test,
-        "id": getattr(the_test, "id", None) if is_test else None,
-        "points": [[float(x), float(y)] for x, y in the_test.road_points] if is_test else [],
-        "generating": generating,
-    }
-
-
-def _settled(the_test: Any, answer: Dict[str, Any]) -> TestResult:
-    """Returns the answer in the competition's form, and stores it in the attributes of the test."""
-    records = [SimulationDataRecord(*record) for record in answer["records"]]
-    outcome, description = answer["outcome"], answer["description"]
-    if _is_test(the_test):
-        the_test.set_validity(answer["is_valid"], answer["message"])
-        if answer["is_valid"]:
-            settle(the_test, outcome, description, records, answer["features"])
-    return outcome, description, [] if outcome == "ERROR" else records
+    def _close(self) -> None: ...

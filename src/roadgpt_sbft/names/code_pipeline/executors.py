@@ -27,11 +27,8 @@ PER_TEST = 35.0  # s: what one test takes in the competition's own pipeline
 
 
 class Remaining(Dict[str, float]):
-    """The remaining budget in seconds, under the key ``time-budget``.
-
-    It is a dictionary, as in the competition since 2022, but can also be compared with numbers, as in earlier
-    competitions.
-    """
+    """The remaining budget in seconds, under the key ``time-budget`` as in the competition since 2022; it can
+    also be compared with numbers, as in earlier competitions."""
 
     def __float__(self) -> float:
         return self[REMAINING]
@@ -59,12 +56,8 @@ class SharedCounter:
 
 
 class Budget:
-    """A budget: seconds of wall time, a number of tests, or both.
-
-    If only the number of tests is limited, the remaining time is computed as 35 s per remaining test, the
-    usual duration of a test in the competition. So a generator that plans by the remaining time behaves as it
-    would in the competition.
-    """
+    """A budget: seconds of wall time, a number of tests, or both. Where only tests are limited, the remaining
+    time is 35 s for each of them, so that generators that plan by it behave as in the competition."""
 
     def __init__(
         self,
@@ -73,8 +66,7 @@ class Budget:
         execution_budget: Optional[float] = None,
         test_budget: Optional[int] = None,
     ) -> None:
-        """``generation_budget`` and ``execution_budget`` exist only for compatibility; nothing has used them
-        since 2022."""
+        """Nothing has used ``generation_budget`` and ``execution_budget`` since 2022."""
         self.generation_budget = generation_budget
         self.execution_budget = execution_budget
         self._has_clock = time_budget is not None
@@ -94,30 +86,24 @@ class Budget:
         self._count.tests = tests
 
     def start(self) -> None:
-        """Starts the budget's clock."""
         self.start_real_time = time.monotonic()
 
     def get_start_time(self) -> float:
-        """Returns the start time in seconds on the monotonic clock."""
         return self.start_real_time
 
     def get_remaining_real_time(self) -> float:
-        """Returns the remaining seconds of wall time."""
         if self._has_clock:
             return self.time_budget - (time.monotonic() - self.start_real_time)
         return PER_TEST * max((self.test_budget or 0) - self.tests, 0)
 
     def get_remaining_time(self) -> Remaining:
-        """Returns the remaining seconds in a dictionary under the competition's key, ``time-budget``."""
         return Remaining({REMAINING: self.get_remaining_real_time()})
 
     def can_run_a_test(self) -> bool:
-        """Returns whether enough budget is left for a test."""
         has_tests = self.test_budget is None or self.tests < self.test_budget
         return has_tests and self.get_remaining_real_time() > 0
 
     def is_over(self) -> bool:
-        """Returns whether the budget is used up."""
         return not self.can_run_a_test()
 
 
@@ -147,17 +133,13 @@ class AbstractTestExecutor(ABC):
         self.start()
 
     def start(self) -> None:
-        """Starts the clock of the budget."""
         self.time_budget.start()
         self.start_time = time.time()
         self.start_generation_time: float = self.time_budget.get_start_time()
 
     def execute_test(self, the_test: Any) -> TestResult:
-        """Validates and executes a test; returns (outcome, description, execution data).
-
-        Raises:
-            SystemExit: the budget is used up; the test is discarded, as in the competition.
-        """
+        """Validates and executes a test; returns (outcome, description, execution data). Raises SystemExit
+        if the budget is used up; the test is then discarded, as in the competition."""
         generating = time.monotonic() - self.start_generation_time
         if self.time_budget.is_over():
             self._leave()
@@ -193,39 +175,29 @@ class AbstractTestExecutor(ABC):
         sys.exit(OVER)
 
     def validate_test(self, the_test: Any) -> Tuple[bool, str]:
-        """Returns whether the test is valid, and the message of the first rule that it breaks, or "" for a
-        valid test. The time for validation counts against the budget, but validation does not count as a
-        test.
-        """
+        """Returns what the validator says; this takes time of the budget, but does not count as a test."""
         return self.test_validator.validate_test(the_test)
 
     def store_test(self, the_test: Any) -> None:
-        """Writes the test to its file ``test.NNNN.json`` in the folder of results."""
         path = Path(self.result_folder, f"test.{the_test.id:04d}.json")
         path.write_text(the_test.to_json(), encoding="utf-8")
 
     def is_over(self) -> bool:
-        """Returns whether the budget is used up."""
         return self.time_budget.is_over()
 
     def is_force_timeout(self) -> bool:
-        """Returns whether the generator was stopped because its budget was used up."""
         return self.timeout_forced
 
     def get_remaining_time(self) -> Remaining:
-        """Returns the remaining seconds in a dictionary under the key ``time-budget``."""
         return self.time_budget.get_remaining_time()
 
     def get_elapsed_time(self) -> float:
-        """Returns the seconds of wall time since the clock of the budget was started."""
         return time.monotonic() - self.time_budget.get_start_time()
 
     def get_stats(self) -> TestGenerationStatistic:
-        """Returns the numbers of tests so far, by outcome."""
         return self.stats
 
     def close(self) -> None:
-        """Closes the executor."""
         self._close()
 
     @abstractmethod
@@ -240,21 +212,18 @@ class AbstractTestExecutor(ABC):
 
 
 class MockExecutor(AbstractTestExecutor):
-    """Cannot be used: RoadGPT drives the tests, whereas the competition's mock executor invents their
-    outcomes."""
+    """Cannot be used: RoadGPT drives the tests, and the competition's mock executor invents outcomes."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         raise RuntimeError(HANDED)
 
-    def _close(self) -> None:
-        """Does nothing."""
+    def _close(self) -> None: ...
 
     def _execute(self, the_test: Any) -> TestResult:
         raise RuntimeError(HANDED)
 
 
 def settle(test: Any, outcome: str, description: str, records: List[Any], features: Dict[str, float]) -> None:
-    """Stores the result of a test in the test's attributes."""
     test.execution_data = records
     test.test_outcome = outcome
     test.description = description

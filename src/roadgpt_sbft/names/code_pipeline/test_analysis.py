@@ -27,19 +27,15 @@ def compute_all_features(the_test: Any, execution_data: Sequence[Any]) -> Dict[s
 
 
 def max_curvature(the_test: Any, w: int = 5) -> Feature:
-    """Returns "MAX_CURV" and the largest curvature of the road in 1/m. With the default window ``w`` = 5,
-    the curvature is that of the circle through nodes i, i + 2 and i + 4, as in the competition.
-    """
+    """Returns "MAX_CURV" and the largest curvature in 1/m, of circles through nodes i, i + 2 and i + 4."""
     from code_pipeline.validation import smallest_circle
 
     return "MAX_CURV", 1 / smallest_circle(_nodes(the_test), w)
 
 
 def direction_coverage(the_test: Any, n_bins: int = 25) -> Feature:
-    """Returns "DIR_COV" and the direction coverage: the number of direction bins that occur on the road,
-    divided by the number of bin edges, as in the competition. Directions are angles to north, from 0 to
-    180 degrees.
-    """
+    """Returns "DIR_COV" and the direction coverage: how many bins of directions (angles to north, 0 to 180
+    degrees) occur on the road, divided by the number of bin edges, as in the competition."""
     edges = [360.0 / n_bins * i for i in range(n_bins + 1)]
     nodes = _nodes(the_test)
     covered = set()
@@ -62,10 +58,7 @@ def get_thetas(xs: Any, ys: Any, skip: int = 1) -> Any:
 
 
 def direction_coverage_klk(the_test: Any, n_bins: int = 36) -> Feature:
-    """Returns "DIR_COV" and the direction coverage: the number of direction bins that occur on the road,
-    divided by the number of bin edges, ``n_bins``. Directions are angles to the x-axis, from -180 to 180
-    degrees.
-    """
+    """Returns the same as ``direction_coverage`` for angles to the x-axis, from -180 to 180 degrees."""
     edges = [-math.pi + 2 * math.pi / (n_bins - 1) * i for i in range(n_bins - 1)] + [math.pi]
     nodes = _nodes(the_test)
     ways = [(after[0] - one[0], after[1] - one[1]) for one, after in zip(nodes, nodes[1:])]

@@ -6,15 +6,9 @@ import json
 import logging
 import os
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Sequence, Tuple
+from typing import Any, Dict, Iterator, Sequence, Tuple
 
-from code_pipeline.test_analysis import (
-    direction_coverage,
-    max_curvature,
-    max_lateral_position,
-    mean_lateral_position,
-    sd_steering,
-)
+from code_pipeline import test_analysis as features
 from roadgpt_inside.asking import ask
 from self_driving.simulation_data import SimulationDataRecord
 
@@ -35,14 +29,9 @@ class RoadTestEvaluator:
     def identify_interesting_road_segments(
         self, road_nodes: Sequence[Sequence[float]], execution_data: Sequence[Any]
     ) -> Tuple[Any, ...]:
-        """Returns where the car left its lane, and the road around that point.
-
-        Returns:
-            Six values: the point where the car left its lane; the road before that point; the road after it;
-            the side on which the car left ("LEFT" or "RIGHT"); the index of the first record outside the
-            lane; and the records before it, beginning where the car entered the returned piece of road. All
-            six are None if the car did not leave its lane.
-        """
+        """Returns the point where the car left its lane, the road before and after it, the side ("LEFT" or
+        "RIGHT"), the index of the first record outside, and the records before it on the returned road; six
+        times None if the car did not leave its lane."""
         from shapely.geometry import LineString, Point
 
         limits = {"before": self.road_length_before_oob, "after": self.road_length_after_oob}
@@ -64,7 +53,11 @@ class OOBAnalyzer:
     ) -> None:
         self.logger = logging.getLogger("OOBAnalyzer")
         self._evaluator = RoadTestEvaluator(road_length_before_oob, road_length_after_oob)
-        self.oobs = [found for path in _tests(result_folder) for found in self._found(path)]
+        names = [
+            (Path(place, name), name) for place, _, files in os.walk(result_folder) for name in sorted(files)
+        ]
+        tests = [path for path, name in names if "test." in name and name.endswith(".json")]
+        self.oobs = [found for path in tests for found in self._found(path)]
 
     def _found(self, path: Path) -> Iterator[Dict[str, Any]]:
         test = json.loads(path.read_text(encoding="utf-8"))
@@ -89,11 +82,11 @@ class OOBAnalyzer:
             "road segment before oob": before,
             "road segment after oob": after,
             "interesting segment": segment,
-            "direction coverage": direction_coverage(segment)[1],
-            "maximum curvature": max_curvature(segment)[1],
-            "stdev steering": sd_steering(driven)[1],
-            "mean lateral position": mean_lateral_position(driven)[1],
-            "max lateral position": max_lateral_position(driven)[1],
+            "direction coverage": features.direction_coverage(segment)[1],
+            "maximum curvature": features.max_curvature(segment)[1],
+            "stdev steering": features.sd_steering(driven)[1],
+            "mean lateral position": features.mean_lateral_position(driven)[1],
+            "max lateral position": features.max_lateral_position(driven)[1],
         }
 
     def create_summary(self) -> str:
@@ -105,12 +98,4 @@ class OOBAnalyzer:
         return f"{HEADER}\n{total},{left},{total - left},{mean:.3f},{deviation:3.0f}"
 
     def create_oob_report(self) -> str:
-        """Returns the same text as ``create_summary``."""
         return self.create_summary()
-
-
-def _tests(folder: str) -> List[Path]:
-    found = []
-    for place, _, files in os.walk(folder):
-        found += sorted(Path(place, name) for name in files if "test." in name and name.endswith(".json"))
-    return found

@@ -22,14 +22,7 @@ HEIGHT = -28.0  # m, of the competition's flat level
 ROAD_WIDTH = 8.0  # m
 ALWAYS = ("is_valid", "validation_message", "road_points")
 ONCE_DRIVEN = ("id", "execution_data", "test_outcome", "description", "features")
-COLUMNS = (
-    "test_generated",
-    "test_valid",
-    "test_invalid",
-    "test_passed",
-    "test_failed",
-    "test_in_error",
-)
+COLUMNS = ("test_generated", "test_valid", "test_invalid", "test_passed", "test_failed", "test_in_error")
 TIMES = ("real_time_generation", "real_time_execution", "simulated_time_execution")
 
 Node = Tuple[float, float, float, float]
@@ -47,12 +40,7 @@ class RoadTestFactory:
         id: int
 
         def __init__(self, road_points: Any) -> None:
-            """Makes a test from control points.
-
-            Raises:
-                AssertionError: ``road_points`` is not a list of pairs; the competition raises the same error.
-                ValueError: there are fewer than two points, or there is no spline through them.
-            """
+            """Makes a test from control points: a list of pairs, or AssertionError as in the competition."""
             if type(road_points) is not list:
                 raise AssertionError("road points are a list of pairs of numbers")
             if any(len(point) != 2 for point in road_points):
@@ -64,24 +52,20 @@ class RoadTestFactory:
 
         @cached_property
         def road_polygon(self) -> RoadPolygon:
-            """The area of the road, a RoadPolygon."""
             return RoadPolygon.from_nodes(self.interpolated_points)
 
         def get_road_polygon(self) -> RoadPolygon:
-            """Returns the area of the road, a RoadPolygon."""
             return self.road_polygon
 
         def get_road_length(self, interpolate_road_points: bool = False) -> float:
-            """Returns the road's length in metres along its interpolated points. If
-            ``interpolate_road_points`` is true, these points are first interpolated again, as in the
-            competition's validator."""
+            """Returns the length in metres along the interpolated points, which the competition's validator
+            first interpolates again."""
             nodes = [node[:2] for node in self.interpolated_points]
             if interpolate_road_points:
                 nodes = nodes_of(nodes)
             return math.fsum(math.hypot(x1 - x0, y1 - y0) for (x0, y0), (x1, y1) in zip(nodes, nodes[1:]))
 
         def set_validity(self, is_valid: bool, validation_message: str) -> None:
-            """Stores the validator's result in the test."""
             self.is_valid, self.validation_message = is_valid, validation_message
 
         def to_json(self) -> str:
@@ -93,7 +77,6 @@ class RoadTestFactory:
 
     @staticmethod
     def create_road_test(road_points: Any) -> "RoadTestFactory.RoadTest":
-        """Returns a new test with the next number."""
         test = RoadTestFactory.RoadTest(road_points)
         test.id = next(RoadTestFactory.test_id_generator)
         return test
@@ -137,7 +120,6 @@ class TestGenerationStatistic:
     test_execution_simulation_times: List[float] = field(default_factory=list)
 
     def add(self, outcome: str, description: str) -> None:
-        """Adds a test to the counts."""
         self.test_generated += 1
         if outcome == "INVALID":
             self.test_invalid += 1
@@ -149,18 +131,14 @@ class TestGenerationStatistic:
         self.obes += outcome == "FAIL" and description.startswith("Car drove out of the lane")
 
     def _row(self) -> Dict[str, float]:
-        times = (
-            self.test_generation_real_times,
-            self.test_execution_real_times,
-            self.test_execution_simulation_times,
-        )
         counts = {name: float(getattr(self, name)) for name in COLUMNS}
-        return counts | {name: sum(seconds) for name, seconds in zip(TIMES, times)}
+        times = self.test_generation_real_times, self.test_execution_real_times
+        seconds = map(sum, (*times, self.test_execution_simulation_times))
+        return {**counts, **dict(zip(TIMES, seconds))}
 
     def __str__(self) -> str:
         return "\n".join(f"{name.replace('_', ' ')}: {value:g}" for name, value in self._row().items())
 
     def as_csv(self) -> str:
-        """Returns the content of the competition's file generation_stats.csv."""
         row = self._row()
         return ",".join(row) + "\n" + ",".join(f"{value:g}" for value in row.values())

@@ -67,19 +67,15 @@ class TestValidator:
 
     @cached_property
     def road_bbox(self) -> RoadBoundingBox:
-        """The bounding box of the map."""
         return RoadBoundingBox(self.box)
 
     def is_right_type(self, the_test: Any) -> bool:
-        """Returns whether the test was made by RoadTestFactory."""
         return type(the_test) is RoadTestFactory.RoadTest
 
     def is_enough_road_points(self, the_test: Any) -> bool:
-        """Returns whether the road has at least two points."""
         return len(the_test.road_points) > 1
 
     def is_too_many_points(self, the_test: Any) -> bool:
-        """Returns whether the road has more than 500 points."""
         return len(the_test.road_points) > self.max_points
 
     def is_inside_map(self, the_test: Any) -> bool:
@@ -98,19 +94,15 @@ class TestValidator:
         )
 
     def intersects_boundary(self, the_test: Any) -> bool:
-        """Returns whether the road touches the border of the map."""
         return bool(self.road_bbox.intersects_boundary(the_test.get_road_polygon().polygon))
 
     def is_valid_polygon(self, the_test: Any) -> bool:
-        """Returns whether the road does not intersect itself."""
         return bool(the_test.get_road_polygon().is_valid())
 
     def is_not_self_intersecting(self, the_test: Any) -> bool:
-        """Returns whether the road does not intersect itself."""
         return self.is_valid_polygon(the_test)
 
     def is_minimum_length(self, the_test: Any) -> bool:
-        """Returns whether the road is longer than ``min_road_length`` metres."""
         return bool(the_test.get_road_length(interpolate_road_points=True) > self.min_road_length)
 
     def is_too_sharp(self, the_test: Any, TSHD_RADIUS: float = 47) -> bool:
@@ -118,9 +110,7 @@ class TestValidator:
         return TSHD_RADIUS > min_radius(the_test.interpolated_points) > 0.0
 
     def validate_test(self, the_test: Any) -> Tuple[bool, str]:
-        """Returns whether the test is valid, and the message of the first rule that it breaks, or "" for a
-        valid test. An invalid test never causes an exception.
-        """
+        """Returns whether the test is valid, and the message of the first rule that it breaks, or ""."""
         if not self.is_right_type(the_test):
             return False, WRONG_TYPE
         if type(self) is not TestValidator or self.min_road_length != 20 or self.max_points != 500:

@@ -28,5 +28,4 @@ class RoadTestVisualizer:
         self.last_submitted_test: Any = None
 
     def visualize_road_test(self, the_test: Any) -> None:
-        """Stores the test without drawing it."""
         self.last_submitted_test = the_test

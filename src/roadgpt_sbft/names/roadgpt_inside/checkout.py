@@ -1,9 +1,6 @@
 """Imports modules by the competition's names: RoadGPT's version of a module if there is one, otherwise the
-module in a checkout of the competition's code.
-
-A class or function that is missing in RoadGPT's module is taken from the module of the same name in the
-checkout. Most of the missing classes and functions control BeamNG or the DAVE-2 network; generators do not
-need them in RoadGPT.
+module in a checkout of the competition's code, as also single names that RoadGPT's module lacks. Most of
+these control BeamNG or the DAVE-2 network; generators do not need them in RoadGPT.
 """
 
 from __future__ import annotations
@@ -19,8 +16,6 @@ NAMES = Path(__file__).parent.parent  # the packages with the competition's name
 PACKAGES = ("code_pipeline", "self_driving")
 ADVICE = "put a checkout of the competition's code on PYTHONPATH, or do without it"
 
-RENAMED = {"code_pipeline.utils": "pairs", "self_driving.utils": "places"}
-"""Modules of the competition whose files have other names in RoadGPT, with the names of these files."""
 BEAMNG = ("self_driving.vehicle_state_reader", "VehicleStateReader")
 """Module and name of a class that RoadGPT's version of the module lacks, because the class needs BeamNG."""
 
@@ -43,7 +38,7 @@ class Finder:
         package, _, rest = name.partition(".")
         if package not in PACKAGES or not rest:
             return None
-        own = NAMES / package / f"{RENAMED.get(name, rest)}.py"
+        own = NAMES / package / f"{rest}.py"
         if own.is_file():
             return spec_from_file_location(name, own, loader=_Loader(name, str(own)))
         theirs = PathFinder.find_spec(name, path)

@@ -42,7 +42,6 @@ class TaskConnection:
         )
 
     def tell(self, message: Message) -> None:
-        """Sends a message to RoadGPT."""
         if os.getpid() != self._owner:
             raise RuntimeError(
                 "tests are executed by the generator's first process; pass the road points to it"
@@ -57,7 +56,6 @@ class TaskConnection:
         return message
 
     def ask(self, message: Message) -> Message:
-        """Sends a message to RoadGPT and returns the answer."""
         self.tell(message)
         return self.hear()
 
@@ -126,17 +124,13 @@ def _worked(made: Any, task: Message, connection: TaskConnection) -> Message:
         traceback.print_exc()
         return {"op": "end", "how": "raised", "said": _said(error)}
     finally:
-        _settle()
+        registered = sys.modules.get("code_pipeline.test_generation_utils")
+        if registered is not None:
+            try:
+                registered.ended()
+            except BaseException:
+                traceback.print_exc()
     return {"op": "end", "how": "done", "said": ""}
-
-
-def _settle() -> None:
-    registered = sys.modules.get("code_pipeline.test_generation_utils")
-    if registered is not None:
-        try:
-            registered.ended()
-        except BaseException:
-            traceback.print_exc()
 
 
 def _wanted(made: Any, executor: Any, task: Message) -> Dict[str, Any]:

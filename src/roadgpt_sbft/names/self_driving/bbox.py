@@ -16,36 +16,29 @@ class RoadBoundingBox:
 
     @cached_property
     def bbox(self) -> Any:
-        """The rectangle as a shapely object."""
         from shapely.geometry import box
 
         return box(*self._size)
 
     def get_sides(self) -> List[Any]:
-        """Returns the four sides of the rectangle as lines."""
         from shapely.geometry import LineString
 
         corners = list(self.bbox.exterior.coords)
         return [LineString(pair) for pair in zip(corners, corners[1:])]
 
     def get_vertices(self) -> List[Any]:
-        """Returns the corners of the rectangle; the first corner is repeated at the end."""
         from shapely.geometry import Point
 
         return [Point(corner) for corner in self.bbox.exterior.coords]
 
     def intersects_sides(self, point: Any) -> bool:
-        """Returns whether a point is on a side of the rectangle."""
         return any(side.intersects(point) for side in self.get_sides())
 
     def intersects_vertices(self, point: Any) -> bool:
-        """Returns whether a point is on a corner of the rectangle."""
         return any(corner.intersects(point) for corner in self.get_vertices())
 
     def intersects_boundary(self, other: Any) -> bool:
-        """Returns whether an area, such as that of a road, touches the border of the rectangle."""
         return bool(other.intersects(self.bbox.boundary))
 
     def contains(self, other: Any) -> bool:
-        """Returns whether the centre line of a road is inside the rectangle."""
         return bool(self.bbox.contains(other.polyline))

@@ -15,7 +15,6 @@ class BeamNGWaypoint:
         self.persistentId = persistentId or str(uuid.uuid4())
 
     def to_json(self) -> str:
-        """Returns the line to be written to the level's file."""
         told = {
             "name": self.name,
             "class": "BeamNGWaypoint",

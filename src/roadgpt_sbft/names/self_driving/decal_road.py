@@ -32,16 +32,13 @@ class DecalRoad:
         return self
 
     def to_dict(self) -> Dict[str, Any]:
-        """Returns the road's name and nodes as a dictionary."""
         return {"name": self.name, "nodes": self.nodes}
 
     @classmethod
     def from_dict(cls, d: Dict[str, Any]) -> DecalRoad:
-        """Restores a road from a dictionary that ``to_dict`` returned."""
         return cls(name=d["name"]).add_4d_points(nodes=d["nodes"])
 
     def to_json(self) -> str:
-        """Returns the line to be written to the level's file."""
         assert self.nodes, "a road needs nodes"
         told = {
             "name": self.name,

@@ -23,14 +23,9 @@ class OutOfBoundsMonitor:
         self.tolerance = tolerance
 
     def get_oob_info(self, wrt: str = "right", oob_bb: bool = True) -> Tuple[bool, int, float, float, float]:
-        """Returns the state of the car relative to its lane, and updates the counter. ``is_oob_bb`` decides
-        whether the car is outside if ``oob_bb`` is true, else ``is_oob``.
-
-        Returns: Five values: whether the car is outside; how many times the car has left the lane; the
-        largest fraction of the car that has been outside the right lane since the car last left its lane (NaN
-        if ``oob_bb`` is False); the distance to the edge in metres (negative outside); and the fraction of
-        the car that is outside now.
-        """
+        """Updates the counter, and returns whether the car is outside, by ``is_oob_bb`` if ``oob_bb`` is set,
+        else by ``is_oob``; how many times it has left the lane; the largest fraction of it outside the right
+        lane since then (NaN if ``oob_bb`` is False); its ``oob_distance``, and its ``oob_percentage``."""
         is_oob = self.is_oob_bb(wrt) if oob_bb else self.is_oob(wrt)
         if oob_bb:
             self.update_oob_percentage(is_oob)
@@ -39,14 +34,10 @@ class OutOfBoundsMonitor:
         return is_oob, self.oob_counter, largest, self.oob_distance(wrt), self.oob_percentage(wrt)
 
     def update_oob_counter(self, is_oob: bool) -> None:
-        """Adds 1 to the counter if the car is outside now but was inside at the previous call."""
         self.oob_counter += is_oob and not self.last_is_oob
         self.last_is_oob = is_oob
 
     def update_oob_percentage(self, is_oob: bool) -> None:
-        """Updates the largest fraction of the car that has been outside the right lane since the car last
-        left its lane; does nothing if ``is_oob`` is False.
-        """
         if is_oob:
             share = self.oob_percentage()
             self.last_max_oob_percentage = (
@@ -54,29 +45,22 @@ class OutOfBoundsMonitor:
             )
 
     def oob_percentage(self, wrt: str = "right") -> float:
-        """Returns the fraction of the car's bounding box, 0 to 1, that is outside a lane or the road.
-        ``wrt`` names the lane ("right" or "left"); any other value stands for the whole road.
-        """
+        """Returns the fraction of the car's bounding box, 0 to 1, that is outside a lane ("right" or "left"),
+        or outside the road for any other value of ``wrt``."""
         box = self._get_car_bbox_polygon()
         return 1 - float(box.intersection(self._of(wrt, "polygon")).area) / float(box.area)
 
     def is_oob_bb(self, wrt: str = "right") -> bool:
-        """Returns whether ``oob_percentage`` of the car exceeds the tolerance."""
         return self.oob_percentage(wrt) > self.tolerance
 
     def oob_distance(self, wrt: str = "right") -> float:
-        """Returns the distance in metres from the car to the edge of the lane or road, negative if the car
-        is outside. It is half the width minus the distance from the car to the centre line. Width and
-        centre line are those of the lane that ``wrt`` names ("right" or "left"), or those of the road for
-        any other value.
-        """
+        """Returns the distance in metres from the car to the edge of the lane or road, negative outside: half
+        its width minus the distance from the car to its centre line."""
         share = 4.0 if wrt in ("right", "left") else 2.0
         return float(self.road_polygon.road_width / share - self._of(wrt, "polyline").distance(self._place()))
 
     def is_oob(self, wrt: str = "right") -> bool:
-        """Returns whether the car's centre is outside the lane or the road; ``wrt`` has the same values as
-        in ``oob_percentage``.
-        """
+        """Returns whether the car's centre is outside the lane or the road."""
         return not self._of(wrt, "polygon").contains(self._place())
 
     def _of(self, wrt: str, kind: str) -> Any:

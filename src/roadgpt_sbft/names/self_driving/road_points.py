@@ -13,9 +13,8 @@ Place = Tuple[float, float]
 
 
 class RoadPoints:
-    """The nodes of a road's centre line, and the points on the road's edges. Each node has one point on the
-    left edge and one on the right. The line between these two points is at right angles to the line from the
-    node to the next one (for the last node, from the previous one)."""
+    """The nodes of a road's centre line, each with a point on the left edge and one on the right, at right
+    angles to the line to the next node (for the last node, from the previous one)."""
 
     def __init__(self) -> None:
         self.middle: List[Any] = []
@@ -25,11 +24,9 @@ class RoadPoints:
 
     @classmethod
     def from_nodes(cls, middle_nodes: Sequence[Sequence[float]]) -> RoadPoints:
-        """Returns a road with two or more nodes [x, y, height, width]."""
         return cls().add_middle_nodes(middle_nodes)
 
     def add_middle_nodes(self, middle_nodes: Sequence[Sequence[float]]) -> RoadPoints:
-        """Adds nodes to the centre line."""
         assert len(self.middle) + len(middle_nodes) >= 2, "a road needs two nodes or more"
         assert all(len(node) >= 4 for node in middle_nodes), "a node is (x, y, height, width)"
         self.middle += list(middle_nodes)
@@ -44,9 +41,7 @@ class RoadPoints:
 
     @classmethod
     def calc_point_edges(cls, p1: Sequence[float], p2: Sequence[float]) -> Tuple[Place, Place]:
-        """Returns the left and right edge points at the node ``p1``, given the next node ``p2``; NaN if both
-        nodes are at the same place.
-        """
+        """Returns the left and right edge points at the node ``p1``, given the next node ``p2``."""
         x, y = p2[0] - p1[0], p2[1] - p1[1]
         way, half = math.sqrt(x * x + y * y), p1[3] / 2
         # coinciding nodes have no direction: not a number, as with the competition's library
@@ -81,11 +76,9 @@ class RoadPoints:
         return BeamNGPose(pos=place, rot=self.angle_to_quat((0, 0, math.degrees(math.atan2(-x, -y)))))
 
     def new_imagery(self) -> Any:
-        """Returns an object that draws the road; nothing is drawn yet."""
         return BeamNGRoadImagery(self)
 
     def plot_on_ax(self, ax: Any) -> None:
-        """Draws the road on matplotlib axes."""
         ax.set_facecolor("#7D9051")
         for points, colour in ((self.middle, "#FEA952"), (self.left, "white"), (self.right, "white")):
             ax.plot([p[0] for p in points], [p[1] for p in points], color=colour, linewidth=1)
@@ -101,18 +94,15 @@ class BeamNGRoadImagery:
 
     @classmethod
     def from_sample_nodes(cls, sample_nodes: Any) -> BeamNGRoadImagery:
-        """Returns an object that can draw the road with these nodes, each [x, y, height, width] in metres."""
         return cls(RoadPoints().add_middle_nodes(sample_nodes))
 
     def plot(self) -> None:
-        """Draws the road in a new figure, which ``save`` writes to a file."""
         from matplotlib.figure import Figure
 
         self._figure = Figure()
         self.road_points.plot_on_ax(self._figure.subplots())
 
     def save(self, image_path: Any) -> None:
-        """Saves the picture; the suffix of the file name, such as ".svg", sets the format."""
         if self._figure is None:
             self.plot()
         self._figure.savefig(image_path)

@@ -20,17 +20,14 @@ class RoadPolygon:
 
     @classmethod
     def from_nodes(cls, nodes: Sequence[Sequence[float]]) -> RoadPolygon:
-        """Returns the area of a road with two or more nodes (x, y, height, width)."""
         return cls(RoadPoints.from_nodes(nodes))
 
     @property
     def num_polygons(self) -> int:
-        """Number of polygons between successive nodes: the number of nodes minus one."""
         return len(self.road_points.middle) - 1
 
     @cached_property
     def polygons(self) -> List[Any]:
-        """The polygons between successive nodes."""
         from shapely.geometry import Polygon
 
         left, right = self.road_points.left, self.road_points.right
@@ -38,32 +35,26 @@ class RoadPolygon:
 
     @cached_property
     def polygon(self) -> Any:
-        """The whole road as one polygon."""
         return _area(self.road_points.left, self.road_points.right)
 
     @cached_property
     def right_polygon(self) -> Any:
-        """The right lane as a polygon."""
         return _area(self._middle, self.road_points.right)
 
     @cached_property
     def left_polygon(self) -> Any:
-        """The left lane as a polygon."""
         return _area(self.road_points.left, self._middle)
 
     @cached_property
     def polyline(self) -> Any:
-        """The centre line of the road."""
         return _line(self._middle)
 
     @cached_property
     def right_polyline(self) -> Any:
-        """The centre line of the right lane."""
         return _line(_between(self._middle, self.road_points.right))
 
     @cached_property
     def left_polyline(self) -> Any:
-        """The centre line of the left lane."""
         return _line(_between(self.road_points.left, self._middle))
 
     @property

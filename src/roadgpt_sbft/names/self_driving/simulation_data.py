@@ -12,24 +12,10 @@ from pathlib import Path
 from typing import Any, List, Optional, Union
 
 SimulationDataRecordProperties = [
-    "timer",
-    "pos",
-    "dir",
-    "vel",
-    "steering",
-    "steering_input",
-    "brake",
-    "brake_input",
-    "throttle",
-    "throttle_input",
-    "wheelspeed",
-    "vel_kmh",
-    "is_oob",
-    "oob_counter",
-    "max_oob_percentage",
-    "oob_distance",
+    "timer", "pos", "dir", "vel", "steering", "steering_input", "brake", "brake_input", "throttle",
+    "throttle_input", "wheelspeed", "vel_kmh", "is_oob", "oob_counter", "max_oob_percentage", "oob_distance",
     "oob_percentage",
-]
+]  # fmt: skip
 """Names of the fields of a record; the docstring of roadgpt.run.execution explains the fields."""
 
 SimulationDataRecord = namedtuple("SimulationDataRecord", SimulationDataRecordProperties)  # type: ignore[misc]
@@ -38,7 +24,6 @@ SimulationParams = namedtuple("SimulationParams", ["beamng_steps", "delay_msec"]
 
 
 def delete_folder_recursively(path: Union[str, Path]) -> None:
-    """Removes a folder, if it exists."""
     if Path(path).exists():
         assert Path(path).is_dir(), str(path)
         shutil.rmtree(path)
@@ -83,14 +68,9 @@ class SimulationData:
 
     @property
     def n(self) -> int:
-        """Number of records."""
         return len(self.states)
 
     def set(self, params: Any, road: Any, states: Any, info: Optional[SimulationInfo] = None) -> None:
-        """Sets parameters, road, records (``states``) and result (``info``) of the drive; writes no files.
-
-        If ``info`` is None, a new SimulationInfo with a random id is made.
-        """
         self.params, self.road, self.states = params, road, states
         if info is None:
             info = SimulationInfo()
@@ -98,7 +78,6 @@ class SimulationData:
         self.info = info
 
     def clean(self) -> None:
-        """Removes the folder of the drive."""
         delete_folder_recursively(self.path_root)
 
     def __str__(self) -> str:
@@ -112,7 +91,6 @@ class SimulationData:
         )
 
     def save(self) -> None:
-        """Writes the files of the drive, and pictures of its road."""
         from self_driving.beamng_road_imagery import BeamNGRoadImagery
 
         self.path_root.mkdir(parents=True, exist_ok=True)
@@ -125,7 +103,6 @@ class SimulationData:
             imagery.save(self.path_road_img.with_suffix(suffix))
 
     def load(self) -> SimulationData:
-        """Reads ``simulation.full.json`` of the drive into this object, and returns the object."""
         from self_driving.decal_road import DecalRoad
 
         read = json.loads(self.path_json.read_text(encoding="utf-8"))
@@ -137,21 +114,17 @@ class SimulationData:
         return self
 
     def complete(self) -> bool:
-        """Returns whether the drive has been saved, that is, whether ``simulation.full.json`` exists."""
         return self.path_json.exists()
 
     def min_oob_distance(self) -> float:
-        """Returns the smallest ``oob_distance`` of all records, in metres."""
         return float(min(state.oob_distance for state in self.states))
 
     def start(self) -> None:
-        """Stores the current time as the start of the drive, and the name of the computer."""
         self.info.success = None
         self.info.start_time = str(datetime.datetime.now())
         self.info.computer_name = platform.node()
 
     def end(self, success: bool, exception: Any = None) -> None:
-        """Stores the current time as the end of the drive, and the result of the drive."""
         self.info.end_time = str(datetime.datetime.now())
         self.info.success = success
         if exception:

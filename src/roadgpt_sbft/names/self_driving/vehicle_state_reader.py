@@ -1,5 +1,4 @@
-"""Defines VehicleState, the state of a car. VehicleStateReader, the class that reads the state, needs BeamNG
-and is not defined here: it is imported from a checkout of the competition's code."""
+"""The state of a car. VehicleStateReader, which reads it, needs BeamNG and comes from a checkout."""
 
 from __future__ import annotations
 

@@ -18,11 +18,10 @@ import numpy as np
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan
+from roadgpt.brief.readers.model.before import COMPANIONS, asks_for_a_closed_loop, negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.number_words import COUNTED, plain
-from roadgpt.brief.readers.model.overlooked import asks_for_a_closed_loop, negative_number
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
-from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, Word, slot_name, slotted
 from roadgpt.brief.readers.model.trained import (
     ANY_WORLD,

@@ -4,59 +4,51 @@ A grammar is built of symbols by the functions below. No two alternatives of a s
 token, so the next token decides between them (LL(1)). The state of an unfinished text is a stack of symbols.
 """
 
-import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from math import inf
+from typing import get_args
 
 from roadgpt.brief.beside import BESIDE
-from roadgpt.brief.junctions import LONGEST_ROUTE, ROUTE
+from roadgpt.brief.junctions import (
+    LANE_KINDS,
+    LONGEST_ROUTE,
+    RAMPS,
+    ROUTE,
+    Control,
+    IslandSize,
+    MapJunctionKind,
+    Side,
+    Take,
+)
+from roadgpt.brief.languages import pattern_of
+from roadgpt.brief.model import CentreLine
 from roadgpt.brief.plan import HALFWAY, ONE_WAY, ROAD_KEYS
 from roadgpt.brief.readers.model.slots import LARGEST_SEEN, NumberSlot
 from roadgpt.brief.readers.model.vocabulary import (
-    ALONE,
-    CENTRES,
-    CLAUSE_KEYS,
-    CONTROLS,
-    ENDS_OF_ROAD,
     FACTORS,
     FIXED,
-    FLAGS,
-    HALVES,
-    JUNCTIONS,
     KEYS,
     KINDS,
-    LANE_KINDS,
-    LISTED_WAYS,
     MEASURED,
     MULTIPLES,
-    NEWER_FLAGS,
-    NEXT_TO,
     NOUNS,
     NUMBER_OF,
     ONE,
     ORDER,
     PERCENTS,
-    PLACES,
-    POSITIONS,
-    RAMPS,
-    RING_SIZES,
     ROUNDABOUT,
-    SHARPNESS,
-    SIDES,
     SIGNS,
-    SIZES,
     SLOPES,
     SLOT_TOKENS,
     STEPS,
-    SUPERLATIVES,
-    TAKES,
     UNIT_OF,
     Compared,
     value_of,
 )
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
+from roadgpt.brief.words import Sharpness, Size
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,24 +140,7 @@ ALWAYS = {"angle": FIXED, "slope": ("1",), "climb=": ("0",)}
 COUNTS = tuple(str(number) for number in range(LARGEST_SEEN + 1))
 BOUND, MINUS = "..", "-"
 LEAST = {"arms=": 3}  # "a two-lane roundabout" has no two arms
-ANGLE = re.compile(
-    r"kink|dog|leg|square|right.angle|angle|wink|knick|orthog|perpend|angolo|angulo|equerre|coude|quiebr|codo|gomito"
-    r"|piega|quarter|decroch|recod|baionn|ninety|neunzig|quatre|noventa|novanta|forty|\d|unused"
-    r"|hairpin|switchback|haarnadel|kehre|epingle|lacet|horquilla|tornant"
-    r"|half|halb|semi|demi|medi[oa]|mezz|round|back|opposite|turned|facing|headed|way we came"
-    r"|gegen|zuruck|retour|contrari|vuelta|inver|empez|comin|stair|trepp|escal|scal"
-    r"|letter|buchstab|lettre|letra|lettera|outline|form|shape|\b[zluvn]\b"
-)
-MOUNTAIN = re.compile(
-    r"mount|mont|berg|alp|pass|\bcol\b|puerto|gebirg|sierra|valico|dolomit|andes|pyren|serra|vette|cordill|himal"
-    r"|steep|steil|raide|pente|pentu|empinad|pendiente|pendenz|ripid|erto|erta|brusc"
-    r"|grade|gradient|slope|inclin|neig|roll|wav|well|ond|hill|hugel|colin|coll|lom|vallon|bosse|up.{1,6}down|auf.{1,6}ab"
-)
-HILLY = re.compile(
-    r"hill|roll|undul|wave|wavy|up.{1,20}down|wellig|welle|hugel|auf.{1,6}ab|vallon|colin|coll|ond|saliscend|russ|coaster"
-    r"|rise|climb|bosse|lomas|subid|dune|hump|crest|heav|hoch.*runter|vagues|vaux"
-    r"|flat|level|eben|flach|platt?|llan|plan|pian|lomer|inver|fall|gefall|steig|rasant|pendenz|pendient|pente"
-)
+PATTERNS = [*map(pattern_of, ("angle", "mountain", "hilly"))]
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,8 +159,7 @@ class Evidence:
         """Returns which numbers a description can imply; the text must be in lower case and without
         accents.
         """
-        patterns = (ANGLE, MOUNTAIN, HILLY)
-        angles, mountains, hills = (pattern.search(text) is not None for pattern in patterns)
+        angles, mountains, hills = (pattern.search(text) is not None for pattern in PATTERNS)
         return cls(angles, mountains, hills, Compared.of(text))
 
 
@@ -260,6 +234,13 @@ class Numbers:
         return (sequel(any_of(*ways), is_open=True),) if ways else ()
 
 
+SIDES: tuple[str, ...] = get_args(Side)
+SHARPNESS, SIZES = one_of(*get_args(Sharpness)), one_of(*get_args(Size))
+CONTROLS = one_of(*get_args(Control))
+PLACES = ("starts(", "ends(")
+JUNCTIONS = tuple(kind for kind in get_args(MapJunctionKind) if kind != ROUNDABOUT)
+FLAGS = [one_of(flag) for flag in ("skew", "all_way", "crosswalk", "others_stop")]
+LISTED_WAYS = ("left+right", "left+straight", "right+straight", "left+right+straight")
 STRAIGHT_KINDS = ("straight", "crest", "dip")
 END = "<end>"
 IN_WORDS = {"against": ONE_WAY, "len": HALFWAY}
@@ -316,13 +297,13 @@ def _refusals() -> tuple[Symbol, ...]:
 def _description(numbers: Numbers) -> Symbol:
     clause = _clause(numbers)
     wishes = in_order(
-        one_of(*SHARPNESS),
+        SHARPNESS,
         one_of(*SLOPES),
         *map(one_of, ("alternating", "alike", "hard", "motorway", "divided", "left_hand")),
         *(_road_key(key, numbers) for key in ROAD_KEYS),
         *(sequel(one_of(place), clause, one_of(")")) for place in PLACES),
         _beside(),
-        sequel(one_of("centre="), one_of(*CENTRES)),
+        sequel(one_of("centre="), one_of(*get_args(CentreLine))),
         least=1,
     )
     whole = sequel(one_of("|"), wishes)
@@ -367,30 +348,33 @@ def _whole(numbers: Numbers) -> Symbol:
 
 def _junction(numbers: Numbers) -> Symbol:
     side, length = sequel(one_of("side="), one_of(*SIDES)), numbers.keyed("len=")
-    takes, controls = one_of(*SIDES, *TAKES), one_of(*CONTROLS)
-    flags = [one_of(flag) for flag in (*FLAGS, *NEWER_FLAGS)]
+    to_ramps = ("ramp", "main")
+    takes = one_of(*(take for take in get_args(Take) if take not in to_ramps))
     listed = one_of(*LISTED_WAYS, *SIDES, "straight")
     ways, only_in, only_out = (sequel(one_of(key), listed) for key in ("ways=", "in=", "out="))
     degrees, angle, taper = map(numbers.keyed, ("deg=", "angle=", "taper="))
     exit_, arms, lanes = map(numbers.keyed, ("exit=", "arms=", "lanes="))
     radius = any_of(numbers.keyed("r="), numbers.keyed("d="))
     forms: tuple[tuple[Sequence[str], tuple[Symbol, ...]], ...] = (
-        (JUNCTIONS, (takes, controls, *flags, ways, only_in, only_out, degrees, angle, arms)),
-        ([ROUNDABOUT], (takes, one_of(*RING_SIZES), controls, *flags[1:], ways, exit_, arms, radius, lanes)),
-        (RAMPS, (one_of("ramp", "main"), side, length, taper)),
-        (LANE_KINDS, (side, length)),
-        (["lane_change"], (one_of(*SIDES),)),
+        (JUNCTIONS, (takes, CONTROLS, *FLAGS, ways, only_in, only_out, degrees, angle, arms)),
+        (
+            [ROUNDABOUT],
+            (takes, one_of(*get_args(IslandSize)), CONTROLS, *FLAGS[1:], ways, exit_, arms, radius, lanes),
+        ),
+        (RAMPS, (one_of(*to_ramps), side, length, taper)),
+        (LANE_KINDS[:2], (side, length)),
+        (LANE_KINDS[2:], (one_of(*SIDES),)),
     )
     return any_of(*(sequel(one_of(*kinds), in_order(*parts)) for kinds, parts in forms))
 
 
 def _map(numbers: Numbers) -> Symbol:
-    kinds, count, controls = one_of(*JUNCTIONS, ROUNDABOUT), numbers.keyed("x"), one_of(*CONTROLS)
+    kinds, count = one_of(*JUNCTIONS, ROUNDABOUT), numbers.keyed("x")
     route = sequel(one_of(f"{ROUTE}="), _ways(LONGEST_ROUTE))
-    tail = in_order(*map(numbers.keyed, ("len=", "blocks=", "dead_ends=")), controls, route)
-    kind = sequel(kinds, in_order(count, controls))
+    tail = in_order(*map(numbers.keyed, ("len=", "blocks=", "dead_ends=")), CONTROLS, route)
+    kind = sequel(kinds, in_order(count, CONTROLS))
     listed = sequel(kind, list_tail(";", kind, MOST_KINDS - 1), tail)
-    signed = sequel(kinds, in_order(count), controls)
+    signed = sequel(kinds, in_order(count), CONTROLS)
     grid = sequel(numbers.keyed("columns="), numbers.keyed("rows="), tail, list_tail(";", signed, MOST_KINDS))
     return sequel(one_of("map"), any_of(listed, grid), _whole(numbers))
 
@@ -402,9 +386,12 @@ def _ways(most: int) -> Symbol:
 
 def _clause(numbers: Numbers) -> Symbol:
     turning = (kind for kind in KINDS if kind not in STRAIGHT_KINDS)
-    count, keys = numbers.keyed("x"), {key: numbers.keyed(key) for key in (*CLAUSE_KEYS, "climb=")}
-    straight = (count, one_of(*SIZES), one_of(*SLOPES), keys["len="], keys["pct="], keys["climb="])
-    words = (one_of(*SIDES), one_of(*SHARPNESS), one_of(*SLOPES), one_of("alternating"))
+    count, keys = (
+        numbers.keyed("x"),
+        {key: numbers.keyed(key) for key in (*("deg=", "r=", "len=", "pct="), "climb=")},
+    )
+    straight = (count, SIZES, one_of(*SLOPES), keys["len="], keys["pct="], keys["climb="])
+    words = (one_of(*SIDES), SHARPNESS, one_of(*SLOPES), one_of("alternating"))
     return any_of(
         sequel(one_of(*STRAIGHT_KINDS), in_order(*straight)),
         sequel(one_of(*turning), in_order(count, *words, *keys.values())),
@@ -417,7 +404,10 @@ DEEPEST = 2
 """How deeply places in a change may be nested: "all but (the straight after (the first turn))" is depth 2."""
 WAYS = ("up", "down", "flat")
 STEEPNESS = ("gently_up", "gently_down", "steeply_up", "steeply_down")
-MOVES = ("after(", "before(", "between(")
+SUPERLATIVES = ("longest", "shortest", "sharpest", "gentlest", "steepest", "flattest")
+NEXT_TO = ("after(", "before(", "between(", "on(")
+"""The positions of a feature that a change adds, relative to a place on the road."""
+MOVES = NEXT_TO[:3]
 """Positions, relative to other places, to which a turn can be moved."""
 
 
@@ -437,13 +427,16 @@ def _place(numbers: Numbers, depth: int) -> Symbol:
         one_of("middle"),
         one_of(*SUPERLATIVES),
         sequel(one_of("x"), far),
-        *(one_of(*words) for words in (SIDES, SHARPNESS, WAYS, SIZES)),
+        one_of(*SIDES),
+        SHARPNESS,
+        one_of(*WAYS),
+        SIZES,
         *(_exactly(key, numbers) for key in ("deg=", "len=")),
-        one_of(*HALVES),
+        one_of("half1", "half2"),
     ]
     if depth:
         inner = later(lambda: _place(numbers, depth - 1))
-        parts += [_position(inner, POSITIONS), sequel(one_of("but("), inner, one_of(")"))]
+        parts += [_position(inner, (*NEXT_TO, "from(", "up_to(")), sequel(one_of("but("), inner, one_of(")"))]
     return sequel(one_of(*dict.fromkeys([*NOUNS, *KINDS])), in_order(*parts))
 
 
@@ -451,7 +444,7 @@ def _position(inner: Symbol, ways: Sequence[str]) -> Symbol:
     close = one_of(")")
     single = (way for way in ways if way != "between(")
     return any_of(
-        one_of(*ENDS_OF_ROAD),
+        one_of("at_start", "at_end", "at_middle"),
         sequel(one_of(*single), inner, close),
         sequel(one_of("between("), inner, one_of(","), inner, close),
     )
@@ -469,7 +462,7 @@ def _wish(numbers: Numbers) -> Symbol:
     values = {name: _value(name, numbers, like) for name in MEASURED if name != "climb"}
     slope = values["slope"]
     values["slope"] = any_of(sequel(one_of("up", "down"), in_order(slope)), one_of("flat", *STEEPNESS), slope)
-    shape = in_order(one_of(*(kind for kind in KINDS if kind not in NOUNS)), one_of(*SHARPNESS), least=1)
+    shape = in_order(one_of(*(kind for kind in KINDS if kind not in NOUNS)), SHARPNESS, least=1)
     return any_of(
         *(sequel(one_of(name), value) for name, value in values.items()),
         sequel(one_of("climb"), _climb(numbers)),
@@ -477,7 +470,7 @@ def _wish(numbers: Numbers) -> Symbol:
         _position(like, MOVES),
         sequel(one_of("side"), one_of(*SIDES, "other")),
         sequel(one_of("shape"), shape),
-        one_of(*ALONE),
+        one_of("straighten", "remove", "mirror", "alternate"),
         sequel(one_of(ORDER), in_order(sequel(one_of("="), like))),
     )
 
@@ -515,7 +508,9 @@ def _factors(numbers: Numbers) -> list[Symbol]:
 def _new(numbers: Numbers) -> Symbol:
     parts = (
         sequel(one_of("x"), one_of(*COUNTS[1:])),
-        *(one_of(*words) for words in (SIDES, SHARPNESS, (*WAYS, *STEEPNESS))),
+        one_of(*SIDES),
+        SHARPNESS,
+        one_of(*WAYS, *STEEPNESS),
         *(_exactly(key, numbers) for key in ("deg=", "len=", "r=", "pct=")),
         one_of("whole"),
         _position(_place(numbers, DEEPEST - 1), NEXT_TO),

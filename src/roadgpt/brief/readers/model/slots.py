@@ -14,24 +14,20 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import radians, tan
 
+from roadgpt.brief.languages import TABLE, word_set
 from roadgpt.brief.readers.model.number_words import (
-    AMBIGUOUS,
     COUNTED,
     FUNCTION_WORDS,
-    JOINTS,
     LEFT,
     LONGEST,
-    MILLIONS,
     ONE_TURN,
     ONES,
     ORDINALS,
-    RATIO,
     RIGHT,
     SETS,
     SHARE_FILLERS,
     SHARES,
     SIZES,
-    TIMES,
     UNITS,
     VAGUE_SETS,
     Unit,
@@ -39,41 +35,23 @@ from roadgpt.brief.readers.model.number_words import (
     number_word,
     numbers_in_words,
     plain,
-    word_set,
 )
 
 LARGEST_SEEN = 20
 """The largest number without a unit that remains as digits in the text for the model. Larger ones become
 slots."""
 LAST_TURN = 9  # a number up to this one behind "turn" says which turn
-SIDES = LEFT | RIGHT | {"g", "d", "i", "der", "sn", "ds"}
-"""Words for left and right, and their abbreviations that occur only before numbers, as in "G90"."""
-RADIUS = frozenset(
-    ["radius", "radii", "rad", "halbmesser", "radien", "rayon", "rayons", "ray", "radio", "radios", "raggio"]
-    + ["raggi"]
-)
-LEADING_TO = word_set(
-    "= : . of is about around roughly approximately approx ca circa von etwa rund ungefahr de environ unos",
-    "aproximadamente di",
-)
-"""What can stand between a word for a radius and its number."""
+SIDES = LEFT | RIGHT | word_set("short_sides")
 STEEPEST = 45.0  # degrees: anything steeper is a turn, or nonsense that the network refuses itself
-SLOPES = word_set(
-    "slope slopes grade grades gradient gradients incline inclines inclination climb ascent ascents",
-    "descent descents rise decline steigung gefalle anstieg neigung pente pentes montee descente",
-    "pendiente pendientes subida bajada inclinacion pendenza pendenze salita discesa inclinazione",
-)
-SLOPING = word_set(
-    "climbs climbing rises rising ascends ascending descends descending drops dropping falls falling",
-    "uphill downhill steigt steigend fallt fallend bergauf bergab monte descend sube baja sale scende",
-)
-BETWEEN = word_set(
-    "of at is are : = by with an angle angled about around roughly von mit um de d ' di con del der"
-)
+AMBIGUOUS, MILLIONS, JOINTS = word_set("ambiguous"), word_set("millions"), word_set("joints")
+RATIO, TIMES, POINTS = word_set("ratio"), word_set("times"), word_set("points")
+RADIUS, LEADING_TO = word_set("radius"), word_set("leading_to")
+SLOPES, SLOPING = word_set("slopes"), word_set("sloping")
+BETWEEN, SKIPPED = word_set("before_slope"), word_set("skipped")
+WHOLE_AND, OF_A_CIRCLE = word_set("whole_and"), word_set("of_a_circle")
 TURNING = COUNTED | ONE_TURN | LEFT | RIGHT | {"heading"}
-SKIPPED = frozenset(["-", "of", "to", "the", "nach", "a", "la", "vers"])
 MOST_BETWEEN = 4
-"""How many of the words in BETWEEN may separate the slope from its number."""
+"""How many words may separate the slope from its number."""
 
 
 @dataclass(slots=True)
@@ -216,17 +194,8 @@ DENOMINATORS = ("2", "3", "4", "5", "8", "10")
 """What may stand below the stroke of a fraction of a unit: "3/4 mile"."""
 SHARE = re.compile(r"0[.,]\d+")
 """A share of a unit in decimals: "0.3 of a mile"."""
-WHOLE_AND = frozenset({"-", "and", "und", "et", "y", "e"})
-"""Words between a whole number and a fraction: "1 and 1/2 miles"."""
 GERMAN_HALF = re.compile(r"(ander|\w*?)(?:ein|und|t)?(halb|viertel)(tausend)?")
 """A German number with its fraction in one word: "zweieinhalb", "dreieinviertel"."""
-OF_A_CIRCLE = frozenset(
-    {"circle", "loop", "kreis", "kehre", "drehung", "cercle", "tour", "boucle", "vuelta", "circulo", "giro"}
-    | {"cerchio", "hour", "minute", "hora", "ora", "heure", "stunde", "-"}
-)
-"""Words that show that a fraction is no part of the unit before it: "two kilometres and a half turn"."""
-POINTS = frozenset({"point", "komma", "virgule", "coma", "virgola"})
-"""The words between a whole number and its decimals."""
 MOST_WORDS = 3
 """The largest number of words that decimals have; a hyphen counts as a word."""
 
@@ -355,14 +324,7 @@ def _decimals_of(key: tuple[str, ...]) -> str:
     return str(next(iter(numbers_in_words(key).values()), ""))
 
 
-PLUS_MINUS = frozenset(
-    tuple(sign.split())
-    for sign in (
-        *("±", "+ / -", "+ -", "+ or -", "plus or minus", "plus / minus", "plus minus", "give or take"),
-        *("plus oder minus", "plus ou moins", "mas o menos", "mas menos", "piu o meno", "piu meno"),
-        *("a tolerance of", "tolerance"),
-    )
-)
+PLUS_MINUS = frozenset(tuple(sign.split()) for sign in TABLE["plus_minus"]["signs"].split("|"))
 OPENING = frozenset([",", "(", "-"])
 LONGEST_SIGN = 4
 """The number of words of the longest expression for "plus or minus", including a bracket before it."""

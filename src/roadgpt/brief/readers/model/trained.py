@@ -16,9 +16,9 @@ from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import read_plan
+from roadgpt.brief.readers.model.before import TOLD_ON_ROUTES, may_tell_a_route
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.ring_sizes import LEAST, diameters
-from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES, may_tell_a_route
 from roadgpt.brief.readers.model.slots import SlottedText, Word
 from roadgpt.brief.readers.model.vocabulary import REFUSALS, ROUNDABOUT, SLOT_TOKENS, plan_of
 from roadgpt.brief.words import SURE
@@ -102,31 +102,6 @@ def most_plausible(found: Sequence[ScoredPlan[Brief]]) -> ScoredPlan[Brief]:
     return next((each for each in near if each.asks and is_possible(each.asks, *ANY_WORLD)), found[0])
 
 
-def unused_words(
-    network: NeuralNetwork,
-    text: SlottedText,
-    tokens: Sequence[str],
-    fillers: frozenset[str],
-) -> tuple[str, ...]:
-    """Returns the words that the plan does not depend on, and the numbers that the plan lacks.
-
-    The words are spelled as in the text, each once, in text order. Function words in ``fillers`` are never
-    reported.
-    """
-    idle = _idle(network, text, tokens, fillers)
-    out: list[str] = []
-    missing, slot = lost(tokens, text), 0
-    for place, word in enumerate(text.words):
-        if word.text.startswith("[unused") and word.written:
-            if slot in missing or slot >= len(text.slots):
-                out.append(word.written)
-            slot += 1
-        elif place in idle:
-            is_short = [each.text for each in text.words[place + 1 : place + 3]] == ["'", "t"]
-            out.append(f"{word.written}'t" if is_short else word.written)
-    return tuple(dict.fromkeys(out))
-
-
 def left_out(tokens: Sequence[str], text: SlottedText) -> list[int]:
     """Returns the indices of those numbers (slots) of a text that its plan does not use."""
     return [index for index in range(len(text.slots)) if SLOT_TOKENS[index] not in tokens]
@@ -148,41 +123,6 @@ def passes_over(unused: Sequence[str], text: SlottedText) -> bool:
     """
     numbers = {w.written for w in text.words if w.text.startswith("[unused")}
     return any(word in numbers for word in unused)
-
-
-def _idle(
-    network: NeuralNetwork, text: SlottedText, tokens: Sequence[str], fillers: frozenset[str]
-) -> frozenset[int]:
-    """Returns the places of the words that the plan does not depend on.
-
-    If two words mean the same ("uphill, climbing all the way"), each of them can be left out, but not both.
-    If the plan changes when all such words are left out, a word that alone restores the plan counts as used.
-    A word in letters of another script than Latin is in none of the languages that are read: it never counts
-    as used, even if the plan happens to be less likely without it.
-    """
-    content = [place for place, word in enumerate(text.words) if _is_content(word, fillers)]
-    foreign = frozenset(place for place in content if not _is_latin(text.words[place].text))
-    tried = [place for place in content if place not in foreign][:MOST_WORDS]
-    kept = _are_kept(network, text, tokens, [{place} for place in tried])
-    idle = [place for place, is_kept in zip(tried, kept, strict=True) if is_kept]
-    if len(idle) < 2 or all(_are_kept(network, text, tokens, [{*idle}])):
-        return frozenset(idle) | foreign
-    restored = _are_kept(network, text, tokens, [{*idle} - {place} for place in idle])
-    return foreign.union(place for place, is_back in zip(idle, restored, strict=True) if not is_back)
-
-
-def _are_kept(
-    network: NeuralNetwork, text: SlottedText, tokens: Sequence[str], left_out: Sequence[Collection[int]]
-) -> list[bool]:
-    if not left_out:
-        return []
-    texts = [
-        SlottedText(tuple(w for place, w in enumerate(text.words) if place not in places), text.slots)
-        for places in left_out
-    ]
-    logs, leads = network.chances_of([text, *texts], tokens, text)
-    lost = logs[0].sum() - logs[1:].sum(axis=1)
-    return [bool(one) for one in (leads[1:] >= 0).all(axis=1) & (lost <= NOTICED)]
 
 
 def _is_content(word: Word, fillers: frozenset[str]) -> bool:
@@ -258,8 +198,52 @@ class Trained:
         return scored_plans(self.network, text, least, read_normal)
 
     def unused(self, text: SlottedText, tokens: Sequence[str]) -> tuple[str, ...]:
-        """Returns the words that a plan does not depend on, each once, in the order of the text."""
-        return unused_words(self.network, text, tokens, self.fillers)
+        """Returns the words that a plan does not depend on, and the numbers that it lacks: spelled as in the
+        text, each once, in the order of the text.
+        """
+        idle = self._idle(text, tokens)
+        out: list[str] = []
+        missing, slot = lost(tokens, text), 0
+        for place, word in enumerate(text.words):
+            if word.text.startswith("[unused") and word.written:
+                if slot in missing or slot >= len(text.slots):
+                    out.append(word.written)
+                slot += 1
+            elif place in idle:
+                is_short = [each.text for each in text.words[place + 1 : place + 3]] == ["'", "t"]
+                out.append(f"{word.written}'t" if is_short else word.written)
+        return tuple(dict.fromkeys(out))
+
+    def _idle(self, text: SlottedText, tokens: Sequence[str]) -> frozenset[int]:
+        """Returns the places of the words that the plan does not depend on.
+
+        If two words mean the same ("uphill, climbing all the way"), each of them can be left out, but not
+        both. If the plan changes when all such words are left out, a word that alone restores the plan counts
+        as used. A word in letters of another script than Latin is in none of the languages that are read: it
+        never counts as used, even if the plan happens to be less likely without it.
+        """
+        content = [place for place, word in enumerate(text.words) if _is_content(word, self.fillers)]
+        foreign = frozenset(place for place in content if not _is_latin(text.words[place].text))
+        tried = [place for place in content if place not in foreign][:MOST_WORDS]
+        kept = self._are_kept(text, tokens, [{place} for place in tried])
+        idle = [place for place, is_kept in zip(tried, kept, strict=True) if is_kept]
+        if len(idle) < 2 or all(self._are_kept(text, tokens, [{*idle}])):
+            return frozenset(idle) | foreign
+        restored = self._are_kept(text, tokens, [{*idle} - {place} for place in idle])
+        return foreign.union(place for place, is_back in zip(idle, restored, strict=True) if not is_back)
+
+    def _are_kept(
+        self, text: SlottedText, tokens: Sequence[str], left_out: Sequence[Collection[int]]
+    ) -> list[bool]:
+        if not left_out:
+            return []
+        texts = [
+            SlottedText(tuple(w for place, w in enumerate(text.words) if place not in places), text.slots)
+            for places in left_out
+        ]
+        logs, leads = self.network.chances_of([text, *texts], tokens, text)
+        lost = logs[0].sum() - logs[1:].sum(axis=1)
+        return [bool(one) for one in (leads[1:] >= 0).all(axis=1) & (lost <= NOTICED)]
 
     def confidence(self, draft: ScoredPlan[Any], text: SlottedText, unused: Sequence[str]) -> float:
         """Returns the fraction (0 to 1) of readings like this one that were right on held-out texts."""

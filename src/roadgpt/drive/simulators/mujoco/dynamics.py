@@ -3,28 +3,201 @@
 The forces are those of tyres, suspension, engine, brakes, air, and of the hull on the road; ABS, traction
 control and a simple ESC stand between the driver's pedals and the wheels. The forces are passed to MuJoCo as
 generalised forces (``qfrc_applied``), computed with formulas written for this one tree of bodies. The result
-is the same as with forces on the wheel bodies, but takes a fraction of the computing time."""
+is the same as with forces on the wheel bodies, but takes a fraction of the computing time.
+
+The tyre is the Magic Formula with the similarity method. The longitudinal and the lateral force each have a
+pure-slip curve. Under combined slip, the direction of the normalised slip determines how the two forces share
+the friction ellipse. Slips build up over a relaxation length. Source: H. B. Pacejka, Tyre and Vehicle
+Dynamics, 3rd ed., sections 4.3.1, 7.2 and 8.6 (low speeds).
+
+MuJoCo knows the rigid bodies of the car, with 16 degrees of freedom, no contacts, no constraints and no force
+but gravity. The wheels are numbered left front, right front, left rear, right rear:
+
+    body (6) --- slide along the suspension (4) --- steering hinge (2, front) --- wheel spin (4)"""
 
 import math
 from typing import Any, NamedTuple
 
+import mujoco
 import numpy as np
 
 from roadgpt.compiled import COMPILES, call_at, inlined
 from roadgpt.drive.drive import FloatArray
 from roadgpt.drive.lane_position import LanePolygon
 from roadgpt.drive.sampled_road import SampledRoad, locate_on, room_at
-from roadgpt.drive.simulators.mujoco.car import Car
-from roadgpt.drive.simulators.mujoco.model import (
-    BODY,
-    CARRIER,
-    SLIDE_DOF,
-    SPIN_DOF,
-    STEER_DOF,
-    STEP,
-    WHEEL,
-)
-from roadgpt.drive.simulators.mujoco.tyres import tyre_forces
+from roadgpt.drive.simulators.mujoco.car import GRAVITY, Axle, Car
+
+LOW_SPEED = 2.5  # m/s, below which a damper is added (Pacejka 8.6)
+LOW_SPEED_DAMPING = 0.75  # Ns/m per N of load
+MOST_SLIP = 3.0  # normalised, limit of the slip that a standing tyre's carcass may store
+
+
+@inlined
+def _curve(shape: float, bend: float, slip: float) -> float:
+    """Returns the Magic Formula at a normalised slip; its height is 1, and its slope at the origin is 1."""
+    b = slip / shape
+    return math.sin(shape * math.atan(b - bend * (b - math.atan(b))))
+
+
+@inlined
+def _relaxed(slip: float, sliding: float, speed: float, length: float, dt: float) -> float:
+    """Returns the slip after a time step, integrated implicitly, which is stable at every speed."""
+    way = dt / length
+    return (slip + way * sliding) / (1.0 + way * speed)
+
+
+@inlined
+def _peak_friction(axle: Any, friction: float, over: float, camber: float) -> tuple[float, float]:
+    """Returns longitudinal and lateral peak friction; ``over`` is the load above the nominal one, as a share
+    of it."""
+    fade = max(1.0 - axle.tyre_friction_load_sensitivity * over, 0.3)
+    loss = 1.0 - axle.tyre_camber_friction_loss * camber * camber
+    return friction * axle.tyre_peak_friction_x * fade, friction * axle.tyre_peak_friction_y * fade * loss
+
+
+@inlined
+def _normalised_slips(
+    axle: Any, over: float, slip_x: float, slip_y: float, peak_x: float, peak_y: float
+) -> tuple[float, float, float]:
+    """Returns the slips in units of (peak friction / slip stiffness): longitudinal, lateral, combined."""
+    soft = max(1.0 - axle.tyre_stiffness_load_sensitivity * over, 0.3)
+    nx = slip_x * soft * axle.tyre_slip_stiffness / peak_x
+    ny = slip_y * soft * axle.tyre_cornering_stiffness / peak_y
+    return nx, ny, math.sqrt(nx * nx + ny * ny)
+
+
+@inlined
+def _combined(
+    axle: Any, most_x: float, most_y: float, nx: float, ny: float, total: float
+) -> tuple[float, float]:
+    """Returns the forces in N in the friction ellipse with the semi-axes ``most_x`` and ``most_y``."""
+    if total < 1e-9:
+        return 0.0, 0.0
+    curve_x = _curve(axle.tyre_shape_factor_x, axle.tyre_curvature_factor_x, total)
+    curve_y = _curve(axle.tyre_shape_factor_y, axle.tyre_curvature_factor_y, total)
+    return most_x * curve_x * nx / total, most_y * curve_y * ny / total
+
+
+@inlined
+def tyre_forces(
+    axle: Any,
+    friction: float,
+    load: float,
+    camber: float,
+    forward: float,
+    across: float,
+    rolling: float,
+    slip_x: float,
+    slip_y: float,
+    dt: float,
+) -> tuple[float, float, float, float]:
+    """Returns the forces on the tyre in its longitudinal and lateral direction, and its slips after a time
+    step.
+
+    Args:
+        axle: record with the tyre's parameters and its nominal load.
+        friction: friction of the road.
+        load: vertical load in N.
+        camber: camber angle in rad, positive if the top leans to the right.
+        forward: speed of the contact point along the wheel in m/s.
+        across: speed of the contact point to the left in m/s.
+        rolling: angular speed of the wheel times its radius, in m/s.
+        slip_x: longitudinal slip one step before (positive: the tyre's force points forward).
+        slip_y: lateral slip one step before (positive: the tyre's force points to the left).
+        dt: length of the time step in s.
+
+    Returns:
+        The force forward in N, the force to the left in N, and the new ``slip_x`` and ``slip_y``."""
+    if load <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    speed = abs(forward)
+    slip_x = _relaxed(slip_x, rolling - forward, speed, axle.tyre_relaxation_length_x, dt)
+    slip_y = _relaxed(slip_y, -across, speed, axle.tyre_relaxation_length_y, dt)
+    over = load / axle.nominal_load - 1.0
+    side = 1.0 if camber > 0.0 else (-1.0 if camber < 0.0 else 0.0)
+    shift = side * axle.tyre_horizontal_shift + axle.tyre_camber_horizontal_shift * camber
+    peak_x, peak_y = _peak_friction(axle, friction, over, camber)
+    nx, ny, total = _normalised_slips(axle, over, slip_x, slip_y - shift, peak_x, peak_y)
+    fx, fy = _combined(axle, peak_x * load, peak_y * load, nx, ny, total)
+    if total > MOST_SLIP and speed < LOW_SPEED:
+        slip_x *= MOST_SLIP / total
+        slip_y *= MOST_SLIP / total
+    fy += load * (side * axle.tyre_vertical_shift + axle.tyre_camber_vertical_shift * camber)
+    if speed < LOW_SPEED:
+        damper = LOW_SPEED_DAMPING * load * 0.5 * (1.0 + math.cos(math.pi * speed / LOW_SPEED))
+        hold = math.hypot(peak_x, peak_y) * load
+        fx = min(max(fx + damper * (rolling - forward), -hold), hold)
+        fy = min(max(fy - damper * across, -hold), hold)
+    return fx, fy, slip_x, slip_y
+
+
+STEP = 0.002  # s
+WHEELS = ("lf", "rf", "lr", "rr")
+WHEEL_SHARE = 0.7  # of the unsprung mass rotates with the wheel; the rest only steers
+# kg m^2 of armature that hold the steering hinges at the angles that the steering prescribes.
+STIFF_HINGE = 1e5
+
+# Indices into qvel (qpos has one number more, for the quaternion), in the order of the tree below.
+SLIDE_DOF = (6, 9, 12, 14)
+STEER_DOF = (7, 10)
+SPIN_DOF = (8, 11, 13, 15)
+# Numbers of the bodies.
+BODY = 1
+CARRIER = (2, 4, 6, 8)
+WHEEL = (3, 5, 7, 9)
+
+_DISABLED = """constraint equality frictionloss limit contact spring damper clampctrl warmstart actuation
+    sensor eulerdamp autoreset"""
+
+
+def model_of(car: Car) -> Any:
+    """Returns the compiled MuJoCo model of the car, with the masses and positions of its body and wheels."""
+    flags = " ".join(f'{name}="disable"' for name in _DISABLED.split())
+    wheels = "".join(
+        _wheel_body(car, axle, name, side)
+        for axle, pair in ((car.front, WHEELS[:2]), (car.rear, WHEELS[2:]))
+        for name, side in zip(pair, (1, -1), strict=True)
+    )
+    inertia = f"{car.roll_inertia} {car.pitch_inertia} {car.yaw_inertia}"
+    return mujoco.MjModel.from_xml_string(f"""
+    <mujoco>
+      <compiler angle="radian" autolimits="false" balanceinertia="false"/>
+      <option timestep="{STEP}" gravity="0 0 {-GRAVITY}" integrator="Euler" jacobian="dense">
+        <flag {flags}/>
+      </option>
+      <worldbody>
+        <body name="body">
+          <freejoint/>
+          <inertial pos="0 0 0" mass="{car.sprung_mass}" diaginertia="{inertia}"/>
+          {wheels}
+        </body>
+      </worldbody>
+    </mujoco>""")
+
+
+def centre_height(car: Car, axle: Axle) -> float:
+    """Returns the height in m of a wheel's centre above level ground, at rest."""
+    return car.unloaded_radius - car.static_wheel_load(axle) / axle.tyre.vertical_stiffness
+
+
+def _wheel_body(car: Car, axle: Axle, name: str, side: int) -> str:
+    down = centre_height(car, axle) - car.cg_height
+    lean = axle.inclination
+    slide = f"0 {side * math.sin(lean)} {math.cos(lean)}"
+    steer = f'<joint name="steer_{name}" axis="0 0 1" armature="{STIFF_HINGE}"/>' if axle is car.front else ""
+    turning, carried = WHEEL_SHARE * axle.unsprung_mass, (1 - WHEEL_SHARE) * axle.unsprung_mass
+    across = car.wheel_inertia / 2 + turning * car.tyre_width**2 / 12
+    small = 0.01 * carried
+    return f"""
+      <body name="carrier_{name}" pos="{axle.position} {side * axle.track_width / 2} {down}">
+        <joint name="slide_{name}" type="slide" axis="{slide}"/>{steer}
+        <inertial pos="0 0 0" mass="{carried}" diaginertia="{small} {small} {small}"/>
+        <body name="wheel_{name}">
+          <joint name="spin_{name}" axis="0 1 0"/>
+          <inertial pos="0 0 0" mass="{turning}" diaginertia="{across} {car.wheel_inertia} {across}"/>
+        </body>
+      </body>"""
+
 
 AIR = 1.2  # kg/m^3, at 20 degrees C
 UNDER = 0.25  # m below the road's surface, beyond which a wheel has no contact any more

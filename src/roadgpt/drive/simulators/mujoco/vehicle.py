@@ -14,23 +14,27 @@ from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car, tables
 from roadgpt.drive.simulators.mujoco.dynamics import (
     ABS,
     AT,
+    BODY,
     BRAKE,
     PAST_VX,
     PAST_VY,
+    SPIN_DOF,
     STATE,
     STATION,
     STEER,
+    STEP,
     TCS,
     WHEEL_STATE,
     CarState,
     Ground,
     MujocoHandles,
     call,
+    centre_height,
     hull_points,
+    model_of,
     normal_of,
     step_once,
 )
-from roadgpt.drive.simulators.mujoco.model import BODY, SPIN_DOF, STEP, centre_height, model_of
 from roadgpt.network import is_route
 
 if TYPE_CHECKING:

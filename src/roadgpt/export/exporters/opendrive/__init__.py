@@ -1,8 +1,7 @@
 """Exports roads and networks as ASAM OpenDRIVE 1.8. Version 1.7 also defines all elements that are
 written, except the boundaries of junctions.
 
-Source: ASAM OpenDRIVE 1.8.1, user guide and XML schema.
-"""
+Source: ASAM OpenDRIVE 1.8.1, user guide and XML schema."""
 
 import json
 from collections.abc import Iterable, Iterator, Sequence
@@ -41,8 +40,7 @@ class OpenDrive:
         """Writes the file, and beside it, with the suffix ``.route.json``, the roads and lanes to drive, in
         driving order. For a map without a route, this is an empty list.
 
-        ``poses`` is ignored, because OpenDRIVE cannot hold a drive.
-        """
+        ``poses`` is ignored, because OpenDRIVE cannot hold a drive."""
         path.write_bytes(document(road, world, self.revision).to_text().encode())
         if isinstance(road, Route):
             legs = road.to_route_json()
@@ -56,8 +54,7 @@ def document(road: Road, world: World, revision: int = REVISION) -> XmlElement:
     """Returns the XML document of a road, or of the network of a route. ``revision`` is the minor one of
     OpenDRIVE 1: 7, or 8 with the boundaries of junctions.
 
-    If a number of the road is not finite, ``to_text`` of the document raises ExportError.
-    """
+    If a number of the road is not finite, ``to_text`` of the document raises ExportError."""
     if isinstance(road, Route):
         return _network_document(road.network, world, revision)
     x, y = road.centreline()[:, :2].T
@@ -105,8 +102,7 @@ def _road(
         links: The elements ``predecessor`` and ``successor``; None for a single road.
         junction: The id of the junction to which a connecting road belongs; -1 for any other road.
         lane_links: The links from lanes of the road to lanes of other roads.
-        starts: The starts of the pieces of the reference line; None if they have not been computed yet.
-    """
+        starts: The starts of the pieces of the reference line; None if they have not been computed yet."""
     body = XmlElement(
         "road",
         {

@@ -6,8 +6,7 @@ another lane. A segment of type "lane" leads along the outer edge of a lane. Lan
 is the line between the two directions of an arm, or the left edge of a connecting road.
 
 With traffic on the left, the boundary is computed for the mirrored network, whose traffic is on the right. It
-is then mirrored back: the segments are followed in reverse order, with left and right exchanged.
-"""
+is then mirrored back: the segments are followed in reverse order, with left and right exchanged."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,8 +19,8 @@ from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Connection, Junction, Network, RoadEnd
-from roadgpt.network.building import width_at
 from roadgpt.network.paved import outline_of, paved_by, stations_of
+from roadgpt.road.profile import width_at
 
 if TYPE_CHECKING:
     from shapely import LinearRing
@@ -50,8 +49,7 @@ class BoundarySegment(NamedTuple):
     first: tuple[int, Value]
     """The id of the lane at whose outer edge the segment begins, and the position along the road: "start",
     "end" or a station in metres."""
-    last: tuple[int, Value]
-    """Where the segment ends, in the same form as ``first``."""
+    last: tuple[int, Value]  # where the segment ends, in the same form as ``first``
     is_across: bool
 
     def mirrored(self) -> "BoundarySegment":
@@ -109,7 +107,6 @@ def _by_outline(network: Network, junction: Junction) -> Iterator[BoundarySegmen
 
 
 def _corner(network: Network, junction: Junction, end: RoadEnd, which: int) -> Array:
-    """Returns the first (0) or the last (1) point of the segment across an arm."""
     member = network.road(end.road)
     lane = _lanes_across(junction, end)[which]
     s = 0.0 if end.contact == "start" else member.road.length
@@ -131,8 +128,7 @@ def _between(
     """Yields the segments between two neighbouring arms that no way joins, as at a merge or an exit.
 
     Two ways join both arms to a third arm, or lead from a third arm to both. The segments follow one
-    way from the first arm to the third arm, and the other way on to the second arm.
-    """
+    way from the first arm to the third arm, and the other way on to the second arm."""
     for third in dict.fromkeys(each for way in ways for each in way):
         if (end, third) in ways and (after, third) in ways:
             yield _right(network, ways[end, third].road)
@@ -155,8 +151,7 @@ def _across(junction: Junction, end: RoadEnd) -> BoundarySegment:
     """Returns the segment across those lanes of an arm that continue in the junction, without shoulders.
 
     Seen from inside the junction, it leads from right to left: from the lanes out of the junction to those
-    into it.
-    """
+    into it."""
     first, last = _lanes_across(junction, end)
     return BoundarySegment(end.road, (first, end.contact), (last, end.contact), is_across=True)
 
@@ -181,8 +176,7 @@ def _outermost(network: Network, junction: Junction, right: Connection) -> list[
     then bend earlier, and its edge is up to 12 cm farther out than that of the right turn.
 
     The parts are in driving order. The network has traffic on the right, and ``right`` is the way from one of
-    the two arms to the next arm counter-clockwise.
-    """
+    the two arms to the next arm counter-clockwise."""
     before = [c for c in junction.connections if c.incoming == right.incoming and c is not right]
     behind = [c for c in junction.connections if c.outgoing == right.outgoing and c is not right]
     first, last = _before(network, before, right, 1), _before(network, behind, right, -1)
@@ -204,8 +198,7 @@ def _before(
     (``sense`` is 1) or end (-1).
 
     Returns the id of the connecting road, and two distances in metres from the common end of both ways to the
-    point at which their edges cross: along the found way and along ``right``.
-    """
+    point at which their edges cross: along the found way and along ``right``."""
     line = _straight(network, right, sense)[0] - EARLIER
     if line <= 0:
         return None
@@ -218,7 +211,6 @@ def _before(
 
 
 def _straight(network: Network, way: Connection, sense: int) -> tuple[float, bool]:
-    """Returns the length in metres of the straight line at an end of a way, and whether it bends right."""
     plan = network.road(way.road).road.plan
     assert isinstance(plan, PieceCurve)
     pieces: Sequence[Piece] = plan.pieces[::sense]
@@ -253,8 +245,7 @@ def _edge(network: Network, way: Connection, sense: int) -> tuple[Array, Array, 
 
     The result is three arrays ``(n,)`` in metres: the distance from the start of the way, and the coordinates
     ahead of this start and to its left. With ``sense`` -1, the way is mirrored and followed backwards, so
-    that its end is the start.
-    """
+    that its end is the start."""
     road = network.road(way.road).road
     assert road.profile is not None
     distance = np.linspace(0.0, road.length, max(2, round(road.length / STEP)))
@@ -271,14 +262,10 @@ def _edge(network: Network, way: Connection, sense: int) -> tuple[Array, Array, 
 class Edge:
     """One edge of a way through a junction."""
 
-    road: int
-    """The id of the connecting road."""
-    lane: int
-    """The id of the lane whose outer edge this is; 0 for the left edge of the road."""
-    s: Array
-    """Increasing stations ``(n,)`` in metres."""
-    points: Array
-    """Points ``(n, 2)`` in metres at these stations."""
+    road: int  # the id of the connecting road
+    lane: int  # the id of the lane whose outer edge this is; 0 for the left edge of the road
+    s: Array  # increasing stations ``(n,)`` in metres
+    points: Array  # points ``(n, 2)`` in metres at these stations
 
     def station(self, point: Array) -> float:
         """Returns the station in metres at which the edge is nearest to a point ``(2,)``."""
@@ -321,8 +308,7 @@ class PavedOutline:
         """Yields the edges that the outline follows from one of its points ``(2,)`` to another.
 
         With each edge come the stations at which the outline joins and leaves this edge, as ``Edge.named``
-        returns them. A left edge is followed from higher to lower stations.
-        """
+        returns them. A left edge is followed from higher to lower stations."""
         import shapely
 
         points = self._points(start, end)
@@ -347,7 +333,6 @@ class PavedOutline:
             yield edge, edge.named(first), edge.named(last)
 
     def _points(self, start: Array, end: Array) -> Array:
-        """Returns the points ``(n, 2)`` of the outline from one of its points to another."""
         import shapely
 
         ring = np.asarray(self.ring.coords, float)

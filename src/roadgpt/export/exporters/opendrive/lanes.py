@@ -3,8 +3,7 @@
 id     2     |    1    |    -1    |    -2          a road with one lane in each direction
     shoulder | against |  along   | shoulder
                        0
-With traffic on the left, lanes with positive ids lead along the road.
-"""
+With traffic on the left, lanes with positive ids lead along the road."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -56,8 +55,7 @@ class RoadParts:
         """Returns the OpenDRIVE element ``lanes`` with all lanes, shoulders and road markings.
 
         ``is_inside`` says whether the road is a connecting road in a junction. Lanes without a marking then
-        get the marking "none".
-        """
+        get the marking "none"."""
         profile = self.world.profile_of(road)
         length = None if _is_constant(profile) else road.length
         own = (profile.left, profile.right, profile.centre_marking, profile.offset, profile.begins)
@@ -86,7 +84,6 @@ class RoadParts:
     def _side(
         self, side: Sequence[Lane], first: int, length: float, links: LaneLinks, is_inside: bool
     ) -> Iterator[XmlElement]:
-        """Yields the lanes of one side from the centre line outwards; the first lane has the id ``first``."""
         kept = [lane for lane in side if isinstance(lane.width, CubicProfile) or lane.width >= NO_SHOULDER]
         for index, lane in enumerate(kept):
             number = first + index if first > 0 else first - index
@@ -118,8 +115,7 @@ def _is_constant(profile: Profile) -> bool:
 
 def lateral_profile(road: Road) -> list[XmlElement]:
     """Returns a list with the element ``lateralProfile``; an empty list for a road without
-    superelevation.
-    """
+    superelevation."""
     angle = road.profile.superelevation_angle if road.profile is not None else None
     if angle is None:
         return []
@@ -135,8 +131,7 @@ def _mark(kind: Marking, is_inside: bool) -> tuple[XmlElement, ...]:
     """Returns the road marking at the outer edge of a lane.
 
     A lane without a marking has no such element. Only inside junctions, the marking "none" is written for
-    this lane, because some programs would draw a line there.
-    """
+    this lane, because some programs would draw a line there."""
     if kind == "none":
         blank: dict[str, Value] = {"sOffset": 0, "type": "none", "color": "standard"}
         return (XmlElement("roadMark", blank, is_shared=True),) if is_inside else ()

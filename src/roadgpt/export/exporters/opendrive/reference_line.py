@@ -34,28 +34,24 @@ BETWEEN = (0.25, 0.5, 0.75)  # where a cubic is compared with the function
 class Start(NamedTuple):
     """Where a line, an arc or a spiral begins; x and y are in metres."""
 
-    s: float
-    """The station in metres."""
+    s: float  # the station in metres
     x: float
     y: float
-    heading: float
-    """In radians."""
+    heading: float  # in radians
     piece: Piece
 
 
 def geometries(plan: PlanCurve, starts: Sequence[Start] | None = None) -> Iterator[XmlElement]:
     """Returns the ``geometry`` elements of a plan curve in the order of their stations.
 
-    ``starts`` are those of the curve's pieces, as ``starts_of`` returns them; None to compute them.
-    """
+    ``starts`` are those of the curve's pieces, as ``starts_of`` returns them; None to compute them."""
     return _pieces(plan, starts) if isinstance(plan, PieceCurve) else _cubics(plan)
 
 
 def starts_of(plans: Sequence[PieceCurve]) -> list[list[Start]]:
     """Returns one list for each curve, with the starts of its pieces.
 
-    All curves are computed together, which is faster than one after another.
-    """
+    All curves are computed together, which is faster than one after another."""
     rows = np.array([(p.length, p.k0, p.k1) for plan in plans for p in plan.pieces])
     length, k0, k1 = rows.T
     turns = (length * (k0 + k1) / 2).tolist()
@@ -113,8 +109,7 @@ def _tellable(piece: Piece) -> list[Piece]:
     """Returns the piece itself, or arcs instead of a spiral with almost equal curvatures at its ends.
 
     Some programs refuse such a spiral; CommonRoad compares the curvatures with numpy's ``isclose``, whose
-    tolerances are ``CLOSE`` and ``NEARLY``.
-    """
+    tolerances are ``CLOSE`` and ``NEARLY``."""
     if _is_tellable(piece):
         return [piece]
     change = piece.k1 - piece.k0
@@ -141,8 +136,7 @@ def _cubics(plan: PlanCurve) -> Iterator[XmlElement]:
     """Yields cubics by arc length, each in the frame of its start: u points ahead, v to the left.
 
     The derivative by the parameter has length 1 at both ends, and the cubics are so short that the parameter
-    equals the arc length within a micrometre.
-    """
+    equals the arc length within a micrometre."""
 
     def ways(s: Array) -> Array:
         heading = plan.heading(s)
@@ -179,8 +173,7 @@ def breaks_of(plan: PlanCurve) -> Array:
     """Returns the stations at which a curve is divided into cubics, both ends included.
 
     For a spline, these are its nodes, except nodes that are within APART of an end or of the previous node
-    that was kept. For any other curve, they are equally spaced, about STEP apart.
-    """
+    that was kept. For any other curve, they are equally spaced, about STEP apart."""
     if isinstance(plan, SplineCurve):
         inner = plan.stations[1:-1]
         kept, last = [], 0.0
@@ -199,8 +192,7 @@ def bounds_of(
 
     ``sides`` has the result of ``reaches`` for each road. No lane lies outside the box. The box is too large
     by at most 2.1 cm, plus 0.35 cm for each metre of the greatest distance in ``sides``. This limit holds if
-    no bend has a radius below 6 m, and all widths and lane offsets are constant.
-    """
+    no bend has a radius below 6 m, and all widths and lane offsets are constant."""
     starts = [start for own in roads for start in own]
     left, right = np.repeat(np.array(sides), [len(own) for own in roads], axis=0).T
     length, k0, k1 = np.array([(start.piece.length, start.piece.k0, start.piece.k1) for start in starts]).T
@@ -232,15 +224,13 @@ def bounds_of(
 def reaches(profile: Profile) -> tuple[float, float]:
     """Returns the distances in metres from the reference line to the outermost edges, on the left and right.
 
-    Where widths vary, the distances are upper bounds.
-    """
+    Where widths vary, the distances are upper bounds."""
     left, right = (sum(_widest(lane.width) for lane in side) for side in (profile.left, profile.right))
     (low, high), begin = profile.offset_range, profile.begins
     return left + begin[0] + high, right + begin[1] - low
 
 
 def _widest(width: Width) -> float:
-    """Returns an upper bound of a width: the largest Bernstein coefficient of its cubics."""
     if not isinstance(width, CubicProfile):
         return width
     found = [width.coefficients[-1][0]]
@@ -260,8 +250,7 @@ def level_height(road: Road) -> float | None:
     """Returns the height in metres of a road with a grade of 0 throughout, such as a road in a junction.
 
     None is returned for any other road, and for a level road whose elevation is not a GradeProfile with two
-    stations.
-    """
+    stations."""
     profile = road.elevation
     if isinstance(profile, GradeProfile) and len(profile.stations) == 2 and not any(profile.grades):
         return profile.z0
@@ -273,8 +262,7 @@ def rows(name: str, station: str, profile: CubicProfile, length: float) -> list[
     0.
 
     A cubic that is identical to the continuation of the previous one is left out. ``station`` names the
-    attribute for the station at which a cubic begins.
-    """
+    attribute for the station at which a cubic begins."""
     if profile.stations[0] == 0 and not any(1e-9 < s < length - 1e-9 for s in profile.stations):
         return [XmlElement(name, dict(zip((station, *"abcd"), (0.0, *profile.coefficients[0]), strict=True)))]
     stations = _within(profile.stations, length)
@@ -331,7 +319,6 @@ def _without_repetition(stations: Array, found: Array) -> tuple[Array, Array]:
 
 
 def _within(stations: tuple[float, ...], length: float) -> Array:
-    """Returns station 0, followed by those of the given stations that lie inside the road."""
     return np.array([0.0, *(s for s in stations if 1e-9 < s < length - 1e-9)])
 
 
@@ -348,8 +335,7 @@ def cubics(value: Function, slope: Function, breaks: Array, tolerance: float) ->
         value: The function to approximate, smooth between the breaks.
         slope: The derivative of ``value`` with respect to s.
         breaks: Increasing stations at which a cubic must begin or end, including both ends of the range.
-        tolerance: Greatest distance between cubic and function, in the unit of the values.
-    """
+        tolerance: Greatest distance between cubic and function, in the unit of the values."""
     stations = np.asarray(breaks, float)
     while True:
         found = _between(stations, value(stations), slope(stations))
@@ -373,7 +359,6 @@ def at(coefficients: Array, u: Array) -> Array:
 
 
 def _between(stations: Array, values: Array, slopes: Array) -> Array:
-    """Returns the cubics that have these values and slopes at the stations (Hermite interpolation)."""
     length = np.diff(stations)[:, None]
     rise = np.diff(values, axis=0) / length
     c = (3 * rise - 2 * slopes[:-1] - slopes[1:]) / length

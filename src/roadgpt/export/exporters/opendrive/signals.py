@@ -4,8 +4,7 @@ Source: ASAM OpenDRIVE 1.8.1, signals; its catalogue of signals gives type 10000
 are those of the German road traffic regulations (StVO): 205 give way, 206 stop, 306 priority road. What is
 painted are objects: lines have the type ``roadMark`` and the subtype ``signalLines``; the subtype of an arrow
 names its directions. A line across the end of a road is a rectangle. A line along the ring of a roundabout is
-curved, and has an outline as well.
-"""
+curved, and has an outline as well."""
 
 import math
 from collections import defaultdict
@@ -16,10 +15,12 @@ import numpy as np
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Arm, Junction, Network, NetworkRoad, RoadEnd
-from roadgpt.network.arrows import LENGTH, PaintedArrow, arrows
 from roadgpt.network.markings import (
     CROSSWALK,
+    LENGTH,
     STOP_LINE,
+    PaintedArrow,
+    arrows,
     gives_way_to_ring,
     line_across,
     line_to_stop_at,
@@ -47,8 +48,7 @@ class Signals:
     """The signs and lights of a network, and what is painted on its roads.
 
     The ids of signs and lights follow those of roads and junctions. A line has the id of its sign or light.
-    After all of these come the ids of the crosswalks, then those of the arrows.
-    """
+    After all of these come the ids of the crosswalks, then those of the arrows."""
 
     def __init__(self, network: Network) -> None:
         # the elements on each road, by the id of the road
@@ -90,7 +90,6 @@ class Signals:
 
 
 def _signal(member: NetworkRoad, arm: Arm, number: int) -> XmlElement:
-    """Returns the sign or light of an arm, beside the road ``member``."""
     control, end = arm.control, arm.end
     at_end = end.contact == "end"
     s, t = place_of_sign(member, end.contact)
@@ -120,8 +119,7 @@ def _signal(member: NetworkRoad, arm: Arm, number: int) -> XmlElement:
 
 def line_object(network: Network, junction: Junction, arm: Arm, number: int) -> tuple[int, XmlElement] | None:
     """Returns the id of the road on which an arm's line lies, and the element ``object`` of the line, with
-    the id ``number``. None if traffic from the arm has no line.
-    """
+    the id ``number``. None if traffic from the arm has no line."""
     if arm.control in ("priority", "none"):
         return None
     if not gives_way_to_ring(network, junction, arm):
@@ -144,7 +142,6 @@ def _line(
 
 
 def _curved(member: NetworkRoad, line: Array, arm: Arm, number: int) -> XmlElement:
-    """Returns the object of a line with the points ``line``, ``(n, 3)``, on the road into a ring."""
     x, y = line[[(len(line) - 1) // 2, len(line) // 2], :2].mean(axis=0)  # the same from the other end
     s, t = (float(each) for each in member.road.locate(x, y))
     heading = float(member.road.heading(s))
@@ -158,7 +155,6 @@ def _curved(member: NetworkRoad, line: Array, arm: Arm, number: int) -> XmlEleme
 
 
 def _outline(line: Array) -> Array:
-    """Returns the corners ``(2 n, 2)`` of a line, counter-clockwise; the points are along its middle."""
     along = np.gradient(line[:, :2], axis=0)
     to_left = np.column_stack([-along[:, 1], along[:, 0]])
     to_left *= STOP_LINE / 2 / np.linalg.norm(to_left, axis=1, keepdims=True)

@@ -7,10 +7,8 @@ from typing import Sequence, Tuple
 
 
 def get_node_coords(node: Sequence[float]) -> Tuple[float, float, float]:
-    """Returns x, y and height of a node, in metres."""
     return node[0], node[1], node[2]
 
 
 def points_distance(p1: Sequence[float], p2: Sequence[float]) -> float:
-    """Returns the distance between two points in 3-D, in metres."""
     return math.sqrt(math.fsum((a - b) ** 2 for a, b in zip(get_node_coords(p1), get_node_coords(p2))))

@@ -1,5 +1,19 @@
-"""Finds the smallest change to the lengths and turns of a plan that meets all limits. Main functions:
-``aim_of``, ``least_change``.
+"""Changes the free elements of a road as little as needed to meet requirements. Main function: ``fit``.
+
+    elements --look--> what is wrong? --aim_of--> limits --least_change--> segments --graded--> look --> Look
+
+An edit first freezes every element that the request does not name: the element's lengths, turns and radii
+stay exactly as they are. Only if no valid road is found that way, all elements are free. The road as a whole
+may be shifted or rotated, so that it stays inside the map.
+
+Parabolas join the grades of a road. A short level turn between two climbs is therefore measured as climbing,
+and a short slope is measured flatter than it is written. So the inclines of an element are changed by the
+measured error, and the road is measured again. If an incline is at its limit, the neighbouring inclines are
+changed instead.
+
+In a proposal, every turn must be measured with the slope that was proposed or is required. All inclines may
+change, as long as each still climbs, falls or is level. In an edited road, only the inclines of elements with
+a required grade may change; parabolas are added where two slopes newly meet.
 
 The limits are rows of a matrix: a . lengths + b . |turns| <= c, all in metres. A minimum radius can be
 written as such a limit: if a segment turns by ``turn`` radians over ``length`` metres, and its maximum
@@ -16,8 +30,9 @@ more than many small ones. For each limit that is exceeded, the squared excess i
 penalty, whose weight grows from round to round. Each step solves for all free lengths, all free turns and the
 place on the map at once (Levenberg-Marquardt)."""
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from math import ceil, floor, inf, radians
 from typing import NamedTuple
@@ -25,19 +40,249 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt import check
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.ranges import Range
-from roadgpt.check.measures import LEAST_TURN, MeasuredFeature
-from roadgpt.design.fit.look import Look
-from roadgpt.design.layout import neighbours
-from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.brief.ranges import Range, overlap
+from roadgpt.brief.words import LEAST_STRAIGHT
+from roadgpt.check.extremes import lowest
+from roadgpt.check.matching import fits, turn_complaints
+from roadgpt.check.measures import LEAST_TURN, LEVEL, MeasuredFeature, Measures, measure, way
+from roadgpt.check.rules.below_floor import ROUNDING
+from roadgpt.check.rules.promises import complaints
+from roadgpt.check.rules.too_abrupt import inspect as abrupt_places
+from roadgpt.design.compose import Windows
+from roadgpt.design.elements import ABOVE_GROUND
+from roadgpt.design.heights import climbing
+from roadgpt.design.layout import moved_onto_map, neighbours
+from roadgpt.design.road_elements import (
+    RoadElement,
+    RoadElements,
+    features_of,
+    shows_slopes,
+    shows_turns,
+    with_inclines,
+    with_segments,
+)
+from roadgpt.design.vertical import (
+    EASES,
+    SHORTEST_SLOPE,
+    Pace,
+    made_to_fit,
+    too_abrupt,
+    widened,
+    with_new_parabolas,
+)
+from roadgpt.errors import DesignError
 from roadgpt.geometry import PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.nearness import Complex, Indices, meeting
 from roadgpt.geometry.pieces import joined
-from roadgpt.road import Segment, World
-from roadgpt.road.builder import pieces_of
+from roadgpt.road import Design, Geometry, Road, Segment, World, build
+from roadgpt.road.builder import elevation_of, pieces_of
 from roadgpt.road.design import MAX_TURN
+
+
+class Requirements(NamedTuple):
+    """The requirements for a road, in addition to those for each of its elements."""
+
+    world: World  # the size of the map, and the limits that the rules check
+    outline: Outline = Outline(groups=(), turns=Range())  # requirements for the whole road; none by default
+    before: Design | None = None
+    """The road before an edit; the parabolas between its slopes are kept. With None, they are chosen
+    anew, and each turn must be measured with the slope that it has in the design."""
+    geometry: Geometry = "arcs"
+
+
+@dataclass(frozen=True)
+class Look:
+    """A design with the road that was built from it, the findings of the rules, and measurements."""
+
+    design: Design  # the design, moved inside the map and above the ground if necessary
+    elements: RoadElements
+    road: Road
+    findings: tuple[check.Finding, ...]
+    requirements: Requirements
+
+    @cached_property
+    def found(self) -> Measures:
+        """The measured turns, straights and grades."""
+        return measure(self.road.centreline())
+
+    @cached_property
+    def has_turns(self) -> bool:
+        """Whether the measured road has the same sequence of left and right turns as the elements."""
+        return shows_turns(self.found, self.elements)
+
+    @cached_property
+    def seen(self) -> tuple[MeasuredFeature | None, ...]:
+        """The measured feature of each element; only defined if ``has_turns`` is True."""
+        return features_of(self.elements, self.found)
+
+    @cached_property
+    def objection(self) -> str:
+        """A sentence that says which rule or requirement the road does not meet; empty if it meets all of
+        them."""
+        if self.findings:
+            return self.findings[0].sentence
+        if not self.has_turns:
+            wanted, shown = sum(element.is_turn for element in self.elements), len(self.found.turns)
+            if wanted != shown:
+                return f"{shown} turns would be seen and not {wanted}, as some run into each other"
+            return "a turn would be seen to the wrong side"
+        if self.requirements.before is None and not shows_slopes(self.found, self.elements):
+            return "a turn would be seen on another slope"
+        return self._unmet()
+
+    def _unmet(self) -> str:
+        turns = 0
+        for element, seen in zip(self.elements, self.seen, strict=True):
+            turns += element.is_turn
+            asked = element.asked
+            if asked and not seen and asked.length and asked.length.lo >= LEAST_STRAIGHT:
+                return f"a straight of {element.length:.1f} m would not be seen"
+            if not asked or not seen or fits(seen, asked):
+                continue
+            if element.is_turn:
+                return turn_complaints(turns, seen, asked)[0].sentence
+            wanted = f"asked for {asked.length or 'any'} m at {asked.grade or 'any'} %"
+            return f"the straight would be {seen.length:.1f} m long at {seen.grade:.1f} %, {wanted}"
+        return next(
+            (complaint.sentence for complaint in complaints(self.found, self.requirements.outline)), ""
+        )
+
+
+ROUNDS = 24  # of changing inclines
+ROOMIER = (1.0, 1.5, 2.5)  # factors on the room for parabolas of a proposal
+PARABOLAS = tuple((ease, is_widened) for is_widened in (False, True) for ease in EASES)  # of an edited road
+CLEAR = 0.1  # percentage points off the edge of up, down and level
+INSIDE = 0.2  # percentage points off the edge of a required grade, or a third of its width
+SURPLUS = 0.05  # percentage points more than is missing, for rounding
+CLASSES = {"up": Range(LEVEL), "down": Range(-inf, -LEVEL), "flat": Range(-LEVEL, LEVEL)}
+CLEAR_GRADES = {name: room.drawn_in(CLEAR, 0.5) for name, room in CLASSES.items()}
+
+
+class _Slopes(NamedTuple):
+    """The grades of elements and segments, in percent: which are accepted, aimed at and possible."""
+
+    elements: RoadElements
+    accepted: tuple[Range | None, ...]
+    """Mean grades of each element that may be measured; None if the element is not measured."""
+    aims: tuple[Range, ...]  # mean grades to aim at for each element; they lie inside those that are accepted
+    bounds: tuple[Range, ...]  # inclines that each segment may have
+
+    def within_bounds(self, grades: Array) -> Array:
+        """Returns the inclines of all segments, limited to those that are possible."""
+        return np.clip(grades, [bound.lo for bound in self.bounds], [bound.hi for bound in self.bounds])
+
+    def missing(self, found: Measures) -> Array:
+        """Returns, for each segment, the percentage points by which the measured grade of its element must
+        change to reach the aim, ``(n,)``; 0 if the grade is accepted."""
+        out = np.zeros(len(self.bounds))
+        if not shows_turns(found, self.elements):
+            return out
+        seen = features_of(self.elements, found)
+        for element, accepted, aim, one in zip(self.elements, self.accepted, self.aims, seen, strict=True):
+            if accepted and one and one.grade not in accepted:
+                by = float(np.clip(one.grade, aim.lo, aim.hi)) - one.grade
+                out[list(element.members)] = by + np.copysign(SURPLUS, by)
+        return out
+
+    def moved(self, grades: Array, missing: Array) -> Array:
+        """Returns grades changed by ``missing`` within their limits; neighbours change by the remainder."""
+        after = self.within_bounds(grades + missing)
+        rest = grades + missing - after
+        for i in np.flatnonzero(np.abs(rest) > 1e-9):
+            for j in (i - 1, i + 1):
+                if 0 <= j < len(grades) and not missing[j]:
+                    after[j] = np.clip(after[j] + rest[i], self.bounds[j].lo, self.bounds[j].hi)
+        return after
+
+
+def graded(
+    design: Design, elements: RoadElements, outline: Outline, world: World, before: Design | None = None
+) -> Design:
+    """Returns the design with inclines and parabolas for which the measured grades are as required.
+
+    If all such designs violate the rule ``too_abrupt``, the last of them is returned. If no design has the
+    required grades, the first one tried is returned. The plan and the start stay the same. ``before`` is the
+    road before an edit, and None for a proposal."""
+    slopes = _slopes_of_edit(elements, world) if before else _slopes_of_proposal(elements, outline, world)
+    lengths, inclines = [s.distance for s in design.segments], [s.incline for s in design.segments]
+    start = slopes.within_bounds(np.array(inclines))
+    climb = outline.climb.drawn_in(0.3, 0.2) if outline.climb else Range()
+    metres = float(start @ lengths) / 100
+    if metres not in climb:
+        metres = min(max(metres, climb.lo), climb.hi)
+        start = climbing(start, np.array(lengths), slopes.bounds, metres)
+    road, pace = build(design), Pace.of(design, world)
+    points, stations = road.centreline(), road.sample().s
+    short = {i for e in elements if not e.is_turn and e.length < SHORTEST_SLOPE for i in e.members}
+    kept: Design | None = None
+    for attempt in range(len(PARABOLAS if before else ROOMIER)):
+        grades = start
+        for _ in range(ROUNDS):
+            segments = with_inclines(design.segments, grades)
+            if before:
+                segments = with_new_parabolas(segments, before.segments, pace, *PARABOLAS[attempt])
+            else:
+                segments = widened(segments, pace)
+                if too_abrupt(segments, pace):
+                    room = ROOMIER[attempt]
+                    grades = made_to_fit(grades, lengths, inclines, short, slopes.bounds, pace, room)
+                    segments = widened(with_inclines(design.segments, grades), pace)
+            points[:, 2] = elevation_of(segments, 0.0).height(stations)
+            missing = slopes.missing(measure(points))
+            moved = slopes.moved(grades, missing)
+            if np.array_equal(moved, grades):
+                break
+            grades = moved
+        tried = design.model_copy(update={"segments": segments})
+        if not missing.any() and not abrupt_places(world.lay(build(tried)), None, world):
+            return tried
+        kept = tried if kept is None or not missing.any() else kept
+    assert kept is not None
+    return kept
+
+
+def _slopes_of_edit(elements: RoadElements, world: World) -> _Slopes:
+    limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
+    asked = [element.asked.grade if element.asked else None for element in elements]
+    aims = (grade.drawn_in(INSIDE, 1 / 3) if grade else limit for grade in asked)
+    bounds = (
+        limit if grade else Range(segment.incline, segment.incline)
+        for element, grade in zip(elements, asked, strict=True)
+        for segment in element.segments
+    )
+    return _Slopes(elements, tuple(asked), tuple(aims), tuple(bounds))
+
+
+def _slopes_of_proposal(elements: RoadElements, outline: Outline, world: World) -> _Slopes:
+    limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
+    accepted, aims, bounds = list[Range | None](), list[Range](), list[Range]()
+    for element in elements:
+        class_, *ways = map(way, (element.incline, *(s.incline for s in element.segments)))
+        try:
+            windows = Windows(outline, world)
+            asked = windows.of(element.asked) if element.asked else windows.base
+        except DesignError:  # the Brief contradicts itself: then the rules say so
+            asked = None
+        aim = overlap(CLEAR_GRADES[class_], asked) or CLEAR_GRADES[class_]
+        if asked and aim.lo > aim.hi:
+            aim = asked
+        own = []
+        for segment, one in zip(element.segments, ways, strict=True):
+            room = Range(
+                min(CLEAR_GRADES[one].lo, segment.incline), max(CLEAR_GRADES[one].hi, segment.incline)
+            )
+            rooms = overlap(overlap(room, limit), asked and aim), overlap(limit, asked and aim)
+            own.append(next((room for room in rooms if room and room.lo <= room.hi), limit))
+        if not element.is_turn and element.length < SHORTEST_SLOPE:  # it needs no slope of its own
+            own = [limit] * len(own)
+        bounds += own
+        aims.append(aim)
+        accepted.append((aim if asked else CLASSES[class_]) if element.is_turn else None)
+    return _Slopes(elements, tuple(accepted), tuple(aims), tuple(bounds))
+
 
 SPACING = 2.0  # m between points of the polyline, about
 MOST_POINTS = 500  # of a polyline, about
@@ -176,7 +421,6 @@ def aim_of(
 
 
 def _as_written(first: Look, last: Look) -> RoadElements:
-    """Returns the elements, with required measured values converted to the values to write in the design."""
     figure = polyline_of(last.design.segments)
     seen = last.seen if last.has_turns else (None,) * len(last.elements)
     return tuple(
@@ -188,7 +432,6 @@ def _as_written(first: Look, last: Look) -> RoadElements:
 
 
 def _shifted(asked: Feature, now: RoadElement, seen: MeasuredFeature | None, figure: PlanPolyline) -> Feature:
-    """Returns a feature's ranges of measured values, converted to ranges of the values to write."""
     degrees, radius, length = asked.degrees, asked.radius, asked.length
     if seen is None:
         if length and length.lo > 0:
@@ -271,7 +514,10 @@ def _limits_of(
         _seen(rows, element, peak, margins)
         if element.asked:
             _wish(rows, element, element.asked, peak, margins)
-    _separate(rows, elements, margins)
+    turns = [element for element in elements if element.is_turn]
+    for one, other in pairwise(turns):
+        if one.side == other.side:  # to be measured as two
+            rows.within(range(one.members.stop, other.first), Range(margins.apart))
     whole = range(len(segments))
     rows.within(whole, Range(world.limits.min_length + 2.0))
     if outline.length:
@@ -283,7 +529,6 @@ def _limits_of(
 
 
 def _seen(rows: _Rows, element: RoadElement, peak: Array, margins: Margins) -> None:
-    """Adds limits so that a turn is still measured as one turn, and a slight bend is still not measured."""
     members = list(element.members)
     if not element.degrees:
         return
@@ -324,14 +569,6 @@ def _drawn_in(span: Range, share: float) -> Range:
     return Range(low, span.hi - min(share * span.hi, most) if span.hi < inf else inf)
 
 
-def _separate(rows: _Rows, elements: Sequence[RoadElement], margins: Margins) -> None:
-    """Keeps two turns that go the same way far enough apart to be measured as two."""
-    turns = [element for element in elements if element.is_turn]
-    for one, other in pairwise(turns):
-        if one.side == other.side:
-            rows.within(range(one.members.stop, other.first), Range(margins.apart))
-
-
 def least_change(aim: Aim) -> tuple[Segment, ...] | None:
     """Returns the segments with the cheapest change that was found; None if no change meets the limits.
     Limits that concern only frozen segments are ignored."""
@@ -361,7 +598,8 @@ def _descended(aim: Aim, share: float) -> tuple[float, Array, Array, float, int]
     hands = np.where(aim.turns < 0, -1.0, 1.0)
     start = np.concatenate([aim.lengths, np.where(aim.free, share, 1.0) * np.abs(aim.turns), [0.0, 0.0, 0.0]])
     start[2 * n :] = _laid(aim, start, hands)
-    units = _units(aim)
+    by_turn = np.where(aim.turns != 0, TURN_WEIGHT / np.maximum(np.abs(aim.turns), LEAST_TURN_COUNTED), 100.0)
+    units = np.concatenate([LENGTH_WEIGHT / aim.lengths, by_turn])
     weights = np.ones(2 * n)
     v, steps = start, 0
     for round_ in range(2):
@@ -378,12 +616,6 @@ def _descended(aim: Aim, share: float) -> tuple[float, Array, Array, float, int]
 
 def _proposed(aim: Aim) -> Array:
     return np.concatenate([aim.lengths, np.abs(aim.turns)])
-
-
-def _units(aim: Aim) -> Array:
-    turns = np.abs(aim.turns)
-    by_turn = np.where(turns > 0, TURN_WEIGHT / np.maximum(turns, LEAST_TURN_COUNTED), 100.0)
-    return np.concatenate([LENGTH_WEIGHT / aim.lengths, by_turn])
 
 
 def _laid(aim: Aim, v: Array, hands: Array) -> Array:
@@ -406,7 +638,6 @@ def _laid(aim: Aim, v: Array, hands: Array) -> Array:
 def _settled(
     aim: Aim, hands: Array, units: Array, weights: Array, v: Array, penalty: float
 ) -> tuple[Array, int]:
-    """Returns the local minimum reached from ``v`` at one penalty, and the number of steps taken."""
     n, damping = len(aim.lengths), 1e-3
     free = np.concatenate([np.tile(aim.free, 2), [True] * 3])
     scale = np.concatenate([1 / units, [0.3, 20.0, 20.0]])[free]
@@ -520,3 +751,95 @@ def _written(aim: Aim, lengths: Array, turns: Array) -> tuple[Segment, ...]:
 def _rounded(value: float, before: float) -> float:
     """Returns a value rounded to a tenth; the value before, if the difference is at most 0.5 %."""
     return before if abs(value - before) <= 0.005 * abs(before) else round(value * TENTH) / TENTH
+
+
+SOLVED = 2  # of solving: the second with the transitions that result from the first
+MOST_SEGMENTS = 60  # free segments; a road with more is not fitted
+
+
+def fit(
+    design: Design,
+    elements: RoadElements,
+    requirements: Requirements,
+    frozen: Collection[str] = frozenset(),
+) -> Look:
+    """Finds a road that meets all requirements and differs from the design as little as possible.
+
+    ``design`` is the road after the steps of an edit and then ``graded``, and ``elements`` are its turns and
+    straights in driving order, each with its requirement. ``frozen`` are the names of the elements whose
+    lengths, turns and radii stay as they are. Returns a Look at that road, with an empty ``objection``; if no
+    such road was found, a Look at the design, moved inside the map if possible. Raises UsageError if no road
+    can be built from these segments."""
+    world, outline, before = requirements.world, requirements.outline, requirements.before
+    first = look(design, elements, requirements)
+    free = np.array([element.name not in frozen for element in elements for _ in element.segments])
+    if not first.objection or not 1 <= free.sum() <= MOST_SEGMENTS:
+        return first
+    last = first
+    for margins in MARGINS if before is None else (TIGHT, *MARGINS):
+        segments = None
+        for _ in range(SOLVED):
+            found = least_change(aim_of(first, last, segments, free, margins))
+            if found is None:
+                break
+            segments = found
+        if segments is None:  # there is no such road; with wider margins even less
+            break
+        if before and segments == last.design.segments:
+            continue
+        design = first.design.model_copy(update={"segments": segments})
+        design = graded(design, first.elements, outline, world, before)
+        last = look(design, first.elements, requirements)
+        if not last.objection:
+            return last if before else _restored(last, first)
+    return first
+
+
+def look(design: Design, elements: RoadElements, requirements: Requirements) -> Look:
+    """Builds and checks the road of a design, and returns a Look at it. The elements of the Look are
+    ``elements`` with the segments of the design. If the road is not inside the map and above the ground, it
+    is moved there if possible."""
+    world, geometry = requirements.world, requirements.geometry
+    elements = with_segments(elements, design.segments)
+    road = world.lay(build(design, geometry))
+    moved = design
+    findings = check.inspect(road, None, world)
+    if any(finding.rule == "inside_map" or finding.stops for finding in findings):
+        # a design that becomes a spline is placed as if it were built of arcs, which lie close by
+        moved = moved_onto_map(design, world) or design
+    _, low = lowest(road.elevation, road.length)
+    if low < world.site.z_floor - ROUNDING:
+        x, y, z = moved.starting_point
+        height = ceil((world.site.z_floor + ABOVE_GROUND + z - low) * CENTIMETRE) / CENTIMETRE
+        moved = moved.model_copy(update={"starting_point": (x, y, height)})
+    if moved != design:
+        road = world.lay(build(moved, geometry))
+        findings = check.inspect(road, None, world)
+    return Look(moved, elements, road, findings, requirements)
+
+
+def _restored(mended: Look, first: Look) -> Look:
+    """Returns a repaired road, which meets all rules and requirements, with changed values set back to the
+    proposed ones where it then still meets them."""
+    trials: list[tuple[float, int, str]] = []
+    pairs = zip(first.design.segments, mended.design.segments, strict=True)
+    for index, (one, other) in enumerate(pairs):
+        for name in ("distance", "turn_degrees", "incline", "transition", "vertical_radius", "radius"):
+            before, after = getattr(one, name), getattr(other, name)
+            if before != after:
+                away = abs((before or 12.0) - (after or 12.0)) / max(abs(before or 12.0), 1.0)
+                trials.append((inf if name == "radius" else away, index, name))
+    for _, index, name in sorted(trials):  # the smallest changes first
+        rows = list(mended.design.segments)
+        was, now = first.design.segments[index], rows[index]
+        if name == "radius" and (was.distance, was.turn_degrees) != (now.distance, now.turn_degrees):
+            continue  # the radius belongs to the proposed distance and angle
+        rows[index] = now.model_copy(update={name: getattr(was, name)})
+        tried = first.design.model_copy(update={"segments": tuple(rows)})
+        seen = look(tried, first.elements, first.requirements)
+        if not seen.objection:
+            mended = seen
+    return mended
+
+
+__all__ = ["Look", "Requirements", "fit", "look"]
