@@ -188,8 +188,22 @@ def test_a_campaign_is_written_as_folders_of_runs(driven: Path, tmp_path: Path) 
     twice = roadgpt("export", driven, "--to", "runs", "--out", tmp_path)
     assert twice.exit_code == 2
     assert "holds runs already; name another folder" in twice.stderr
-    for words in (["--to", "runs,csv"], ["--to", "runs"]):
-        assert roadgpt("export", driven / "results.csv", *words).exit_code == 2
+    before = of_a_folder(place)
+    for file, *words, says in (
+        (driven, "--to", "runs,csv", "ask for them alone"),
+        (driven, "--to", "runs", "--failures", "leave out --failures"),
+        (driven, "--to", "runs", "--speed-limit", 50, "leave out --speed-limit"),
+        (driven / "results.csv", "--to", "runs", "is no folder"),
+        (place, "--to", "runs", "has no runs.sqlite, from which its files could be written again"),
+        (place / "runs" / "0001", "--to", "runs", "has no runs.sqlite"),
+    ):
+        done = roadgpt("export", file, *words)
+        assert done.exit_code == 2
+        (line,) = done.stderr.strip().splitlines()
+        assert says in line
+    assert of_a_folder(place) == before
+    assert roadgpt("export", place, "--to", "runs", "--out", tmp_path / "copy").exit_code == 0
+    assert of_a_folder(tmp_path / "copy" / "c01") == before
 
 
 def test_the_python_in_the_guide_runs(driven: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -175,7 +175,7 @@ def write_runs(folder: Path, out: Path) -> Iterator[Path]:
     """Writes the tests of a campaign, or of a folder of runs, as a folder of runs ``out`` with its tables; of
     a campaign, a folder in ``out`` for each cell. If ``out`` is the folder of runs itself, what is missing or
     damaged there becomes what it was, but for the pictures. Yields the folder of each Run when it is written.
-    Raises UsageError if another campaign is in ``out``."""
+    Raises UsageError if other runs are in ``out``, or it is a folder that has no record."""
     with open_record(folder) as record:
         for cell in record.cells():
             place = out / cell.name
@@ -183,6 +183,11 @@ def write_runs(folder: Path, out: Path) -> Iterator[Path]:
             roads = cell.budget.tests or len(names)
             runs = RunFolder(place, cell.request, cell.brief, roads, versions=versions)
             is_again = place.exists() and place.samefile(folder)
+            if is_again and not store.is_kept(folder):
+                raise UsageError(
+                    f"{folder} has no {store.STORE}, from which its files could be written again; "
+                    "name another folder with --out"
+                )
             if (place / CARD).is_file() and not is_again:
                 raise UsageError(f"{place} holds runs already; name another folder")
             with alone_in(place), writing(place):

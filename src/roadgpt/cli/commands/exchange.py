@@ -50,12 +50,16 @@ def export(
     from roadgpt.export import exporter_of
     from roadgpt.run.exporting import export
 
+    typed = options.typed(click.get_current_context())
     if RUNS in formats:
-        return _write_runs(files, formats, out, quiet)
+        if unused := sorted(typed & {*rest, "geometry"}):
+            named = ", ".join(f"--{name.replace('_', '-')}" for name in unused)
+            raise UsageError(f"runs are written as they were recorded, all of them; leave out {named}")
+        return _write_runs(files, formats, out if "out" in typed else None, quiet)
     for format_ in formats:
         exporter_of(format_)
     choice = options.choice_of(rest)
-    asked = options.typed(click.get_current_context()) & rest.keys()
+    asked = typed & rest.keys()
     world, taken = options.world_of(rest), set[str]()
     unheeded = "" if quiet else ", ".join(flag.flag for flag in options.WORLD if flag.field in asked)
 
@@ -79,16 +83,16 @@ def export(
     return roads.use_each(files, choice, write, takes_all=True)
 
 
-def _write_runs(files: tuple[str, ...], formats: tuple[str, ...], out: Path, quiet: bool) -> int:
+def _write_runs(files: tuple[str, ...], formats: tuple[str, ...], out: Path | None, quiet: bool) -> int:
     from roadgpt.campaign.folder_record import is_store, write_runs
 
     if len(formats) > 1:
         raise UsageError("runs are whole folders, not files of roads; ask for them alone: --to runs")
-    is_named = "out" in options.typed(click.get_current_context())
     for file in map(Path, files):
         if not file.is_dir():
             raise UsageError(f"{file} is no folder; give a campaign, or a folder of runs")
-        place = out / file.resolve().name if is_named or is_store(file) else file
+        name = file.resolve().name
+        place = out / name if out else Path("exports", name) if is_store(file) else file
         for folder in write_runs(file, place):
             if not quiet:
                 click.echo(folder)
