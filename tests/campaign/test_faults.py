@@ -103,6 +103,13 @@ def test_a_car_that_runs_wide_is_told_with_what_its_lane_asks_for() -> None:
     )
 
 
+def test_a_car_that_sets_off_in_a_bend_has_not_entered_it() -> None:
+    reason = reason_of(failed(build(design(bend(-80, 20), straight(60))), 20.0, t=1.5, speed=1.0))
+    assert reason.sentence.startswith(
+        "set off in a right bend of radius 20 m and ran wide after 20 m; at the "
+    )
+
+
 @pytest.mark.parametrize(
     ("world", "middle"),
     [

@@ -44,6 +44,7 @@ BEFORE, AFTER = 25.0, 5.0  # m before and after the departure, where the bend is
 ENTRY = 0.5  # share of a bend's curvature at which it begins
 JUST_BEFORE = 25.0  # m; if a bend to the other side was this near, a sentence names both
 HILL = 0.02  # fraction of g that a crest takes or a dip adds; crests and dips below it are not mentioned
+SET_OFF = 2.0  # m/s; a car that is slower where a bend begins has set off in it
 SLOPE = 0.03  # grade as a ratio; grades below it are not mentioned
 
 
@@ -108,9 +109,12 @@ def reason_of(run: Run) -> FailureReason:
     else:
         before = _after(road, begin, bend)
         did = "and ran wide" if how.way == "wide" else "and cut its inside"
+        curve = f"a {how.side} bend of radius {how.radius:.0f} m"
+        came, then = f"entered {curve} at {entered * 3.6:.0f} km/h{before}", "that speed"
+        if entered < SET_OFF:
+            came, then = f"set off in {curve}", "the speeds there"
         sentence = (
-            f"entered a {how.side} bend of radius {how.radius:.0f} m at {entered * 3.6:.0f} km/h{before}"
-            f"{slope} {did} after {station:.0f} m; at that speed, the middle of the lane needs a friction "
+            f"{came}{slope} {did} after {station:.0f} m; at {then}, the middle of the lane needs a friction "
             f"coefficient of {needed:.2f}, and the road has {friction:.2f}"
         )
     return FailureReason(
