@@ -20,6 +20,7 @@ from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import status_of
 from roadgpt.errors import UsageError
 from roadgpt.run.folder import finished
+from roadgpt.run.store import STORE
 
 ROAD = "turn x3 | up"
 ROADGPT = [sys.executable, "-c", "from roadgpt.cli import main; main()"]
@@ -107,7 +108,7 @@ def folders(home: Path, roads: int, kills: int) -> None:
         {
             path.relative_to(folder): path.read_bytes()
             for path in folder.rglob("*")
-            if path.is_file() and path.name not in ("seconds.json", "generation_stats.csv")
+            if path.is_file() and path.name not in ("seconds.json", "generation_stats.csv", STORE)
         }
         for folder in (once, often)
     )
