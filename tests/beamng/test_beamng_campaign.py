@@ -1,8 +1,6 @@
 """A campaign of 20 roads through a BeamNG that fails ten times loses nothing; so do workers side by side."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -14,7 +12,9 @@ from roadgpt.campaign import CellBudget, Plan, begin, campaign, status_of, work
 from roadgpt.errors import GivenUpError, RoadGPTError
 from roadgpt.road import World
 from roadgpt.run import Setup
+from roadgpt_beamng.launch import take
 from roadgpt_beamng.session import leave_all
+from roadgpt_beamng.settings import BeamngSettings
 from roadgpt_sbft import Experiment, compete
 
 OURS = Connection.PROTOCOL_VERSION
@@ -77,25 +77,6 @@ def test_a_road_that_fails_twice_is_one_error_and_the_campaign_goes_on(
     assert "aggression 0.7, 20 steps/s" in runs[0].versions["beamng"]
 
 
-def test_each_worker_has_its_own_port_and_user_folder(
-    tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    user = tmp_path / "user"
-    (user / "0.39").mkdir(parents=True)
-    (user / "0.39" / "tech.key").write_text("key")
-    settings(monkeypatch, fake_home(tmp_path / "home", protocol=OURS), port, user=user)
-    script = Path(__file__).with_name("beamng_worker.py")
-    words = [sys.executable, str(script), str(tmp_path)]
-    workers = [subprocess.Popen([*words, str(number), "2"]) for number in range(2)]
-    assert [worker.wait(120) for worker in workers] == [0, 0]
-    told = [json.loads(path.read_text()) for path in tmp_path.glob("worker-*.json")]
-    done = sorted(told, key=lambda each: int(each["port"]))
-    assert [each["outcome"] for each in done] == ["PASS", "PASS"]
-    assert done[0]["port"] != done[1]["port"]
-    assert [Path(each["user"]).name for each in done] == ["user", "user-2"]
-    assert (tmp_path / "user-2" / "0.39" / "tech.key").read_text() == "key"
-
-
 class Surveyed(FakeBeamNG):
     """Keeps how high above the level's ground each road lay."""
 
@@ -156,9 +137,10 @@ def test_a_dead_simulator_is_given_up_and_no_road_is_lost(
 def test_a_campaign_of_many_workers_gives_up_and_resumes(
     tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """A worker's BeamNG has the next port and user folder where another process has taken the first."""
     monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
     monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
-    budget = CellBudget(tests=5)
+    budget = CellBudget(tests=4)
     plan = Plan(prompts=(SHORTEST,), reader="plan", simulators=("beamng",), budget=budget, seeds=(5,))
     begin(plan, tmp_path / "c")
     with pytest.raises(GivenUpError, match=r"nobody listens on .*fix it and continue$"):
@@ -166,11 +148,20 @@ def test_a_campaign_of_many_workers_gives_up_and_resumes(
     before = status_of(tmp_path / "c")
     assert before.outcomes == {}
     assert not before.is_finished
-    home = fake_home(tmp_path / "home", protocol=OURS)
+    home, user = fake_home(tmp_path / "home", protocol=OURS), tmp_path / "user"
+    (user / "0.39").mkdir(parents=True)
+    (user / "0.39" / "tech.key").write_text("key")
     monkeypatch.setenv("ROADGPT_BEAMNG_HOME", str(home))
+    monkeypatch.setenv("ROADGPT_BEAMNG_USER", str(user))
+    ours = take(BeamngSettings.of())
     *_, last = work(tmp_path / "c", 1)
-    assert last.outcomes["PASS"] >= 4
-    assert last.done == 5
+    ours.release()
+    assert last.outcomes["PASS"] >= 3
+    assert last.done == 4
+    words = json.loads((home / "started.jsonl").read_text().splitlines()[0])["words"]
+    assert words[words.index("-tport") + 1] == str(ours.port + 1)
+    assert words[words.index("-userpath") + 1] == f"{user}-2"
+    assert (tmp_path / "user-2" / "0.39" / "tech.key").read_text() == "key"
     assert status_of(tmp_path / "c").is_finished
 
 

@@ -81,20 +81,20 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return went(f"{file}:D").to_bytes()
 
 
-@pytest.mark.parametrize(
-    "nuisance",
-    [
-        "signal.signal(signal.SIGALRM, lambda *_: None); signal.setitimer(signal.ITIMER_REAL, 0.001, 0.001); "
-        "signal.signal(signal.SIGINT, signal.SIG_IGN); signal.signal(signal.SIGTERM, signal.SIG_IGN); "
-        "print('x' * 100); os.write(1, b'loud'); sys.stdin.read()",
-        "os.chdir(os.sep); os.environ.clear(); sys.path.clear(); os.umask(0o777)",
-        "threading.Thread(target=time.sleep, args=(3600,)).start()",
-        "sys.stdout = sys.stderr = None; os.closerange(0, 3)",
-    ],
+NUISANCE = (
+    "signal.signal(signal.SIGALRM, lambda *_: None); signal.setitimer(signal.ITIMER_REAL, 0.001, 0.001)",
+    "signal.signal(signal.SIGINT, signal.SIG_IGN); signal.signal(signal.SIGTERM, signal.SIG_IGN)",
+    "print('x' * 100); os.write(1, b'loud'); sys.stdin.read()",
+    "threading.Thread(target=time.sleep, args=(3600,)).start()",
+    "os.chdir(os.sep); os.environ.clear(); sys.path.clear(); os.umask(0o777)",
+    "sys.stdout = sys.stderr = None; os.closerange(0, 3)",
 )
-def test_what_a_driver_does_to_its_process_is_its_own_affair(spec, nuisance: str, undisturbed: bytes) -> None:
+
+
+def test_what_a_driver_does_to_its_process_is_its_own_affair(spec, undisturbed: bytes) -> None:
     here = Path.cwd(), {**os.environ}, [*sys.path], signal.getsignal(signal.SIGINT)
-    first = spec(f"    def start(self, road, world, seed):\n        {nuisance}\n{CALM}", "loud")
+    does = "".join(f"\n        {line}" for line in NUISANCE)
+    first = spec(f"    def start(self, road, world, seed):{does}\n{CALM}", "loud")
     assert went(first).to_bytes() == undisturbed
     assert (Path.cwd(), {**os.environ}, [*sys.path], signal.getsignal(signal.SIGINT)) == here
     seen = spec(
@@ -106,26 +106,21 @@ def test_what_a_driver_does_to_its_process_is_its_own_affair(spec, nuisance: str
     assert Path("seen").read_text() == f"{Path.cwd()} True"
 
 
-@pytest.mark.parametrize(
-    ("does", "says"),
-    [
+def test_whatever_goes_wrong_is_one_error_of_that_drive(spec) -> None:
+    for does, says in (
         ("sys.exit(3)", r"driver 'D' raised SystemExit at 0.00 s of its drive \(.*d.py, line \d+\): 3"),
         ("1 / 0", r"driver 'D' raised ZeroDivisionError at 0.00 s .*line \d+"),
-        ("os._exit(3)", r"driver 'D' ended its own process \(it ended with status 3\), at 0.00 s"),
-        ("ctypes.string_at(0)", r"driver 'D' ended its own process \(it was ended by signal 11\)"),
-        ("os.kill(os.getpid(), 9)", r"driver 'D' ended its own process \(it was ended by signal 9\)"),
         ("raise KeyboardInterrupt", r"the driver raised KeyboardInterrupt"),
         ("return 'left'", r"driver 'D' answered 'left' at 0.00 s"),
-    ],
-)
-def test_whatever_goes_wrong_is_one_error_of_that_drive(spec, does: str, says: str) -> None:
-    with pytest.raises(DriverError, match=says):
-        went(spec(f"    def steer(self, view):\n        {does}"))
-    assert went(spec("    def steer(self, view): return keep(view)")).ended == "goal"
+        ("os._exit(3)", r"driver 'D' ended its own process \(it ended with status 3\), at 0.00 s"),
+        ("ctypes.string_at(0)", r"driver 'D' ended its own process \(it was ended by signal 11\)"),
+    ):
+        with pytest.raises(DriverError, match=says):
+            went(spec(f"    def steer(self, view):\n        {does}"))
+        assert went(spec(CALM)).ended == "goal"
 
 
 HANGS = {
-    "sleeps": "time.sleep(3600)",
     "and catches all": "while True:\n            try: time.sleep(1)\n            except: pass",
     "in compiled code": "ctypes.PyDLL(None).sleep(3600)",  # which keeps Python from running
     "stopped": "os.kill(os.getpid(), signal.SIGSTOP)",
@@ -159,26 +154,24 @@ def test_a_driver_that_hangs_anywhere_is_ended(spec, hang: str, monkeypatch: pyt
     assert gone(driver._process.process.pid)
 
 
-@pytest.mark.parametrize(
-    ("body", "says"),
-    [
-        (
-            "    def start(self, *given): time.sleep(3600)\n" + CALM,
-            r"driver 'D' was not ready within 1 s: make",
-        ),
-        ("    def start(self, *given): os._exit(7)\n" + CALM, r"driver 'D' ended its own .*status 7"),
-        ("    time.sleep(3600)\n" + CALM, r"the driver d.py:D was not made within 1 s: let its __init__"),
-        ("    os._exit(7)\n" + CALM, r"the driver d.py:D cannot be made: it ended its own .*status 7"),
-    ],
-)
 def test_one_that_hangs_or_ends_before_it_drives_costs_one_drive(
-    spec, body: str, says: str, monkeypatch: pytest.MonkeyPatch
+    spec, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Also while its file is imported; the next drive has a new process."""
     monkeypatch.setattr(proxy, "BEFORE_START", 1.0)
-    monkeypatch.setattr(proxy, "MAKING", 12.0)
-    with pytest.raises(RoadGPTError, match=says):
-        simulate(STRAIGHT, World(), IsolatedDriver(spec(body), 1.0), 1)
+    for body, patience, says in (
+        ("def start(self, *given): time.sleep(3600)", 12.0, "driver 'D' was not ready within 1 s: make"),
+        ("def start(self, *given): os._exit(7)", 12.0, "driver 'D' ended its own .*status 7"),
+        ("time.sleep(3600)", 2.0, "the driver d.py:D was not made within 1 s: let its __init__"),
+        (
+            "def __init__(self): os._exit(7)",
+            12.0,
+            "the driver d.py:D cannot be made: .*status 7",
+        ),
+    ):
+        monkeypatch.setattr(proxy, "MAKING", patience)
+        with pytest.raises(RoadGPTError, match=says):
+            simulate(STRAIGHT, World(), IsolatedDriver(spec(f"    {body}\n{CALM}"), 1.0), 1)
     assert went(spec(CALM)).ended == "goal"
 
 
