@@ -9,8 +9,8 @@ from command_line import roadgpt
 from outside_judge import SHARED, networks_referee
 
 PROMPTS = SHARED / "prompts" / "networks-dev.jsonl"
-ROADS = 5
-LOST = {"n20": "the reader leaves the kind of the first junction open, so one of five is a crossroads"}
+ROADS = 2
+LOST = {"n20": "the reader leaves the kind of the first junction open, so one of two is a crossroads"}
 
 
 def rows() -> list[dict]:

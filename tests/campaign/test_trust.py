@@ -121,8 +121,14 @@ def test_code_that_the_user_names_as_well_is_run(
     assert (shared / "ran").exists()
 
 
-@pytest.mark.parametrize("words", COMMANDS.values(), ids=COMMANDS)
-@pytest.mark.parametrize("driver", ["other.py:Mine", "mine.py:Other", "beamng_like"])
+@pytest.mark.parametrize(
+    ("words", "driver"),
+    [
+        *((words, "other.py:Mine") for words in COMMANDS.values()),
+        (COMMANDS["drive"], "mine.py:Other"),
+        (COMMANDS["edit"], "beamng_like"),
+    ],
+)
 def test_another_driver_than_that_of_the_file_is_refused(
     shared: Path, words: tuple[str, ...], driver: str
 ) -> None:
@@ -151,8 +157,11 @@ AGAIN = {
 }
 
 
-@pytest.mark.parametrize("words", AGAIN.values(), ids=AGAIN)
-@pytest.mark.parametrize("name", ["own.py:Mine", "./own.py:Mine", "whole"])
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [*zip(AGAIN.values(), ["own.py:Mine", "./own.py:Mine", "whole"], strict=True)],
+    ids=AGAIN,
+)
 def test_a_driver_that_was_named_by_a_relative_path_is_named_so_again(
     words: tuple[str, ...], name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -6,9 +6,7 @@ import pytest
 
 from roadgpt.brief.model import Brief
 from roadgpt.campaign import campaign
-from roadgpt.drive.isolation import driver_of
-from roadgpt.drive.isolation.proxy import IsolatedDriver
-from roadgpt.errors import BriefError, DesignError, DriverError, PartError, UsageError
+from roadgpt.errors import BriefError, DesignError, PartError, UsageError
 from roadgpt.road import CrossSection, Limits, Road, World
 from roadgpt.run import MOST_ROUNDS, Run, Setup, brief_of, perform, prove, read_run, seed_of
 from run.doubles import TOO_STEEP, FreshDesigner, Learner, Stubborn, Unable, a_design, put_on_shelf
@@ -188,18 +186,6 @@ def test_a_driver_that_cannot_be_made_for_the_second_road_costs_that_road_only(
         assert "JSONDecodeError" in trace
         assert 'moody.py"' in trace
         assert read_run(tmp_path / "c" / "runs" / f"{run.index:04d}").trace == run.trace
-
-
-def test_a_driver_that_hangs_while_it_is_made_is_given_up(tmp_path: Path) -> None:
-    file = tmp_path / "slow.py"
-    file.write_text(
-        "import time\n\nclass Slow:\n    def __init__(self):\n        time.sleep(60)\n\n"
-        "    def steer(self, view): ...\n"
-    )
-    with pytest.raises(DriverError, match=r"slow\.py:Slow was not made within 0\.5 s: let its __init__"):
-        IsolatedDriver(f"{file}:Slow", limit=0.5)
-    with pytest.raises(UsageError, match="has no class 'Fast'; it has Slow"):
-        driver_of(f"{file}:Fast")
 
 
 ALWAYS_LEFT = """
