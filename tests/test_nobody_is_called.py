@@ -23,7 +23,12 @@ film runs/runs/0001 --size 160x90 --seconds 1 --out film.mp4
 doctor
 """
 ALL_OF_THEM = """
-import shlex, sys
+import os, shlex, sys
+def watch(event, told):
+    if event == "import" and told[0] == "onnxruntime":
+        assert os.environ["ORT_DISABLE_TELEMETRY"] == "1"
+        open("telemetry is off", "a").close()
+sys.addaudithook(watch)
 from roadgpt.cli import app
 if __name__ == "__main__":
     for line in sys.argv[1:]:
@@ -43,27 +48,18 @@ def names_of_imports(file: Path) -> list[str]:
     return froms + plain
 
 
-def test_one_module_imports_onnxruntime_and_first_switches_its_telemetry_off() -> None:
+@pytest.mark.timeout(900)
+def test_one_module_imports_onnxruntime_and_first_switches_its_telemetry_off(
+    traced: tuple[Path, list[str]],
+) -> None:
     files = {
         file.relative_to(ROOT).as_posix(): names_of_imports(file) for file in (ROOT / "src").rglob("*.py")
     }
     assert [name for name, names in files.items() if "onnxruntime" in names] == [
         "src/roadgpt/brief/readers/model/onnx_runtime.py"
     ]
-    # conftest.py watches the order in this process; here is a new one, with a wish to the contrary
-    watched = (
-        "import os, sys\n"
-        "def watch(event, told):\n"
-        "    if event == 'import' and told[0] == 'onnxruntime': print(os.environ['ORT_DISABLE_TELEMETRY'])\n"
-        "sys.addaudithook(watch)\n"
-        "import roadgpt\n"
-        "roadgpt.read('a road with 2 turns')\n"
-    )
-    env = {**os.environ, "ORT_DISABLE_TELEMETRY": "0"}
-    done = subprocess.run(
-        [sys.executable, "-c", watched], env=env, capture_output=True, text=True, check=True
-    )
-    assert done.stdout.split() == ["1"]
+    # conftest.py watches the order in this process; ``traced`` is a new one, with a wish to the contrary
+    assert (traced[0] / "telemetry is off").exists()
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +69,12 @@ def traced(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str]]:
         pytest.skip("there is no strace, which tells whom the commands call and what they write")
     folder = tmp_path_factory.mktemp("traced")
     (folder / "home").mkdir()
-    env = {"HOME": str(folder / "home"), "PATH": os.environ["PATH"], "TMPDIR": str(folder)}
+    env = {
+        "HOME": str(folder / "home"),
+        "PATH": os.environ["PATH"],
+        "TMPDIR": str(folder),
+        "ORT_DISABLE_TELEMETRY": "0",
+    }
     (folder / "all.py").write_text(ALL_OF_THEM)
     done = subprocess.run(
         ["strace", "-f", "-y", "--seccomp-bpf", f"-etrace={TRACED}", f"-o{folder}/calls",

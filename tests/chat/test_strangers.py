@@ -59,12 +59,9 @@ def test_a_server_of_a_plan_gets_the_key_only_from_who_names_it(
     assert sent == [how != "the plan alone"] * len(sent)
 
 
+@pytest.mark.usefixtures("no_workers")  # those that get no key, and those that do, are seen with a plan
 @pytest.mark.parametrize("how", ["resume", "resume with a flag", "resume another"])
-def test_a_store_does_not_get_the_users_key_sent(
-    stub: StubServer, request: pytest.FixtureRequest, how: str
-) -> None:
-    if how == "resume with a flag":
-        request.getfixturevalue("no_workers")
+def test_a_store_does_not_get_the_users_key_sent(stub: StubServer, how: str) -> None:
     stub.play(says(GOOD))
     chat = ChatSettings(model="m", base_url=stub.url, retries=0)
     setup = {"designers": ("thesis",), "reader": "plan", "drives": False, "chat": chat}

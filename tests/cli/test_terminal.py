@@ -69,7 +69,7 @@ FULL, CLOSED = (">/dev/full", "No space left on device"), (">&-", "Bad file desc
     [
         ([*RUN, "-n", "3"], [FULL]),
         ([*RUN, "--json"], [CLOSED]),
-        ([*ROADGPT, "config", "show"], [FULL, CLOSED]),
+        ([*ROADGPT, "config", "show"], [FULL]),
     ],
 )
 def test_standard_output_that_takes_nothing_is_told_in_a_sentence(
@@ -124,12 +124,10 @@ def said_in(encoding: str, *command: str | bytes) -> bytes:
     return done.stdout
 
 
-@pytest.mark.parametrize(("encoding", "written"), [("ascii", b"\\u4f60"), ("utf-8", b"\xe4\xbd\xa0")])
-def test_a_pipe_that_has_not_all_letters_gets_escapes(encoding: str, written: bytes) -> None:
+def test_a_pipe_that_has_not_all_letters_gets_escapes() -> None:
     words = b"an uphill road with 3 turns \xe4\xbd\xa0\xe5\xa5\xbd \x80"
-    said = said_in(encoding, "run", words, "--no-plot", "--no-drive")
+    said = said_in("ascii", "run", words, "--no-plot", "--no-drive")
     assert b"1 of 1 roads" in said
-    assert written in said
-    if encoding == "ascii":
-        (folder,) = Path("roadgpt-runs").iterdir()
-        assert b"1 VALID" in said_in(encoding, "show", str(folder))
+    assert b"\\u4f60" in said
+    (folder,) = Path("roadgpt-runs").iterdir()
+    assert b"\xe4\xbd\xa0" in said_in("utf-8", "show", str(folder))

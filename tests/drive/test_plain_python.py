@@ -55,20 +55,13 @@ def with_numba() -> tuple[str, float, str]:
     return first_steps()
 
 
-@pytest.mark.parametrize(
-    ("module", "raised"),
-    [
-        ("numba", "AttributeError('module numpy has no attribute long')"),
-        ("llvmlite", "ModuleNotFoundError('no llvmlite')"),
-    ],
-)
-def test_where_numba_does_not_load_it_drives_in_plain_python(
-    tmp_path: Path, module: str, raised: str
-) -> None:
-    (tmp_path / f"{module}.py").write_text(f"import warnings; warnings.warn('soon'); raise {raised}")
+def test_where_numba_does_not_load_it_drives_in_plain_python(tmp_path: Path) -> None:
+    reason = "module numpy has no attribute long"
+    (tmp_path / "numba.py").write_text(
+        f"import warnings; warnings.warn('soon'); raise AttributeError('{reason}')"
+    )
     said, speed, _ = first_steps("", tmp_path)
-    kind, _, rest = raised.partition("(")
-    assert said == f"False {kind}: {rest[1:-2]}"
+    assert said == f"False AttributeError: {reason}"
     assert speed == pytest.approx(with_numba()[1], rel=1e-9)
 
 
