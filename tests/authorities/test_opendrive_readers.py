@@ -18,7 +18,7 @@ from roadgpt.export import save
 from roadgpt.road import Road, read_opendrive
 
 DATA = Path(__file__).parents[1] / "road" / "opendrive" / "data"
-PROFILED = {f"seed{seed}": random_road(seed) for seed in (1, 4, 9, 11, 14, 17)}
+PROFILED = {f"seed{seed}": random_road(seed) for seed in (1, 9, 17)}
 CONFIG = """<Config><Param name="InputFile" value="{file}"/><CheckerBundle application="xodrBundle">
 <Param name="resultFile" value="{result}"/></CheckerBundle></Config>"""
 
@@ -56,9 +56,11 @@ def test_asams_checker_has_nothing_to_say(tmp_path: Path) -> None:
     files = []
     for number, road in enumerate(ROADS.values()):
         *_, file = save(road, tmp_path, ["opendrive"], WORLD, f"road{number}")
-        older = file.with_name(f"older{number}.xodr")  # 1.8 leaves one rule out that 1.7 has
-        older.write_text(file.read_text().replace('revMinor="8"', 'revMinor="7"'))
-        files += [file, older]
+        files.append(file)
+    for number in (0, 2):
+        older = tmp_path / f"older{number}.xodr"  # 1.8 leaves one rule out that 1.7 has
+        older.write_text(files[number].read_text().replace('revMinor="8"', 'revMinor="7"'))
+        files.append(older)
     files += [save(road, tmp_path, ["opendrive"], WORLD, name)[-1] for name, road in PROFILED.items()]
     for ends, issues in complaints(python, files).values():
         assert issues == []

@@ -25,15 +25,13 @@ def normal(line: str) -> str:
     return line if line.startswith("!") else change_plan(read_change_plan(line))
 
 
-@pytest.mark.parametrize("path", CHANGES, ids=lambda path: path.stem)
-def test_plans_of_changes_survive_being_cut_into_tokens(path: Path) -> None:
+def test_plans_of_changes_survive_being_cut_into_tokens() -> None:
     """Nearly all: a few labels have a number that the text does not have, such as a sum."""
-    whole, cut, written = 0, 0, 0
-    for line in path.read_text(encoding="utf-8").splitlines():
-        row = json.loads(line)
+    lines = [line for path in CHANGES for line in path.read_text(encoding="utf-8").splitlines()[::4]]
+    cut, written = 0, 0
+    for row in map(json.loads, lines):
         text = slotted(row["text"], is_change=True)
         tokens = tokens_of(normal(row["plan"]), text.slots)
-        whole += 1
         if tokens is None:
             continue
         cut += 1
@@ -45,8 +43,8 @@ def test_plans_of_changes_survive_being_cut_into_tokens(path: Path) -> None:
             writer.push(token)
         else:
             written += 1
-    assert cut >= 0.96 * whole
-    assert written >= 0.95 * whole
+    assert cut >= 0.99 * len(lines)  # so that one file alone would be noticed
+    assert written >= 0.99 * len(lines)
 
 
 @given(

@@ -111,7 +111,7 @@ def test_a_part_keeps_its_own_wish(plans: str) -> None:
 SIZES = ["more", "less", "=30", "=60", "40..", "..35"]
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(st.sampled_from([*combinations(SIZES, 2)]), st.sampled_from(["straight 2: length", "turn 2: radius"]))
 def test_no_two_wishes_are_half_done(sizes: tuple[str, str], of: str) -> None:
     """Either the road has what both ask for, or nothing is built."""

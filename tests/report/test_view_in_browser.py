@@ -360,10 +360,9 @@ def test_it_is_dark_by_night(night: BrowserTab, pages: dict[str, Path]) -> None:
         assert np.median(night.picture(part)[..., :3]) > 0.75, part
 
 
-@pytest.mark.parametrize("name", ["driven", "two"])
-def test_it_fits_a_phone(tab: BrowserTab, pages: dict[str, Path], name: str) -> None:
+def test_it_fits_a_phone(tab: BrowserTab, pages: dict[str, Path]) -> None:
     tab.size(390, 844, is_phone=True)
-    tab.open(pages[name], "#t=3")
+    tab.open(pages["two"], "#t=3")
     assert tab.run("document.documentElement.scrollWidth") <= 390
     assert is_drawn(tab.picture(".stage .scene"))
     bar = tab.run("(r => [r.top, r.bottom])(bar.getBoundingClientRect())")
@@ -371,7 +370,7 @@ def test_it_fits_a_phone(tab: BrowserTab, pages: dict[str, Path], name: str) -> 
     assert tab.run("document.querySelector('.stage').getBoundingClientRect().bottom") < bar[0]
     smallest = tab.run("Math.min(...[...document.querySelectorAll('button')].map(b => b.offsetHeight))")
     assert smallest >= 40
-    assert_quiet(tab, pages[name])
+    assert_quiet(tab, pages["two"])
 
 
 def test_without_webgl_the_strips_still_work(tab: BrowserTab, pages: dict[str, Path]) -> None:

@@ -68,9 +68,8 @@ def given(server: Server, token: str) -> dict[str, str]:
     return server.app.store.answers_of(rater)
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_a_whole_rating(tab: BrowserTab, server: Server, size: str) -> None:
-    tab.size(*SIZES[size])
+def test_a_whole_rating_on_a_phone(tab: BrowserTab, server: Server) -> None:
+    tab.size(*SIZES["phone"])
     token = server.app.store.add_rater()
     base = f"http://127.0.0.1:{port_of(server)}/r/{token}"
     tab.told.clear()
