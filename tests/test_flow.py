@@ -146,8 +146,8 @@ def test_the_three_prompts_of_roadgpt_s_evaluation(tmp_path: Path) -> None:
 @pytest.mark.parametrize("words", [WORDS, "4 switchbacks downhill"])
 def test_roadgpts_spline_keeps_the_words_too(tmp_path: Path, words: str) -> None:
     setup = Setup(drives=False, geometry="spline")
-    runs = list(campaign(words, 4, seed=5, setup=setup, out=tmp_path / "spline"))
-    assert [run.outcome for run in runs] == ["VALID"] * 4
+    runs = list(campaign(words, 2, seed=5, setup=setup, out=tmp_path / "spline"))
+    assert [run.outcome for run in runs] == ["VALID"] * 2
     for run in runs:
         assert run.road is not None
         assert run.road.nodes is not None

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sklearn.datasets import make_friedman1, make_friedman2, make_friedman3, make_regression
+from sklearn.datasets import make_friedman1, make_friedman3, make_regression
 from sklearn.ensemble import ExtraTreesRegressor
 from sklearn.metrics import r2_score
 
@@ -32,7 +32,6 @@ def data(n: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
 
 DATA = {
     "friedman 1": lambda n, seed: make_friedman1(n, 10, noise=1.0, random_state=seed),
-    "friedman 2": lambda n, seed: make_friedman2(n, noise=50.0, random_state=seed),
     "friedman 3": lambda n, seed: make_friedman3(n, noise=0.1, random_state=seed),
     "linear": lambda n, seed: make_regression(n, 15, n_informative=5, noise=20.0, random_state=seed),
     "margins": lambda n, seed: (data(n, seed)[0], data(n, seed)[1][:, 0]),
@@ -40,7 +39,9 @@ DATA = {
 SAME = 0.015  # of the mean R^2 of ten forests each; single forests differ by 0.02 from seed to seed
 
 
-@pytest.mark.parametrize(("name", "n"), [*((name, 40) for name in DATA), ("margins", 200)])
+@pytest.mark.parametrize(
+    ("name", "n"), [("friedman 1", 40), ("friedman 3", 40), ("linear", 40), ("margins", 200)]
+)
 def test_the_forest_is_as_good_as_scikit_learns(name: str, n: int) -> None:
     """The mean R^2 on 300 fresh samples; ten data sets each."""
     ours, theirs = [], []

@@ -31,7 +31,7 @@ def built(elements: list[Element], x: float = 0.0, y: float = 0.0, theta: float 
     return Design(starting_point=(x, y, 0.0), theta=theta, segments=segments)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(elements_strategy())
 def test_the_walked_line_is_the_road_that_is_built(elements: list[Element]) -> None:
     line, road = walk(elements), build(built(elements))
@@ -40,7 +40,7 @@ def test_the_walked_line_is_the_road_that_is_built(elements: list[Element]) -> N
     assert np.abs(points[:, 0] + 1j * points[:, 1] - line.z).max() < 0.05
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(elements_strategy())
 def test_segments_keep_angle_and_radius_of_their_element(elements: list[Element]) -> None:
     for element in elements:
@@ -54,7 +54,7 @@ def test_segments_keep_angle_and_radius_of_their_element(elements: list[Element]
             assert bend.max() == pytest.approx(1 / element.radius, rel=2e-3)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(elements_strategy(), st.integers(0, 1000))
 def test_a_placed_road_lies_inside_the_map(elements: list[Element], seed: int) -> None:
     world, line = World(), walk(elements)
@@ -68,7 +68,7 @@ def test_a_placed_road_lies_inside_the_map(elements: list[Element], seed: int) -
     assert edges.max() < world.site.map_size - 0.05
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(elements_strategy())
 def test_what_keeps_clear_really_does(elements: list[Element]) -> None:
     line = walk(elements)

@@ -112,7 +112,6 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
     "words",
     [
         "a road",
-        "an uphill road with 3 turns",
         "a road going uphill for 2 turns, followed by a straight downhill segment, ending in a left turn",
         RoadGPTTestGenerator.description,
     ],
@@ -120,12 +119,12 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_every_road_is_dense_and_valid_for_the_competition(words: str) -> None:
     generator = RoadGPTTestGenerator(map_size=200)
     generator.description = words
-    roads = list(islice(generator.roads(), 5))
+    roads = list(islice(generator.roads(), 4))
     for points in roads:
         assert 2 <= len(points) <= 500
         assert max(math.dist(a, b) for a, b in pairwise(points)) <= 2.0 + 1e-4
         assert verdict(points, 200) == (True, "")
-    assert len({tuple(points) for points in roads}) == 5
+    assert len({tuple(points) for points in roads}) == 4
 
 
 @pytest.mark.usefixtures("few")
