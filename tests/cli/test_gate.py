@@ -6,6 +6,7 @@ import shutil
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -121,7 +122,7 @@ def a_run(
     outcome: str = "PASS", world: World | None = None, setup: Setup | None = None,
 ) -> Run:  # fmt: skip
     """A Run whose verdict has this margin and outcome, in a folder of runs."""
-    run = replace(DRIVEN, index=number, road=Road.through(points), outcome=outcome)
+    run = replace(driven(), index=number, road=Road.through(points), outcome=outcome)
     assert run.verdict is not None
     judged = replace(run.verdict, margin=margin, outcome=outcome)
     run = replace(run, verdict=judged if outcome in ("PASS", "FAIL") else None)
@@ -132,7 +133,9 @@ def a_run(
     return run
 
 
-DRIVEN = prove(Road.through(STRAIGHT), 1)
+@cache
+def driven() -> Run:
+    return prove(Road.through(STRAIGHT), 1)
 
 
 def test_a_road_is_compared_with_itself_whatever_its_number(tmp_path: Path) -> None:

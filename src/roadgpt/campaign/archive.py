@@ -22,8 +22,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from roadgpt.campaign.behaviour import bounds_of
 from roadgpt.campaign.model import Goal
@@ -87,7 +87,7 @@ def niches(bounds: Array, count: int) -> CellsOf:
     """Returns a map whose cells are the neighbourhoods of ``count`` evenly spread centroids."""
     rng = np.random.default_rng(NICHES_SEED)
     samples = rng.uniform(bounds[:, 0], bounds[:, 1], (SAMPLES, len(bounds)))
-    tree = KDTree(centroids_of(samples, count))
+    tree = scipy.spatial.KDTree(centroids_of(samples, count))
     return lambda places: np.asarray(tree.query(places)[1], np.intp)
 
 
@@ -101,7 +101,7 @@ def centroids_of(samples: Array, count: int) -> Array:
     centroids, nearest = points[drawn], np.full(len(points), -1)
     least = SETTLED * points.var(axis=0).mean()
     for _ in range(MOST_ROUNDS):
-        before, nearest = nearest, np.asarray(KDTree(centroids).query(points)[1])
+        before, nearest = nearest, np.asarray(scipy.spatial.KDTree(centroids).query(points)[1])
         members = np.bincount(nearest, minlength=count)
         sums = [np.bincount(nearest, column, count) for column in points.T]
         moved = np.where(

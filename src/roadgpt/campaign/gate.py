@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.model import NumberedTest
@@ -52,7 +52,7 @@ class Gate:
         self._before = [result for _, result in _results(baseline)] if baseline else []
         if baseline and not self._before:
             raise UsageError(f"{baseline} holds no test with a road; name another folder with --baseline")
-        self._outlines: Any = cKDTree([each.outline for each in self._before]) if baseline else None
+        self._outlines: Any = baseline and scipy.spatial.cKDTree([each.outline for each in self._before])
         self._compared, self._found, self._differences = 0, set[int](), dict[str, str]()
         self.worse: dict[str, str] = {}  # the tests that are worse than in the baseline, by name, and in what
 

@@ -11,8 +11,7 @@ from functools import lru_cache
 from itertools import islice, pairwise
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from roadgpt.brief.junctions import RAMPS, Control, JunctionKind, LaneKind, Side, Way, side_of
 from roadgpt.geometry import CubicProfile, PieceCurve
@@ -313,8 +312,8 @@ def measured_map(network: Network) -> MeasuredMap:
         if max(met) < len(found) and _is_straight(network, member.id):
             distances.append(math.dist(found[met[0]].place, found[met[1]].place))
     count = len(found) + ends
-    graph = coo_array((np.ones(len(joined)), np.reshape(joined, (-1, 2)).T), (count, count))
-    parts, _ = connected_components(graph, directed=False)
+    graph = scipy.sparse.coo_array((np.ones(len(joined)), np.reshape(joined, (-1, 2)).T), (count, count))
+    parts, _ = scipy.sparse.csgraph.connected_components(graph, directed=False)
     length = sum(member.road.length for member in roads)
     return MeasuredMap(tuple(found), len(roads) - count + parts, ends, parts, tuple(distances), length)
 

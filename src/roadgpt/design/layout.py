@@ -9,7 +9,7 @@ from math import cos, radians, sin
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import ConvexHull
+import scipy
 
 from roadgpt.brief.element import Element
 from roadgpt.brief.map_fit import EDGE
@@ -135,7 +135,7 @@ def outermost(z: Complex) -> Complex:
     """Returns the points of a long line that can touch a box around it; all points of a shorter line."""
     if len(z) < 2 * MOST_POINTS or not z.imag.any():
         return z
-    return np.asarray(z[ConvexHull(np.stack([z.real, z.imag], axis=1)).vertices])
+    return np.asarray(z[scipy.spatial.ConvexHull(np.stack([z.real, z.imag], axis=1)).vertices])
 
 
 def drawn_ground(world: World, rng: np.random.Generator) -> float:
@@ -199,7 +199,7 @@ def _corners(road: Road, world: World) -> Complex:
     left, right = sides(road.sample(), world.profile_of(road).edges(road.sample().s))
     behind = [_beyond(road, s, t) for s in (-BEYOND, road.length + BEYOND) for t in (-half, half)]
     points = np.concatenate([left, right, behind])
-    x, y = points[ConvexHull(points).vertices].T
+    x, y = points[scipy.spatial.ConvexHull(points).vertices].T
     return np.asarray(x + 1j * y)
 
 

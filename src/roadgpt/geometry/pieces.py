@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import fresnel
 
 from roadgpt.geometry.curve import Array, Number, before, placed
 
@@ -173,8 +173,8 @@ def _fresnel(u: Number, heading: Number, k: Number, dk: Number) -> tuple[Number,
     sign = np.sign(dk)
     a = np.sqrt(np.abs(dk) / np.pi)
     origin = sign * k / np.abs(dk)
-    s1, c1 = fresnel(a * (u + origin))
-    s0, c0 = fresnel(a * origin)
+    s1, c1 = scipy.special.fresnel(a * (u + origin))
+    s0, c0 = scipy.special.fresnel(a * origin)
     along, across = (c1 - c0) / a, sign * (s1 - s0) / a
     turned = heading - k * origin * sign * sign / 2
     cos, sin = np.cos(turned), np.sin(turned)

@@ -10,8 +10,8 @@ from functools import cached_property
 from typing import cast
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.interpolate import splev, splprep
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
@@ -31,7 +31,7 @@ def _spline(points: Array) -> tuple[Tck, Array]:
         raise UsageError("a road needs two points or more; give at least two [x, y] pairs")
     degree = {2: 1, 3: 2}.get(len(points), 3)
     try:
-        tck, u = splprep(points.T, s=0, k=degree)
+        tck, u = scipy.interpolate.splprep(points.T, s=0, k=degree)
     except ValueError as error:
         raise UsageError("two neighbouring points of the road are the same; remove the duplicate") from error
     knots, coefficients, _ = cast(tuple[Array, list[Array], int], tck)
@@ -66,7 +66,7 @@ def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECI
     tck, _ = _spline(points)
     count = max(fewest, int(walked(points[:, :2])))
     u = np.arange(0, 1 + 1 / count, 1 / count)
-    return np.asarray(np.round(np.stack(splev(u, tck), axis=-1), decimals), float)
+    return np.asarray(np.round(np.stack(scipy.interpolate.splev(u, tck), axis=-1), decimals), float)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +97,7 @@ class SplineCurve:
         return u, np.r_[0.0, np.cumsum(half[:, 0] * (speed @ _WEIGHTS))]
 
     def _derivative(self, u: Array, order: int) -> Array:
-        return np.array(splev(u, self.tck, der=order))
+        return np.array(scipy.interpolate.splev(u, self.tck, der=order))
 
     @property
     def length(self) -> float:
@@ -135,7 +135,7 @@ class SplineCurve:
 
     def at(self, s: ArrayLike) -> Array:
         """Returns points of shape ``(..., 2)`` in metres."""
-        return np.asarray(np.stack(splev(self.parameter(s), self.tck)[:2], axis=-1), float)
+        return np.asarray(np.stack(scipy.interpolate.splev(self.parameter(s), self.tck)[:2], axis=-1), float)
 
     def heading(self, s: ArrayLike) -> Array:
         """Returns headings in radians, without jumps of 2 pi between successive stations."""
@@ -159,7 +159,7 @@ class SplineProfile:
 
     def height(self, s: ArrayLike) -> Array:
         """Returns heights in metres."""
-        return np.asarray(splev(self.curve.parameter(s), self.curve.tck)[2])
+        return np.asarray(scipy.interpolate.splev(self.curve.parameter(s), self.curve.tck)[2])
 
     def grade(self, s: ArrayLike) -> Array:
         """Returns grades as ratios."""

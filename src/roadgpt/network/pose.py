@@ -9,7 +9,7 @@ import math
 from functools import lru_cache
 from typing import NamedTuple
 
-from scipy.special import fresnel
+import scipy
 
 from roadgpt.geometry import Piece
 from roadgpt.geometry.pieces import joined
@@ -46,7 +46,7 @@ def tangent_length(turn: float) -> float:
     by L / 2 and moves the arc inwards by ``shift`` and forwards by ``ahead``."""
     ramp = SHARE * turn
     scale = math.sqrt(math.pi * ramp)
-    s, c = fresnel(ramp / scale)
+    s, c = scipy.special.fresnel(ramp / scale)
     ahead = scale * float(c) - math.sin(ramp / 2)
     shift = scale * float(s) - (1 - math.cos(ramp / 2))
     return (1 + shift) * math.tan(turn / 2) + ahead

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 from pydantic import ValidationError
-from scipy.spatial import cKDTree
 
 from roadgpt.errors import UsageError, command_line
 from roadgpt.network.design import is_network_design, read_network_design
@@ -171,7 +171,7 @@ def _test_road(data: dict[str, Any]) -> tuple[Road, tuple[str, ...]]:
     road = Road.through(dense, control)
     if road.road_points is None:
         return road, ()
-    away, _ = cKDTree(road.centreline()[:, :2]).query(road.road_points)
+    away, _ = scipy.spatial.cKDTree(road.centreline()[:, :2]).query(road.road_points)
     if np.max(away) <= ASTRAY:
         return road, ()
     return Road.through(road.road_points), (

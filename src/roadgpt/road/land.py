@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage
+import scipy
 
 from roadgpt.geometry.curve import Array
 from roadgpt.road.profile import Profile
@@ -89,12 +89,12 @@ def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple
     np.minimum.at(lowest, (j, i), line[:, 2])
     cells = int(np.ceil(reach / cell + 0.71))
     around = np.hypot(*np.mgrid[-cells : cells + 1, -cells : cells + 1]) * cell <= reach + 0.71 * cell
-    lowest = ndimage.minimum_filter(lowest, footprint=around, mode="constant", cval=np.inf)
+    lowest = scipy.ndimage.minimum_filter(lowest, footprint=around, mode="constant", cval=np.inf)
     fixed = np.isfinite(lowest)
-    away, nearest = ndimage.distance_transform_edt(~fixed, return_indices=True)
+    away, nearest = scipy.ndimage.distance_transform_edt(~fixed, return_indices=True)
     heights = np.asarray(lowest[tuple(nearest)] - BELOW)
     for _ in range(3):  # smooths terraces without raising the land
-        heights = np.minimum(heights, ndimage.uniform_filter(heights, 3))
+        heights = np.minimum(heights, scipy.ndimage.uniform_filter(heights, 3))
     kept = heights.copy()
     for _ in range(80):
         padded = np.pad(heights, 1, mode="edge")
