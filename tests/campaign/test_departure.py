@@ -56,7 +56,7 @@ def test_it_learns_where_a_car_leaves_its_lane() -> None:
         assert np.median(np.abs(guess[left] - true)) < 0.6 * np.median(np.abs(np.array(whole) - true))
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(st.integers(2, 400), st.lists(st.floats(-0.07, 0.07), max_size=4), st.integers(0, 99))
 def test_predictions_lie_between_what_is_possible(length: int, bends: list[float], seed: int) -> None:
     road = stations_of(samples(length, [(10 + 60 * i, bend) for i, bend in enumerate(bends)]), WORLD)

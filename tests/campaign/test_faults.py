@@ -179,7 +179,7 @@ profiles = st.lists(st.floats(-0.07, 0.07), min_size=77, max_size=77)
 
 
 @given(profiles, profiles, st.integers(0, 50))
-@settings(max_examples=30)
+@settings(max_examples=15)
 def test_distances_are_those_of_a_plain_loop(one: list[float], other: list[float], missing: int) -> None:
     a = Surroundings(np.array(one), np.array(other) / 2, "x")
     ends = np.array(other)
@@ -396,7 +396,7 @@ profiles_of_many = st.lists(st.sampled_from([-0.06, -0.03, 0.0, 0.03, 0.06]), mi
 
 
 @given(profiles_of_many, st.integers(1, 12))
-@settings(max_examples=40)
+@settings(max_examples=15)
 def test_many_failures_fall_into_the_same_faults_as_few(bends: list[float], most: int) -> None:
     """Steady bends so far apart that they are alike or not, whoever is compared with whom."""
     many = [Surroundings(np.full(77, bend), np.zeros(77), "x") for bend in bends]
@@ -405,7 +405,7 @@ def test_many_failures_fall_into_the_same_faults_as_few(bends: list[float], most
 
 
 @given(st.lists(st.floats(-0.005, 0.005), min_size=1, max_size=12))
-@settings(max_examples=30)
+@settings(max_examples=15)
 def test_the_most_typical_failure_is_nearest_to_all_others(bends: list[float]) -> None:
     """Of steady bends the distance is the difference of curvature, so it is the one nearest to the mean."""
     members = [Surroundings(np.full(77, bend), np.zeros(77), "x") for bend in bends]

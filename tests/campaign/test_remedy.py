@@ -60,7 +60,7 @@ def test_a_shape_gives_its_road_again() -> None:
 
 
 @given(st.integers(0, 2), st.floats(0.7, 1.4))
-@settings(max_examples=30)
+@settings(max_examples=15)
 def test_a_wider_bend_turns_as_far_and_a_shorter_one_less(number: int, factor: float) -> None:
     shape = Alignment.of(ROAD)
     its = shape.bends()[number]
@@ -217,7 +217,7 @@ def is_good(groups: list[TriedGroup], found: list[str | None]) -> bool:
 
 
 @given(st.lists(tried, min_size=1, max_size=5))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_faults_keep_to_the_definition_and_cover_as_much_as_any(groups: list[TriedGroup]) -> None:
     """Against all ways to give each group a change that removes it, or none."""
     found = faults_by_remedy(groups)

@@ -75,7 +75,7 @@ def slopes(road: Road) -> np.ndarray:
     return 100 * (z[20:] - z[:-20]) / 20
 
 
-@settings(max_examples=20)
+@settings(max_examples=12)
 @given(SEEDS, st.sampled_from(PLANS), st.sampled_from(["vary", "cross"]))
 def test_every_variation_keeps_the_brief_and_every_rule(seed: int, line: str, kind: Kind) -> None:
     one = child(line, kind, seed)
@@ -113,7 +113,7 @@ def test_the_same_task_makes_the_same_road_and_another_seed_another() -> None:
         assert other is None or other.design != one.design
 
 
-@settings(max_examples=30)
+@settings(max_examples=15)
 @given(st.integers(0, 4), st.sampled_from(PLANS))
 def test_elements_give_the_road_back(number: int, line: str) -> None:
     design = drafts(line)[number % len(drafts(line))].design

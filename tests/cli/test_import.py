@@ -56,7 +56,7 @@ def test_a_road_whose_lane_would_leave_the_map_is_moved(tmp_path: Path, y: float
     st.floats(-1e7, 1e7), st.floats(-1e7, 1e7), st.floats(-3.2, 3.2), st.floats(25, 3_000),
     st.floats(2, 10), st.floats(-0.01, 0.01),
 )  # fmt: skip
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 def test_placing_and_the_rule_have_one_measure(
     tmp_path_factory: pytest.TempPathFactory,
     x: float,

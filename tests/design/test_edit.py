@@ -159,7 +159,7 @@ def test_a_map_of_another_size_stays_and_what_then_changes_is_told() -> None:
 CHANGES = rows(__file__, "changes")
 
 
-@settings(max_examples=20)
+@settings(max_examples=12)
 @given(st.integers(0, 400), st.lists(st.sampled_from(CHANGES), min_size=1, max_size=3, unique=True))
 def test_any_edit_gives_a_valid_road_or_a_reason(seed: int, some: list[str]) -> None:
     design = draft(Brief(), WORLD, seed=seed)

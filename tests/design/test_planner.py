@@ -67,7 +67,7 @@ def assert_fine(design: Design, brief: Brief, world: World) -> None:
     assert read_design(design.to_json()) == (design, ())
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(sensible_briefs(), st.integers(0, 10**9))
 def test_what_can_be_had_is_drafted(brief: Brief, seed: int) -> None:
     assert_fine(planner.draft(brief, WORLD, (), (), seed), brief, WORLD)

@@ -31,7 +31,7 @@ def moved(z: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     return z.conj() if rng.random() < 0.5 else z
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(st.integers(0, 10**6))
 def test_a_shifted_turned_mirrored_road_is_the_same(seed: int) -> None:
     ((s, z),) = lines(seed, 1)
@@ -42,7 +42,7 @@ def test_a_shifted_turned_mirrored_road_is_the_same(seed: int) -> None:
     assert by_metres[0] == pytest.approx(0, abs=1e-4)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(st.integers(0, 10**6))
 def test_a_road_that_only_goes_on_further_is_the_same_by_metres(seed: int) -> None:
     ((s, z),) = lines(seed, 1)

@@ -112,7 +112,7 @@ def test_braking_starts_earlier_downhill() -> None:
     assert where(0.1) > where(0.0) > where(-0.1)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(k=st.lists(st.floats(-1 / 15, 1 / 15), min_size=3, max_size=8), limit=st.floats(8, 30))
 def test_the_planned_speed_is_allowed_everywhere_and_limited_by_something(
     k: list[float], limit: float

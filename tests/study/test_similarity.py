@@ -25,7 +25,7 @@ def moved(points: list[list[float]], angle: float = 0.0, mirror: bool = False) -
     return Road.through(np.c_[plan @ turn + [130, 120], p[:, 2]].tolist())
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(one=designs(), other=designs())
 def test_laws(one, other) -> None:
     a, b = build(one), build(other)

@@ -44,8 +44,8 @@ def test_a_language_speaks_in_many_ways(language: str) -> None:
 @pytest.mark.parametrize("language", ["en", "de", "fr", "es", "it"])
 def test_every_number_of_a_specification_can_be_copied(language: str) -> None:
     rng = np.random.default_rng(9)
-    found = [pair for pair in (draw(language, rng, "specs", "specs") for _ in range(200)) if pair]
-    assert len({pair.text for pair in found}) > 0.9 * len(found) > 165
+    found = [pair for pair in (draw(language, rng, "specs", "specs") for _ in range(100)) if pair]
+    assert len({pair.text for pair in found}) > 0.9 * len(found) > 82
     lost = 0
     for pair in found:
         said = slotted(pair.text)
