@@ -248,7 +248,7 @@ def fresh() -> None:
 
 
 def test_another_plugin_or_version_of_it_is_a_change(rules: Path, here: Path) -> None:
-    refused(r"plug-ins \(was none, is acme 1.0 \([0-9a-f]{16}\)\)")
+    refused(r"plug-ins \(was none, is acme 1.0 \([0-9a-f]{16}\)\)", "run", "campaign", "faults of runs")
     roads = ("run", "turn x2", "--reader", "plan", "--seed", "3", "--no-drive", "--no-plot", "-q")
     out = (*roads, "--out", str(rules / "own"))
     assert invoke(*out).exit_code == 0
