@@ -23,9 +23,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from drawn_routes import drawn_routes
 from network.random_designs import random_design
 from roadgpt.drive import simulate
-from roadgpt.network import Network, Route, build_route, read_network_design
+from roadgpt.network import Network, Route, build_route
 from roadgpt.network.paved import ribbon
-from roadgpt.road import World
+from roadgpt.road import World, read_design
 from roadgpt.verdict import judge
 
 DRIVERS = ("reference", "beamng_like")
@@ -51,7 +51,7 @@ def routes(number: int) -> Iterator[Route]:
     for seed in count():
         if not number:
             return
-        route = build_route(read_network_design(random_design(seed))[0], World())
+        route = build_route(read_design(random_design(seed))[0], World())
         if not overlaps(route.network):
             number -= 1
             yield route.on_ground()

@@ -23,15 +23,15 @@ from random_designs import random_design
 
 from roadgpt.errors import UsageError
 from roadgpt.export.exporters.opendrive import document
-from roadgpt.network import NetworkDesign, Route, build_route, read_network_design
-from roadgpt.road import World
+from roadgpt.network import Route, build_route
+from roadgpt.road import Design, World, read_design
 
 SHOWN = 25  # functions of a profile
 
 
 def main(networks: int = 200, profile: str | None = None) -> None:
     world = World()
-    designs = [read_network_design(random_design(seed))[0] for seed in range(networks)]
+    designs = [read_design(random_design(seed))[0] for seed in range(networks)]
     routes = [route for design in designs if (route := built(design, world)) is not None]
     roads = np.array([len(route.network.roads) for route in routes])
     print(f"{len(routes)} networks of {np.median(roads):.0f} roads (median; at most {roads.max()})")
@@ -50,7 +50,7 @@ def main(networks: int = 200, profile: str | None = None) -> None:
     print(f"OpenDRIVE files: median {np.median(size) / 1e3:.0f} kB")
 
 
-def built(design: NetworkDesign, world: World) -> Route | None:
+def built(design: Design, world: World) -> Route | None:
     """The route of a design; None where its arms do not fit."""
     try:
         return build_route(design, world)

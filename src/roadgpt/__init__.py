@@ -19,8 +19,7 @@ __version__ = "0.1.0"
 _OFFERED = {
     "brief": "Brief Outline outline read sentence",
     "road": "World Site CrossSection Limits Design Road build read_design read_opendrive",
-    "network": "Network MapDesign NetworkDesign Route build_map build_route read_map_design "
-    "read_network_design read_road read_source",
+    "network": "Network Route build_route read_map read_road read_source",
     "check": "Finding inspect",
     "design": "draft",
     "drive": "Drive simulate",

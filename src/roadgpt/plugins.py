@@ -14,7 +14,7 @@ from typing import Any
 from roadgpt.errors import PartError
 
 KINDS = (
-    "providers", "readers", "designers", "rules", "network_rules", "exporters", "simulators", "drivers",
+    "providers", "readers", "designers", "rules", "exporters", "simulators", "drivers",
     "generators", "executors",
 )  # fmt: skip
 

@@ -8,7 +8,7 @@ import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from roadgpt import plugins
+from network.ruled import findings
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Road, Site, World
 
@@ -40,4 +40,4 @@ def test_a_road_overlaps_exactly_where_it_covers_less_than_its_length_times_its_
     road = Road(plan, GradeProfile(0.0, (0.0, plan.length), (0.0, 0.0)))
     missing = road.length * WORLD.section.road_width - covered(road)
     assume(missing < CURVED or missing > 0.5)
-    assert bool(plugins.find("rules", "no_overlap")(road, None, WORLD)) == (missing > CURVED)
+    assert bool(findings("no_overlap", road, WORLD)) == (missing > CURVED)

@@ -6,7 +6,7 @@ from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.ring_sizes import least_diameter, with_diameters
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.design import draft
-from roadgpt.network import network_made_from
+from roadgpt.network import build_route
 from roadgpt.road import World
 from roadgpt_training.tokens import tokens_of
 from tables import rows
@@ -32,6 +32,6 @@ def test_from_the_least_diameter_on_every_draft_has_it(rest: str) -> None:
     least = least_diameter(brief.junctions[0], brief.stretches)
     for across in (least, 66.0):
         asked = read_plan(f"roundabout{rest} outer={across:g}")
-        route = network_made_from(draft(asked, World(), seed=1), World())
+        route = build_route(draft(asked, World(), seed=1), World())
         (ring,) = route.network.roundabouts
         assert 2 * (ring.radius + ring.width) == pytest.approx(across, abs=0.5)

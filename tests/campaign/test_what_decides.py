@@ -228,7 +228,7 @@ def test_another_roadgpt_is_a_change(here: Path, monkeypatch: pytest.MonkeyPatch
 @pytest.fixture
 def rules(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """An installed package with a rule."""
-    (tmp_path / "acme_rules.py").write_text("def inspect(road, brief, world):\n    return ()\n")
+    (tmp_path / "acme_rules.py").write_text("def inspect(network, route, brief, world):\n    return ()\n")
     info = tmp_path / "acme-1.0.dist-info"
     info.mkdir()
     (info / "entry_points.txt").write_text("[roadgpt.rules]\nkind = acme_rules:inspect\n")

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
 
-from roadgpt import plugins
+from network.ruled import findings
 from roadgpt.check.extremes import lowest, steepest, tightest
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Road, World
@@ -18,16 +18,12 @@ LEVEL = GradeProfile(0.0, (0.0, 1.0), (0.0, 0.0))
 grades = st.lists(st.floats(-0.2, 0.2), min_size=2, max_size=6)
 
 
-def objects(rule: str, road: Road) -> bool:
-    return bool(plugins.find("rules", rule)(road, None, WORLD))
-
-
 def test_a_bend_between_two_samples_is_too_tight() -> None:
     peak = (Piece(40.2), Piece(0.3, 0.0, 1 / 10), Piece(0.3, 1 / 10, 0.0), Piece(41.2))
     road = Road(PieceCurve(50, 50, 0, peak), LEVEL)
     assert np.abs(road.sample().curvature).max() < 1 / WORLD.limits.min_radius
     assert tightest(road) == pytest.approx((40.5, 0.1))
-    assert objects("too_tight", road)
+    assert findings("too_tight", road, WORLD)
 
 
 def test_a_ramp_between_two_samples_is_too_steep() -> None:
@@ -35,7 +31,7 @@ def test_a_ramp_between_two_samples_is_too_steep() -> None:
     road = Road(PieceCurve(50, 50, 0, (Piece(80.0),)), profile)
     assert np.abs(road.sample().grade).max() < WORLD.limits.max_grade
     assert steepest(road) == pytest.approx((40.5, -0.3))
-    assert objects("too_steep", road)
+    assert findings("too_steep", road, WORLD)
 
 
 def test_a_sag_between_two_samples_is_below_the_floor() -> None:
@@ -43,7 +39,7 @@ def test_a_sag_between_two_samples_is_below_the_floor() -> None:
     profile = GradeProfile(vertex + 0.5 * 40.5 * 0.1, (0.0, 81.0), (-0.1, 0.1))
     road = Road(PieceCurve(50, 50, 0, (Piece(81.0),)), profile)
     assert lowest(profile, 81.0) == pytest.approx((40.5, vertex))
-    assert objects("below_floor", road)
+    assert findings("below_floor", road, WORLD)
 
 
 @given(grades, st.floats(20, 100))

@@ -10,6 +10,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.check import Finding, inspect
 from roadgpt.errors import PartError, UsageError
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
+from roadgpt.network import Network
 from roadgpt.road import Road, Site, World
 
 WORLD = World(site=Site(map_size=200))
@@ -56,8 +57,11 @@ def test_an_empty_shelf_lets_no_road_pass(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_rules_of_other_packages_join_the_end_of_strict(monkeypatch: pytest.MonkeyPatch) -> None:
-    def no_straights(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-        return (Finding("no_straights", f"the road is straight for {road.length:.0f} m"),)
+    def no_straights(
+        network: Network, route: Road | None, brief: Brief | None, world: World
+    ) -> tuple[Finding, ...]:
+        (member,) = network.roads
+        return (Finding("no_straights", f"the road is straight for {member.road.length:.0f} m"),)
 
     names, find = plugins.names, plugins.find
     monkeypatch.setattr(plugins, "names", lambda shelf: sorted([*names(shelf), "no_straights"]))

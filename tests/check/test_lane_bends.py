@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from roadgpt.check.network_measures import tightest_radius
+from roadgpt.check.rules.connection_too_tight import tightest_radius
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.pieces import Piece, PieceCurve
 

@@ -6,7 +6,7 @@ import tracemalloc
 
 import pytest
 
-from roadgpt import plugins
+from network.ruled import findings
 from roadgpt.check import inspect, sbft_verdict
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Road, Site, World
@@ -37,7 +37,7 @@ def test_overlap_is_found_or_ruled_out_soon_and_in_little_memory(name: str) -> N
     plan = PieceCurve(300.0, 300.0, 0.0, tuple(pieces))
     road = Road(plan, GradeProfile(0.0, (0.0, plan.length), (0.0, 0.0)))
     begun = time.process_time()
-    found = plugins.find("rules", "no_overlap")(road, None, WORLD)
+    found = findings("no_overlap", road, WORLD)
     assert time.process_time() - begun < SECONDS  # 0.04 s on the machine it was written on
     assert bool(found) == overlaps
     tracemalloc.start()

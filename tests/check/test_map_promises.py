@@ -6,9 +6,9 @@ import pytest
 
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
-from roadgpt.check.network_measures import measured_map
-from roadgpt.network import Route, build_map, read_map_design
-from roadgpt.road import Site, World
+from roadgpt.check.measures import measured_map
+from roadgpt.network import Route, build_route
+from roadgpt.road import Site, World, read_design
 from tables import rows
 
 WORLD = World(site=Site(map_size=600))
@@ -21,7 +21,7 @@ def made(
         f"node{n}": {"at": [x, y, 0], "kind": kind, **(more if kind not in ("end", "bend") else {})}
         for n, (x, y, kind) in enumerate(nodes, 1)
     }
-    return build_map(read_map_design({**data, "roads": roads, "route": route})[0], WORLD)
+    return build_route(read_design({**data, "roads": roads, "route": route})[0], WORLD)
 
 
 def grid(**more: Any) -> Route:
@@ -49,7 +49,7 @@ def village(*controls: str, **more: Any) -> Route:
     }
     for n, control in enumerate(controls, 1):
         data[f"node{n}"]["control"] = control
-    return build_map(read_map_design({**data, "roads": roads, "route": [3, 1, 2, 6]})[0], WORLD)
+    return build_route(read_design({**data, "roads": roads, "route": [3, 1, 2, 6]})[0], WORLD)
 
 
 def told(asked: str, route: Route) -> list[str]:

@@ -1,8 +1,8 @@
 import pytest
 
+from network.ruled import findings
 from paper_roads import road_of, straight, turn
 from roadgpt.brief.model import Brief, Clause, at_least, between, exactly
-from roadgpt.check.rules.promises import inspect
 from roadgpt.road import Road, Segment, World
 
 SEGMENTS = (straight(30, 5), turn(60, incline=5), straight(40, 5), turn(-50, incline=5), straight(30, 5))
@@ -10,7 +10,7 @@ LEFT_RIGHT = road_of(*SEGMENTS)
 
 
 def said(brief: Brief, road=LEFT_RIGHT) -> list[str]:
-    return [finding.sentence for finding in inspect(road, brief, World())]
+    return [finding.sentence for finding in findings("promises", road, World(), brief)]
 
 
 def clause(kind: str = "turn", count: int = 1, **promises) -> Clause:
@@ -135,8 +135,8 @@ def test_one_straight_is_not_two_that_were_asked_for() -> None:
 
 
 def test_a_finding_tells_the_place() -> None:
-    (finding,) = inspect(LEFT_RIGHT, Brief(clauses=(clause(), clause(side="left"))), World())
-    assert finding.rule == "promises"
+    asked = Brief(clauses=(clause(), clause(side="left")))
+    (finding,) = findings("promises", LEFT_RIGHT, World(), asked)
     assert finding.s is not None
     assert 95 < finding.s < 130
     x, y, _ = LEFT_RIGHT.at(finding.s)

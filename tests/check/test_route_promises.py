@@ -6,9 +6,9 @@ import pytest
 
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
-from roadgpt.check.network_measures import measured_junctions
-from roadgpt.network import Route, build_route, read_network_design
-from roadgpt.road import World
+from roadgpt.check.measures import measured_junctions
+from roadgpt.network import Route, build_route
+from roadgpt.road import World, read_design
 from tables import rows
 
 WORLD = World()
@@ -27,7 +27,7 @@ def route(*junctions: dict[str, Any], lengths: tuple[float, ...] = ()) -> Route:
         }
     for number, junction in enumerate(junctions, 1):
         data[f"junction{number}"] = {"after": number, **junction}
-    return build_route(read_network_design(data)[0], WORLD)
+    return build_route(read_design(data)[0], WORLD)
 
 
 def arms(*angles: float) -> list[dict[str, float]]:
@@ -70,7 +70,7 @@ def test_a_route_that_turns_back_takes_the_last_exit() -> None:
         "road_segment1": {"distance": 40, "direction": "straight", "incline": 0, "turn_degrees": 0},
         "junction1": {"after": 1, **RING, "take": 4},
     }
-    back = build_route(read_network_design(data)[0], WORLD)
+    back = build_route(read_design(data)[0], WORLD)
     assert [f for f in inspect(back, read_plan("roundabout back"), WORLD) if f.rule == "promises"] == []
     (found,) = measured_junctions(back)
     assert (found.exit, found.arms) == (4, 4)

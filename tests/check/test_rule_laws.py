@@ -1,15 +1,26 @@
 """Laws of the rules: what a road is does not hang on where it lies or which way it is driven."""
 
 import math
+from itertools import combinations
+from typing import Any
 
 import numpy as np
+import pytest
+import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from network.changing import WORLD as MAP
+from network.changing import passing
+from network.random_designs import random_design
+from network.ruled import RULE_OF, all_findings, findings
 from roadgpt import plugins
 from roadgpt.check import inspect
+from roadgpt.check.footprint import footprint
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
-from roadgpt.road import CrossSection, Road, Site, World
+from roadgpt.network import Network, NetworkRoad, RoadEnd, Route, build_route
+from roadgpt.network.paved import ribbon
+from roadgpt.road import CrossSection, Road, Site, World, read_design
 
 WORLD = World(site=Site(map_size=1000))
 SHAPE_RULES = (
@@ -56,7 +67,7 @@ def reversed_way(road: Road) -> Road:
 
 
 def objects(rule: str, road: Road, world: World = WORLD) -> bool:
-    return bool(plugins.find("rules", rule)(road, None, world))
+    return bool(findings(rule, road, world))
 
 
 def is_no_close_call(road: Road) -> bool:
@@ -110,3 +121,115 @@ def test_what_strict_lets_pass_the_competition_lets_pass(
     x, y = np.min([road.at(np.linspace(0, road.length, 500), t)[:, :2].min(axis=0) for t in (-4, 4)], axis=0)
     road = laid(road, room_x - x, room_y - y, 0.0)
     assert inspect(road, None, World()) or not inspect(road, None, World(), rules="sbft")
+
+
+@given(roads())
+@settled
+def test_a_single_road_and_the_map_of_it_break_the_same_rules(road: Road) -> None:
+    alone = Network((NetworkRoad(1, road.with_profile(WORLD.profile_of(road))),))
+    for rule in ("finite", "below_floor", "too_steep", "too_abrupt"):
+        own, on_map = findings(rule, road, WORLD), findings(rule, alone, WORLD)
+        assert [each.x for each in own] == [each.x for each in on_map], rule
+        assert [each.sentence.partition(": ")[2] for each in own] == [
+            each.sentence.partition(": ")[2] for each in on_map
+        ], rule
+
+
+LARGE = World(site=Site(map_size=10_000))
+SEEDS = range(10)
+
+
+def moved(data: dict[str, Any], dx: float, dy: float) -> dict[str, Any]:
+    x, y, z = data["starting_point"]
+    return {**data, "starting_point": [x + dx, y + dy, z]}
+
+
+def crowded(seed: int) -> dict[str, Any]:
+    """A random design with roads so short and bent that they often overlap."""
+    rng = np.random.default_rng(seed)
+    data = random_design(seed)
+    for key, value in data.items():
+        if key.startswith("road_segment"):
+            data[key] = {**value, "distance": float(rng.uniform(12, 40)), "direction": "left", "incline": 0}
+            data[key]["turn_degrees"] = float(rng.uniform(20, 60))
+    return moved(data, 5000, 5000)
+
+
+def route_of(data: dict[str, Any]) -> Route:
+    return build_route(read_design(data)[0], LARGE)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_ends_and_carriageways_are_those_of_each_road(seed: int) -> None:
+    network = route_of(random_design(seed)).network
+    shapes = footprint(network)
+    for member, polygon in zip(network.roads, shapes.polygons, strict=True):
+        for end, s in (("start", 0.0), ("end", member.road.length)):
+            pose = shapes.ends[RoadEnd(member.id, end)]  # type: ignore[arg-type]
+            asked = [*member.road.at(s), float(member.road.heading(s)), float(member.road.grade(s))]
+            assert list(pose) == pytest.approx(asked, abs=1e-9)
+        exact = ribbon(member.road)
+        assert polygon.symmetric_difference(exact).area < 0.02 * exact.length
+
+
+def crossing_pairs(network: Network) -> list[tuple[NetworkRoad, NetworkRoad, float]]:
+    """Each two roads, not of one junction or one roundabout, and the area in which they overlap."""
+    areas = {each.id: shapely.make_valid(ribbon(each.road)) for each in network.roads}
+    found = []
+    for one, other in combinations(network.roads, 2):
+        rings = [network.roundabout_of.get(each.id) for each in (one, other)]
+        if one.junction is not None and one.junction == other.junction:
+            continue
+        if rings[0] is not None and rings[0] is rings[1]:
+            continue
+        found.append((one, other, areas[one.id].intersection(areas[other.id]).area))
+    return found
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_overlaps_are_those_that_each_two_ribbons_have(seed: int) -> None:
+    route = route_of(crowded(seed))
+    found = footprint(route.network).overlaps
+    pairs = {(one.id, other.id): area for one, other, area, *_ in found}
+    for one, other, area in crossing_pairs(route.network):
+        seen = pairs.get((one.id, other.id), 0.0)
+        assert seen == pytest.approx(area, abs=0.02 * one.road.length), (one.id, other.id)
+
+
+def test_the_crowded_designs_are_of_both_kinds() -> None:
+    verdicts = {bool(findings("conflicting_overlap", route_of(crowded(seed)), LARGE)) for seed in SEEDS}
+    assert verdicts == {True, False}
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_where_a_network_lies_and_which_way_it_looks_changes_no_verdict(seed: int) -> None:
+    data = moved(random_design(seed), 5000, 5000)
+    turned = moved({**data, "theta": data["theta"] + 77.0}, 123.0, -45.0)
+    found, again = (inspect(route_of(each), None, LARGE) for each in (data, turned))
+    assert [each.rule for each in found] == [each.rule for each in again]
+    assert [each.s for each in found] == pytest.approx([each.s for each in again], abs=0.01)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_every_rule_answers_with_findings_of_its_own_name(seed: int) -> None:
+    route = route_of(crowded(seed))
+    single = route.network.roads[0].road
+    for name in plugins.names("rules"):
+        own = {name, *(alias for alias, rule in RULE_OF.items() if rule == name)}
+        for place in (route, route.network, single):
+            found = all_findings(name, place)
+            assert isinstance(found, tuple)
+            assert {each.rule for each in found} <= own
+            assert all(each.sentence and "\n" not in each.sentence for each in found)
+
+
+def test_a_route_is_checked_by_the_rules_of_networks() -> None:
+    route = passing("crossroads")
+    assert inspect(route, None, MAP) == ()
+    small = World(site=Site(map_size=100))
+    assert {each.rule for each in inspect(route, None, small)} == {"leaves_map"}
+
+
+def test_a_route_is_no_test_of_sbft() -> None:
+    (found,) = inspect(passing("t_junction"), None, MAP, rules="sbft")
+    assert found.sentence == "the road leads through junctions, and SBFT tests are single roads"

@@ -23,7 +23,7 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.cli import app
 from roadgpt.design.unbuilt import check_built
-from roadgpt.network import build_map, build_route, read_map_design, read_network_design
+from roadgpt.network import build_route, network_of
 from roadgpt.road import World, build, read_design
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -79,16 +79,18 @@ def test_the_workflow_for_continuous_integration_works_as_printed() -> None:
 
 
 def test_the_rule_in_the_docs_objects_to_a_straight_road() -> None:
-    from roadgpt.road import Road, World
+    from roadgpt.road import Road
 
     code, *_ = blocks("docs/how-to/add-a-part.md", "python")
     names: dict[str, object] = {}
     exec(compile(code, "add-a-part.md", "exec"), names)
     inspect = names["inspect"]
     assert callable(inspect)
-    (finding,) = inspect(Road.through([[0, 0], [50, 0], [100, 0]]), None, World())
-    assert finding.rule == "not_boring"
-    assert inspect(Road.through([[0, 0], [30, 0], [45, 15]]), None, World()) == ()
+    straight, bent = Road.through([[0, 0], [50, 0], [100, 0]]), Road.through([[0, 0], [30, 0], [45, 15]])
+    for road, said in ((straight, ["not_boring"]), (bent, [])):
+        network = network_of(road, World())
+        assert [each.rule for each in inspect(network, road, None, World())] == said
+        assert [each.rule for each in inspect(network, None, None, World())] == said
 
 
 def test_the_design_in_the_docs_is_one() -> None:
@@ -106,7 +108,7 @@ def test_the_design_in_the_docs_is_one() -> None:
     ],
 )
 def test_the_designs_with_junctions_in_the_docs_are_valid(page: str, number: int, kinds: list[str]) -> None:
-    design, remarks = read_network_design(json.loads(blocks(page, "json")[number]))
+    design, remarks = read_design(json.loads(blocks(page, "json")[number]))
     assert remarks == ()
     route = build_route(design, World())
     assert [each.entered.kind for each in route.passages] == kinds
@@ -114,9 +116,9 @@ def test_the_designs_with_junctions_in_the_docs_are_valid(page: str, number: int
 
 
 def test_the_map_in_the_docs_is_valid() -> None:
-    design, remarks = read_map_design(json.loads(blocks("docs/reference/design-format.md", "json")[-1]))
+    design, remarks = read_design(json.loads(blocks("docs/reference/design-format.md", "json")[-1]))
     assert remarks == ()
-    route = build_map(design, World())
+    route = build_route(design, World())
     assert [each.entered.kind for each in route.passages] == ["t_junction", "roundabout"]
     assert inspect(route, None, World()) == ()
 
@@ -196,7 +198,10 @@ def test_the_reference_of_python_holds_every_name_that_the_package_offers() -> N
     text = (ROOT / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
     paths = re.findall(r"^::: (roadgpt\S+)", text, flags=re.MULTILINE)
     named = {path.rpartition(".")[2] for path in paths}
-    assert set(roadgpt.__all__) - {"__version__"} <= named
+    line = re.search(r"^Other names: (.+)$", text, flags=re.MULTILINE)
+    others = dict(re.findall(r"`(\w+)` is `(\w+)`", line[1] if line else ""))
+    assert set(roadgpt.__all__) - {"__version__"} <= named | others.keys()
+    assert all(getattr(roadgpt, other) is getattr(roadgpt, name) for other, name in others.items())
     for path in paths:
         module, _, name = path.rpartition(".")
         assert getattr(importlib.import_module(module), name).__doc__, path

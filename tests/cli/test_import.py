@@ -13,9 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from command_line import invoke
+from network.ruled import findings
 from roadgpt.cli.roads import on_a_map
 from roadgpt.network import read_road, read_source
-from roadgpt.plugins import find
 from roadgpt.road import World, read_opendrive
 from rows import rows
 
@@ -73,7 +73,7 @@ def test_placing_and_the_rule_have_one_measure(
     world = found.world(World()).changed(map_size=size)
     s = np.linspace(0, road.length, 50)
     assert road.at(s) - movement == pytest.approx(found.road.at(s), abs=1e-9)
-    assert find("rules", "inside_map")(road, None, world) == ()
+    assert findings("inside_map", road, world) == ()
     t = np.array([-world.section.lane_width, world.section.lane_width])[:, None]
     edges = road.at(np.linspace(0, road.length, 5_000), t)[..., :2]
     assert edges.min() > 0

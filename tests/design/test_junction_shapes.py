@@ -15,7 +15,7 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.design import draft
 from roadgpt.export import save
-from roadgpt.network import MapDesign, build_map, build_route
+from roadgpt.network import build_route
 from roadgpt.road import Site, World
 
 WIDE = World(site=Site(map_size=600))
@@ -39,8 +39,7 @@ def exported(line: str, seed: int, folder: Path) -> Any:
     """The root of the OpenDRIVE file of a draft that meets its plan."""
     brief = read_plan(line)
     design = draft(brief, WIDE, seed=seed)
-    build = build_map if isinstance(design, MapDesign) else build_route
-    route = build(design, WIDE)  # type: ignore[operator]
+    route = build_route(design, WIDE)
     assert inspect(route, brief, WIDE) == ()
     save(route, folder, ["opendrive"], WIDE, "x")
     return etree.parse(folder / "x.xodr").getroot()

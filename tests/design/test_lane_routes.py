@@ -13,9 +13,9 @@ from roadgpt.design import draft
 from roadgpt.design.designers.planner import Planner
 from roadgpt.design.network_search import NetworkSearch
 from roadgpt.errors import DesignError, UsageError
-from roadgpt.network import NetworkDesign, Route, build_route
-from roadgpt.network.design import narrow_part
-from roadgpt.road import Site, World
+from roadgpt.network import Route, build_route
+from roadgpt.road import Design, Site, World
+from roadgpt.road.design import narrow_part
 from tables import rows
 
 WIDE = World(site=Site(map_size=800))
@@ -23,7 +23,7 @@ WIDE = World(site=Site(map_size=800))
 
 def drafted(line: str, seed: int) -> Route:
     design = Planner().draft(read_plan(line), WIDE, (), (), seed)
-    assert isinstance(design, NetworkDesign)
+    assert isinstance(design, Design)
     return build_route(design, WIDE)
 
 
@@ -41,7 +41,7 @@ def test_the_narrow_part_of_a_taper_is_where_its_cubic_is_below_the_least_width(
 def test_a_road_behind_a_junction_has_the_lanes_of_the_road_before() -> None:
     def counts(line: str) -> list[tuple[tuple[int, int], bool]]:
         roads = drafted(line, 1).roads
-        return [(member.profile.count, member.profile.median > 0) for _, member in roads]
+        return [(member.profile.count, member.profile.is_divided) for _, member in roads]
 
     wide = ((2, 2), True)
     assert counts("| divided lanes=2 against=2 // crossroads straight lights //") == [wide, wide]
@@ -69,7 +69,7 @@ def test_roads_beyond_the_crossing_at_the_end_of_a_ramp_have_two_ways() -> None:
     assert [member.profile.count for _, member in route.roads][:2] == [(1, 1), (1, 0)]  # the ramp
 
 
-def tightest(design: NetworkDesign, last: int) -> float:
+def tightest(design: Design, last: int) -> float:
     """The smallest radius in metres of the roads before the place number ``last``."""
     bends = [each for each in design.segments[: design.junctions[last].after] if each.turn_degrees]
     return min((each.distance / np.radians(abs(each.turn_degrees)) for each in bends), default=np.inf)
@@ -79,7 +79,7 @@ def tightest(design: NetworkDesign, last: int) -> float:
 def test_a_motorway_stays_one_behind_a_change_of_lanes(seed: int) -> None:
     brief = read_plan("| motorway lanes=3 // lane_change right // | len=400 // diverge ramp")
     design = Planner().draft(brief, WIDE, (), (), seed)
-    assert isinstance(design, NetworkDesign)
+    assert isinstance(design, Design)
     assert tightest(design, 1) > 500
     before_the_exit = design.segments[: design.junctions[1].after]
     assert max(abs(each.incline) for each in before_the_exit) <= 5
@@ -130,7 +130,7 @@ def test_lanes_go_on_over_a_roundabout_and_behind_a_change_of_lanes(
 )
 def test_a_lane_begins_or_ends_where_the_lane_change_beside_it_says(line: str, side: str) -> None:
     design = draft(read_plan(line), WIDE, seed=2)
-    assert isinstance(design, NetworkDesign)
+    assert isinstance(design, Design)
     places = [place for place in design.junctions if place.kind in ("lane_gain", "lane_drop")]
     assert [getattr(place, "side", None) for place in places] == [side]
 
@@ -138,7 +138,7 @@ def test_a_lane_begins_or_ends_where_the_lane_change_beside_it_says(line: str, s
 def test_a_motorway_with_a_median_has_tighter_turns_where_the_map_is_small() -> None:
     brief, small = read_plan("turn left | motorway lanes=2 against=2 divided"), World()
     design = Planner().draft(brief, small, (), (), 1)
-    assert isinstance(design, NetworkDesign)
+    assert isinstance(design, Design)
     route, large = build_route(design, small), World(site=Site(map_size=3000))
     assert inspect(route, brief, small) == ()
     assert any("turn 1 has a radius" in finding.sentence for finding in inspect(route, brief, large))
@@ -147,7 +147,7 @@ def test_a_motorway_with_a_median_has_tighter_turns_where_the_map_is_small() -> 
 def test_a_road_with_an_exit_has_sweeping_bends_unless_others_are_asked_for() -> None:
     def radius(line: str, seed: int) -> float:
         design = Planner().draft(read_plan(line), WIDE, (), (), seed)
-        assert isinstance(design, NetworkDesign)
+        assert isinstance(design, Design)
         return tightest(design, 0)
 
     free = [radius("| len=400 lanes=2 // diverge ramp", seed) for seed in range(12)]

@@ -4,8 +4,8 @@ import pytest
 
 from roadgpt.brief.outline import outline
 from roadgpt.brief.plan import read_plan
+from roadgpt.check.matching import complaints
 from roadgpt.check.measures import Measures, measure
-from roadgpt.check.rules.promises import complaints
 from roadgpt.design import draft
 from roadgpt.road import Design, Segment, World, build
 

@@ -12,23 +12,24 @@ from roadgpt.design import draft
 from roadgpt.design.network_search import MapSearch
 from roadgpt.drive import simulate
 from roadgpt.errors import BriefError, DesignError, UsageError
-from roadgpt.network import MapDesign, MapNode, Route, build_map, made_from
-from roadgpt.road import CrossSection, Limits, Site, World
+from roadgpt.network import Route, build_route, made_from
+from roadgpt.road import CrossSection, Design, Limits, Site, World
+from roadgpt.road.design import MapNode
 from roadgpt.verdict import judge
 
 USUAL = World()
 
 
-def drafted(line: str, seed: int, world: World = USUAL) -> MapDesign:
+def drafted(line: str, seed: int, world: World = USUAL) -> Design:
     """The map of a plan."""
     found = draft(read_plan(line), world, seed=seed)
-    assert isinstance(found, MapDesign)
+    assert isinstance(found, Design)
     return found
 
 
 def route_of(line: str, seed: int, world: World = USUAL) -> Route:
     """The route through the map of a plan."""
-    return build_map(drafted(line, seed, world), world)
+    return build_route(drafted(line, seed, world), world)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -72,7 +73,7 @@ def test_crossroads_with_signs_stand_within_a_grid() -> None:
     """In a grid of two by two blocks that is the one in the middle: four of its nine nodes lie beside it."""
     for seed in range(8):
         design = draft(read_plan("map columns=2 rows=2; crossroads lights"), World(), seed=seed)
-        assert isinstance(design, MapDesign)
+        assert isinstance(design, Design)
         (signed,) = [node for node in design.nodes if node.control == "lights"]
         places = np.array([node.at[:2] for node in design.nodes])
         low, high = places.min(axis=0), places.max(axis=0)
@@ -97,11 +98,11 @@ def test_the_check_counts_the_signs_of_a_grid(line: str, control: str, number: i
         )
         nodes = list(design.nodes)
         nodes[first] = nodes[first].model_copy(update={"control": new})
-        route = build_map(design.model_copy(update={"nodes": tuple(nodes)}), USUAL)
+        route = build_route(design.model_copy(update={"nodes": tuple(nodes)}), USUAL)
         assert any("of the grid, has" in each.sentence for each in inspect(route, brief, USUAL))
 
 
-def junctions_of(design: MapDesign) -> list[MapNode]:
+def junctions_of(design: Design) -> list[MapNode]:
     """The nodes of a design at which roads meet."""
     return [node for node in design.nodes if node.kind not in ("bend", "end")]
 

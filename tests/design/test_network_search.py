@@ -17,8 +17,8 @@ from roadgpt.design.designers.planner import Planner
 from roadgpt.design.network_search import NetworkSearch
 from roadgpt.design.room import world_for
 from roadgpt.errors import BriefError, DesignError
-from roadgpt.network import Junction, NetworkDesign, Route, build_route
-from roadgpt.road import Site, World
+from roadgpt.network import Junction, Route, build_route
+from roadgpt.road import Design, Site, World
 
 USUAL = World()
 
@@ -26,7 +26,7 @@ USUAL = World()
 def drafted(line: str, seed: int, world: World = USUAL) -> Route:
     """The route of a plan."""
     design = Planner().draft(read_plan(line), world, (), (), seed)
-    assert isinstance(design, NetworkDesign)
+    assert isinstance(design, Design)
     return build_route(design, world)
 
 
@@ -72,7 +72,7 @@ def test_a_street_beside_the_road_makes_no_crossroads() -> None:
     """It would have a one-way street on the other side, of which the words say nothing."""
     brief = read_plan("junction straight ways=right+straight // junction right ways=right+straight")
     designs = [Planner().draft(brief, USUAL, (), (), seed) for seed in range(8)]
-    assert all(isinstance(design, NetworkDesign) for design in designs)
+    assert all(isinstance(design, Design) for design in designs)
     arms = [arm for design in designs for each in design.junctions for arm in each.arms]  # type: ignore[union-attr]
     assert {len(each.arms) for design in designs for each in design.junctions} == {2}  # type: ignore[union-attr]
     assert {arm.one_way for arm in arms} == {None}

@@ -16,8 +16,8 @@ from roadgpt.cli import app
 from roadgpt.design import draft
 from roadgpt.design.room import map_remark, world_for
 from roadgpt.errors import RoadGPTError
-from roadgpt.network import NetworkDesign, build_route
-from roadgpt.road import Site, World, build
+from roadgpt.network import build_route
+from roadgpt.road import Design, Site, World, build
 from roadgpt.run import Setup, brief_of, perform
 
 PLAN = Setup(reader="plan", drives=False)
@@ -56,7 +56,7 @@ def test_the_map_grows_for_a_route_until_it_has_room(line: str) -> None:
     world = world_for(brief, World())
     assert 250 < world.site.map_size <= 1000
     design = draft(brief, world, seed=20)
-    assert isinstance(design, NetworkDesign)
+    assert isinstance(design, Design)
     route = build_route(design, world)
     points = route.at(np.arange(0.0, route.length))
     assert np.all((points[:, :2] > 0) & (points[:, :2] < world.site.map_size))

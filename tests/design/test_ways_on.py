@@ -3,7 +3,7 @@
 import pytest
 
 from roadgpt.brief.plan import read_plan
-from roadgpt.check.network_measures import measured_junctions
+from roadgpt.check.measures import measured_junctions
 from roadgpt.design import draft
 from roadgpt.errors import BriefError
 from roadgpt.network import build_route

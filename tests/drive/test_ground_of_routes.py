@@ -8,9 +8,9 @@ import shapely
 from network.random_designs import random_design
 from roadgpt.drive import Command, View, simulate
 from roadgpt.drive.sampled_road import locate_on, room_at, sample_road, stations_of
-from roadgpt.network import Route, build_route, read_network_design
+from roadgpt.network import Route, build_route
 from roadgpt.network.route import windows
-from roadgpt.road import CrossSection, World
+from roadgpt.road import CrossSection, World, read_design
 
 WORLD = World(section=CrossSection(shoulder=1.5))
 NEAR = 25.0  # m from the reference line
@@ -31,7 +31,7 @@ def on_ground(route: Route, area: shapely.Geometry, s: np.ndarray, t: np.ndarray
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_wheel_has_ground_exactly_where_the_polygon_is(seed: int) -> None:
-    route = build_route(read_network_design(random_design(seed))[0], WORLD).on_ground()
+    route = build_route(read_design(random_design(seed))[0], WORLD).on_ground()
     area, sampled = paved_with_shoulder(route), sample_road(route)
     shapely.prepare(area)
     rims = np.column_stack(WORLD.profile_of(route).rims(stations_of(sampled)))
@@ -71,7 +71,7 @@ def test_a_car_that_misses_the_turn_falls_behind_the_edge_and_not_before() -> No
         "junction1": {"after": 1, "kind": "t_junction", "take": "left", "kerb": 8},
         "road_segment2": {"distance": 50, "direction": "straight", "incline": 0, "turn_degrees": 0},
     }
-    route = build_route(read_network_design(design)[0], WORLD).on_ground()
+    route = build_route(read_design(design)[0], WORLD).on_ground()
     drive = simulate(route, WORLD, GoesStraight(), keep_driving=True)
     assert drive.ended == "fell"
     area = paved_with_shoulder(route)

@@ -15,8 +15,8 @@ from roadgpt.design.room import world_for
 from roadgpt.drive import Drive, JunctionAhead, simulate
 from roadgpt.drive.driving_line import highest_speeds, kept_in_lane, line_along, stations, turning_speed
 from roadgpt.drive.outlook import Outlook
-from roadgpt.network import Route, build_route, made_from, read_network_design
-from roadgpt.road import Limits, Road, World
+from roadgpt.network import Route, build_route, made_from
+from roadgpt.road import Limits, Road, World, read_design
 from roadgpt.verdict import judge
 
 WORLD = World(limits=Limits(speed_limit=50 / 3.6))
@@ -33,7 +33,7 @@ def route(*junctions: dict[str, Any], world: World = WORLD, length: float = 60.0
         }  # fmt: skip
         if n < len(junctions):
             data[f"junction{n + 1}"] = {"after": n + 1, **junctions[n]}
-    return build_route(read_network_design(data)[0], world).on_ground()
+    return build_route(read_design(data)[0], world).on_ground()
 
 
 CROSS = {"kind": "crossroads", "take": "left", "control": "stop", "kerb": 8}

@@ -5,8 +5,8 @@ import pytest
 
 from network.mirrored import in_mirror
 from roadgpt.drive import driver_of, simulate
-from roadgpt.network import Route, build_route, read_network_design
-from roadgpt.road import World
+from roadgpt.network import Route, build_route
+from roadgpt.road import World, read_design
 from roadgpt.verdict import judge
 
 WORLD = World()
@@ -23,8 +23,8 @@ DESIGN = {
 
 
 def routes() -> tuple[Route, Route]:
-    left = build_route(read_network_design({**DESIGN, "left_hand": True})[0], WORLD)
-    return left.on_ground(), build_route(read_network_design(in_mirror(DESIGN))[0], WORLD).on_ground()
+    left = build_route(read_design({**DESIGN, "left_hand": True})[0], WORLD)
+    return left.on_ground(), build_route(read_design(in_mirror(DESIGN))[0], WORLD).on_ground()
 
 
 @pytest.mark.parametrize("driver", ["reference", "beamng_like"])

@@ -12,8 +12,8 @@ from network.mirrored import in_mirror
 from network.random_designs import random_design, random_lanes_design
 from outside_judge import networks_referee
 from roadgpt.export import save
-from roadgpt.network import build_route, read_network_design
-from roadgpt.road import World
+from roadgpt.network import build_route
+from roadgpt.road import World, read_design
 
 FLIPPED = {
     "geometry": ("y", "hdg"), "arc": ("curvature",), "spiral": ("curvStart", "curvEnd"), "signal": ("t",),
@@ -27,7 +27,7 @@ def trees(data: dict[str, Any], folder: Path, format_: str) -> list[ET.Element]:
     """The files of a design with traffic on the left, and of the mirrored one with traffic on the right."""
     found = []
     for name, own in (("left", {**data, "left_hand": True}), ("right", in_mirror(data))):
-        written = save(build_route(read_network_design(own)[0], World()), folder, [format_], World(), name)
+        written = save(build_route(read_design(own)[0], World()), folder, [format_], World(), name)
         (file,) = (path for path in written if path.suffix == ".xodr")
         found.append(ET.parse(file).getroot())
     return found
@@ -118,7 +118,7 @@ def referee() -> ModuleType:
 def test_a_judge_reads_traffic_on_the_left(tmp_path: Path, referee: ModuleType, draw: Any, seed: int) -> None:
     found = []
     for name, own in (("left", {**draw(seed), "left_hand": True}), ("right", in_mirror(draw(seed)))):
-        save(build_route(read_network_design(own)[0], World()), tmp_path, ["opendrive"], World(), name)
+        save(build_route(read_design(own)[0], World()), tmp_path, ["opendrive"], World(), name)
         legs = json.loads((tmp_path / f"{name}.route.json").read_text())["route"]
         found.append(referee.measure(str(tmp_path / f"{name}.xodr"), legs))
     left, right = found

@@ -12,8 +12,8 @@ from roadgpt import plugins
 from roadgpt.errors import ExportError
 from roadgpt.export import exporter_of, save
 from roadgpt.export.georeference import degrees
-from roadgpt.network import Route, build_route, read_network_design
-from roadgpt.road import World
+from roadgpt.network import Route, build_route
+from roadgpt.road import World, read_design
 
 HOLD = {"opendrive", "opendrive17", "csv", "geojson", "openscenario", "commonroad", "lanelet2"}
 WORLD = World()
@@ -29,7 +29,7 @@ def route() -> Route:
         "junction1": {"after": 1, "kind": "roundabout", "take": "straight", "radius": RADIUS},
         "road_segment2": {"distance": 40, "direction": "straight", "incline": 0, "turn_degrees": 0},
     }
-    return build_route(read_network_design(design)[0], WORLD).on_ground()
+    return build_route(read_design(design)[0], WORLD).on_ground()
 
 
 ROUTE = route()

@@ -17,8 +17,8 @@ from network.random_designs import random_design, random_lanes_design
 from network.random_maps import map_route
 from outside_judge import networks_referee
 from roadgpt.export import save
-from roadgpt.network import Network, Route, build_route, read_network_design
-from roadgpt.road import World
+from roadgpt.network import Network, Route, build_route
+from roadgpt.road import World, read_design
 
 SEEDS = range(6)
 LANES = range(6)
@@ -85,7 +85,7 @@ def drawn(seed: int, draw: Drawing = random_design, left_hand: bool = False) -> 
     before = {each["after"] for key, each in data.items() if key.startswith("junction")}
     for number in sorted(before | {each + 1 for each in before}):
         data[f"road_segment{number}"] |= {"direction": "straight", "turn_degrees": 0.0}
-    return data, build_route(read_network_design(data)[0], World())
+    return data, build_route(read_design(data)[0], World())
 
 
 def saved(folder: Path, format_: str = "opendrive") -> dict[str, Network]:

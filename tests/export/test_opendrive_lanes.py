@@ -20,9 +20,10 @@ from export.test_opendrive_networks import (
 )
 from network.changing import design
 from roadgpt.export.exporters.opendrive import document
-from roadgpt.network import Junction, build_route, read_network_design
+from roadgpt.network import Junction, build_route
 from roadgpt.network.markings import STOP_LINE, arrows, strokes
 from roadgpt.network.paved import paved_by
+from roadgpt.road import read_design
 from roadgpt.road.profile import LINE
 
 NEAR = 0.05  # m, between two segments of a boundary
@@ -174,7 +175,7 @@ def test_arrows_lie_in_the_middle_of_lanes_and_show_the_ways_on(seed: int) -> No
 
 def test_the_corners_of_a_crosswalk_are_those_of_its_length_and_width() -> None:
     data = design(60.0, {"kind": "t_junction", "take": "left", "crosswalk": True}, 60.0)
-    here = WrittenMap(document(build_route(read_network_design(data)[0], WORLD), WORLD).to_text())
+    here = WrittenMap(document(build_route(read_design(data)[0], WORLD), WORLD).to_text())
     found = [each for each in here.root.iter("object") if each.attrib["type"] == "crosswalk"]
     assert len(found) == 3
     for each in found:
@@ -215,7 +216,7 @@ def test_lines_to_stop_at_lie_where_they_are_painted(
 ) -> None:
     junction = {"kind": kind, "take": "left", "control": control, "crosswalk": True}
     data = design(60.0, junction, 60.0) | ({"left_hand": True} if left_hand else {})
-    route = build_route(read_network_design(data)[0], WORLD)
+    route = build_route(read_design(data)[0], WORLD)
     drawn, name = ("give_way", "give-way line") if control == "yield" else ("stop", "stop line")
     strips = [shapely.LineString(each.points[:, :2]) for each in strokes(route.network) if each.kind == drawn]
     painted = shapely.union_all([each.buffer(STOP_LINE / 2, cap_style="flat") for each in strips])

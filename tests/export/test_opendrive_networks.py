@@ -14,8 +14,8 @@ from network.changing import built, design
 from network.random_designs import random_design, random_lanes_design
 from network.random_maps import map_route
 from roadgpt.export.exporters.opendrive import document
-from roadgpt.network import Network, Route, build_route, read_network_design
-from roadgpt.road import Design, Segment, World, build
+from roadgpt.network import Network, Route, build_route
+from roadgpt.road import Design, Segment, World, build, read_design
 
 WORLD = World()
 MAPS = range(1000, 1003)
@@ -128,7 +128,7 @@ def route_of(seed: int) -> Route:
     if seed in MAPS:
         return map_route(seed)
     data = random_lanes_design(seed - LANES[0]) if seed in LANES else random_design(seed)
-    return build_route(read_network_design(data)[0], WORLD)
+    return build_route(read_design(data)[0], WORLD)
 
 
 @cache

@@ -15,9 +15,8 @@ from roadgpt.network import (
     Roundabout,
     Route,
     build_route,
-    read_network_design,
 )
-from roadgpt.road import Road, Site, World
+from roadgpt.road import Road, Site, World, read_design
 
 WORLD = World(site=Site(map_size=500))
 
@@ -50,7 +49,7 @@ def design(
 
 def built(data: dict[str, Any], world: World = WORLD) -> Route:
     """Returns the route of a design."""
-    return build_route(read_network_design(data)[0], world)
+    return build_route(read_design(data)[0], world)
 
 
 def passing(kind: str, take: int | str = 1, **more: Any) -> Route:

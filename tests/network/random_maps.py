@@ -6,8 +6,8 @@ import numpy as np
 
 from roadgpt.brief.plan import read_plan
 from roadgpt.design.network_search import MapSearch
-from roadgpt.network import MapDesign, Route, build_map
-from roadgpt.road import Site, World
+from roadgpt.network import Route, build_route
+from roadgpt.road import Design, Site, World
 
 WORLD = World(site=Site(map_size=400))
 PLANS = (
@@ -23,7 +23,7 @@ PLANS = (
 
 
 @cache
-def random_map(seed: int) -> MapDesign:
+def random_map(seed: int) -> Design:
     """Returns a map; the same seed gives the same map."""
     brief = read_plan(PLANS[seed % len(PLANS)])
     return MapSearch(brief, WORLD, np.random.default_rng(seed)).run()
@@ -32,4 +32,4 @@ def random_map(seed: int) -> MapDesign:
 @cache
 def map_route(seed: int) -> Route:
     """Returns the route of a random map."""
-    return build_map(random_map(seed), WORLD)
+    return build_route(random_map(seed), WORLD)

@@ -10,8 +10,8 @@ import pytest
 from network.changing import built, design
 from network.shared_laws import sentence_of
 from roadgpt.check import inspect
-from roadgpt.network import NetworkRoad, Route, read_network_design
-from roadgpt.road import Design, Road, Segment, Site, World, build
+from roadgpt.network import NetworkRoad, Route
+from roadgpt.road import Design, Road, Segment, Site, World, build, read_design
 from tables import rows
 
 SEGMENTS = {
@@ -95,7 +95,7 @@ def test_remarks_on_segments_name_the_arm() -> None:
     arm = copy.deepcopy(CURVED)
     arm["road_segment2"]["direction"] = "left"
     arm["road_segment4"] = arm.pop("road_segment1")
-    found, remarks = read_network_design(data_of(arm))
+    found, remarks = read_design(data_of(arm))
     what = "arm 1 of junction 1: "
     assert remarks == (
         f"{what}segments are numbered 2, 4 instead of 1, 2, 3, ...; they are taken in this order",

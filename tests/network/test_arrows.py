@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from network.changing import design
 from network.mirrored import in_mirror
 from network.random_designs import random_design, random_lanes_design
-from roadgpt.network import Network, RoadEnd, Route, build_route, read_network_design
+from roadgpt.network import Network, RoadEnd, Route, build_route
 from roadgpt.network.markings import PaintedArrow, arrows
-from roadgpt.road import Site, World
+from roadgpt.road import Site, World, read_design
 
 WORLD = World(site=Site(map_size=600))
 STOP_LINE = 0.5  # m
@@ -31,7 +31,7 @@ Drawing = Callable[[int], dict[str, Any]]
 
 
 def network_of(data: dict[str, Any]) -> Network:
-    return build_route(read_network_design(data)[0], WORLD).network
+    return build_route(read_design(data)[0], WORLD).network
 
 
 def shown(network: Network) -> Shown:
@@ -100,9 +100,8 @@ def strip_of(network: Network, arrow: PaintedArrow) -> shapely.Polygon:
     road, profile = network.road(arrow.end.road).road, network.road(arrow.end.road).profile
     s = np.arange(0.0, road.length, 0.25)
     left, right = profile.lane_edges(s)
-    begin = profile.sides(s)
-    number = abs(arrow.lane) - 1 - (arrow.lane in profile.against_ids and profile.median > 0)
-    rows = [begin.left, *left] if arrow.lane > 0 else [begin.right, *right]
+    number, centre = abs(arrow.lane) - 1, profile.centre(s)
+    rows = [centre, *left] if arrow.lane > 0 else [centre, *right]
     one, two = (road.at(s, t)[:, :2] for t in rows[number : number + 2])
     return shapely.Polygon(np.concatenate([one, two[::-1]]))
 
@@ -161,7 +160,7 @@ def test_traffic_on_the_left_has_the_arrows_of_the_mirrored_design(seed: int) ->
 def crossing(distance: float = 60.0, take: str = "straight", **more: Any) -> Route:
     data = design(distance, {"kind": "crossroads", "take": take, **more}, 60.0)
     data["lanes"] = {"forward": 2, "backward": 2, "width": 3.5}
-    return build_route(read_network_design(data)[0], WORLD)
+    return build_route(read_design(data)[0], WORLD)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,8 @@ import pytest
 
 from network.changing import WORLD, design
 from roadgpt.export.exporters.opendrive import document
-from roadgpt.network import Route, build_route, read_network_design
+from roadgpt.network import Route, build_route
+from roadgpt.road import read_design
 
 CROSSING = {"kind": "crossroads", "take": "straight", "crosswalk": True}
 BOTH = ((1, "broken"), (2, None), (-1, "broken"), (-2, None))
@@ -21,7 +22,7 @@ def made(edge: str | None, place: dict[str, Any] = CROSSING, **lanes: Any) -> di
 
 
 def route_of(data: dict[str, Any]) -> Route:
-    return build_route(read_network_design(data)[0], WORLD)
+    return build_route(read_design(data)[0], WORLD)
 
 
 def marks(route: Route, road: int) -> dict[int, str]:

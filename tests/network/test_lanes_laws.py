@@ -17,9 +17,9 @@ from hypothesis import strategies as st
 from network.random_designs import random_lanes_design
 from network.shared_laws import check_that_ways_join_the_arms
 from roadgpt.geometry import CubicProfile
-from roadgpt.network import NetworkRoad, RoadEnd, Route, build_route, read_network_design
+from roadgpt.network import NetworkRoad, RoadEnd, Route, build_route
 from roadgpt.network.lane_along import change_windows
-from roadgpt.road import World
+from roadgpt.road import World, read_design
 
 settled = settings(max_examples=10, deadline=None)
 seeds = st.integers(0, 9)
@@ -30,7 +30,7 @@ NEAR = 1e-6  # m
 
 @cache
 def drawn(seed: int) -> Route:
-    return build_route(read_network_design(random_lanes_design(seed))[0], World())
+    return build_route(read_design(random_lanes_design(seed))[0], World())
 
 
 def value(width: float | CubicProfile, s: float) -> float:
@@ -216,7 +216,7 @@ def plain(*parts: dict[str, Any], first: dict[str, Any], length: float = 120.0) 
         }  # fmt: skip
     for n, part in enumerate(parts, 1):
         data[f"junction{n}"] = {"after": n, **part}
-    return build_route(read_network_design(data)[0], World())
+    return build_route(read_design(data)[0], World())
 
 
 def lanes_of(route: Route) -> list[list[int]]:

@@ -15,9 +15,9 @@ from network.changing import built, design, passing
 from network.random_designs import random_design
 from network.shared_laws import Motion, check_that_ways_join_the_arms, pose
 from roadgpt.geometry import PieceCurve
-from roadgpt.network import Junction, Network, Route, build_route, read_network_design
+from roadgpt.network import Junction, Network, Route, build_route
 from roadgpt.network.pose import SHARE, curve_between, tangent_length
-from roadgpt.road import World
+from roadgpt.road import World, read_design
 
 SEEDS = range(12)
 settled = settings(max_examples=12, deadline=None)
@@ -28,7 +28,7 @@ EXACT = 1e-9  # m and rad
 
 @cache
 def drawn(seed: int) -> Route:
-    return build_route(read_network_design(random_design(seed))[0], World())
+    return build_route(read_design(random_design(seed))[0], World())
 
 
 @given(seeds)
@@ -123,7 +123,7 @@ def test_a_design_that_is_moved_and_turned_gives_the_network_moved_and_turned(
     seed: int, dx: float, dy: float, dz: float, degrees: float
 ) -> None:
     moved = Motion(random_design(seed), (dx, dy, dz), degrees)
-    one, other = drawn(seed), build_route(read_network_design(moved.design)[0], World())
+    one, other = drawn(seed), build_route(read_design(moved.design)[0], World())
     assert other.legs == one.legs
     for a, b in zip(one.network.roads, other.network.roads, strict=True):
         assert (a.id, a.junction) == (b.id, b.junction)

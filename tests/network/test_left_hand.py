@@ -17,20 +17,12 @@ from network.random_maps import random_map
 from roadgpt import check
 from roadgpt.brief.model import mirrored
 from roadgpt.brief.plan import read_plan
-from roadgpt.check.network_measures import measured_junctions, measured_places
+from roadgpt.check.measures import measured_junctions, measured_places
 from roadgpt.design import draft
-from roadgpt.network import (
-    Route,
-    build_map,
-    build_route,
-    network_made_from,
-    read_any_design,
-    read_map_design,
-    read_network_design,
-)
+from roadgpt.network import Route, build_route
 from roadgpt.network.markings import signs, strokes
 from roadgpt.network.paved import ribbon
-from roadgpt.road import Site, World
+from roadgpt.road import Site, World, read_design
 from tables import rows
 
 WORLD = World(site=Site(map_size=600))
@@ -46,8 +38,8 @@ Drawing = Callable[[int], dict[str, Any]]
 
 def pair(data: dict[str, Any]) -> tuple[Route, Route]:
     """A route with traffic on the left, and that of the mirrored design with traffic on the right."""
-    left = build_route(read_network_design({**data, "left_hand": True})[0], WORLD)
-    return left, build_route(read_network_design(in_mirror(data))[0], WORLD)
+    left = build_route(read_design({**data, "left_hand": True})[0], WORLD)
+    return left, build_route(read_design(in_mirror(data))[0], WORLD)
 
 
 def check_mirrored(left: Route, right: Route) -> None:
@@ -137,8 +129,8 @@ def test_a_map_is_the_mirror_image_of_the_mirrored_map(seed: int) -> None:
     for key in data:
         if key.startswith("node"):
             data[key]["at"] = [data[key]["at"][0], -data[key]["at"][1], data[key]["at"][2]]
-    left = build_map(read_map_design({**data, "left_hand": True})[0], WORLD)
-    check_mirrored(left, build_map(design, WORLD))
+    left = build_route(read_design({**data, "left_hand": True})[0], WORLD)
+    check_mirrored(left, build_route(design, WORLD))
 
 
 PLANS_WITH_SIDES = rows(__file__, "plans_with_sides")
@@ -149,8 +141,8 @@ def test_what_was_asked_for_is_there(line: str) -> None:
     brief = read_plan(line).model_copy(update={"left_hand": True})
     design = draft(brief, WORLD, seed=5)
     assert design.left_hand
-    assert read_any_design(design.to_json())[0] == design
-    route = network_made_from(design, WORLD)
+    assert read_design(design.to_json())[0] == design
+    route = build_route(design, WORLD)
     assert route.network.left_hand
     assert check.inspect(route, brief, WORLD) == ()
     other = read_plan(line.split(" side=")[0])

@@ -1,7 +1,9 @@
 """Laws of maps: roads join, all of them are connected, and what is written is read."""
 
 import json
+import math
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -10,9 +12,10 @@ from network.random_maps import PLANS, WORLD, map_route, random_map
 from network.shared_laws import check_that_ways_join_the_arms
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
-from roadgpt.check.network_measures import measured_map
-from roadgpt.network import read_map_design, road_from_json
+from roadgpt.check.measures import measured_map
+from roadgpt.network import road_from_json
 from roadgpt.network.growing import signs_at
+from roadgpt.road import read_design
 
 settled = settings(max_examples=8, deadline=None)
 seeds = st.integers(0, 7)
@@ -38,7 +41,7 @@ def test_a_map_is_connected_and_breaks_no_rule(seed: int) -> None:
 @settled
 def test_what_is_written_is_read(seed: int) -> None:
     design, route = random_map(seed), map_route(seed)
-    again, remarks = read_map_design(json.loads(json.dumps(design.to_json())))
+    again, remarks = read_design(json.loads(json.dumps(design.to_json())))
     assert again == design
     assert remarks == ()
     assert again.to_json() == design.to_json()
@@ -50,9 +53,10 @@ def test_what_is_written_is_read(seed: int) -> None:
 @settled
 def test_the_route_passes_the_junctions_that_the_design_names(seed: int) -> None:
     design, route = random_map(seed), map_route(seed)
-    named = [design.node(n).at for n in design.route[1:-1] if design.node(n).is_junction]
+    driven = [design.nodes[n - 1] for n in design.route]
+    named = [node.at for node in driven[1:-1] if node.is_junction]
     assert [each.entered.node for each in route.passages] == named
-    start, end = (design.node(design.route[n]) for n in (0, -1))
+    start, end = driven[0], driven[-1]
     if start.kind == end.kind == "end":
         assert route.at(0.0) == pytest.approx(start.at)
         assert route.at(route.length) == pytest.approx(end.at, abs=EXACT)
@@ -77,7 +81,9 @@ def test_the_main_road_of_a_junction_has_no_sign(seed: int) -> None:
     for number, node in enumerate(design.nodes, 1):
         if not node.is_junction or node.kind == "roundabout" or node.control not in ("stop", "yield"):
             continue
-        directions = [design.direction(number, other) for other in design.neighbours[number]]
+        others = [n for road in design.roads if number in road for n in road if n != number]
+        ways = [np.subtract(design.nodes[n - 1].at, node.at) for n in others]
+        directions = sorted(math.atan2(y, x) for x, y, _ in ways)
         signs = signs_at(node, directions)
         assert signs.count("priority") == 2
         assert signs.count(node.control) == len(directions) - 2

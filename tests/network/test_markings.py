@@ -7,10 +7,10 @@ import pytest
 import shapely
 from tests.network.random_designs import random_design
 
-from roadgpt.network import Network, Route, made_from, read_any_design
+from roadgpt.network import Network, Route, made_from
 from roadgpt.network.markings import STOP_LINE, strokes
 from roadgpt.network.surface import NetworkSurface, free_ends, triangulated
-from roadgpt.road import World
+from roadgpt.road import World, read_design
 from roadgpt.road.profile import LINE
 
 STRAIGHT = {"distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0}
@@ -25,13 +25,13 @@ def route_of(junction: dict[str, object], lanes: dict[str, object] | None = None
         "junction1": {"after": 1, **junction},
         "road_segment2": STRAIGHT,
     }
-    found = made_from(read_any_design(data)[0], World(**world))
+    found = made_from(read_design(data)[0], World(**world))
     assert isinstance(found, Route)
     return found
 
 
 def drawn(seed: int) -> Network:
-    found = made_from(read_any_design(random_design(seed))[0], World())
+    found = made_from(read_design(random_design(seed))[0], World())
     assert isinstance(found, Route)
     return found.network
 
@@ -201,13 +201,14 @@ def test_a_median_ends_with_a_kerb_in_the_junction(left_hand: bool) -> None:
     junction = {"after": 1, "kind": "crossroads", "take": "straight"}
     data = {"starting_point": [40, 60, 2], "theta": 0, "lanes": DIVIDED, "road_segment1": STRAIGHT,
             "junction1": junction, "road_segment2": STRAIGHT}  # fmt: skip
-    route = made_from(read_any_design(data | ({"left_hand": True} if left_hand else {}))[0], World())
+    route = made_from(read_design(data | ({"left_hand": True} if left_hand else {}))[0], World())
     assert isinstance(route, Route)
     (area,) = NetworkSurface.of(route.network).areas
     for leg, is_end in ((route.legs[0], True), (route.legs[-1], False)):
         member = route.network.road(leg.road)
         s = member.road.length if is_end else 0.0
-        end = shapely.LineString(member.road.at(np.full(2, s), np.ravel(member.profile.sides(s)))[:, :2])
+        edges = member.profile.edges_of(-member.profile.side, s)
+        end = shapely.LineString(member.road.at(np.full(2, s), np.ravel(edges))[:, :2])
         assert end.length == pytest.approx(2.0)
         (nose,) = (island for island in area.kerbed if island.dwithin(end, 1e-3))
         assert end.buffer(1e-3).intersection(nose.boundary).length == pytest.approx(2.0, abs=0.01)

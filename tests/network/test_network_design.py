@@ -8,15 +8,17 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from network.changing import built, design
 from network.random_designs import random_design, random_lanes_design
 from network.shared_laws import sentence_of
+from roadgpt.campaign.record import design_of, design_text
 from roadgpt.errors import UsageError
-from roadgpt.network import JunctionDesign, build_route, is_network_design, read_network_design
-from roadgpt.network.design import ArmDesign
+from roadgpt.network import build_route
 from roadgpt.network.growing import controls_of
-from roadgpt.road import CrossSection, World
+from roadgpt.road import CrossSection, Design, World, build, read_design
+from roadgpt.road.design import ArmDesign, JunctionDesign, LanesDesign, is_design
 from tables import rows
 
 ARMS = [{"angle": -90}, {"angle": 0}, {"angle": 90}]
@@ -38,9 +40,9 @@ def changed(**fields: Any) -> dict[str, Any]:
 @given(st.sampled_from([random_design, random_lanes_design]), st.integers(0, 10_000), st.booleans())
 @settings(max_examples=24, deadline=None)
 def test_what_is_written_is_read(draw: Any, seed: int, left_hand: bool) -> None:
-    design_, _ = read_network_design({**draw(seed), "left_hand": left_hand})
+    design_, _ = read_design({**draw(seed), "left_hand": left_hand})
     written = json.loads(json.dumps(design_.to_json()))
-    again, remarks = read_network_design(written)
+    again, remarks = read_design(written)
     assert again == design_
     assert remarks == ()
     assert again.to_json() == design_.to_json()
@@ -48,7 +50,7 @@ def test_what_is_written_is_read(draw: Any, seed: int, left_hand: bool) -> None:
 
 def test_junctions_that_are_not_numbered_as_they_follow() -> None:
     one = {key: value for key, value in GOOD.items() if key != "junction1"}
-    _, remarks = read_network_design({**one, "junction2": GOOD["junction1"]})
+    _, remarks = read_design({**one, "junction2": GOOD["junction1"]})
     assert remarks == ("junctions are numbered 2 instead of 1, 2, 3, ...; they are taken in this order",)
     segment = GOOD["road_segment1"]
     turned = {
@@ -58,20 +60,71 @@ def test_junctions_that_are_not_numbered_as_they_follow() -> None:
         "junction1": {"after": 2, "kind": "crossroads", "take": "left"},
         "junction2": {"after": 1, "kind": "t_junction", "take": "right"},
     }
-    design, remarks = read_network_design(turned)
+    design, remarks = read_design(turned)
     assert [each.kind for each in design.junctions] == ["t_junction", "crossroads"]
     assert remarks == ("junctions are numbered 2, 1 instead of 1, 2, 3, ...; they are taken in this order",)
 
 
-def test_what_is_a_network_design() -> None:
-    assert is_network_design(GOOD)
+def test_what_is_a_plain_road() -> None:
+    def is_plain(data: dict[str, Any]) -> bool:
+        assert is_design(data)
+        return read_design(data)[0].is_plain
+
+    assert not is_plain(GOOD)
     road = {key: value for key, value in GOOD.items() if key not in ("junction1", "lanes", "left_hand")}
-    assert not is_network_design(road)
-    assert is_network_design({**road, "left_hand": True})
-    assert is_network_design({**road, "lanes": {"forward": 2, "backward": 2, "divided": True}})
-    assert not is_network_design({**road, "left_hand": False})
-    assert not is_network_design({"junctions": []})
-    assert not is_network_design([1])
+    assert is_plain(road)
+    assert not is_plain({**road, "left_hand": True})
+    assert not is_plain({**road, "lanes": {"forward": 2, "backward": 2, "divided": True}})
+    assert is_plain({**road, "left_hand": False, "lanes": None})
+    assert is_design({"junction1": {}})
+    assert not is_design({"junctions": []})
+    assert not is_design([1])
+
+
+STORED = (
+    '{"starting_point":[10.0,20.0,0.0],"theta":0.0,"segments":'
+    '[{"distance":60.0,"direction":"straight","incline":0.0,"turn_degrees":0.0}]}',
+    '{"starting_point":[10.0,20.0,0.0],"theta":0.0,"segments":'
+    '[{"distance":60.0,"direction":"straight"},{"distance":30.0,"direction":"straight"}],"junctions":'
+    '[{"after":1,"kind":"merge","take":"main","length":130.0,"taper":60.0}],"left_hand":false}',
+    '{"nodes":[{"at":[0.0,0.0,0.0],"kind":"end"},{"at":[90.0,0.0,0.0],"kind":"end"}],"roads":[[1,2]],'
+    '"route":[1,2],"lanes":{"width":3.5},"left_hand":true}',
+)
+"""Designs as the databases of campaigns hold them, also from when there were three kinds of designs."""
+
+
+@pytest.mark.parametrize("text", STORED)
+def test_stored_designs_of_all_kinds_are_read(text: str) -> None:
+    found = design_of(text)
+    assert found is not None
+    assert found.is_map == ("nodes" in text)
+    assert design_of(design_text(found)) == found
+    assert read_design(found.to_json())[0] == found
+    assert found.mirrored(40.0).mirrored(40.0) == found
+    assert (design_text(found) == text) == found.is_plain
+
+
+def test_a_design_is_a_row_of_segments_or_a_map() -> None:
+    road, _, over_map = (design_of(text) for text in STORED)
+    assert road is not None
+    assert over_map is not None
+    for wrong in (
+        {**dict(road), "nodes": over_map.nodes, "roads": over_map.roads},
+        {**dict(road), "segments": ()},
+        {**dict(road), "route": (1, 2)},
+        {**dict(over_map), "roads": ()},
+        {**dict(over_map), "lanes": LanesDesign(width=3.5, forward=2)},
+    ):
+        with pytest.raises(ValidationError):
+            Design(**wrong)
+
+
+@pytest.mark.parametrize("text", STORED[1:])
+def test_only_a_plain_road_is_built_without_a_network(text: str) -> None:
+    found = design_of(text)
+    assert found is not None
+    with pytest.raises(UsageError, match="built by build_route"):
+        build(found)
 
 
 @pytest.mark.parametrize("name", ["after", "kind", "take"])
@@ -116,7 +169,7 @@ def test_a_design_that_is_wrong(fields: dict[str, Any], wanted: str) -> None:
 
 def test_a_world_with_other_lanes_is_refused() -> None:
     with pytest.raises(UsageError, match="leave out --lanes, --bank"):
-        build_route(read_network_design(GOOD)[0], World(section=CrossSection(lanes="2+1", bank="auto")))
+        build_route(read_design(GOOD)[0], World(section=CrossSection(lanes="2+1", bank="auto")))
 
 
 @pytest.mark.parametrize(

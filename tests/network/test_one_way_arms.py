@@ -12,8 +12,9 @@ from network.changing import WORLD
 from network.shared_laws import sentence_of
 from roadgpt.check import inspect
 from roadgpt.errors import UsageError
-from roadgpt.network import NetworkRoad, Route, build_route, read_network_design
-from roadgpt.network.design import USUAL_ARMS
+from roadgpt.network import NetworkRoad, Route, build_route
+from roadgpt.road import read_design
+from roadgpt.road.design import USUAL_ARMS
 
 STRAIGHT = {"distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0}
 ONE_WAY = {"forward": 1, "backward": 0}
@@ -21,7 +22,7 @@ settled = settings(max_examples=100, deadline=None)
 
 
 def route_of(data: dict[str, Any]) -> Route:
-    return build_route(read_network_design(data)[0], WORLD).on_ground()
+    return build_route(read_design(data)[0], WORLD).on_ground()
 
 
 def design_of(junction: dict[str, Any], lanes: dict[str, int], left_hand: bool) -> dict[str, Any]:

@@ -9,9 +9,18 @@ from hypothesis import strategies as st
 
 from network.changing import built, design, passing
 from network.random_designs import random_design
+from road_parts import road_of
 from roadgpt.errors import UsageError
-from roadgpt.network import Leg, Network, Route, build_route, has_no_route, read_network_design
-from roadgpt.road import World
+from roadgpt.network import (
+    Leg,
+    Network,
+    Route,
+    build_route,
+    legs_of,
+    network_of,
+    only_road,
+)
+from roadgpt.road import CrossSection, World, read_design
 
 settled = settings(max_examples=14, deadline=None)
 seeds = st.integers(0, 10_000)
@@ -19,7 +28,7 @@ BACK = {"kind": "roundabout", "take": 4}
 
 
 def drawn(seed: int) -> Route:
-    return build_route(read_network_design(random_design(seed))[0], World())
+    return build_route(read_design(random_design(seed))[0], World())
 
 
 def routes() -> list[Route]:
@@ -120,6 +129,27 @@ def test_the_way_back_is_driven_on_the_other_side_of_the_same_road() -> None:
     assert math.dist(there[:2], back[:2]) == pytest.approx(4.0, abs=1e-6)
 
 
+@pytest.mark.parametrize(("lanes", "driven"), [("1+1", -1), ("2+1", -2), ("3+0", -3)])
+def test_a_single_road_is_a_network_of_one_road_that_is_driven_from_end_to_end(
+    lanes: str, driven: int
+) -> None:
+    world = World(section=CrossSection(lanes=lanes))
+    road = world.lay(road_of((60.0, 0.0, 2.0), (50.0, 70.0, 0.0)))
+    network, (leg,) = network_of(road, world), legs_of(road, world)
+    assert (network.junctions, network.continuations) == ((), ())
+    (member,) = network.roads
+    assert leg == (member.id, driven)
+    assert member.profile == world.profile_of(road)
+    only = only_road(road, world)
+    assert only is not None
+    s = np.linspace(0.0, road.length, 40)
+    np.testing.assert_array_equal(only.road.at(s, -1.5), road.at(s, -1.5))
+    assert road.has_way
+    assert road.passages == ()
+    assert road.starts == (0.0, road.length)
+    assert only_road(routes()[0], world) is None
+
+
 class TestRefusals:
     route = built(design(60.0, {"kind": "crossroads", "take": 2}, 60.0))
 
@@ -132,8 +162,8 @@ class TestRefusals:
 
     def test_no_leg_means_that_no_route_was_asked_for(self) -> None:
         none = Route.along(self.route.network, [])
-        assert has_no_route(none)
-        assert not has_no_route(self.route)
+        assert not none.has_way
+        assert self.route.has_way
         assert none.to_route_json() == {"route": []}
         assert none.passages == ()
         assert none.mirrored.to_route_json() == {"route": []}

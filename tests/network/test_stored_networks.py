@@ -10,8 +10,8 @@ import pytest
 from network.random_designs import random_design
 from network.test_lanes_laws import borders, joints
 from roadgpt.errors import UsageError
-from roadgpt.network import Route, build_route, read_network_design, road_from_json
-from roadgpt.road import World
+from roadgpt.network import Route, build_route, road_from_json
+from roadgpt.road import World, read_design
 
 # written by the commit be863e28, in which a connection had pairs of lanes
 OLD = Path(__file__).parent / "golden" / "route_without_lane_links.json"
@@ -44,7 +44,7 @@ def test_a_network_of_an_earlier_version_is_read() -> None:
 @pytest.mark.parametrize("seed", range(6))
 def test_the_third_lane_of_a_link_follows_from_the_other_two(seed: int) -> None:
     data = random_design(seed)
-    route = build_route(read_network_design(data)[0], World())
+    route = build_route(read_design(data)[0], World())
     stored = route.to_json()
     old = copy.deepcopy(stored)
     for each in connections(old):

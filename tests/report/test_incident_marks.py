@@ -8,10 +8,10 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation, Text
 
-from roadgpt.network import made_from, read_network_design
+from roadgpt.network import made_from
 from roadgpt.report import birds_eye, view
 from roadgpt.report.birds_eye import minor_places_of, places_of
-from roadgpt.road import World
+from roadgpt.road import World, read_design
 from roadgpt.run import Run, Setup, prove
 from roadgpt.verdict import Incident
 
@@ -46,7 +46,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     file = tmp_path_factory.mktemp("driver") / "no_stop.py"
     file.write_text(NO_STOP)
     world = World().changed(map_size=500)
-    route = made_from(read_network_design(data)[0], world)
+    route = made_from(read_design(data)[0], world)
     run = prove(route, 7, world, setup=Setup(driver=f"{file}:NoStop"))
     assert run.verdict is not None
     assert run.verdict.counts == {"stop line": 3}

@@ -9,10 +9,10 @@ import pytest
 import shapely
 from tests.report.test_networks import TWO
 
-from roadgpt.network import Route, made_from, read_network_design
+from roadgpt.network import Route, made_from
 from roadgpt.network.markings import arrows, strokes
 from roadgpt.report import view
-from roadgpt.road import World
+from roadgpt.road import World, read_design
 from roadgpt.run import Run, Setup, prove
 from tests import chromium
 
@@ -23,7 +23,7 @@ def run_of(lanes: int = 1) -> Run:
     data = {**TWO, "junction2": {**TWO["junction2"], "ring_lanes": lanes}}
     if lanes > 1:
         data["lanes"] = {"forward": lanes, "backward": lanes, "width": 3.5}
-    return prove(made_from(read_network_design(data)[0], world), setup=Setup(drives=False), world=world)
+    return prove(made_from(read_design(data)[0], world), setup=Setup(drives=False), world=world)
 
 
 @pytest.fixture(scope="module")

@@ -11,13 +11,14 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from roadgpt.network import NetworkDesign, Route, made_from, read_network_design
+from roadgpt.network import Route, made_from
 from roadgpt.network.markings import arrows
 from roadgpt.report import birds_eye, height_profile, strip, view
 from roadgpt.report.overview import pages
 from roadgpt.report.page.maps import draw_site, site_of
 from roadgpt.report.plan_view import ASPHALT, GRASS, KERB, PAINT, TINT, Frame
-from roadgpt.road import Profile, Road, World
+from roadgpt.road import Design, Profile, Road, World, read_design
+from roadgpt.road.profile import Lane
 from roadgpt.run import Run, Setup, prove, write_run
 
 TWO = {
@@ -31,8 +32,8 @@ TWO = {
 }
 
 
-def design() -> NetworkDesign:
-    return read_network_design(TWO)[0]
+def design() -> Design:
+    return read_design(TWO)[0]
 
 
 @pytest.fixture(scope="module")
@@ -174,7 +175,7 @@ def test_the_place_of_a_failure_shows_the_junction_around_it(driven: Run, route:
 def test_arrows_before_a_junction_are_drawn() -> None:
     data = {**TWO, "lanes": {"forward": 2, "backward": 2, "width": 3.5}}
     data["junction2"] = {**TWO["junction2"], "ring_lanes": 2}
-    found = made_from(read_network_design(data)[0], World())
+    found = made_from(read_design(data)[0], World())
     assert isinstance(found, Route)
     picture = birds_eye(prove(found, setup=Setup(drives=False)))
     outer = next(each for each in arrows(found.network) if each.end.road == 1 and each.lane == -2)
@@ -192,15 +193,16 @@ def test_medians_are_green(is_route: bool) -> None:
         lanes = {"forward": 2, "backward": 2, "width": 3.5, "divided": True}
         data = {**TWO, "lanes": lanes, "junction1": {**TWO["junction1"], "crosswalk": True}}
         data["junction2"] = {"after": 2, "kind": "crossroads", "take": "straight"}
-        route = made_from(read_network_design(data)[0], World())
+        route = made_from(read_design(data)[0], World())
         assert isinstance(route, Route)
         road, profile = route, route.network.road(route.legs[0].road).profile
     else:
-        profile = replace(Profile.of(2, 2, 3.5), median=2.0)
+        plain = Profile.of(2, 2, 3.5)
+        profile = replace(plain, left=(Lane("median", 2.0, "solid"), *plain.left))
         road = Road.through([[20, 90, 0], [60, 90, 0], [120, 90, 3]]).with_profile(profile)
     run = prove(road, setup=Setup(drives=False))
     x = np.array([24.0, 32.0, 50.0, 65.0])
-    y = np.full(4, 90 + sum(float(t) for t in profile.sides(0.0)) / 2)
+    y = np.full(4, 90 + sum(float(t) for t in profile.edges_of(1, 0.0)) / 2)
     assert near(seen(birds_eye(run), np.column_stack([x, y])), GRASS).all()
     told = view.scene(run)
     shown = told["network"]["roads"][0]["lanes"] if is_route else told["road"]["lanes"]

@@ -8,6 +8,7 @@ import pytest
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Road, World
 from roadgpt.road.land import Land
+from roadgpt.scene.scene import landscape
 
 FAR = np.array([300.0, 900.0, 2500.0, 7000.0])  # m beyond the margin of 130 m
 ROAD = Road(
@@ -18,7 +19,7 @@ ROAD = Road(
 
 @pytest.fixture(scope="module")
 def land() -> Land:
-    return Land.around(ROAD, World())
+    return landscape(ROAD, World())[0]
 
 
 def test_far_ground_comes_down_by_shares_to_four_metres_below_the_mean(land: Land) -> None:
@@ -73,7 +74,7 @@ def test_without_a_shoulder_the_land_is_flat_and_a_metre_or_more_below_the_road(
     floor: float, level: float
 ) -> None:
     world = World(section=CrossSection(shoulder=0)).changed(z_floor=floor)
-    land = Land.around(ROAD, world)
+    land, _ = landscape(ROAD, world)
     assert land.heights[4:-4, 4:-4] == pytest.approx(level)
     assert land.heights[0] == pytest.approx(level - 4)
     assert np.isinf(land.away).all()
@@ -84,7 +85,7 @@ def test_land_lies_below_the_lower_edge_of_a_banked_road(side: int) -> None:
     angle = CubicProfile.constant(side * 0.12)
     profile = replace(World().profile_of(ROAD), superelevation_angle=angle)
     road = ROAD.with_profile(profile)
-    land, s = Land.around(road, World()), np.linspace(0.0, road.length, 80)
+    (land, _), s = landscape(road, World()), np.linspace(0.0, road.length, 80)
     rims = [road.at(s, t) for t in profile.rims(s)]
     lower = np.minimum(rims[0][:, 2], rims[1][:, 2])
     assert (road.at(s)[:, 2] - lower).min() > 0.5

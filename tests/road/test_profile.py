@@ -1,6 +1,7 @@
 """The cross-section of a road: lanes, shoulders and markings at each station, and its form in road files."""
 
 import json
+import random
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from pydantic import ValidationError
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Profile, Road, World
-from roadgpt.road.profile import Lane
+from roadgpt.road.profile import Kind, Lane, profile_from_json, profile_to_json
 from tables import rows
 
 STATIONS = np.array([[0.0, 1.0, 2.5], [40.0, 60.0, 80.0]])
@@ -85,7 +86,7 @@ def test_a_width_that_varies_is_followed_by_middle_edges_and_reach() -> None:
 @pytest.mark.parametrize(
     ("left", "right", "driven"),
     [
-        ((), (Lane("shoulder", 1.0),), 0),
+        ((), (Lane("shoulder", 1.0),), 1),
         ((), (Lane("driving", 3.0),), 1),
         ((), (Lane("shoulder", 1.0), Lane("driving", 3.0)), 0),
         ((), (Lane("driving", -3.0),), 0),
@@ -97,6 +98,88 @@ def test_cross_sections_that_cannot_be_are_refused(
 ) -> None:
     with pytest.raises(ValueError, match=r"\w"):
         Profile(left, right, driven)
+
+
+KINDS: tuple[Kind, ...] = (
+    "driving",
+    "driving",
+    "driving",
+    "shoulder",
+    "median",
+    "biking",
+    "sidewalk",
+    "parking",
+)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_strips_of_any_kind_lie_beside_each_other_in_any_order(seed: int) -> None:
+    """Laid out by hand, from the left rim to the right one: what lies between the outermost driving lanes is
+    the carriageway."""
+    rng = random.Random(seed)
+    left, right = (
+        tuple(
+            Lane(rng.choice(KINDS), rng.choice((0.5, 2.0, 3.5)), rng.choice(("solid", "broken", "none")))
+            for _ in range(rng.randint(0, 5))
+        )
+        for _ in range(2)
+    )
+    driven = [n for n, lane in enumerate(right) if lane.kind == "driving"]
+    profile = Profile(left, right, rng.choice(driven or [0]), "double", offset=rng.choice((0.0, 1.25)))
+    at = profile.offset + sum(float(lane.width) for lane in left)
+    strips: list[tuple[int, Lane, float, float]] = []
+    for number, lane in (*list(enumerate(left, 1))[::-1], *((-n, lane) for n, lane in enumerate(right, 1))):
+        strips.append((number, lane, at, at - float(lane.width)))
+        at -= float(lane.width)
+    assert {number: lane for number, lane, *_ in strips} == profile.lanes
+    for number, _, high, low in strips:
+        assert profile.edges_of(number, 0.0) == pytest.approx((high, low))
+    road = [strip for strip in strips if strip[1].kind == "driving"]
+    assert profile.along_ids == tuple(strip[0] for strip in road if strip[0] < 0)
+    assert profile.against_ids[::-1] == tuple(strip[0] for strip in road if strip[0] > 0)
+    if strips:
+        assert profile.rims(0.0) == pytest.approx((strips[0][2], strips[-1][3]))
+    if not road:
+        assert profile.edges(0.0) == pytest.approx((profile.offset, profile.offset))
+        return
+    assert profile.edges(0.0) == pytest.approx((road[0][2], road[-1][3]))
+    inside = strips[strips.index(road[0]) : strips.index(road[-1]) + 1]
+    bounds = profile.boundaries(0.0)
+    assert [float(t) for _, t in bounds] == pytest.approx([inside[0][2], *(strip[3] for strip in inside)])
+    for (marking, _), (number, lane, *_) in zip(bounds[1:], inside, strict=True):  # the edge on its right
+        below = profile.lanes.get(number - 1)
+        inner = below.marking if number > 1 and below is not None else "double"
+        assert marking == (lane.marking if number < 0 else inner)
+    assert profile.is_divided == (
+        min(strip[0] for strip in road) < 0 < max(strip[0] for strip in road)
+        and any(strip[1].kind == "median" for strip in inside)
+    )
+    if driven:
+        bound = bounds[profile.boundaries_to_left][1]
+        assert profile.lane(0.0).left == pytest.approx(bound)
+        assert profile.middle(0.0) == pytest.approx((bound + bounds[profile.boundaries_to_left + 1][1]) / 2)
+    else:
+        with pytest.raises(UsageError, match="no lane leads along the road"):
+            Road.from_json(BEND.with_profile(profile).to_json())
+    assert profile_from_json(profile_to_json(profile)) == profile
+    mirrored = profile.mirrored
+    assert mirrored.edges(0.0) == pytest.approx((-road[-1][3], -road[0][2]))
+    assert mirrored.along_ids == tuple(-number for number in profile.along_ids)
+
+
+@pytest.mark.parametrize("left_hand", [False, True])
+def test_a_median_of_an_older_file_is_the_lane_beside_the_centre_line(left_hand: bool) -> None:
+    data = profile_to_json(Profile.of(2, 2, 3.5, 1.0))
+    if left_hand:
+        data = {**data, "left_hand": True}
+    profile = profile_from_json({**data, "median": 2.0})
+    own, other = (profile.left, profile.right) if left_hand else (profile.right, profile.left)
+    assert other[0] == Lane("median", 2.0, "solid")
+    assert own == Profile.of(2, 2, 3.5, 1.0).right
+    assert profile.is_divided
+    assert [float(t) for _, t in profile.boundaries(0.0)] == pytest.approx(
+        [7, 3.5, 0, -2, -5.5, -9] if left_hand else [9, 5.5, 2, 0, -3.5, -7]
+    )
 
 
 def test_a_road_file_keeps_the_cross_section_to_the_last_digit() -> None:

@@ -8,8 +8,8 @@ import pytest
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Profile, Road, World
 from roadgpt.scene import Camera, Pose, Scene
+from roadgpt.scene.network_mesh import patches_of
 from roadgpt.scene.patterns import noise
-from roadgpt.scene.road_mesh import LitTerrain, road_patches
 from roadgpt.scene.shade import LaneBoundaries, paved
 
 LENGTH = 120.0
@@ -56,7 +56,7 @@ def test_the_surface_of_a_bend_falls_to_its_inside(ratio: float) -> None:
     world = World(section=CrossSection(bank=ratio, shoulder=2.0))
     road = world.lay(Road(plan, GradeProfile(3.0, (0.0, plan.length), (0.0, 0.0))))
     scene = Scene.of(road, world)
-    patches = road_patches(road, world, LitTerrain(scene.land))
+    patches, _ = patches_of(road, world, scene.land)
     surface = np.concatenate([patch.points for patch in patches if (patch.kinds == 0).all()])
     s, t = road.locate(surface[:, 0], surface[:, 1])
     arc = (s > 95.0) & (np.abs(t) < 5.9)  # all of the arc has the whole superelevation there

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import shapely
 
-from roadgpt.network import Route, made_from, read_any_design
+from roadgpt.network import Route, made_from
 from roadgpt.network.markings import arrows, signs
-from roadgpt.road import CrossSection, World
+from roadgpt.road import CrossSection, World, read_design
 from roadgpt.scene import Camera, CameraPlacement, Pose, Scene
 from roadgpt.scene.network_mesh import faces_of
 
@@ -25,7 +25,7 @@ def route_of(world: World | None = None, lanes: dict[str, object] | None = None,
         "junction1": {"after": 1, **junction},
         "road_segment2": {**STRAIGHT, "incline": 6},
     }
-    found = made_from(read_any_design(data)[0], world or World())
+    found = made_from(read_design(data)[0], world or World())
     assert isinstance(found, Route)
     return found
 
@@ -167,7 +167,7 @@ def test_lines_between_lanes_lie_where_lanes_meet(
         "junction1": {"after": 1, "kind": "crossroads", "take": "straight"},
         "road_segment2": STRAIGHT,
     }
-    route = made_from(read_any_design(data)[0], World())
+    route = made_from(read_design(data)[0], World())
     assert isinstance(route, Route)
     scene = Scene.of(route, World())
     x = np.arange(50.0, 66.0, 0.05)
@@ -200,7 +200,7 @@ def test_arrows_are_white_and_the_asphalt_beside_them_is_not() -> None:
         "junction1": {"after": 1, "kind": "crossroads", "take": "left"},
         "road_segment2": STRAIGHT,
     }
-    route = made_from(read_any_design(data)[0], World())
+    route = made_from(read_design(data)[0], World())
     assert isinstance(route, Route)
     found = [shapely.Polygon(each.points[:, :2]) for each in arrows(route.network) if each.end.road == 1]
     assert len(found) == 2

@@ -9,8 +9,8 @@ import pytest
 
 from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View, simulate
 from roadgpt.drive.lane_position import LanePolygon
-from roadgpt.network import Route, build_route, read_network_design
-from roadgpt.road import CrossSection, Limits, Road, World
+from roadgpt.network import Route, build_route
+from roadgpt.road import CrossSection, Limits, Road, World, read_design
 from roadgpt.verdict import Verdict, judge
 
 WORLD = World(section=CrossSection(shoulder=2.0), limits=Limits(oob_tolerance=1.0))
@@ -33,7 +33,7 @@ def crossroads(take: str, control: str = "none") -> Route:
         },
         "road_segment2": straight,
     }  # fmt: skip
-    return build_route(read_network_design(design)[0], WORLD).on_ground()
+    return build_route(read_design(design)[0], WORLD).on_ground()
 
 
 def driven(

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Protocol, TypeVar, get_args
+from typing import Annotated, Any, Literal, NamedTuple, Protocol, TypeVar, get_args
 
 from pydantic import Field
 
@@ -10,9 +10,6 @@ from roadgpt.brief.model import Brief, Frozen
 from roadgpt.road import Design
 from roadgpt.run.model import Outcome, Request
 from roadgpt.verdict.verdict import Cause, Side
-
-if TYPE_CHECKING:
-    from roadgpt.network import AnyDesign
 
 Goal = Literal["failures", "coverage", "hardest", "boundary"]
 """The goal of a search; a cell without a goal makes the requested number of roads and does not search."""
@@ -61,7 +58,7 @@ UNLIMITED = CellBudget()
 class Proposal:
     """A test that a generator proposes."""
 
-    design: "AnyDesign | None"
+    design: Design | None
     """The road's design. None: a worker drafts the road from the cell's Brief, with ``seed`` and the
     number of the test. The drafted road differs from at least the latest 1500 designs (from all designs if
     ``Cell.in_sequence``) in the batches whose results the generator has received.
@@ -86,7 +83,7 @@ class Result:
     outcome: Outcome
     description: str
     """One sentence that describes the outcome."""
-    design: "AnyDesign | None" = None
+    design: Design | None = None
     """The design of the road; None if no road could be designed."""
     length: float = 0.0
     """Length of the road seen from above, metres; 0 if there is no road."""
@@ -112,7 +109,7 @@ class Result:
     @property
     def plain_design(self) -> Design | None:
         """The design; None if there is none, or if it has junctions."""
-        return self.design if isinstance(self.design, Design) else None
+        return self.design if self.design is not None and self.design.is_plain else None
 
     @property
     def failed(self) -> bool:

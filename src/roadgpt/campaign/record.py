@@ -34,7 +34,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 from roadgpt.campaign.model import Cell, NumberedTest, Proposal, Result
 from roadgpt.campaign.single_test import OF_VERDICT, FinishedTest, Task, seed_of_driver
@@ -53,7 +53,6 @@ from roadgpt.verdict import Verdict, judge
 
 if TYPE_CHECKING:
     from roadgpt.campaign.plan import Plan
-    from roadgpt.network import AnyDesign
 
 STORE = "campaign.sqlite"
 FORMAT = 1
@@ -74,26 +73,18 @@ RESULT = ", ".join(("tests.number, batch, seed, given", *MEASURED, "origin, desi
 """The columns of a result in the joined tables ``tests`` and ``details``."""
 
 
-def design_text(design: "AnyDesign | None") -> str | None:
+def design_text(design: Design | None) -> str | None:
     """Returns a design as JSON; ``design_of`` restores the same design."""
-    return None if design is None else design.model_dump_json(exclude_none=True)
-
-
-def design_of(text: str | None) -> "AnyDesign | None":
-    """Restores a design from JSON text as returned by ``design_text``."""
-    if text is None:
+    if design is None:
         return None
-    try:
-        return Design.model_validate_json(text)
-    except ValidationError:  # it has junctions or is a map, or is nothing at all
-        return _designs().validate_json(text)
+    unused = {name for name, value in design if value == () or value is False}
+    unused |= {"starting_point", "theta"} if design.is_map else set()
+    return design.model_dump_json(exclude_none=True, exclude=unused)
 
 
-@cache
-def _designs() -> "TypeAdapter[AnyDesign]":
-    from roadgpt.network import AnyDesign
-
-    return TypeAdapter(AnyDesign)
+def design_of(text: str | None) -> Design | None:
+    """Restores a design from JSON text as returned by ``design_text``."""
+    return None if text is None else Design.model_validate_json(text)
 
 
 def values_of_test(ended: FinishedTest, now: float, trace: int | None) -> tuple[Any, ...]:

@@ -1,14 +1,17 @@
-"""Defines the Finding: one violation of a rule by a road."""
+"""Defines the Finding: one violation of a rule by a road, and says where it is."""
 
 import math
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roadgpt.brief.junctions import NAMES
-from roadgpt.network import Junction, Network, NetworkRoad, Route
+from roadgpt.network import Junction, Network, NetworkRoad, is_route
 from roadgpt.road import Road
+
+if TYPE_CHECKING:
+    from roadgpt.network import Route
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,81 +29,51 @@ class Finding:
     """Whether the road cannot be driven at all, for example because it is too short for a car."""
 
 
-def findings_at(rule: str, road: Road, place: tuple[float, str] | None) -> tuple[Finding, ...]:
-    """Returns the Finding for a station in metres and what is wrong there; no Finding for None."""
-    if place is None:
-        return ()
-    s, what = place
-    x, y, _ = (float(v) for v in road.at(s))
-    return (Finding(rule, f"at s = {s:.0f} m: {what}", s, x, y),)
+def single_road(route: Road | None) -> Road | None:
+    """Returns the road that is driven if it is a single one, which must also suit the SBFT competition; None
+    for a Route, and for a map without a route."""
+    return None if route is None or is_route(route) else route
 
 
-ROUNDING = 1e-9  # m
+def route_of(route: Road | None) -> "Route | None":
+    """Returns the Route that is driven through a network; None for a single road."""
+    return route if route is not None and is_route(route) else None
 
 
-def junction_finding(rule: str, route: Route | None, junction: Junction, what: str) -> Finding:
+def junction_finding(rule: str, route: Road | None, junction: Junction, what: str) -> Finding:
     """Returns the Finding that something, ``what``, is wrong at a junction. Its station is where the route
     enters the junction; None if no route passes it."""
     x, y, _ = junction.node
-    s = None
-    if route is not None:
-        s = next((each.start for each in route.passages if each.entered.node == junction.node), None)
+    passages = () if (driven := route_of(route)) is None else driven.passages
+    s = next((each.start for each in passages if each.entered.node == junction.node), None)
     return Finding(rule, f"at {name_of(junction)}: {what}", s, x, y)
 
 
 def road_finding(
-    rule: str, route: Route | None, member: NetworkRoad, s: float, what: str, stops: bool = False
+    rule: str, route: Road | None, member: NetworkRoad, s: float, what: str, stops: bool = False
 ) -> Finding:
     """Returns the Finding that something, ``what``, is wrong at station ``s`` (m) of a road. Its station is
-    measured along the route; None if the road is not on the route."""
+    measured along the route; None if the road is not on the route. The place of a single road is its station
+    alone."""
     with np.errstate(invalid="ignore", over="ignore"):  # a number of the road may not be finite
         x, y, _ = member.road.at(s).tolist()
     along = station_on(route, member, s)
     where = f"on road {member.id}" if along is None else f"at s = {along:.0f} m"
-    near = f", near ({x:.0f}, {y:.0f})" if math.isfinite(x) and math.isfinite(y) else ""
+    near = ""
+    if single_road(route) is None and math.isfinite(x) and math.isfinite(y):
+        near = f", near ({x:.0f}, {y:.0f})"
     return Finding(rule, f"{where}{near}: {what}", along, x, y, stops)
 
 
-def bends_below(
-    rule: str,
-    network: Network,
-    route: Route | None,
-    least: float,
-    what: str,
-    radii_at: Callable[[Network, Junction], Iterable[float]],
-) -> tuple[Finding, ...]:
-    """Returns a Finding for each junction or roundabout with a bend below ``least`` metres. ``what`` names
-    the line and has a ``{}`` for its radius. ``radii_at`` gives the radii at a junction, with traffic on the
-    right."""
-    found = []
-    seen = network.right_hand
-    for _, junctions in network.nodes:
-        radii = (radius for each in junctions for radius in radii_at(seen, seen.junction(each.id)))
-        radius = min(radii, default=least)
-        if radius < least - ROUNDING:
-            wanted = "give the island" if junctions[0].kind == "roundabout" else "ask for a kerb with"
-            advice = f"{wanted} a larger radius or turn the arms apart"
-            told = f"{what.format(radius)}, tighter than {least:g} m; {advice}"
-            found.append(junction_finding(rule, route, junctions[0], told))
-    return tuple(found)
-
-
-def station_on(route: Route | None, member: NetworkRoad, s: float) -> float | None:
+def station_on(route: Road | None, member: NetworkRoad, s: float) -> float | None:
     """Returns the distance in metres along a route to station ``s`` of a road, where the route first uses it;
     None if the road is not on the route."""
-    if route is None:
-        return None
-    for start, leg in zip(route.starts, route.legs, strict=False):
+    if (driven := route_of(route)) is None:
+        return None if route is None else s
+    for start, leg in zip(driven.starts, driven.legs, strict=False):
         if leg.road == member.id:
             return start + (s if member.profile.leads_along(leg.lane) else member.road.length - s)
     return None
-
-
-def station_near(route: Route | None, member: NetworkRoad, x: float, y: float) -> float | None:
-    """Returns the result of ``station_on`` for the place on a road that is nearest to (x, y)."""
-    if station_on(route, member, 0.0) is None:
-        return None
-    return station_on(route, member, float(member.road.locate(x, y)[0]))
 
 
 def name_of(junction: Junction) -> str:

@@ -1,29 +1,67 @@
-"""Matches the turns and straights of a measured road with those that an Outline requests.
+"""Compares what is measured on a road, a route or a map with what a description requires of it.
 
-Turns are matched one to one and in order. A requested straight matches either the whole straight between two
-turns of the road, or a piece of it that goes up, is flat or goes down throughout. If several straights are
-requested between two turns, they are matched with such pieces in order, each piece at most once. Requested
-straights in a row that all go up, or all go down, with different grades may also be parts of one piece.
-Finally, turns and straights that a description wants to be alike are compared with each other."""
+Roads: turns are matched one to one and in order. A requested straight matches either the whole straight
+between two turns of the road, or a piece of it that goes up, is flat or goes down throughout. If several
+straights are requested between two turns, they are matched with such pieces in order, each piece at most
+once. Requested straights in a row that all go up, or all go down, with different grades may also be parts of
+one piece. If the description leaves a count open ("at least three right turns, then a hairpin"), the turns of
+the road are assigned to the requested groups so that as few turns as possible violate a requirement. Finally,
+turns and straights that a description wants to be alike are compared with each other.
 
-from collections.abc import Callable, Iterator, Sequence
+Routes: each junction, and each place where lanes change, is compared with the one that is asked for there.
+Maps: numbers of junctions by kind and by sign, blocks, dead ends and distances are compared."""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import chain, pairwise
 from math import inf, isfinite
-from typing import Generic, NamedTuple, TypeVar
+from operator import itemgetter
+from typing import NamedTuple
 
-from roadgpt.brief.model import OTHER_SIDE, Side
+from roadgpt.brief.junctions import (
+    LANE_KINDS,
+    NAMES,
+    RAMPS,
+    SIGNS,
+    SIZES,
+    SKEW,
+    Control,
+    JunctionCount,
+    MapClause,
+    MapJunctionKind,
+    bends_as,
+    is_about,
+)
+from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, JunctionClause, span
 from roadgpt.brief.outline import Feature, Group, Outline, both
 from roadgpt.brief.ranges import Range, overlap
-from roadgpt.brief.words import FEATURE
-from roadgpt.check.measures import LEVEL, GradeChange, MeasuredFeature, Measures
+from roadgpt.brief.sentence import TAKES
+from roadgpt.brief.words import COUNTS, FEATURE, NO_TURN, ROAD, WHOLE_SLOPES
+from roadgpt.check.measures import (
+    LEVEL,
+    GradeChange,
+    MeasuredFeature,
+    MeasuredJunction,
+    MeasuredLanes,
+    MeasuredMap,
+    MeasuredNode,
+    Measures,
+)
+from roadgpt.plural import plural
+from roadgpt.road import Profile
 
-T = TypeVar("T")
 ANGLES = 6.0  # degrees by which the angles of like turns may differ
 RATIO = 1.2  # of the largest radius or length of like parts to the smallest
 METRES = 5.0  # by which the lengths of like straights may differ in any case
 OPEN_TURN = Feature("turn", "turn")
+SLACK = 0.15  # ratio, allowed deviation from the radius of an island that is given as one number
+ROUNDING = 0.5  # m, allowed deviation from a range of outer diameters
+SHARE = 0.1  # ratio by which a distance between junctions may differ from the requested distance
+NEVER_USUAL = ("lights", "stop")
+"""Signs that a junction has only on request; a roundabout has signs to give way even without a request."""
+CORNERS = 4  # corners of a grid; at each, the road may bend without a junction
 Wanted = Sequence[Feature | None]
 
 
@@ -35,19 +73,16 @@ class Complaint(NamedTuple):
     sentence: str
     s: float | None = None
     on_heights: bool = False  # whether the requirement could be met by changing only the heights of the road
+    place: tuple[float, float] | None = None  # of a junction of a map, in metres
 
 
-class Match(NamedTuple, Generic[T]):
-    """A way to match the turns and straights of a road with an Outline, or with a part of it."""
+Match = tuple[float, tuple[Complaint, ...]]
+"""A way to match the turns and straights of a road, or of a part of it, with those of an Outline: the number
+of features that are not as requested, infinite if the match is impossible; and what is wrong with them."""
 
-    wrong: float = 0.0
-    """The number of features that are not as requested; infinite if the match is impossible."""
-    items: tuple[T, ...] = ()
-    """The results for single features, of the type that the caller needs, such as complaints."""
 
-    def plus(self, other: "Match[T]") -> "Match[T]":
-        """Returns this match combined with the match of the following part of the road."""
-        return Match(self.wrong + other.wrong, self.items + other.items)
+def _joined(*parts: Match) -> Match:
+    return sum(wrong for wrong, _ in parts), tuple(chain.from_iterable(told for _, told in parts))
 
 
 def fits(stretch: MeasuredFeature, feature: Feature) -> bool:
@@ -88,79 +123,53 @@ def turn_complaints(
     return tuple(out)
 
 
-def best_match(
-    asked: Outline,
-    count: int,
-    of_turns: Callable[[Group, int, int], Match[T]],
-    of_gap: Callable[[int, tuple[Feature, ...]], Match[T]],
-) -> Match[T]:
-    """Returns the best match of a road of ``count`` turns with an Outline: the match with the fewest features
-    that are not as requested.
+def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
+    """Returns the Complaints about the turns and straights of an Outline, in driving order. The road is
+    matched so that the fewest of them are not as requested; the only Complaint is about the number of turns
+    if no match is possible."""
+    groups, turns, gaps = asked.groups, found.turns, found.gaps
+    turns_are_free = not asked.names_all_turns
 
-    ``of_turns`` matches a group with turns of the road; its arguments are the group, the index of the first
-    turn and the number of turns. ``of_gap`` matches requested straights with the gap before a turn; its
-    arguments are the index of the turn (``count`` for the last gap) and the straights."""
-    groups, turns_are_free = asked.groups, not asked.names_all_turns
+    def of_turns(group: Group, first: int, number: int) -> Match:
+        side = other = group.feature.side
+        if group.alternating:  # the first turn may go either way, unless its side is stated
+            side = side or turns[first].side
+            other = OTHER_SIDE[side] if side else None
+        told = [
+            turn_complaints(n + 1, turns[n], group.feature, (side, other)[(n - first) % 2])
+            for n in range(first, first + number)
+        ]
+        return sum(map(bool, told)), tuple(chain.from_iterable(told))
 
     @cache
-    def best(group: int, turn: int, wanted: tuple[Feature, ...]) -> Match[T]:
+    def best(group: int, turn: int, wanted: tuple[Feature, ...]) -> Match:
         """Returns the best match from this group on, with this turn next and these straights before it."""
-        here = of_gap(turn, wanted)
+        here = _of_gap(found, gaps[turn], wanted, turn)
         if group == len(groups):
-            return here if turns_are_free or turn == count else Match(inf)
-        ways = [here.plus(best(group, turn + 1, ()))] if turns_are_free and turn < count else []
+            return here if turns_are_free or turn == len(turns) else (inf, ())
+        ways = [_joined(here, best(group, turn + 1, ()))] if turns_are_free and turn < len(turns) else []
         now = groups[group]
         if now.feature.kind == "straight":
             ways += [best(group + 1, turn, wanted + (now.feature,) * now.lo)]
-            return min(ways, key=lambda match: match.wrong)
-        if now.lo == 0:
-            ways += [best(group + 1, turn, wanted)]
-        most = count - turn if now.hi is None else min(now.hi, count - turn)
-        for number in range(max(now.lo, 1), most + 1):
-            own = of_turns(now, turn, number)
-            ways.append(here.plus(own).plus(best(group + 1, turn + number, ())))
-        return min(ways, key=lambda match: match.wrong, default=Match(inf))
+        else:
+            if now.lo == 0:
+                ways += [best(group + 1, turn, wanted)]
+            left = len(turns) - turn
+            for number in range(max(now.lo, 1), (left if now.hi is None else min(now.hi, left)) + 1):
+                ways.append(_joined(here, of_turns(now, turn, number), best(group + 1, turn + number, ())))
+        return min(ways, key=itemgetter(0), default=(inf, ()))
 
-    return best(0, 0, ()) if groups else Match()
-
-
-def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
-    """Returns the Complaints about the turns and straights of an Outline, in driving order; the only one is
-    about the number of turns if no match is possible."""
-    turns, gaps = found.turns, found.gaps
-
-    def of_turns(group: Group, first: int, number: int) -> Match[Complaint]:
-        own = turns[first : first + number]
-        sides = sides_of(group, [turn.side for turn in own])
-        says = [
-            turn_complaints(index, turn, group.feature, side)
-            for index, (turn, side) in enumerate(zip(own, sides, strict=True), first + 1)
-        ]
-        return Match(sum(map(bool, says)), tuple(chain.from_iterable(says)))
-
-    def of_gap(turn: int, wanted: tuple[Feature, ...]) -> Match[Complaint]:
-        return _of_gap(found, gaps[turn], wanted, turn)
-
-    match = best_match(asked, len(turns), of_turns, of_gap)
-    if match.wrong == inf:
+    wrong, told = best(0, 0, ()) if groups else (0, ())
+    if wrong == inf:
         return (Complaint(f"the {len(turns)} turns cannot be matched with what was asked for"),)
-    return match.items
-
-
-def sides_of(group: Group, sides: Sequence[Side | None]) -> list[Side | None]:
-    """Returns the side that is required of each turn of a group; None if either side is allowed. ``sides``
-    are the measured ones. If the turns must alternate and the group does not state the side of the first
-    turn, its measured side is required."""
-    first = group.feature.side or (sides[0] if sides and group.alternating else None)
-    other = OTHER_SIDE[first] if first and group.alternating else first
-    return [(first, other)[index % 2] for index in range(len(sides))]
+    return told
 
 
 def _of_gap(
     found: Measures, gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], turn: int
-) -> Match[Complaint]:
+) -> Match:
     if not wanted or (len(wanted) == 1 and any(fits(straight, wanted[0]) for straight in gap)):
-        return Match()
+        return 0, ()
     pieces = [piece for straight in gap for piece in straight.pieces]
     at, missing = 0, list[Feature]()
     for ramp in _ramps(wanted):
@@ -178,11 +187,10 @@ def _of_gap(
     s = gap[0].start if gap else None
     pieces_told = (f"{each.length:.0f} m at {each.grade:.1f} %" for each in (gap[0].pieces if gap else ()))
     has = ", then ".join(pieces_told) if gap else "none"
-    says = (
+    return len(missing), tuple(
         Complaint(f"asked for a straight {where}{wish.limits()}, has {has}", s, wish.grade is not None)
         for wish in missing
     )
-    return Match(len(missing), tuple(says))
 
 
 def _ramps(wanted: tuple[Feature, ...]) -> list[list[Feature]]:
@@ -315,3 +323,327 @@ def _wanted(asked: Outline, count: int) -> tuple[list[Feature], list[list[Featur
         elif end is not None and end.kind == "straight":
             gaps[place] = [both(gaps[place][0], end)] if len(gaps[place]) == 1 else [*gaps[place], end]
     return turns, gaps
+
+
+def complaints(found: Measures, asked: Outline) -> list[Complaint]:
+    """Returns one Complaint for each requirement of an Outline that a measured road does not meet."""
+    out = list(_counts(found, asked))
+    if len(found.turns) in asked.turns:
+        out += sequence_complaints(found, asked)
+        if asked.alike:
+            out += likeness_complaints(found, asked)
+    for number, turn in enumerate(found.turns, 1):
+        out += turn_complaints(number, turn, asked.each_turn)
+    out += _slopes(found, asked)
+    for name, row in ROAD.items():
+        span, value = getattr(asked, name), getattr(found, name)
+        if span and value not in span:
+            text = f"asked for {row.asked.format(span)}, has {row.measured.format(value)}"
+            out.append(Complaint(text, on_heights=row.on_heights))
+    return out + list(_ends(found, asked))
+
+
+def _counts(found: Measures, asked: Outline) -> Iterator[Complaint]:
+    number = len(found.turns)
+    counts = {"turns": number, "left": found.count("left"), "right": found.count("right")}
+    for name, has in counts.items():
+        span: Range = getattr(asked, name)
+        if has not in span:
+            plural = "" if span.lo == span.hi == 1 else "s"
+            yield Complaint(f"asked for {span} {COUNTS[name]}{plural}, has {has}")
+    if number in asked.turns and asked.turns.hi == 0 and found.turning not in NO_TURN:
+        yield Complaint(f"asked for a straight road, turns {found.turning:.1f} degrees in all")
+    for second, (one, other) in enumerate(pairwise(found.turns), 2):
+        if asked.alternating and one.side == other.side:
+            text = f"asked for turns to alternate, turns {second - 1} and {second} both go {one.side}"
+            yield Complaint(text, other.start)
+
+
+def _slopes(found: Measures, asked: Outline) -> Iterator[Complaint]:
+    """Checks the whole road: up or down on average and nowhere the other way, or level everywhere."""
+    low, high, mean = found.lowest_grade, found.highest_grade, found.grade
+    whole = 100 * found.climb / found.length
+    is_so = {
+        "up": whole >= LEVEL and low > -LEVEL,
+        "down": whole <= -LEVEL and high < LEVEL,
+        "flat": low > -LEVEL and high < LEVEL,
+    }
+    if asked.grade and not is_so[asked.grade]:
+        grades = f"{whole:.1f} % on average and {low:.1f} to {high:.1f} % over 20 m"
+        yield Complaint(
+            f"asked for a road that {WHOLE_SLOPES[asked.grade]} all the way, has {grades}", on_heights=True
+        )
+    if asked.grade in ("up", "down") and asked.grade_range and mean not in asked.grade_range:
+        yield Complaint(f"asked for a mean grade of {asked.grade_range} %, has {mean:.1f} %", on_heights=True)
+
+
+def _ends(found: Measures, asked: Outline) -> Iterator[Complaint]:
+    for feature, index, says in ((asked.starts, 0, "start"), (asked.ends, -1, "end")):
+        if feature is None:
+            continue
+        among = found.turns if feature.kind == "turn" else found.features
+        last = among[index] if among else None
+        if last is None or last.kind != feature.kind:
+            yield Complaint(f"asked to {says} with a {feature.name}, does not")
+        elif feature.kind == "turn":
+            number = len(found.turns) if index else 1
+            yield from turn_complaints(number, last, feature)
+        elif not (fits(last, feature) or fits(last.pieces[index], feature)):
+            text = f"asked to {says} with another straight than the one it has"
+            yield Complaint(text, last.start, on_heights=feature.grade is not None)
+
+
+def lane_complaints(profile: Profile, asked: Brief) -> Iterator[Complaint]:
+    """Yields a complaint for each requirement of lanes that the cross-section of a road does not meet."""
+    forward, backward = profile.count
+    if asked.lanes is not None and forward not in span(asked.lanes):
+        yield Complaint(f"asked for {asked.lanes} lanes, has {forward}")
+    if asked.against is not None and backward not in span(asked.against):
+        yield Complaint(f"asked for {asked.against} oncoming lanes, has {backward}")
+    if asked.divided and not profile.is_divided:
+        yield Complaint("asked for a median, has none")
+    if asked.centre is not None and backward and profile.centre_marking != asked.centre:
+        yield Complaint(f"asked for a {asked.centre} centre line, has a {profile.centre_marking} one")
+
+
+def place_complaints(found: MeasuredJunction | MeasuredLanes, asked: JunctionClause) -> Iterator[str]:
+    """Yields each requirement that a junction or a place where lanes change does not meet."""
+    if isinstance(found, MeasuredLanes):
+        if found.kind != asked.kind:
+            yield f"asked for a {asked.name}, has a {NAMES[found.kind][0]}"
+        side = asked.take or asked.side
+        if side is not None and found.side != side:
+            yield f"asked for the {side} side, is on the {found.side}"
+    elif asked.kind in LANE_KINDS:
+        yield f"asked for a {asked.name}, has a {found.kinds[0] if found.kinds else 'junction'}"
+    else:
+        yield from junction_complaints(found, asked)
+
+
+def length_range(length: Amount) -> Range:
+    """Returns the range of measured lengths in metres that meet a required length."""
+    asked = span(length)
+    if not length.exact:
+        return asked
+    slack = ROAD["length"].slack(asked.lo)
+    return Range(asked.lo - slack, asked.hi + slack)
+
+
+def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
+    """Yields each requirement that a junction does not meet."""
+    is_any = asked.kind == "junction" and not {"roundabout", *RAMPS} & {*found.kinds}
+    if not is_any and asked.kind not in found.kinds:
+        gaps = ", ".join(f"{gap:.0f}" for gap in found.gaps)
+        yield f"asked for a {asked.name}, has arms {gaps} degrees apart"
+    if asked.arms is not None and found.arms not in span(asked.arms):
+        yield f"asked for {asked.arms} arms, has {found.arms}"
+    if asked.ways and sorted(found.ways_on) != sorted(asked.ways):
+        yield f"asked for ways to the {' and '.join(asked.ways)}, has {' and '.join(found.ways_on)}"
+    for sides, said, own in (
+        (asked.only_in, "towards", found.only_in),
+        (asked.only_out, "away from", found.only_out),
+    ):
+        if not {*sides} <= {*own}:
+            yield f"asked for a one-way road {said} the junction on the {' and '.join(sides)}, has none there"
+    if asked.exit is not None and found.exit not in span(asked.exit):
+        yield f"asked for exit {asked.exit}, takes exit {found.exit}"
+    if asked.take is not None and not takes(found, asked):
+        yield f"asked to {TAKES[asked.take]}, turns {found.turn:.0f} degrees"
+    if asked.control is not None and not _is_controlled(found, asked):
+        yield f"asked for {asked.control}, has {found.control}"
+    if asked.skew and min(found.gaps) >= SKEW:
+        yield f"asked for skew crossroads, the least angle is {min(found.gaps):.0f} degrees"
+    if asked.degrees is not None and not is_about(abs(found.turn), asked.degrees):
+        yield f"asked for a turn of {asked.degrees} degrees, is {abs(found.turn):.0f} degrees"
+    if asked.angle is not None and not is_about(min(found.gaps), asked.angle):
+        yield f"asked for roads {asked.angle} degrees apart, the least angle is {min(found.gaps):.0f} degrees"
+    yield from _sizes(found, asked)
+    yield from _of_ramp(found, asked)
+    if asked.all_way and set(found.all_controls) != {asked.control}:
+        yield f"asked for {asked.control} at every arm, has {', '.join(found.all_controls)}"
+    give_way = {*found.all_controls} - {"priority"}
+    nobody_does = bool(asked.only_out) and not give_way  # all other roads lead away only
+    if asked.others_stop and give_way != {"stop"} and not nobody_does:
+        yield f"asked for stop signs for the others, has {', '.join(found.all_controls)}"
+
+
+def _of_ramp(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
+    side, lane, taper = (None, None, None) if found.ramp is None else found.ramp[1:]
+    if asked.side not in (None, side):
+        yield f"asked for a ramp on the {asked.side}, is on the {side}"
+    for name, length, own in (("lane", asked.length, lane), ("taper", asked.taper, taper)):
+        if length is not None and own is not None and own not in length_range(length):
+            yield f"asked for a {name} of {length} m, has {own:.0f} m"
+
+
+def takes(found: MeasuredJunction, asked: JunctionClause) -> bool:
+    """Returns whether the route leaves a junction in the required direction."""
+    take, turn = asked.take, found.turn
+    if take in ("ramp", "main"):
+        return found.ramp is not None and found.is_ramp is (take == "ramp")
+    if take == "back":
+        return found.exit == found.arms
+    if found.exit == found.arms:
+        return False
+    if take is not None and take.startswith(("sharp", "slight")):
+        side = take.rpartition("_")[2]
+        same = [each for each, way in zip(found.ways, found.sides, strict=True) if way == side]
+        pick = max if take.startswith("sharp") else min
+        return bool(same) and turn == pick(same, key=abs) and bends_as(take, turn)
+    if asked.kind == "y_junction" and take in ("left", "right"):
+        return turn == (max(found.ways) if take == "left" else min(found.ways))
+    return take == found.sides[found.exit - 1]
+
+
+def _is_controlled(found: MeasuredJunction, asked: JunctionClause) -> bool:
+    if asked.control in ("none", "priority") and "roundabout" in found.kinds:
+        return found.control == "yield"  # everybody gives way to those on the ring
+    return found.control == asked.control
+
+
+def _sizes(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
+    if found.ring is None:
+        return
+    island, outer = found.ring.radius, 2 * (found.ring.radius + found.ring.width)
+    if asked.lanes is not None and found.ring_lanes not in span(asked.lanes):
+        yield f"asked for a ring with {asked.lanes} lanes, has {found.ring_lanes}"
+    if asked.size is not None:
+        size = SIZES[asked.size]
+        if outer not in Range(size.lo - ROUNDING, size.hi + ROUNDING):
+            yield f"asked for a {asked.size} roundabout, {size} m wide, is {outer:.1f} m wide"
+    if asked.outer is not None:
+        wanted = span(asked.outer)
+        if outer not in Range(wanted.lo - ROUNDING, wanted.hi + ROUNDING):
+            yield f"asked for a roundabout {asked.outer} m across, is {outer:.1f} m across"
+    if asked.radius is not None:
+        wanted = span(asked.radius)
+        if asked.radius.exact:
+            wanted = Range(wanted.lo * (1 - SLACK), wanted.hi * (1 + SLACK))
+        if island not in wanted:
+            yield f"asked for an island of {asked.radius} m radius, has {island:.1f} m"
+
+
+def map_complaints(
+    found: MeasuredMap, asked: MapClause, length: Amount | None, goes: Sequence[str]
+) -> Iterator[Complaint]:
+    """Yields a complaint for each requirement that a map does not meet. ``length`` is the required length in
+    metres of all roads outside junctions. ``goes`` are the sides to which the route goes at its junctions."""
+    yield from map(Complaint, _whole_map(found, asked))
+    if asked.route and [*goes] != [*asked.route]:
+        ways = f"{', '.join(asked.route)}, goes {', '.join(goes) or 'nowhere'}"
+        yield Complaint(f"asked for a route that goes {ways}")
+    if length is not None and found.length not in length_range(length):
+        yield Complaint(f"asked for {length} m of roads in all, has {found.length:.0f} m")
+    if asked.signed or any(each.control for each in asked.junctions):
+        yield from map(Complaint, (_controls_of_grid if asked.signed else _controls)(found, asked))
+        return
+    for node in found.nodes:
+        if asked.control is not None and not _has_control(node, asked.control):
+            x, y = node.place
+            has = " and ".join(SIGNS[each] for each in sorted(node.controls))
+            text = f"asked for {SIGNS[asked.control]} at all junctions, near ({x:.0f}, {y:.0f}): {has}"
+            yield Complaint(text, place=node.place)
+
+
+def _whole_map(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
+    if found.parts > 1:
+        yield f"asked for one map, has {found.parts} parts that no road joins"
+    yield from _kinds(found, asked) if asked.junctions else _grid(found, asked)
+    if asked.blocks is not None and found.blocks not in span(asked.blocks):
+        yield f"asked for {asked.blocks} enclosed blocks, has {found.blocks}"
+    if asked.dead_ends is not None and found.ends not in span(asked.dead_ends):
+        yield f"asked for {asked.dead_ends} dead ends, has {found.ends}"
+    if asked.length is not None:
+        allowed = _allowed(asked.length)
+        wrong = [each for each in found.distances if each not in allowed]
+        if wrong:
+            worst = max(wrong, key=lambda each: max(allowed.lo - each, each - allowed.hi))
+            yield f"asked for {asked.length} m between junctions, two are {worst:.0f} m apart"
+
+
+def _grid(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
+    columns, rows = span(asked.columns), span(asked.rows)
+    blocks = Range(max(columns.lo, 1) * max(rows.lo, 1), columns.hi * rows.hi)
+    if found.blocks not in blocks:
+        yield f"asked for {asked.columns} by {asked.rows} blocks, has {found.blocks}"
+    low, high = ((side + 1) * (other + 1) for side, other in ((columns.lo, rows.lo), (columns.hi, rows.hi)))
+    if math.isfinite(low) and len(found.nodes) not in Range(low - CORNERS, high):
+        count = plural(len(found.nodes), "junction")
+        wanted = f"{low - CORNERS:g} to {high:g}"
+        yield f"a grid of {asked.columns} by {asked.rows} blocks has {wanted} junctions, not {count}"
+
+
+def _kinds(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
+    total = _in_all(asked.junctions)
+    if len(found.nodes) not in total:
+        yield f"asked for {total} junctions in all, has {len(found.nodes)}"
+    free = sum(span(each.count).hi for each in asked.junctions if each.kind == "junction")
+    named = [each for each in asked.junctions if each.kind != "junction"]
+    for kind in dict.fromkeys(each.kind for each in named):
+        own = _in_all(each for each in named if each.kind == kind)
+        allowed = Range(own.lo, own.hi + free)
+        number = sum(kind in node.kinds for node in found.nodes)
+        if number not in allowed:
+            yield f"asked for {allowed} of the kind {NAMES[kind][0]}, has {number}"
+
+
+def _in_all(asked: Iterable[JunctionCount]) -> Range:
+    counts = [span(each.count) for each in asked]
+    return Range(sum(each.lo for each in counts), sum(each.hi for each in counts))
+
+
+def _controls(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
+    wanted = [asked.control_of(each) for each in asked.junctions]
+    for control in dict.fromkeys(each for each in wanted if each is not None):
+        allowed = _in_all(each for each in asked.junctions if asked.control_of(each) == control)
+        number = sum(_has_control(node, control) for node in found.nodes)
+        if number < allowed.lo or (control in NEVER_USUAL and number > allowed.hi):
+            yield f"asked for {SIGNS[control]} at {allowed} junctions, has {number}"
+    yield from _kinds_with_signs(found, asked, asked.junctions)
+
+
+def _controls_of_grid(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
+    """Checks the signs of a grid some of whose junctions have their own; all others have that of the grid, or
+    none."""
+    left = len(found.nodes)
+    for control in dict.fromkeys(each.control for each in asked.signed if each.control is not None):
+        allowed = _in_all(each for each in asked.signed if each.control == control)
+        number = sum(_has_control(node, control) for node in found.nodes)
+        left -= number
+        if number not in allowed:
+            yield f"asked for {SIGNS[control]} at {allowed} of the junctions of the grid, has {number}"
+    yield from _kinds_with_signs(found, asked, asked.signed)
+    usual = asked.control or "none"
+    number = sum(_has_control(node, usual) for node in found.nodes)
+    if number != left:
+        yield f"asked for {SIGNS[usual]} at the {left} other junctions of the grid, has {number}"
+
+
+def _kinds_with_signs(found: MeasuredMap, asked: MapClause, kinds: Sequence[JunctionCount]) -> Iterator[str]:
+    for each in kinds:
+        held = asked.control_of(each)
+        if held is not None:
+            number = sum(_is_of(node, each.kind) and _has_control(node, held) for node in found.nodes)
+            if number < span(each.count).lo:
+                kind = NAMES[each.kind][0]
+                yield f"asked for {SIGNS[held]} at {each.count} of the kind {kind}, has {number}"
+
+
+def _is_of(node: MeasuredNode, kind: MapJunctionKind) -> bool:
+    return "roundabout" not in node.kinds if kind == "junction" else kind in node.kinds
+
+
+def _allowed(length: Amount) -> Range:
+    asked = span(length)
+    slack = max(ROAD["length"].slack(asked.lo), SHARE * asked.lo) if asked.lo > 0 else 0.0
+    return Range(asked.lo - slack, asked.hi + (slack or SHARE * asked.hi))
+
+
+def _has_control(node: MeasuredNode, control: Control) -> bool:
+    """Returns whether a junction has the requested signs: lights and "none" at all arms, others at one at
+    least."""
+    if control in ("none", "priority", "yield") and "roundabout" in node.kinds:
+        return node.controls == {"yield"}  # everybody gives way to those on the ring
+    if control in ("lights", "none"):
+        return node.controls == {control}
+    return ("yield" if control == "priority" else control) in node.controls

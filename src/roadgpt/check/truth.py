@@ -28,8 +28,8 @@ from roadgpt.brief.model import Frozen
 from roadgpt.brief.outline import Feature, Group, Outline
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import KINDS
+from roadgpt.check.matching import complaints
 from roadgpt.check.measures import Measures
-from roadgpt.check.rules.promises import complaints
 
 SLACK = 1e-9  # added to both ends of every range, as in the referee
 SHORTEST = 20.0  # m; a shorter road meets no requirement

@@ -20,8 +20,7 @@ from roadgpt.plural import plural
 
 if TYPE_CHECKING:
     from roadgpt.campaign.selection import Choice, Selection
-    from roadgpt.network import Blueprint
-    from roadgpt.road import Geometry, Road, World
+    from roadgpt.road import Design, Geometry, Road, World
     from roadgpt.run import Run
 
 FAILED, UNREADABLE = 1, 2  # exit statuses: a format cannot hold a road; a name or a road cannot be used
@@ -176,7 +175,7 @@ def roads_in(files: Sequence[str]) -> list[str]:
     return roads
 
 
-def source_of(file: str, world: "World") -> tuple["Blueprint", "World", tuple[str, ...]]:
+def source_of(file: str, world: "World") -> tuple["Design | Road", "World", tuple[str, ...]]:
     """Returns the design or the road in a file, its World, and remarks on what is taken from where. ``file``
     may be the folder of a run, or a test such as CAMPAIGN/c01/17.
 
@@ -218,16 +217,22 @@ def source_of(file: str, world: "World") -> tuple["Blueprint", "World", tuple[st
 def on_a_map(
     road: "Road", world: "World", keep_place: bool
 ) -> tuple["Road", float, tuple[float, float, float], tuple[str, ...]]:
-    """Returns the road on a map that is as wide as the World's or wider, the map's width in metres, by how
-    many metres the road was moved, and remarks. Whole metres lose no digits of the file's coordinates."""
+    """Returns the road, or the route with its network, on a map that is as wide as the World's or wider, the
+    map's width in metres, by how many metres it was moved, and remarks. Whole metres lose no digits of the
+    file's coordinates."""
     from roadgpt.brief.words import LARGEST_MAP
     from roadgpt.check.extremes import lowest
     from roadgpt.check.ribbon import extent
     from roadgpt.check.sbft import SPLINE_REACH
+    from roadgpt.network import is_route, moved_network
     from roadgpt.road import moved
 
     laid, remarks, x, y, z = world.lay(road), list[str](), 0.0, 0.0, 0.0
-    low, high = extent(laid.sample(), world.profile_of(laid).edges(laid.sample().s))
+    low, high = (
+        road.network.bounds()
+        if is_route(road)
+        else extent(laid.sample(), world.profile_of(laid).edges(laid.sample().s))
+    )
     wide = float(high.max()) + SPLINE_REACH if keep_place else float((high - low).max()) + 2 * ROOM
     size = max(world.site.map_size, ROUND_MAP * ceil(wide / ROUND_MAP))
     fits = (low > SPLINE_REACH).all() and (high < size - SPLINE_REACH).all()
@@ -243,11 +248,16 @@ def on_a_map(
         x, y = (float(round(each)) for each in size / 2 - (low + high) / 2)
         back = f"add ({-x:.0f}, {-y:.0f}) m for its place in the file"
         remarks.append(f"it is moved by ({x:.0f}, {y:.0f}) m into the middle of the map; {back}")
-    deepest = lowest(road.elevation, road.length)[1]
+    roads = [each.road for each in road.network.roads] if is_route(road) else [road]
+    deepest = min(lowest(each.elevation, each.length)[1] for each in roads)
     if deepest < world.site.z_floor and not keep_place:
         z = float(ceil(-deepest))
         remarks.append(f"it is lifted by {z:.0f} m: its lowest place was below the ground of the map")
-    return moved(road, x, y, z), size, (x, y, z), tuple(remarks)
+    if is_route(road):
+        placed: Road = type(road).along(moved_network(road.network, x, y, z), road.legs).on_ground()
+    else:
+        placed = moved(road, x, y, z)
+    return placed, size, (x, y, z), tuple(remarks)
 
 
 def shown_roads(files: Sequence[str], choice: "Choice | None", most: int, what: str) -> list[NamedRoad]:

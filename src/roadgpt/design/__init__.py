@@ -19,16 +19,13 @@ geometry         the kind of geometry that its designs require, such as "spline"
                  splines; it overrides the user's choice"""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import Any, Protocol, cast
 
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.chat import ChatSettings, Usage, plugin_of
 from roadgpt.design.unbuilt import check_built
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, World
-
-if TYPE_CHECKING:
-    from roadgpt.network import AnyDesign
 
 __all__ = ["DesignReport", "Designer", "check_designer", "designer_of", "draft", "draft_road"]
 
@@ -57,9 +54,8 @@ class Designer(Protocol):
 
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
-    ) -> "AnyDesign":
-        """Returns a Design that meets every requirement of the Brief and is valid on this map; a MapDesign if
-        the Brief asks for a map of roads, and a NetworkDesign if it asks for another network. The arguments
+    ) -> Design:
+        """Returns a Design that meets every requirement of the Brief and is valid on this map. The arguments
         are those of the function ``draft``. Raises DesignError if this designer found no such Design."""
         ...
 
@@ -72,8 +68,8 @@ def draft(
     seed: int = 0,
     designer: str = "planner",
     chat: ChatSettings | None = None,
-) -> "AnyDesign":
-    """Returns a Design for a Brief; for a network a NetworkDesign, and for a map of roads a MapDesign.
+) -> Design:
+    """Returns a Design for a Brief of a road, a route or a map.
 
     ``notes`` are sentences that say which rules the previous draft violated, and ``earlier`` the designs of
     the campaign so far, from which the new one should differ. ``designer`` is the name of an installed
@@ -92,7 +88,7 @@ def draft_road(brief: Brief, world: World, earlier: Sequence[Design] = (), seed:
     """Returns a Design for a Brief of a single road, made by the default designer; see ``draft``. Raises
     DesignError if no road meets all requirements on this map, or the Brief asks for a network."""
     found = draft(brief, world, (), earlier, seed)
-    if not isinstance(found, Design):
+    if not found.is_plain:
         raise DesignError(
             "this takes single roads only; leave out junctions, medians and traffic on the left"
         )

@@ -45,11 +45,10 @@ from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import LEAST_STRAIGHT
 from roadgpt.check.extremes import lowest
-from roadgpt.check.matching import fits, turn_complaints
+from roadgpt.check.matching import complaints, fits, turn_complaints
 from roadgpt.check.measures import LEAST_TURN, LEVEL, MeasuredFeature, Measures, measure, way
 from roadgpt.check.rules.below_floor import ROUNDING
-from roadgpt.check.rules.promises import complaints
-from roadgpt.check.rules.too_abrupt import inspect as abrupt_places
+from roadgpt.check.rules.too_abrupt import abrupt_place
 from roadgpt.design.compose import Windows
 from roadgpt.design.elements import ABOVE_GROUND
 from roadgpt.design.heights import climbing
@@ -237,7 +236,7 @@ def graded(
                 break
             grades = moved
         tried = design.model_copy(update={"segments": segments})
-        if not missing.any() and not abrupt_places(world.lay(build(tried)), None, world):
+        if not missing.any() and abrupt_place(world.lay(build(tried)), None, world) is None:
             return tried
         kept = tried if kept is None or not missing.any() else kept
     assert kept is not None

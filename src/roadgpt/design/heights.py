@@ -17,9 +17,8 @@ from roadgpt.brief.element import Element
 from roadgpt.brief.outline import Outline
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import STEEPEST
-from roadgpt.check.matching import Complaint
+from roadgpt.check.matching import Complaint, complaints
 from roadgpt.check.measures import MeasuredFeature, Measures, measure, way
-from roadgpt.check.rules.promises import complaints
 from roadgpt.design.compose import Windows, is_hairpin
 from roadgpt.design.elements import cut, required_hills, rounded
 from roadgpt.design.layout import PlanLine

@@ -34,22 +34,22 @@ from roadgpt.brief.junctions import (
 from roadgpt.brief.model import Brief
 from roadgpt.brief.ranges import Range, nearest, overlap
 from roadgpt.brief.words import MOST_LANES, ROAD
-from roadgpt.network import JunctionDesign
 from roadgpt.network.building import BETWEEN, MOUTH, USUALLY_FED, ring_width, smallest_radius
 from roadgpt.network.building import MOST_LANES as MOST_RING_LANES
-from roadgpt.network.design import (
+from roadgpt.network.growing import controls_of
+from roadgpt.road.design import (
     ACCELERATION,
     ASTERN,
     RAMP_TAPER,
     TAPER,
     ArmDesign,
+    JunctionDesign,
     LanesChangeDesign,
     LanesDesign,
     PlaceDesign,
     RampDesign,
     narrow_part,
 )
-from roadgpt.network.growing import controls_of
 
 LANES = ("lanes", "against", "divided", "centre", "motorway", "length")
 """Requirements that leave the shape of a road open."""

@@ -29,12 +29,11 @@ from roadgpt.brief.junction_check import MOST_OF_KIND
 from roadgpt.brief.junctions import Control, JunctionClause, JunctionCount, MapClause, MapJunctionKind
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.design.junction_draft import drawn_junction
-from roadgpt.network import JunctionDesign
 from roadgpt.network.building import ring_width
-from roadgpt.network.growing import contact_distances, profile_of_map
-from roadgpt.network.map_design import NodeKind
+from roadgpt.network.growing import contact_distances
 from roadgpt.network.pose import tangent_length
-from roadgpt.road import World
+from roadgpt.road import Profile, World
+from roadgpt.road.design import JunctionDesign, NodeKind
 
 Rng = np.random.Generator
 KERBS = (6.0, 10.0)  # m, radius of kerbs between neighbouring roads
@@ -576,7 +575,8 @@ class _Village:
 
     def _reaches(self, junction: JunctionDesign) -> list[float]:
         directions = [cmath.phase(way) for way in _ways(junction, 0.0)]
-        profile = profile_of_map(None, self.world)
+        section = self.world.section
+        profile = Profile.of(1, 1, section.lane_width, section.shoulder)
         return contact_distances(junction, directions, [profile] * len(directions))
 
     def _path(self, arm: _FreeArm, reach: float) -> tuple[list[DraftNode], complex] | None:

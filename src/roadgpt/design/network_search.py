@@ -30,8 +30,8 @@ from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.model import Brief, Clause, mirrored
 from roadgpt.brief.words import LARGEST_MAP, ROAD_LENGTH_SLACK
-from roadgpt.check.network_measures import measured_map
-from roadgpt.check.network_promises import length_range
+from roadgpt.check.matching import length_range
+from roadgpt.check.measures import measured_map
 from roadgpt.design.advice import larger_map, main_reason
 from roadgpt.design.elements import start_height
 from roadgpt.design.junction_draft import (
@@ -63,19 +63,26 @@ from roadgpt.design.map_draft import (
     draft_grid,
     draft_village,
 )
-from roadgpt.design.network_sketch import is_clear, sketched
+from roadgpt.design.network_sketch import sketched
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.unbuilt import check_lanes_across
 from roadgpt.design.variety import Shapes
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
-from roadgpt.network import MapDesign, MapNode, NetworkDesign, Route, build_map, build_route
+from roadgpt.network import build_route
 from roadgpt.network.building import BESIDE, length_at_ramp, length_beside
-from roadgpt.network.design import ACCELERATION, LanesDesign, PlaceDesign, RampDesign, ends_route
-from roadgpt.network.growing import length_inside, profile_of_map
-from roadgpt.network.stretch import level_ends, profiles_between
+from roadgpt.network.growing import length_inside
+from roadgpt.network.stretch import level_ends, profiles_between, refuse_other_lanes
 from roadgpt.plural import plural
-from roadgpt.road import Profile, Segment, World
-from roadgpt.road.design import vertical_curves_of
+from roadgpt.road import Design, Profile, Segment, World
+from roadgpt.road.design import (
+    ACCELERATION,
+    LanesDesign,
+    MapNode,
+    PlaceDesign,
+    RampDesign,
+    ends_route,
+    vertical_curves_of,
+)
 
 LANES_DIFFER = (
     "at a junction, lanes of one road would lead nowhere or nothing would lead to them, because the roads "
@@ -88,7 +95,6 @@ REASONS = {"unreachable": LANES_DIFFER, "conflicting_overlap": RUN_TOGETHER}
 NUMBER = re.compile(r"\d[\d.]*")
 PLACE = re.compile(r"^at s = [\d.]+ m: | near \([^)]*\)")
 """Matches the place of a fault in a message; it is cut out, because the user never sees the draft."""
-Draft = TypeVar("Draft", NetworkDesign, MapDesign)
 
 
 STEADY = 1.0  # percent; a road whose mean grade is less remains unchanged
@@ -179,11 +185,10 @@ class _Search:
 
     def _first_accepted(
         self,
-        drafts: Iterable[Draft | None],
-        build: Callable[[Draft, World], Route],
+        drafts: Iterable[Design | None],
         most: int,
         advice: Callable[[str], str],
-    ) -> Draft:
+    ) -> Design:
         """Returns the first draft whose route can be built and breaks no rule.
 
         A draft of None did not fit on the map, and is skipped; at most ``most`` drafts are built. Reasons for
@@ -192,7 +197,7 @@ class _Search:
         reasons: dict[str, str] = {}
         for draft in islice((draft for draft in drafts if draft is not None), most):
             try:
-                findings = check.inspect(build(draft, self.world), self.brief, self.world)
+                findings = check.inspect(build_route(draft, self.world), self.brief, self.world)
             except UsageError as error:
                 why = PLACE.sub("", str(error))
                 rule = NUMBER.sub("", why)
@@ -224,7 +229,7 @@ class NetworkSearch(_Search):
         self.others = Shapes().of(())
         check_lanes_across(brief.junctions, self.lanes)
 
-    def run(self, drafts: int | None = None) -> NetworkDesign:
+    def run(self, drafts: int | None = None) -> Design:
         """Returns the first of up to ``drafts`` drafts that is accepted; None stands for the usual number.
         Raises DesignError if no draft was accepted, for the most frequent reason, or no road can have the
         lanes that are required."""
@@ -234,11 +239,11 @@ class NetworkSearch(_Search):
         hastes = (max(0.0, (n - calm) / (drafts - calm)) ** 0.5 for n in range(drafts))
         tried = (self._draft(min(max(haste, least), 1.0)) for haste in hastes)
         try:
-            return self._first_accepted(tried, build_route, BUILT, self._advice)
+            return self._first_accepted(tried, BUILT, self._advice)
         except UsageError as error:  # no draft can have such lanes
             raise DesignError(str(error)) from error
 
-    def _draft(self, haste: float) -> NetworkDesign | None:
+    def _draft(self, haste: float) -> Design | None:
         junctions = self._places(haste)
         drafts = None if junctions is None else self._stretches(junctions, haste)
         if junctions is None or drafts is None:
@@ -250,7 +255,7 @@ class NetworkSearch(_Search):
         after = accumulate(map(len, segments))
         driven = segments[:-1] if any(map(ends_route, junctions)) else segments
         every = tuple(segment for part in driven for segment in part)
-        return NetworkDesign(
+        return Design(
             starting_point=(pose.x, pose.y, start_height(every, drawn_ground(self.world, self.rng))),
             theta=pose.theta,
             segments=every,
@@ -440,11 +445,12 @@ class NetworkSearch(_Search):
         lines = [drafted.line for _, drafted in drafts]
         profiles = self._profiles(junctions, [float(line.s[-1]) for line in lines])
         sketch = sketched(lines, junctions, profiles)
-        if not is_clear(sketch):
+        if sketch is None:
             self.failed[OVERLAPS] += 1
             return None
-        line = PlanLine(np.arange(len(sketch.z), dtype=float), sketch.z)
-        pose = place(line, self.world, self.rng, float(sketch.reach.max()))
+        z, reach = sketch
+        line = PlanLine(np.arange(len(z), dtype=float), z)
+        pose = place(line, self.world, self.rng, reach)
         if pose is None:
             self.failed[TOO_LARGE] += 1
             self.boxes.append(smallest_box(line))
@@ -619,13 +625,13 @@ class MapSearch(_Search):
         super().__init__(brief, world, rng)
         self.asked = brief.map
 
-    def run(self, drafts: int = DRAFTS_OF_MAP) -> MapDesign:
+    def run(self, drafts: int = DRAFTS_OF_MAP) -> Design:
         """Returns the first of up to ``drafts`` drafts that is accepted. Raises DesignError if none was, and
         UsageError if the World has lanes or superelevation that networks cannot have."""
-        profile_of_map(None, self.world)
+        refuse_other_lanes(self.world)
         hastes = (max(0.0, (n - NO_HASTE_ON_MAP) / (drafts / 2)) ** 0.5 for n in range(drafts))
         tried = (self._draft(min(max(haste, self._least_haste), 1.0)) for haste in hastes)
-        return self._first_accepted(tried, build_map, BUILT_MAPS, self._advice)
+        return self._first_accepted(tried, BUILT_MAPS, self._advice)
 
     @property
     def lacks_room(self) -> bool:
@@ -638,7 +644,7 @@ class MapSearch(_Search):
         share = PARTS / self.world.site.map_size
         return HURRIED_MAP * max(_least_count(self.asked) * share**2 - FEW, 0.0)
 
-    def _draft(self, haste: float) -> MapDesign | None:
+    def _draft(self, haste: float) -> Design | None:
         world = self.world
         room = world.site.map_size - world.section.road_width - 2 * EDGE
         radius = TIGHTEST * world.limits.min_radius
@@ -677,7 +683,7 @@ class MapSearch(_Search):
             return False
         try:
             flat = _design(draft, [0.0] * len(draft.nodes), route)
-            built = measured_map(build_map(flat, self.world).network).length
+            built = measured_map(build_route(flat, self.world).network).length
         except UsageError:
             return False
         asked = length_range(length)
@@ -723,13 +729,16 @@ class MapSearch(_Search):
         return f"no draft of this map was accepted: {why}; leave something out or give other numbers"
 
 
-def _design(draft: MapDraft, heights: Sequence[float], route: Sequence[int]) -> MapDesign:
+def _design(draft: MapDraft, heights: Sequence[float], route: Sequence[int]) -> Design:
     nodes = []
     for node, height in zip(draft.nodes, heights, strict=True):
         own = {"control": node.control, "kerb": node.kerb} if node.is_junction else {}
         at = (node.z.real, node.z.imag, height)
         nodes.append(MapNode.model_validate({"at": at, "kind": node.kind, "radius": node.radius, **own}))
-    return MapDesign(
+    return Design(
+        starting_point=(0.0, 0.0, 0.0),
+        theta=0.0,
+        segments=(),
         nodes=tuple(nodes),
         roads=tuple((one + 1, other + 1) for one, other in draft.roads),
         route=tuple(number + 1 for number in route),
@@ -760,7 +769,7 @@ WINDING = 3.5  # greatest length of a route with turns, as a multiple of the sid
 EDGES = 40.0  # m, kept free at the edges of the map
 
 
-def draft_network(brief: Brief, world: World, rng: np.random.Generator) -> NetworkDesign | MapDesign:
+def draft_network(brief: Brief, world: World, rng: np.random.Generator) -> Design:
     """Returns a valid route that meets the Brief, or a valid map of roads if the Brief asks for a map. Raises
     DesignError if no draft was accepted, BriefError if a junction cannot meet its requirements, and
     UsageError if the World has lanes or banked bends that a map of roads cannot have."""

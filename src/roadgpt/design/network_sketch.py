@@ -6,47 +6,32 @@ rule checks it again."""
 import cmath
 from collections.abc import Sequence
 from math import pi, radians
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.design.layout import PlanLine
 from roadgpt.geometry.nearness import Complex, meeting
-from roadgpt.network import JunctionDesign
 from roadgpt.network.building import lines_at_ramp, ring_width
-from roadgpt.network.design import STUB, PlaceDesign, RampDesign
 from roadgpt.network.growing import contact_distances, profiles_of_arms
 from roadgpt.road import Profile
+from roadgpt.road.design import STUB, JunctionDesign, PlaceDesign, RampDesign
 
 STEP = 2.0  # m between points
 MARGIN = 1.5  # m between the shoulders of roads that do not meet
 POINTS = 24  # number of points around a roundabout
+ROUNDING = 1e-6  # m
 AWAY = 12.0  # m from a contact, outwards, within which the arms of one junction may be near each other
-
-
-class NetworkSketch(NamedTuple):
-    """The parts of a route as points; the route starts at the origin and heads along +x."""
-
-    z: Complex  # the points of all parts, x + iy in metres, ``(n,)``
-    part: NDArray[np.intp]  # the number of the road or junction to which each point belongs, ``(n,)``
-    near: NDArray[np.bool_]
-    """Shape (parts, parts): whether two parts meet, so that they may be near each other where they meet."""
-    joined: NDArray[np.bool_]
-    """Shape (parts, parts): whether two parts are roads that continue each other or meet at a small angle, so
-    that they may be near each other anywhere."""
-    reach: NDArray[np.float64]
-    """The distance in metres from each point to the outer edge of the shoulder of its road, ``(n,)``."""
-    nodes: tuple[tuple[complex, float], ...]
-    """For each junction, its node as x + iy in metres, and the distance in metres from the node within which
-    the arms may be near each other."""
 
 
 def sketched(
     lines: Sequence[PlanLine], places: Sequence[PlaceDesign], profiles: Sequence[Profile]
-) -> NetworkSketch:
-    """Returns the sketch of a route. ``lines`` and ``profiles`` are the centre lines and cross-sections of
-    the roads before, between and after ``places``."""
+) -> tuple[Complex, float] | None:
+    """Returns the sketch of a route that starts at the origin and heads along +x: its points, x + iy in
+    metres, ``(n,)``, and the greatest distance in metres from a point to the outer edge of the shoulder of
+    its road. None as soon as two parts overlap where they do not meet. ``lines`` and ``profiles`` are the
+    centre lines and cross-sections of the roads before, between and after ``places``."""
     pen = _Pen(lines[0], profiles[0].reach)
     for number, (place, line) in enumerate(zip(places, lines[1:], strict=True)):
         around = profiles[number], profiles[number + 1]
@@ -56,24 +41,29 @@ def sketched(
             pen.pass_ramp(place, line, around)
         else:
             pen.go_on(line, around[1].reach)
-    near, joined = (np.eye(len(pen.parts), dtype=bool) for _ in range(2))
-    for pairs, table in ((pen.pairs, near), (pen.joined, joined)):
-        for a, b in pairs:
-            table[a, b] = table[b, a] = True
-    numbers = np.repeat(np.arange(len(pen.parts)), [len(z) for z in pen.parts])
-    reach = np.array(pen.reaches)[numbers]
-    return NetworkSketch(np.concatenate(pen.parts), numbers, near | joined, joined, reach, tuple(pen.nodes))
+        if not pen.keeps_clear():
+            return None
+    return (np.concatenate(pen.parts), max(pen.reaches)) if pen.meets_at_nodes_only() else None
 
 
 class _Pen:
-    """Draws the parts of a sketch one after another, in driving order."""
+    """Draws the parts of a sketch, roads and roundabouts, one after another in driving order."""
 
     def __init__(self, line: PlanLine, reach: float) -> None:
-        self.parts: list[Complex] = [_thinned(line.z)]
-        self.reaches = [reach]
-        self.pairs: list[tuple[int, int]] = []
-        self.joined: list[tuple[int, int]] = []
+        self.parts: list[Complex] = []
+        """The points of each part."""
+        self.reaches: list[float] = []
+        """The distance in metres from the points of each part to the outer edge of the shoulder."""
+        self.near: set[tuple[int, int]] = set()
+        """Parts that meet at a junction, so that they may be near each other there."""
+        self.joined: set[tuple[int, int]] = set()
+        """Roads that continue each other or meet at a small angle, and so may be near each other anywhere."""
         self.nodes: list[tuple[complex, float]] = []
+        """For each junction, its node as x + iy in metres, and the distance in metres from the node within
+        which the arms may be near each other."""
+        self._boxes: list[tuple[float, float, float, float]] = []
+        self._looked_at = self._drawn(_thinned(line.z), reach) + 1
+        self._at_nodes: list[tuple[int, int]] = []
         self._arrival, self._end, self._way = 0, complex(line.z[-1]), _way(line.z)
         self._before: int | None = None  # the part that the last one continues
 
@@ -83,7 +73,7 @@ class _Pen:
         self._before = self._arrival
         self._arrival = self._drawn(self._end + way * _thinned(line.z), reach)
         self._end, self._way = self._end + way * complex(line.z[-1]), way * _way(line.z)
-        self.joined += [(part, self._arrival) for part in here]
+        self.joined |= {(part, self._arrival) for part in here}
 
     def _continued(self) -> list[int]:
         """Returns the last part and the one before that it continues, which may be short."""
@@ -101,7 +91,7 @@ class _Pen:
         here += parts
         self.go_on(line, profiles[1].reach)
         here.append(self._arrival)
-        self.joined += [(a, b) for a in here for b in here]
+        self.joined |= {(a, b) for a in here for b in here}
 
     def pass_junction(
         self, junction: JunctionDesign, line: PlanLine, profiles: tuple[Profile, Profile]
@@ -129,12 +119,52 @@ class _Pen:
                 stub = start + out * np.arange(0.0, arm.length or STUB, STEP)
                 here.append(self._drawn(stub, arms[n + 1].reach))
         self._before = None
-        self.pairs += [(a, b) for a in here for b in here]
+        self.near |= {(a, b) for a in here for b in here}
 
     def _drawn(self, z: NDArray[Any], reach: float) -> int:
         self.parts.append(z)
         self.reaches.append(reach)
+        half, x, y = reach + MARGIN / 2, z.real, z.imag
+        box = float(x.min()) - half, float(x.max()) + half, float(y.min()) - half, float(y.max()) + half
+        self._boxes.append(box)
         return len(self.parts) - 1
+
+    def keeps_clear(self) -> bool:
+        """Returns whether the parts that are new since the last call keep clear of all that they do not meet.
+        Parts that meet are looked at by ``meets_at_nodes_only``, when all nodes are known."""
+        for new in range(self._looked_at, len(self.parts)):
+            left, right, low, high = self._boxes[new]
+            for part, (left_of, right_of, low_of, high_of) in enumerate(self._boxes[:new]):
+                touch = left <= right_of and left_of <= right and low <= high_of and low_of <= high
+                if not touch or (part, new) in self.joined:
+                    continue
+                if (part, new) in self.near:
+                    self._at_nodes.append((part, new))
+                elif len(self._close(part, new)[0]):
+                    return False
+        self._looked_at = len(self.parts)
+        return True
+
+    def meets_at_nodes_only(self) -> bool:
+        """Returns whether all parts that meet at a junction keep clear of each other elsewhere."""
+        for pair in self._at_nodes:
+            here, there = self._close(*pair)
+            for node, away in self.nodes:
+                is_outside = (np.abs(here - node) >= away) | (np.abs(there - node) >= away)
+                here, there = here[is_outside], there[is_outside]
+            if len(here):
+                return False
+        return True
+
+    def _close(self, one: int, other: int) -> tuple[Complex, Complex]:
+        """Returns the pairs of points of two parts whose roads overlap or have less than ``MARGIN`` between
+        them."""
+        z, there, apart = self.parts[one], self.parts[other], self.reaches[one] + self.reaches[other] + MARGIN
+        # the station of all points is 0, so that each pair of points counts
+        pairs = meeting(z, np.zeros(len(z)), there, np.zeros(len(there)), apart + ROUNDING, neighbours=-1.0)
+        here, there = z[pairs[0]], there[pairs[1]]
+        is_near = np.abs(here - there) < apart
+        return here[is_near], there[is_near]
 
 
 def _thinned(z: Complex) -> Complex:
@@ -144,37 +174,3 @@ def _thinned(z: Complex) -> Complex:
 def _way(z: Complex) -> complex:
     step = complex(z[-1] - z[-2])
     return step / abs(step)
-
-
-def is_clear(sketch: NetworkSketch) -> bool:
-    """Returns whether all parts of a sketch keep clear of each other, except where they meet."""
-    z, part, reach = sketch.z, sketch.part, sketch.reach
-    start = np.zeros(len(z))  # the station of all points, so that each pair of points counts
-    first = np.searchsorted(part, np.arange(len(sketch.near) + 1))
-    may_meet = np.triu(_boxes_touch(sketch, first[:-1]) & ~sketch.joined)
-    for number in np.flatnonzero(may_meet.any(axis=1)).tolist():
-        own, those = slice(first[number], first[number + 1]), np.flatnonzero(may_meet[number][part])
-        apart = reach[own].max() + reach[those].max() + MARGIN
-        one, other = meeting(z[own], start[own], z[those], start[those], apart, neighbours=-1.0)
-        is_near = np.abs(z[own][one] - z[those[other]]) < reach[own][one] + reach[those[other]] + MARGIN
-        one, other = one[is_near], other[is_near]
-        if not sketch.near[number, part[those[other]]].all():
-            return False
-        here, there = z[own][one], z[those[other]]
-        for node, away in sketch.nodes:
-            is_outside = (np.abs(here - node) >= away) | (np.abs(there - node) >= away)
-            here, there = here[is_outside], there[is_outside]
-        if len(here):
-            return False
-    return True
-
-
-def _boxes_touch(sketch: NetworkSketch, first: NDArray[np.intp]) -> NDArray[np.bool_]:
-    """Returns whether the boxes around two parts touch, each as wide as its road and half the margin.
-    ``first`` are the indices of the first point of each part; the shape is (parts, parts)."""
-    half = sketch.reach[first] + MARGIN / 2
-    touch = np.ones_like(sketch.near)
-    for values in (sketch.z.real, sketch.z.imag):
-        low, high = np.minimum.reduceat(values, first) - half, np.maximum.reduceat(values, first) + half
-        touch &= (low[:, None] <= high) & (low <= high[:, None])
-    return touch

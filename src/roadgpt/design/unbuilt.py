@@ -11,7 +11,7 @@ from roadgpt.errors import DesignError
 from roadgpt.plural import plural
 
 if TYPE_CHECKING:
-    from roadgpt.network.design import LanesDesign
+    from roadgpt.road.design import LanesDesign
 
 TURNING_LANES: Mapping[JunctionKind, int] = {"t_junction": 1, "crossroads": 2}
 """For each kind of junction, how many lanes per direction can turn off there or come from the side."""

@@ -19,7 +19,7 @@ from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended, Handover, c
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, View
 from roadgpt.errors import UsageError
-from roadgpt.network import is_route, refuse_without_route
+from roadgpt.network import only_road, refuse_without_route
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -121,8 +121,9 @@ def simulate(
     if isinstance(engine, type):
         engine = engine()
     refuse_without_route(road, "driven")
+    road = world.lay(road)
     refuse_ignored(engine, world, road)
-    drive: Drive = engine.simulate(world.lay(road), world, made, seed, keep_driving)
+    drive: Drive = engine.simulate(road, world, made, seed, keep_driving)
     check_motion(drive)
     return drive
 
@@ -132,7 +133,9 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -
     or cannot drive through the junctions of a route. ``road`` is None if it is not known yet."""
     from roadgpt.road import World
 
-    if road is not None and is_route(road) and getattr(simulator, "single_roads_only", False):
+    # such a simulator builds what a plain road has: no traffic on the left, no lanes that a Route has merged
+    is_simple = getattr(simulator, "single_roads_only", False)
+    if is_simple and road is not None and only_road(road, world) is None:
         raise UsageError("this simulator cannot build junctions yet; drive in the simulator mujoco")
     values, usual = world.values(), World().values()
     ignored = getattr(simulator, "ignores", ())

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from roadgpt.drive.outlook import passages
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import PathGeometry
 
@@ -190,7 +189,7 @@ def highest_speeds(road: "Road", line: DrivingLine, braking: float = math.inf) -
     Where nothing limits the speed, the speed is infinite. The result is None on a road without junctions.
     ``braking`` is the largest deceleration in m/s^2 before and inside junctions. By default only stop signs
     limit the deceleration here, and the driver's plan limits it later."""
-    ways = passages(road)
+    ways = road.passages
     if not ways:
         return None
     found = [math.inf] * len(line.x)
@@ -213,7 +212,7 @@ def share_of_junction(road: "Road", s: FloatArray) -> FloatArray:
 
     Within ``BLEND`` metres before and behind a junction, the weight falls smoothly from 1 to 0."""
     share = np.zeros(s.shape)
-    for way in passages(road):
+    for way in road.passages:
         away = np.clip(np.maximum(way.start - s, s - way.end) / BLEND, 0.0, 1.0)
         share = np.maximum(share, (1 - away) ** 2 * (1 + 2 * away))
     return share
@@ -236,7 +235,7 @@ def kept_in_lane(
         offset: Offsets of the line in metres to the left of the centre line, ``(n,)``.
         inwards: Distance in metres between the line and the path of the car, which cuts bends; positive to
             the left, ``(n,)``."""
-    if not passages(road):
+    if not road.passages:
         return offset
     profile = world.profile_of(road)
     middle, room = profile.middle(s), np.maximum(profile.width(s) / 2 - EDGE, 0.0)
@@ -251,7 +250,7 @@ class StopSigns:
 
     def __init__(self, road: "Road") -> None:
         """Prepares the stop lines of a route; on a road without stop signs, no command is changed."""
-        self._lines = [way.stop_line for way in passages(road) if way.stop_line is not None]
+        self._lines = [way.stop_line for way in road.passages if way.stop_line is not None]
 
     def obeyed(self, view: View, command: Command) -> Command:
         """Returns the command, changed near a stop line: the car brakes to a stop before the line, and rolls

@@ -5,38 +5,27 @@ from typing import TYPE_CHECKING
 
 from roadgpt.drive.view import JunctionAhead
 from roadgpt.geometry import wrap_angle
-from roadgpt.network import is_route
+from roadgpt.network import is_route, legs_of, network_of
 
 if TYPE_CHECKING:
     from roadgpt.network import Passage, Route
     from roadgpt.road import Profile, Road, World
 
 
-def passages(road: "Road") -> "tuple[Passage, ...]":
-    """Returns the passages of a route through its junctions in driving order; empty for a single road."""
-    return road.passages if is_route(road) else ()
-
-
 class Outlook:
     """The junctions ahead and the lanes beside the driver's own lane, at each station of a road or route."""
 
     def __init__(self, road: "Road", world: "World") -> None:
-        self._route = road if is_route(road) else None
-        self._junctions = [_junction(road, each) for each in passages(road)]
+        self._route = road if is_route(road) else None  # as drivers are promised: see ``View.route``
+        self._junctions = [_junction(road, each) for each in road.passages]
         self._ends = [end for _, end, _ in self._junctions]
-        if self._route is None:
-            profile = world.profile_of(road)
-            self._starts, self._beside = [0.0], [_beside(profile, profile.along_ids[profile.driven])]
-        else:
-            profiles = [self._route.network.road(leg.road).profile for leg in self._route.legs]
-            legs = zip(profiles, self._route.legs, strict=True)
-            self._starts = list(self._route.starts[:-1])
-            self._beside = [_beside(profile, leg.lane) for profile, leg in legs]
-        self._plain = (self._route, (), *self._beside[0])
+        network, self._starts = network_of(road, world), road.starts[:-1]
+        self._beside = [_beside(network.road(each.road).profile, each.lane) for each in legs_of(road, world)]
+        self._plain = (self._route, (), *self._beside[0]) if self._starts == (0.0,) else None
 
     def at(self, s: float) -> "tuple[Route | None, tuple[JunctionAhead, ...], int, int]":
         """Returns ``route``, ``junctions``, ``lanes_left`` and ``lanes_right`` of a View at station ``s``."""
-        if self._route is None:
+        if self._plain is not None:
             return self._plain
         first = bisect_right(self._ends, s)
         ahead = tuple(
@@ -55,9 +44,6 @@ def _junction(road: "Road", passage: "Passage") -> tuple[float, float, tuple[str
 
 
 def _beside(profile: "Profile", lane: int) -> tuple[int, int]:
-    own, oncoming = profile.along_ids, profile.against_ids
-    if not profile.leads_along(lane):
-        own, oncoming = oncoming, own
-    inside = own.index(lane) + len(oncoming)
-    outside = len(own) - 1 - own.index(lane)
-    return (outside, inside) if profile.left_hand else (inside, outside)
+    row = sorted((*profile.along_ids, *profile.against_ids), reverse=profile.leads_along(lane))
+    to_left = row.index(lane)  # OpenDRIVE's ids fall from left to right as seen along the road
+    return to_left, len(row) - 1 - to_left

@@ -16,7 +16,7 @@ import shutil
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -25,11 +25,8 @@ from roadgpt.errors import ExportError, UsageError
 from roadgpt.export.edges import fold
 from roadgpt.export.ego import Poses
 from roadgpt.geometry import CubicProfile
-from roadgpt.network import has_no_route, is_route
+from roadgpt.network import network_of, only_road
 from roadgpt.road import Road, World
-
-if TYPE_CHECKING:
-    from roadgpt.network import Route
 
 __all__ = ["Exporter", "Poses", "doubts", "exporter_of", "save"]
 
@@ -42,7 +39,7 @@ class Exporter(Protocol):
 
     An exporter whose attribute ``holds_junctions`` is True also gets routes through junctions
     (``roadgpt.network.Route``). An exporter without this attribute gets single roads only. An exporter whose
-    attribute ``needs_route`` is also True gets no maps without a route (``roadgpt.network.has_no_route``)."""
+    attribute ``needs_route`` is also True gets no maps without a route (``road.has_way`` is False)."""
 
     name: str
     """Name under which the format is registered as a plug-in."""
@@ -102,10 +99,9 @@ def save(
     parts = [exporter_of(format_) for format_ in dict.fromkeys(formats)]
     if not name or name == ".." or Path(name).name != name:
         raise UsageError(f"'{name}' cannot name a file; give a name without a folder")
-    if is_route(road):
-        for part in parts:
-            _check_holds(road, part)
     road, folder = world.lay(road), Path(folder)
+    for part in parts:
+        _check_holds(road, part, world)
     written: list[Path] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -125,8 +121,9 @@ def doubts(road: Road, formats: Sequence[str], world: World) -> tuple[str, ...]:
     rightly. An exporter may have ``lacks``, names of such properties, and a method ``doubts(road, world)``.
     """
     road, profile = world.lay(road), world.profile_of(road)
-    roads = {f"road {each.id}: ": each.road for each in road.network.roads} if is_route(road) else {"": road}
-    folds = {name: fold(each, world.profile_of(each)) for name, each in roads.items()}
+    is_only = only_road(road, world) is not None
+    roads = {"" if is_only else f"road {each.id}: ": each for each in network_of(road, world).roads}
+    folds = {name: fold(each.road, each.profile) for name, each in roads.items()}
     shown = ", ".join(name for name in formats if name not in EDGELESS)
     said = [f"{shown}: {name}{each}" for name, each in folds.items() if each and shown]
     widths = [lane.width for lane in (*profile.left, *profile.right)]
@@ -141,16 +138,16 @@ def doubts(road: Road, formats: Sequence[str], world: World) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _check_holds(road: "Route", part: Exporter) -> None:
-    if getattr(part, "holds_junctions", False):
-        if has_no_route(road) and getattr(part, "needs_route", False):
-            raise ExportError(
-                f'{part.name} holds a way to drive, and this map has no route; give it one, such as "route": '
-                "[1, 2, 4], or write opendrive"
-            )
-        return
-    reads = ", and netconvert reads it" if part.name == "sumo" else ""
-    raise ExportError(f"{part.name} cannot hold junctions yet; opendrive can{reads}")
+def _check_holds(road: Road, part: Exporter, world: World) -> None:
+    if not getattr(part, "holds_junctions", False) and only_road(road, world) is None:
+        # nor can such a format hold what a Route without junctions has: traffic on the left, merged lanes
+        reads = ", and netconvert reads it" if part.name == "sumo" else ""
+        raise ExportError(f"{part.name} cannot hold junctions yet; opendrive can{reads}")
+    if not road.has_way and getattr(part, "needs_route", False):
+        raise ExportError(
+            f'{part.name} holds a way to drive, and this map has no route; give it one, such as "route": '
+            "[1, 2, 4], or write opendrive"
+        )
 
 
 def _moved(draft: Path, folder: Path) -> list[Path]:

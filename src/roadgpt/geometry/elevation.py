@@ -16,6 +16,10 @@ from roadgpt.geometry.curve import Array, Number, before, placed
 ROUNDING = 1e-6  # m, or rad: a cubic this little beyond a limit is at the limit
 Cubic = tuple[float, float, float, float]
 """The coefficients (a, b, c, d) of a + b u + c u^2 + d u^3."""
+Row = tuple[float, Cubic]
+"""A station in metres, and the cubic that begins there."""
+SHORTEST = 1e-6  # m between two stations
+SAME = 1e-12  # m; two constants closer than this are treated as equal
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,3 +248,35 @@ def shifted(cubics: Array, u: ArrayLike) -> Array:
 
 def _moved(a: Number, b: Number, c: Number, d: Number, u: Number) -> tuple[Number, Number, Number, Number]:
     return a + u * (b + u * (c + u * d)), b + u * (2 * c + 3 * u * d), c + 3 * u * d, d
+
+
+def value_at(row: Row, s: float) -> float:
+    """Returns the value that the cubic of a row has at station ``s``."""
+    (a, b, c, d), u = row[1], s - row[0]
+    return float(a + u * (b + u * (c + u * d)))
+
+
+def constant(s: float, value: float) -> Row:
+    """Returns a row with a constant cubic that begins at station ``s``."""
+    return s, (value, 0.0, 0.0, 0.0)
+
+
+def closed(rows: Sequence[Row], length: float) -> CubicProfile:
+    """Converts the rows to a CubicProfile of a road of ``length`` metres. Beyond the end of the road, the
+    profile keeps its last value. A constant row that repeats the row before is left out."""
+    kept: list[Row] = []
+    for row in rows:
+        if kept and row[0] >= length - SHORTEST:
+            break
+        if kept and row[0] - kept[-1][0] < SHORTEST:
+            kept.pop()
+        repeats = kept and _is_constant(kept[-1]) and _is_constant(row)
+        if not (repeats and abs(kept[-1][1][0] - row[1][0]) < SAME):
+            kept.append(row)
+    if not _is_constant(kept[-1]):
+        kept.append(constant(length, value_at(kept[-1], length)))
+    return CubicProfile.of_rows(kept)
+
+
+def _is_constant(row: Row) -> bool:
+    return not any(row[1][1:])

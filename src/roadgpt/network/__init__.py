@@ -1,9 +1,9 @@
 """Joins roads to networks, with junctions, roundabouts and routes. Main function: ``build_route``.
 
-A NetworkDesign describes a route with the junctions that it passes; ``build_route`` makes a Route from it. A
-MapDesign describes a whole map and a route through the map, or none; ``build_map`` makes a Route from it. A
-Route is a Road whose centre line follows the reference lines of its roads, one after another.
-``route.network`` is the Network, with all roads, connecting roads, junctions and roundabouts.
+A Design describes a route with the junctions that it passes, or a map and a route through the map, or none;
+``build_route`` makes a Route from it. A Route is a Road whose centre line follows the reference lines of its
+roads, one after another. ``route.network`` is the Network, with all roads, connecting roads, junctions and
+roundabouts.
 
 Most roads lead through no junctions. The functions of ``road_or_route``, which are used for all roads, are
 loaded at once. The modules that build and describe networks are loaded when a name in them is first used."""
@@ -14,15 +14,16 @@ from typing import TYPE_CHECKING, Any
 from roadgpt.network.road_or_route import (
     has_no_route,
     is_route,
+    legs_of,
     made_from,
+    network_of,
+    only_road,
     refuse_without_route,
     road_from_json,
 )
 
 if TYPE_CHECKING:
-    from roadgpt.network.design import JunctionDesign, NetworkDesign, is_network_design, read_network_design
-    from roadgpt.network.growing import build_map, build_route, network_made_from, passing_length
-    from roadgpt.network.map_design import AnyDesign, Blueprint, MapDesign, MapNode, read_map_design
+    from roadgpt.network.growing import build_route
     from roadgpt.network.network import (
         Arm,
         Connection,
@@ -34,40 +35,34 @@ if TYPE_CHECKING:
         NetworkRoad,
         RoadEnd,
         Roundabout,
+        moved_network,
     )
+    from roadgpt.network.opendrive import read_map
     from roadgpt.network.route import Passage, Route
-    from roadgpt.network.source import read_any_design, read_road, read_source
+    from roadgpt.network.source import read_road, read_source
 
 __all__ = [
-    "AnyDesign",
     "Arm",
-    "Blueprint",
     "Connection",
     "Continuation",
     "Junction",
-    "JunctionDesign",
     "LaneLink",
     "Leg",
-    "MapDesign",
-    "MapNode",
     "Network",
-    "NetworkDesign",
     "NetworkRoad",
     "Passage",
     "RoadEnd",
     "Roundabout",
     "Route",
-    "build_map",
     "build_route",
     "has_no_route",
-    "is_network_design",
     "is_route",
+    "legs_of",
     "made_from",
-    "network_made_from",
-    "passing_length",
-    "read_any_design",
-    "read_map_design",
-    "read_network_design",
+    "moved_network",
+    "network_of",
+    "only_road",
+    "read_map",
     "read_road",
     "read_source",
     "refuse_without_route",
@@ -75,12 +70,12 @@ __all__ = [
 ]
 
 _LATER = {
-    "design": "JunctionDesign NetworkDesign is_network_design read_network_design",
-    "growing": "build_map build_route network_made_from passing_length",
-    "map_design": "AnyDesign Blueprint MapDesign MapNode read_map_design",
-    "network": "Arm Connection Continuation Junction LaneLink Leg Network NetworkRoad RoadEnd Roundabout",
+    "growing": "build_route",
+    "network": "Arm Connection Continuation Junction LaneLink Leg Network NetworkRoad RoadEnd Roundabout "
+    "moved_network",
+    "opendrive": "read_map",
     "route": "Passage Route",
-    "source": "read_any_design read_road read_source",
+    "source": "read_road read_source",
 }
 """The names that are loaded when they are first used, by the module that defines them."""
 

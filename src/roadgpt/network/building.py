@@ -43,7 +43,6 @@ from roadgpt.brief.junctions import Control, Way, side_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import wrapped
-from roadgpt.network.design import RampDesign
 from roadgpt.network.lane_along import added
 from roadgpt.network.network import (
     Arm,
@@ -61,6 +60,7 @@ from roadgpt.network.network import (
 from roadgpt.network.pose import STRAIGHT, NetworkPose, curve_between, tangent_length
 from roadgpt.network.stretch import road_of
 from roadgpt.road import Profile, Road, Segment
+from roadgpt.road.design import JunctionDesign, RampDesign
 from roadgpt.road.profile import Lane, Marking, Width, width_at
 
 
@@ -91,10 +91,50 @@ class Builder:
         member = self.roads[end.road]
         return Stub(end, direction, member.profile, member.road.length if end.contact == "end" else 0.0)
 
+    def join(
+        self,
+        junction: JunctionDesign,
+        node: tuple[float, float, float],
+        stubs: Sequence["Stub"],
+        distances: Sequence[float],
+        controls: Sequence[Control],
+    ) -> Junction | Roundabout:
+        """Builds the junction or the roundabout at which the stubs meet, and returns it; the arguments are
+        those of ``build_crossing``."""
+        kerb, crosswalk = junction.kerb, junction.crosswalk
+        if junction.kind != "roundabout":
+            return build_crossing(self, junction.kind, node, stubs, distances, controls, kerb, crosswalk)
+        size = junction.radius, stubs, controls, kerb, junction.ring_lanes, crosswalk
+        return build_roundabout(self, node, *size)
+
+    def through(self, built: Junction | Roundabout, start: int, to: int) -> list[int]:
+        """Returns the ids of the roads that lead through a junction or roundabout, in driving order, from the
+        arm with index ``start`` to the arm with index ``to``; all the way round a roundabout if both are the
+        same arm. Raises UsageError if no lane leads into or out of one of these arms."""
+        if isinstance(built, Junction):
+            return [way_through(built.connections, built.arms[start].end, built.arms[to].end)]
+        mouths = {each.id: each for each in self.junctions if each.id in built.junctions}
+        count, entered = len(built.ring), mouths[built.junctions[start]]
+        passed = [way_through(entered.connections, entered.arms[0].end, RoadEnd(built.ring[start], "start"))]
+        for n in range(start, start + (to - start - 1) % count + 1):
+            road, following = built.ring[n % count], (n + 1) % count
+            mouth = mouths[built.junctions[following]]
+            after = mouth.arms[0].end if following == to else RoadEnd(built.ring[following], "start")
+            passed += [road, way_through(mouth.connections, RoadEnd(road, "end"), after)]
+        return passed
+
     def network(self) -> Network:
         """Returns the finished network, with the roads in the order of their ids."""
         ordered = tuple(self.roads[number] for number in sorted(self.roads))
         return Network(ordered, tuple(self.junctions), tuple(self.roundabouts), tuple(self.continuations))
+
+
+def way_through(connections: Sequence[Connection], start: RoadEnd, end: RoadEnd) -> int:
+    """Returns the id of the connecting road from one road to another. Raises UsageError if there is none."""
+    for each in connections:
+        if (each.incoming, each.outgoing) == (start, end):
+            return each.road
+    raise UsageError("the route cannot go on there: no lane leads out of the junction; give that road a lane")
 
 
 @dataclass(frozen=True)
@@ -119,18 +159,18 @@ class Stub:
     def _lanes(self, is_along: bool) -> "StubLanes":
         profile, offset = self.profile, width_at(self.profile.offset, self.station)
         lanes = profile.right if is_along else profile.left
-        return StubLanes(
-            profile.along_ids if is_along else profile.against_ids,
-            tuple(width_at(lane.width, self.station) for lane in lanes if lane.kind == "driving"),
-            -offset if is_along else offset + profile.median,
-        )
+        ids = profile.along_ids if is_along else profile.against_ids
+        widths = [width_at(lane.width, self.station) for lane in lanes]
+        inside = sum(widths[: abs(ids[0]) - 1]) if ids else 0.0
+        own = tuple(widths[abs(number) - 1] for number in ids)
+        return StubLanes(ids, own, (-offset if is_along else offset) + inside)
 
 
 @dataclass(frozen=True)
 class StubLanes:
     """The driving lanes of a stub in one direction, from the centre line outwards."""
 
-    ids: range
+    ids: tuple[int, ...]
     widths: tuple[float, ...]  # the widths in metres at the junction
     edge: float
     """The distance in metres from the reference line to the left edge of the first lane. Left and right are
@@ -146,12 +186,10 @@ class StubLanes:
 
 def edges_at(profile: Profile, s: float) -> tuple[float, float]:
     """Returns the offsets of ``Profile.edges`` at one station, without the overhead of arrays."""
-    centre, (left, right), count = width_at(profile.offset, s), profile.begins, profile.count
-    if profile.left_hand:
-        count = count[::-1]
+    centre, (left, right) = width_at(profile.offset, s), profile.carriageway
     return (
-        centre + left + sum(width_at(lane.width, s) for lane in profile.left[: count[1]]),
-        centre - right - sum(width_at(lane.width, s) for lane in profile.right[: count[0]]),
+        centre + sum(width_at(lane.width, s) for lane in profile.left[:left]),
+        centre - sum(width_at(lane.width, s) for lane in profile.right[:right]),
     )
 
 

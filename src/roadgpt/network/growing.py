@@ -1,8 +1,11 @@
-"""Builds a network from a design: along a route, each road and each junction in the order in which it passes
-them, or the junctions of a map, the roads between them, and the route."""
+"""Builds the network that a design describes, and the route through it.
+
+The design of a route gives the place of its start only: roads and junctions are built in the order in which
+the route passes them, each where the one before it ends. A map gives the place of each node: the roads
+between the nodes are built first, and then the junctions."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import cast
@@ -18,64 +21,78 @@ from roadgpt.network.building import (
     RampBuilder,
     Stub,
     around_length,
-    build_crossing,
-    build_roundabout,
     contact_distance,
     edges_at,
     length_at_ramp,
     setbacks,
     smallest_radius,
 )
-from roadgpt.network.design import (
+from roadgpt.network.lane_along import legs_along
+from roadgpt.network.network import Continuation, Junction, Leg, RoadEnd, Roundabout
+from roadgpt.network.pose import NetworkPose, curve_between, tangent_length
+from roadgpt.network.route import Route
+from roadgpt.network.stretch import climb_between, road_of, stretch_profiles
+from roadgpt.road import Design, Profile, Road, World
+from roadgpt.road.design import (
+    BEND,
     ISLAND,
     ArmDesign,
     JunctionDesign,
     LanesChangeDesign,
-    NetworkDesign,
+    MapNode,
     PlaceDesign,
     RampDesign,
+    heading_between,
 )
-from roadgpt.network.lane_along import legs_along
-from roadgpt.network.map_design import BEND, MapDesign, MapLanes, MapNode
-from roadgpt.network.network import Connection, Continuation, Junction, Leg, Network, RoadEnd, Roundabout
-from roadgpt.network.pose import NetworkPose, curve_between, tangent_length
-from roadgpt.network.route import Route
-from roadgpt.network.stretch import climb_between, refuse_other_lanes, road_of, stretch_profiles
-from roadgpt.road import Profile, Road, World
 from roadgpt.road.road import check_length, reversed_road
 
 FAR = 1e6  # m, a station behind all changes of a cross-section
 LEAST = math.radians(40.0)  # largest deviation from a straight line of two arms that count as opposite
+SHORTEST = 0.1  # m, least length of a straight road between two junctions; the rules require more
+NO_TURN = 1e-6  # rad; a bend with a smaller turn has no curve
 
 
-def build_route(design: NetworkDesign, world: World) -> Route:
-    """Returns the route that a design describes, with the network in which it lies.
+def build_route(design: Design, world: World) -> Route:
+    """Returns the route that a design describes, with the network in which it lies. If a map has no route,
+    the result has no legs; see ``Route``.
 
     The World gives the width of the shoulders, and the lane width where the design has none. Raises
     UsageError if the World asks for lanes or banked bends that networks do not have, the lanes of a road do
-    not fit, no arm of a junction fits ``take``, the island of a roundabout is too small for its arms, a lane
-    that the route needs cannot be reached, or a road is longer than 50 km."""
+    not fit, no arm of a junction fits ``take``, a lane that the route needs cannot be reached, junctions,
+    roundabouts or bends have no room on a road, the island of a roundabout is too small for its arms, a bend
+    is tighter than its lane is wide, or a road is longer than 50 km."""
     # traffic on the left is the mirror image of traffic on the right
     seen = design.mirrored() if design.left_hand else design
-    grown = _RouteGrowth(seen, stretch_profiles(seen, world))
-    for number, (own, place) in enumerate(zip(design.junctions, seen.junctions, strict=True), 1):
-        try:
-            if isinstance(own, JunctionDesign):
-                own.arm_taken(design.left_hand)  # says left and right as the design does
-            grown.pass_place(number, place)
-        except UsageError as error:
-            raise UsageError(f"junction {number}: {error}") from error
-    network, shifts = grown.builder.network(), grown.shifts
+    profiles = stretch_profiles(seen, world)
+    passed: Sequence[int]
+    shifts: Mapping[int, int] = {}
+    if design.is_map:
+        over_map = _MapGrowth(seen, profiles[0])
+        passed, network = over_map.along(design.route), over_map.builder.network()
+        if len(passed) == 1:
+            is_along = (design.route in over_map.roads) != design.left_hand
+            network = network.mirrored if design.left_hand else network
+            return Route.along(network, [Leg(passed[0], -1 if is_along else 1)])
+    else:
+        grown = _RouteGrowth(seen, profiles)
+        for number, (own, place) in enumerate(zip(design.junctions, seen.junctions, strict=True), 1):
+            try:
+                if isinstance(own, JunctionDesign):
+                    own.arm_taken(design.left_hand)  # says left and right as the design does
+                grown.pass_place(number, place)
+            except UsageError as error:
+                raise UsageError(f"junction {number}: {error}") from error
+        network, passed, shifts = grown.builder.network(), grown.passed, grown.shifts
     if design.left_hand:
         network, shifts = network.mirrored, {road: -shift for road, shift in shifts.items()}
-    return Route.along(network, legs_along(network, grown.passed, shifts))
+    return Route.along(network, legs_along(network, passed, shifts) if passed else [])
 
 
 @dataclass
 class _RouteGrowth:
     """A network that is being built along its route."""
 
-    design: NetworkDesign
+    design: Design
     profiles: list[Profile]
     """The cross-section of each road before, between and behind the places that the route passes."""
     builder: Builder = field(default_factory=Builder)
@@ -145,22 +162,8 @@ class _RouteGrowth:
             for control, stub in zip(controls_of(junction), stubs, strict=True)
         ]
         to = 0 if taken is None else taken + 1
-        if junction.kind == "roundabout":
-            size = junction.radius, stubs, controls, junction.kerb, junction.ring_lanes, junction.crosswalk
-            ring = build_roundabout(self.builder, node, *size)
-            self.passed += roads_around(self.builder, ring, 0, to)
-        else:
-            built = build_crossing(
-                self.builder,
-                junction.kind,
-                node,
-                stubs,
-                distances,
-                controls,
-                junction.kerb,
-                junction.crosswalk,
-            )
-            self.passed.append(way_through(built.connections, stubs[0].end, stubs[to].end))
+        built = self.builder.join(junction, node, stubs, distances, controls)
+        self.passed += self.builder.through(built, 0, to)
         self.passed.append(stubs[to].end.road)
 
     def _arm(self, arm: ArmDesign, contact: NetworkPose, profile: Profile) -> Stub:
@@ -241,14 +244,6 @@ def _continuing(junction: JunctionDesign) -> int | None:
     return nearest if nearest is not None and others[nearest] < LEAST else None
 
 
-def way_through(connections: Sequence[Connection], start: RoadEnd, end: RoadEnd) -> int:
-    """Returns the id of the connecting road from one road to another. Raises UsageError if there is none."""
-    for each in connections:
-        if (each.incoming, each.outgoing) == (start, end):
-            return each.road
-    raise UsageError("the route cannot go on there: no lane leads out of the junction; give that road a lane")
-
-
 def continued_lanes(place: LanesChangeDesign, before: Profile, after: Profile) -> tuple[tuple[int, int], ...]:
     """Returns pairs of lane ids: a lane before a place where lanes change, and its continuation behind it."""
     is_left = place.side == "left"
@@ -286,41 +281,18 @@ def contact_distances(
 
 def length_inside(place: PlaceDesign, before: Profile, after: Profile) -> float:
     """Returns the length in metres of a route at a place, without the roads before and behind it, whose
-    cross-sections are given; 0 at a LanesChangeDesign."""
-    if isinstance(place, JunctionDesign):
-        return passing_length(place, before, after)
-    return length_at_ramp(place) if isinstance(place, RampDesign) else 0.0
-
-
-def passing_length(junction: JunctionDesign, before: Profile, after: Profile) -> float:
-    """Returns the length in metres of a route inside a junction, from contact to contact, for the
-    cross-sections of the roads on which the route arrives and goes on."""
-    arms, taken = junction.all_arms, junction.taken
-    directions = [math.pi, *(math.radians(arm.angle) for arm in arms)]
-    profiles = [before, *profiles_of_arms(junction, before, after)]
-    distances = contact_distances(junction, directions, profiles)
-    if junction.kind == "roundabout":
+    cross-sections are given: at a junction, from contact to contact; at a LanesChangeDesign, 0."""
+    if not isinstance(place, JunctionDesign):
+        return length_at_ramp(place) if isinstance(place, RampDesign) else 0.0
+    taken = place.taken
+    directions = [math.pi, *(math.radians(arm.angle) for arm in place.all_arms)]
+    distances = contact_distances(place, directions, [before, *profiles_of_arms(place, before, after)])
+    if place.kind == "roundabout":
         angle = 2 * math.pi if taken is None else directions[taken + 1] + math.pi
-        return around_length(junction.radius, directions, angle, junction.ring_lanes)
+        return around_length(place.radius, directions, angle, place.ring_lanes)
     assert taken is not None
-    turn = directions[taken + 1]
-    pieces = curve_between(distances[0], distances[taken + 1], turn)
+    pieces = curve_between(distances[0], distances[taken + 1], directions[taken + 1])
     return sum(piece.length for piece in pieces)
-
-
-def roads_around(builder: Builder, ring: Roundabout, start: int, to: int) -> list[int]:
-    """Returns the ids of the roads from the arm of a roundabout with index ``start`` to the arm with index
-    ``to``, in driving order; all the way round if both are the same arm. Raises UsageError if no lane leads
-    into or out of one of these arms."""
-    mouths = {each.id: each for each in builder.junctions if each.id in ring.junctions}
-    count, entered = len(ring.ring), mouths[ring.junctions[start]]
-    passed = [way_through(entered.connections, entered.arms[0].end, RoadEnd(ring.ring[start], "start"))]
-    for n in range(start, start + (to - start - 1) % count + 1):
-        road, following = ring.ring[n % count], (n + 1) % count
-        mouth = mouths[ring.junctions[following]]
-        after = mouth.arms[0].end if following == to else RoadEnd(ring.ring[following], "start")
-        passed += [road, way_through(mouth.connections, RoadEnd(road, "end"), after)]
-    return passed
 
 
 def controls_of(junction: JunctionDesign) -> tuple[Control, ...]:
@@ -337,61 +309,27 @@ def controls_of(junction: JunctionDesign) -> tuple[Control, ...]:
     - Elsewhere, with "none", no arm has a sign.
 
     The ``control`` of an arm replaces the sign or light of this arm."""
-    arms = junction.all_arms
+    arms, control, taken = junction.all_arms, junction.control, junction.taken
     nearest = min(range(len(arms)), key=lambda n: abs(arms[n].angle))
     opposite = nearest if abs(math.radians(arms[nearest].angle)) <= LEAST else None
-    found: list[Control]
-    if junction.control == "lights":
-        found = ["lights"] * (len(arms) + 1)
-    elif junction.kind == "roundabout":
-        found = ["yield"] * (len(arms) + 1)
-        found[0] = junction.control if junction.control in ("stop", "yield") else "yield"
-    elif junction.control == "priority":
-        main = opposite if opposite is not None else junction.taken
-        found = ["priority", *("priority" if n == main else "yield" for n in range(len(arms)))]
-    elif junction.control in ("stop", "yield"):
-        minor = junction.control
-        found = [minor, *(minor if n == opposite else "priority" for n in range(len(arms)))]
+    if junction.kind == "roundabout" and control != "lights":
+        arrival: Control = "stop" if control == "stop" else "yield"
+        found = (arrival, *_signs("yield", len(arms), ()))
+    elif control == "priority":
+        ahead = taken if opposite is None else opposite
+        found = _signs(control, len(arms) + 1, {0} if ahead is None else {0, ahead + 1})
     else:
-        found = ["none"] * (len(arms) + 1)
+        found = _signs(control, len(arms) + 1, {n + 1 for n in range(len(arms)) if n != opposite})
     return (found[0], *(arm.control or usual for arm, usual in zip(arms, found[1:], strict=True)))
 
 
-SHORTEST = 0.1  # m, least length of a straight road between two junctions; the rules require more
-NO_TURN = 1e-6  # rad; a bend with a smaller turn has no curve
-
-
-def network_made_from(design: NetworkDesign | MapDesign, world: World) -> Route:
-    """Returns the route of a design with junctions or a map, before ``Route.on_ground`` adds shoulders."""
-    return build_map(design, world) if isinstance(design, MapDesign) else build_route(design, world)
-
-
-def build_map(design: MapDesign, world: World) -> Route:
-    """Returns the route of a map, with the network of the whole map. Without a route in the design, the
-    result has no legs; see ``Route``.
-
-    The World gives the width of the shoulders, and the lane width where the design has none. Raises
-    UsageError if junctions, roundabouts or bends have no room on a road, the island of a roundabout is too
-    small for its arms, a bend is tighter than its lane is wide, a road is longer than 50 km, or the World
-    asks for lanes or banked bends that networks do not have."""
-    if design.left_hand:  # traffic on the left is the mirror image of traffic on the right
-        return build_map(design.mirrored(), world).mirrored
-    grown = _MapGrowth(design, profile_of_map(design.lanes, world))
-    for nodes in design.chains:
-        grown.add_road(nodes)
-    for number, node in enumerate(design.nodes, 1):
-        if node.is_junction:
-            grown.add_junction(number, node)
-    network = grown.builder.network()
-    return Route.along(network, grown.legs(network))
-
-
-def profile_of_map(lanes: MapLanes | None, world: World) -> Profile:
-    """Returns the cross-section of the roads of a map: one lane in each direction, as wide as those of the
-    World if no lanes are given, and shoulders."""
-    refuse_other_lanes(world)
-    width = world.section.lane_width if lanes is None else lanes.width
-    return Profile.of(1, 1, width, world.section.shoulder)
+def _signs(control: Control, count: int, main: Collection[int]) -> tuple[Control, ...]:
+    """Returns the signs or lights of ``count`` arms: the same on all with "lights" and "none". Otherwise the
+    arms of the main road have priority, and the others stop with "stop" and else give way."""
+    if control in ("lights", "none"):
+        return (control,) * count
+    minor: Control = "yield" if control == "priority" else control
+    return tuple("priority" if n in main else minor for n in range(count))
 
 
 def signs_at(node: MapNode, directions: Sequence[float]) -> tuple[Control, ...]:
@@ -405,59 +343,86 @@ def signs_at(node: MapNode, directions: Sequence[float]) -> tuple[Control, ...]:
     count = len(directions)
     if node.kind == "roundabout":
         return (node.control if node.control in ("lights", "stop") else "yield",) * count
-    if node.control in ("lights", "none"):
-        return (node.control,) * count
     pairs = [(i, j) for i in range(count) for j in range(i)]
     main = max(pairs, key=lambda pair: abs(wrapped(directions[pair[0]] - directions[pair[1]])))
-    minor: Control = "yield" if node.control == "priority" else node.control
-    return tuple("priority" if n in main else minor for n in range(count))
+    return _signs(node.control, count, main)
 
 
-@dataclass
 class _MapGrowth:
-    """A network that is being built from a map."""
+    """A network that is being built from a map, for traffic on the right."""
 
-    design: MapDesign
-    profile: Profile
-    builder: Builder = field(default_factory=Builder)
-    _roads: dict[tuple[int, ...], int] = field(default_factory=dict)
-    """The id of each road, by the nodes along the road."""
-    _ends: dict[tuple[int, int], RoadEnd] = field(default_factory=dict)
-    """For each node and the next node on one of its roads, the end of this road at the first node."""
-    _built: dict[int, Junction | Roundabout] = field(default_factory=dict)
-    _contacts: dict[int, dict[int, float]] = field(default_factory=dict)
-    """For each node, the distance in metres to the start of each of its roads, by the road's next node."""
+    def __init__(self, design: Design, profile: Profile) -> None:
+        self.profile, self.builder = profile, Builder()
+        self.nodes: dict[int, MapNode] = dict(enumerate(design.nodes, 1))
+        ways: dict[int, dict[int, float]] = {number: {} for number in self.nodes}
+        for one, other in design.roads:
+            for here, there in ((one, other), (other, one)):
+                ways[here][there] = heading_between(self.nodes[here], self.nodes[there])
+        self.ways = {n: dict(sorted(to.items(), key=lambda way: way[1])) for n, to in ways.items()}
+        """For each node, the headings in radians to the nodes that roads join to it, counter-clockwise."""
+        self.contacts = {number: self._contacts(number) for number in self.nodes}
+        self.roads: dict[tuple[int, ...], int] = {}
+        """The id of each road, by the nodes along the road."""
+        self.ends: dict[tuple[int, int], RoadEnd] = {}
+        """For each node and the next node on one of its roads, the end of this road at the first node."""
+        for nodes in self._chains():
+            self._add_road(nodes)
+        self.built = {n: self._junction(n, node) for n, node in self.nodes.items() if node.is_junction}
 
-    def _contact(self, number: int, towards: int) -> float:
-        if number not in self._contacts:
-            node, others = self.design.node(number), self.design.neighbours[number]
-            distances = [0.0] * len(others)
-            if node.is_junction:
-                directions = [self.design.direction(number, other) for other in others]
-                try:
-                    profiles = [self.profile] * len(others)
-                    distances = contact_distances(junction_of(node), directions, profiles)
-                except UsageError as error:
-                    raise UsageError(f"node {number}: {error}") from error
-            self._contacts[number] = dict(zip(others, distances, strict=True))
-        return self._contacts[number][towards]
+    def along(self, route: Sequence[int]) -> list[int]:
+        """Returns the ids of the roads that lead along nodes, in driving order."""
+        passed: list[int] = []
+        first = 0
+        for n in range(1, len(route)):
+            if self.nodes[route[n]].kind == "bend":
+                continue
+            if passed:
+                here, others = route[first], [*self.ways[route[first]]]
+                arms = others.index(route[first - 1]), others.index(route[first + 1])
+                passed += self.builder.through(self.built[here], *arms)
+            nodes = tuple(route[first : n + 1])
+            passed.append(self.roads[nodes if nodes in self.roads else nodes[::-1]])
+            first = n
+        return passed
 
-    def add_road(self, nodes: tuple[int, ...]) -> None:
+    def _contacts(self, number: int) -> dict[int, float]:
+        """Returns the distance in metres from a node to the start of each of its roads, by the next node."""
+        node, ways = self.nodes[number], self.ways[number]
+        if not node.is_junction:
+            return dict.fromkeys(ways, 0.0)
+        try:
+            found = contact_distances(junction_of(node), [*ways.values()], [self.profile] * len(ways))
+        except UsageError as error:
+            raise UsageError(f"node {number}: {error}") from error
+        return dict(zip(ways, found, strict=True))
+
+    def _chains(self) -> Iterator[tuple[int, ...]]:
+        """Yields the chains of roads that lead over bends from one junction or end of a road to the next,
+        each once, in one of its two directions, given by the nodes along it."""
+        found = set[tuple[int, ...]]()
+        for start, ways in self.ways.items():
+            for end in ways if self.nodes[start].kind != "bend" else ():
+                nodes = [start, end]
+                while self.nodes[nodes[-1]].kind == "bend":
+                    nodes.append(next(each for each in self.ways[nodes[-1]] if each != nodes[-2]))
+                if tuple(nodes) not in found:
+                    found |= {tuple(nodes), tuple(reversed(nodes))}
+                    yield tuple(nodes)
+
+    def _add_road(self, nodes: tuple[int, ...]) -> None:
         """Builds the road along nodes, from a junction or end to the next."""
-        design = self.design
         start, end = nodes[0], nodes[-1]
-        before, after = self._contact(start, nodes[1]), self._contact(end, nodes[-2])
+        before, after = self.contacts[start][nodes[1]], self.contacts[end][nodes[-2]]
         pieces = self._pieces(nodes, before, after)
-        length = sum(piece.length for piece in pieces)
-        check_length(length)
-        x, y, z = design.node(start).at
-        heading = design.direction(start, nodes[1])
+        check_length(sum(piece.length for piece in pieces))
+        x, y, _ = self.nodes[start].at
+        heading = self.ways[start][nodes[1]]
         plan = PieceCurve(x + before * math.cos(heading), y + before * math.sin(heading), heading, pieces)
-        heights = climb_between(z, design.node(end).at[2], plan.length)
+        heights = climb_between(self.nodes[start].at[2], self.nodes[end].at[2], plan.length)
         road = self.builder.add(Road(plan, heights, profile=self.profile))
-        self._roads[nodes] = road
-        self._ends[start, nodes[1]] = RoadEnd(road, "start")
-        self._ends[end, nodes[-2]] = RoadEnd(road, "end")
+        self.roads[nodes] = road
+        self.ends[start, nodes[1]] = RoadEnd(road, "start")
+        self.ends[end, nodes[-2]] = RoadEnd(road, "end")
 
     def _pieces(self, nodes: Sequence[int], before: float, after: float) -> tuple[Piece, ...]:
         """Returns the straights and curves of a road along nodes, from ``before`` metres behind the first
@@ -465,11 +430,10 @@ class _MapGrowth:
         pieces: list[Piece] = []
         taken, curve = before, tuple[Piece, ...]()
         for n, (one, other) in enumerate(pairwise(nodes), 1):
-            (x, y, _), (to_x, to_y, _) = self.design.node(one).at, self.design.node(other).at
             needed, following = after, tuple[Piece, ...]()
             if n < len(nodes) - 1:
-                turn = self.design.direction(other, nodes[n + 1]) - self.design.direction(one, other)
-                needed, following = self._bend(other, wrapped(turn))
+                needed, following = self._bend(other, self.ways[other][nodes[n + 1]] - self.ways[one][other])
+            (x, y, _), (to_x, to_y, _) = self.nodes[one].at, self.nodes[other].at
             distance = math.hypot(to_x - x, to_y - y)
             free = distance - taken - needed
             if free < (SHORTEST if len(nodes) == 2 else 0.0):
@@ -482,11 +446,13 @@ class _MapGrowth:
             taken, curve = needed, following
         return joined(pieces)
 
-    def _bend(self, number: int, turn: float) -> tuple[float, tuple[Piece, ...]]:
-        """Returns the length in metres that a bend takes of each straight beside it, and the bend's curve."""
+    def _bend(self, number: int, turned: float) -> tuple[float, tuple[Piece, ...]]:
+        """Returns the length in metres that a bend takes of each straight beside it, and the bend's curve;
+        ``turned`` is the difference of their headings in radians."""
+        turn = wrapped(turned)
         if abs(turn) < NO_TURN:
             return 0.0, ()
-        radius, width = self.design.node(number).radius or BEND, float(self.profile.width(0.0))
+        radius, width = self.nodes[number].radius or BEND, float(self.profile.width(0.0))
         if radius < width:
             raise UsageError(
                 f"node {number}: a bend with a radius of {radius:g} m is tighter than the lane beside it is "
@@ -495,47 +461,12 @@ class _MapGrowth:
         tangent = radius * tangent_length(abs(turn))
         return tangent, curve_between(tangent, tangent, turn)
 
-    def add_junction(self, number: int, node: MapNode) -> None:
-        """Builds the junction or roundabout at a node; all roads at the node must exist already."""
-        others = self.design.neighbours[number]
-        directions = [self.design.direction(number, other) for other in others]
-        stubs = [
-            self.builder.stub(self._ends[number, other], direction)
-            for other, direction in zip(others, directions, strict=True)
-        ]
-        signs, distances = signs_at(node, directions), [self._contact(number, other) for other in others]
-        if node.kind == "roundabout":
-            self._built[number] = build_roundabout(
-                self.builder, node.at, node.radius or ISLAND, stubs, signs, node.kerb
-            )
-        else:
-            self._built[number] = build_crossing(
-                self.builder, junction_of(node).kind, node.at, stubs, distances, signs, node.kerb
-            )
-
-    def legs(self, network: Network) -> list[Leg]:
-        """Returns the legs of the route through the finished network; none for a map without a route."""
-        if not self.design.route:
-            return []
-        driven = list(self.design.driven)
-        if len(driven) == 1:
-            is_along = driven[0] in self._roads
-            return [Leg(self._road(driven[0]), -1 if is_along else 1)]
-        passed = [self._road(driven[0])]
-        for before, nodes in pairwise(driven):
-            passed += [*self._through(nodes[0], before[-2], nodes[1]), self._road(nodes)]
-        return legs_along(network, passed, {})
-
-    def _road(self, nodes: tuple[int, ...]) -> int:
-        return self._roads[nodes if nodes in self._roads else nodes[::-1]]
-
-    def _through(self, number: int, before: int, after: int) -> list[int]:
-        built = self._built[number]
-        incoming, outgoing = self._ends[number, before], self._ends[number, after]
-        if isinstance(built, Junction):
-            return [way_through(built.connections, incoming, outgoing)]
-        others = self.design.neighbours[number]
-        return roads_around(self.builder, built, others.index(before), others.index(after))
+    def _junction(self, number: int, node: MapNode) -> Junction | Roundabout:
+        """Builds the junction or roundabout at a node, when all roads exist."""
+        ways = self.ways[number]
+        stubs = [self.builder.stub(self.ends[number, other], way) for other, way in ways.items()]
+        signs, distances = signs_at(node, [*ways.values()]), [*self.contacts[number].values()]
+        return self.builder.join(junction_of(node), node.at, stubs, distances, signs)
 
 
 def junction_of(node: MapNode) -> JunctionDesign:

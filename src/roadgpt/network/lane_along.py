@@ -41,9 +41,9 @@ def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
     from 0 at the centre line; each differs by 1 from the index before."""
     profile = road.profile
     assert profile is not None
-    count = profile.count
-    right = [lane.width for lane in profile.right[: count[0]]]
-    oncoming = [profile.median, *(lane.width for lane in profile.left[: count[1]])]
+    edges = [max(number, 0) for number in profile.carriageway]
+    right = [lane.width for lane in profile.right[: edges[1]]]
+    oncoming = [lane.width for lane in profile.left[: edges[0]]]
     length = road.length
     offsets = [added([(1, profile.offset), *((-1, w) for w in right[:k])], length) for k in lanes]
     stations = {
@@ -53,7 +53,7 @@ def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
     width = _through([right[k] for k in lanes], length, stations)
     left = added([(1, profile.offset), *((1, w) for w in oncoming), (-1, offset)], length)
     outer = added([(1, offset), (-1, width), (-1, profile.offset), *((1, w) for w in right)], length)
-    beside = profile.left[count[1] :], profile.right[count[0] :]
+    beside = profile.left[edges[0] :], profile.right[edges[1] :]
     shoulders = [added([(1, lane.width) for lane in side], length) for side in beside]
     return shoulders[0], left, offset, width, outer, shoulders[1]
 

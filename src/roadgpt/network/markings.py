@@ -373,11 +373,8 @@ def _placed(
 
 
 def _lane(member: NetworkRoad, end: RoadEnd, index: int, s: Array) -> tuple[Array, Array]:
-    is_left = member.side_towards(end.contact) > 0
-    begin, edges = member.profile.sides(s), member.profile.lane_edges(s)
-    bounds = [begin.left, *edges[0]] if is_left else [begin.right, *edges[1]]
-    inner, outer = bounds[index : index + 2]
-    return (inner + outer) / 2, np.abs(outer - inner)
+    left, right = member.profile.edges_of(member.ids_towards(end.contact)[index], s)
+    return (left + right) / 2, np.abs(left - right)
 
 
 @lru_cache(maxsize=8)

@@ -16,9 +16,8 @@ from typing import Any, Literal, NamedTuple, cast
 import numpy as np
 from pydantic import TypeAdapter
 
-from roadgpt.brief.junctions import Control, PlainKind
+from roadgpt.brief.junctions import Control, MapJunctionKind
 from roadgpt.errors import UsageError
-from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.network.paved import (
     ISLAND,
@@ -30,13 +29,15 @@ from roadgpt.network.paved import (
     paved_by,
     without_small_islands,
 )
-from roadgpt.network.pose import Point, mirrored_point
+from roadgpt.network.pose import Point
 from roadgpt.reading import strictly
-from roadgpt.road import Profile, Road
+from roadgpt.road import Profile, Road, moved
+from roadgpt.road.design import mirrored_point
+from roadgpt.road.profile import width_at
 
 Contact = Literal["start", "end"]
 OTHER_CONTACT: dict[Contact, Contact] = {"start": "end", "end": "start"}
-Kind = Literal[PlainKind, "merge", "diverge"]
+Kind = Literal[MapJunctionKind, "merge", "diverge"]
 MOST_ROADS = 20_000
 
 
@@ -75,7 +76,7 @@ class NetworkRoad:
         if both sides of the road are alike."""
         return self.profile.reach - self.profile.paved_reach
 
-    def ids_towards(self, contact: Contact) -> range:
+    def ids_towards(self, contact: Contact) -> tuple[int, ...]:
         """Returns the ids of the driving lanes that lead towards an end, from the centre line outwards."""
         return self.profile.along_ids if contact == "end" else self.profile.against_ids
 
@@ -85,9 +86,9 @@ class NetworkRoad:
 
     def begin_towards(self, contact: Contact, s: float) -> float:
         """Returns the offset in metres, at station ``s``, of the inner edge of the lanes towards an end."""
-        offset, (left, right) = self.profile.offset, self.profile.begins
-        line = float(self.profile.centre(s)) if isinstance(offset, CubicProfile) else offset
-        return line + left if self.side_towards(contact) > 0 else line - right
+        profile, ids, side = self.profile, self.ids_towards(contact), self.side_towards(contact)
+        inside = (profile.left if side > 0 else profile.right)[: abs(ids[0]) - 1] if ids else ()
+        return width_at(profile.offset, s) + side * sum(width_at(lane.width, s) for lane in inside)
 
 
 class LaneLink(NamedTuple):
@@ -229,11 +230,11 @@ class Network:
         not handle traffic on the left."""
         return self.mirrored if self.left_hand else self
 
-    def lanes_into(self, end: RoadEnd) -> range:
+    def lanes_into(self, end: RoadEnd) -> tuple[int, ...]:
         """Returns the ids of the driving lanes that lead towards an end of a road, from mid-road outwards."""
         return self.road(end.road).ids_towards(end.contact)
 
-    def lanes_out_of(self, end: RoadEnd) -> range:
+    def lanes_out_of(self, end: RoadEnd) -> tuple[int, ...]:
         """Returns the ids of the driving lanes that lead away from an end of a road."""
         return self.road(end.road).ids_towards(OTHER_CONTACT[end.contact])
 
@@ -328,6 +329,20 @@ class Network:
     def bounds(self) -> Array:
         """Returns the limits of the paved area in metres, ``(2, 2)``: smallest x and y, largest x and y."""
         return np.array(self.paved.bounds, float).reshape(2, 2)
+
+
+def moved_network(network: Network, x: float, y: float, z: float) -> Network:
+    """Returns a network shifted by the given distances in metres along each axis. Ids and order stay."""
+
+    def to(point: Point) -> Point:
+        return point[0] + x, point[1] + y, point[2] + z
+
+    return replace(
+        network,
+        roads=tuple(replace(each, road=moved(each.road, x, y, z)) for each in network.roads),
+        junctions=tuple(replace(each, node=to(each.node)) for each in network.junctions),
+        roundabouts=tuple(replace(each, centre=to(each.centre)) for each in network.roundabouts),
+    )
 
 
 def _mirrored_junction(junction: Junction) -> Junction:

@@ -59,6 +59,8 @@ def filled(area: Area) -> Area:
 
     parts = []
     for part in shapely.get_parts(area):
+        if part.geom_type != "Polygon" or part.is_empty:  # of a road that is nowhere wide
+            continue
         rings = shapely.get_rings(part)
         holes = rings[1:][shapely.area(shapely.polygons(rings[1:])) > SLIVER]
         parts.append(shapely.Polygon(rings[0], holes))

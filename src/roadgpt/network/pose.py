@@ -16,15 +16,8 @@ from roadgpt.geometry.pieces import joined
 
 Point = tuple[float, float, float]
 """x, y and z in metres."""
-DIGITS = 9  # decimals to which y is rounded when mirrored about a line other than y = 0, against float noise
 SHARE = 0.3  # share of the angle of a turn that belongs to the two clothoids; the rest belongs to the arc
 STRAIGHT = 1e-9  # rad; a way with a smaller turn is a straight line
-
-
-def mirrored_point(point: Point, middle: float = 0.0) -> Point:
-    """Returns a point mirrored about the line y = ``middle``, in metres."""
-    x, y, z = point
-    return x, round(2 * middle - y, DIGITS) if middle else 0.0 - y, z
 
 
 class NetworkPose(NamedTuple):

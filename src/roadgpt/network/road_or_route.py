@@ -12,8 +12,10 @@ from roadgpt.road import Design, Geometry, Road, World, build
 if TYPE_CHECKING:
     from typing_extensions import TypeIs
 
-    from roadgpt.network.map_design import Blueprint
+    from roadgpt.network.network import Leg, Network, NetworkRoad
     from roadgpt.network.route import Route
+
+ONLY = 1  # the id of the road in the network of a single road
 
 
 def is_route(road: Road) -> "TypeIs[Route]":
@@ -23,32 +25,64 @@ def is_route(road: Road) -> "TypeIs[Route]":
 
 def has_no_route(road: Road) -> bool:
     """Returns whether a road is a network through which no route was asked for."""
-    return is_route(road) and not road.legs
+    return not road.has_way
 
 
 def refuse_without_route(road: Road, what: str) -> None:
     """Raises UsageError if no route was asked for; ``what`` says what cannot be done then, as in "driven"."""
-    if has_no_route(road):
+    if not road.has_way:
         raise UsageError(
-            f"a map without a route cannot be {what}; give it one, the nodes in driving order, such as "
-            '"route": [1, 2, 4]'
+            f"a map without a route cannot be {what}; give its design one, the nodes in driving order, such "
+            'as "route": [1, 2, 4], or take routes through an OpenDRIVE map with roadgpt import and its '
+            "--random-routes"
         )
 
 
-def made_from(blueprint: "Blueprint", world: World, geometry: Geometry = "arcs") -> Road:
-    """Returns the road that a blueprint describes. The World gives the lanes and banked bends that it lacks;
-    ``geometry`` says how a design without junctions becomes a road. Raises UsageError if the road is too
-    long, or ``geometry`` is not "arcs" for a design with junctions or a map; see also ``build_route`` and
-    ``build_map``."""
-    if isinstance(blueprint, Design):
-        return world.lay(build(blueprint, geometry))
+# The next three functions are where single roads and Routes become one: all other code asks them.
+
+
+def network_of(road: Road, world: World) -> "Network":
+    """Returns the network of a Route. A single road is a network of one road, with the id ``ONLY`` and with
+    the lanes of the World where it has none of its own."""
+    if is_route(road):
+        return road.network
+    from roadgpt.network.network import Network, NetworkRoad
+
+    return Network((NetworkRoad(ONLY, road.with_profile(world.profile_of(road))),))
+
+
+def legs_of(road: Road, world: World) -> "tuple[Leg, ...]":
+    """Returns the roads and lanes of ``network_of`` that a Route follows; of a single road, its driven
+    lane."""
+    if is_route(road):
+        return road.legs
+    from roadgpt.network.network import Leg
+
+    profile = world.profile_of(road)
+    return (Leg(ONLY, profile.along_ids[profile.driven]),)
+
+
+def only_road(road: Road, world: World) -> "NetworkRoad | None":
+    """Returns the road that makes up the network of a single road, which is written and drawn as it is: it
+    may be a spline, and banked. None for a Route, whose network is level areas between lines, arcs and
+    clothoids."""
+    return None if is_route(road) else network_of(road, world).roads[0]
+
+
+def made_from(blueprint: Design | Road, world: World, geometry: Geometry = "arcs") -> Road:
+    """Returns the road that a design describes, or the road itself. The World gives the lanes and banked
+    bends that it lacks; ``geometry`` says how a design without junctions becomes a road. Raises UsageError if
+    the road is too long, or ``geometry`` is not "arcs" for a design with junctions or a map; see also
+    ``build_route``."""
     if isinstance(blueprint, Road):
         return world.lay(blueprint)
-    from roadgpt.network.growing import network_made_from
+    if blueprint.is_plain:
+        return world.lay(build(blueprint, geometry))
+    from roadgpt.network.growing import build_route
 
     if geometry != "arcs":
         raise UsageError("a route with junctions is built from arcs; leave out --geometry spline")
-    return network_made_from(blueprint, world).on_ground()
+    return build_route(blueprint, world).on_ground()
 
 
 def road_from_json(data: Mapping[str, Any]) -> Road:

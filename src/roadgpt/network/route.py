@@ -15,8 +15,9 @@ from roadgpt.brief.junctions import Control
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
-from roadgpt.geometry.elevation import Cubic
-from roadgpt.network.lane_along import LaneAlong, added, change_windows, cubics_at, lane_along
+from roadgpt.geometry.elevation import Cubic, closed
+from roadgpt.network.lane_along import LaneAlong, change_windows, cubics_at, lane_along
+from roadgpt.network.lane_line import along_lanes, continue_each_other
 from roadgpt.network.markings import STOP_LINE, line_before
 from roadgpt.network.network import (
     Arm,
@@ -29,11 +30,10 @@ from roadgpt.network.network import (
     network_to_json,
 )
 from roadgpt.network.paved import Area
-from roadgpt.network.stretch import joined_grades, joined_plans
+from roadgpt.network.stretch import joined_heights, joined_plans, turned
 from roadgpt.network.surface import ROUND
 from roadgpt.road import Edges, Profile, Road
 from roadgpt.road.profile import Lane, Marking, Width
-from roadgpt.road.road import reversed_cubics, reversed_road
 
 FARTHEST = 40.0  # m, from the reference line; ground farther away is left out
 STEP = 0.5  # m, between the stations at which edges are computed
@@ -191,12 +191,14 @@ class Route(Road):
     wide as all lanes of that side together. Inside junctions the profile has no oncoming lanes, and no
     shoulders until ``on_ground`` adds them.
 
-    A network through which no route was asked for is a Route without legs; see ``has_no_route``. Nothing can
+    A network through which no route was asked for is a Route without legs: it ``has_way`` False. Nothing can
     drive such a Route. Its centre line is that of the network's first road outside junctions."""
 
     is_route: ClassVar[bool] = True
     network: Network
     legs: tuple[Leg, ...]
+    ends: tuple[float, ...]
+    """The stations in metres of the start of each road and, as the last one, of the end of the route."""
 
     @classmethod
     def along(cls, network: Network, legs: Sequence[Leg]) -> Self:
@@ -212,12 +214,21 @@ class Route(Road):
             return cls.along(network.mirrored, _mirrored_legs(legs)).mirrored
         if not legs and not network.roads_outside:
             raise UsageError("the network has no road outside junctions; make the road again")
-        followed = legs or (Leg(network.roads_outside[0].id, -1),)
+        first = network.roads_outside[0] if not legs else network.road(legs[0].road)
+        followed = legs or (Leg(first.id, (*first.profile.along_ids, *first.profile.against_ids)[0]),)
         if any(network.road(followed[n].road).junction is not None for n in (0, -1)):
             raise UsageError("a route begins and ends on a road outside junctions")
         roads, lanes = _parts(network, followed)
-        plan, heights = joined_plans(roads), joined_grades(roads)
-        return cls(plan, heights, profile=_profile(roads, lanes), network=network, legs=legs)
+        if continue_each_other(roads):
+            starts = [0.0, *accumulate(road.length for road in roads)]
+            line = Road(joined_plans(roads), joined_heights(roads))
+            beside: Sequence[Width] = [
+                _joined_widths(each, roads, starts) for each in zip(*lanes, strict=True)
+            ]
+        else:
+            line, beside, starts = along_lanes(roads, lanes)
+        profile = _profile(roads, beside, starts)
+        return cls(line.plan, line.elevation, profile=profile, network=network, legs=legs, ends=tuple(starts))
 
     def __repr__(self) -> str:
         if not self.legs:
@@ -229,13 +240,12 @@ class Route(Road):
     def starts(self) -> tuple[float, ...]:
         """The stations in metres of the start of each leg and, as the last one, of the end of the route. A
         leg on the same road as the leg before begins in the middle of the lane change between them."""
-        found, start = [], 0.0
-        for number, group in groupby(self.legs, key=lambda leg: leg.road):
-            length = self.network.road(number).road.length
-            windows = change_windows(length, len(list(group)) - 1)
+        found = list[float]()
+        groups = groupby(self.legs, key=lambda leg: leg.road)
+        for (start, end), (_, group) in zip(pairwise(self.ends), groups, strict=False):
+            windows = change_windows(end - start, len(list(group)) - 1)
             found += [start, *(start + (a + b) / 2 for a, b in windows)]
-            start += length
-        return (*found, start)
+        return (*found, self.ends[-1]) if self.legs else (0.0,)
 
     @cached_property
     def roads(self) -> tuple[tuple[float, NetworkRoad], ...]:
@@ -253,6 +263,11 @@ class Route(Road):
     def passages(self) -> tuple[Passage, ...]:
         """The passages through junctions in driving order; a way through a roundabout is one passage."""
         return passages_of(self.network, self.legs, self.starts)
+
+    @property
+    def has_way(self) -> bool:
+        """Whether a route was asked for."""
+        return bool(self.legs)
 
     @property
     def mirrored(self) -> Self:
@@ -325,22 +340,7 @@ def _continues(found: Continuation, one: Leg, two: Leg) -> bool:
 
 def _directed(member: NetworkRoad, leg: Leg) -> Road:
     """Returns a road in the direction in which the route drives along it; traffic drives on the right."""
-    profile, length = member.profile, member.road.length
-    if profile.leads_along(leg.lane):
-        return member.road
-
-    def turned(width: Width) -> Width:
-        return reversed_cubics(width, length) if isinstance(width, CubicProfile) else width
-
-    left, right = (
-        tuple(replace(lane, width=turned(lane.width)) for lane in side)
-        for side in (profile.right, profile.left)
-    )
-    # the oncoming lanes become the lanes along the road, and the median moves to their left
-    offset = added([(-1, turned(profile.offset)), (-1, profile.median)], length)
-    driven = profile.against_ids.index(leg.lane)
-    own = Profile(left, right, driven, profile.centre_marking, offset=offset, median=profile.median)
-    return reversed_road(member.road).with_profile(own)
+    return member.road if member.profile.leads_along(leg.lane) else turned(member.road)
 
 
 def _parts(network: Network, legs: Sequence[Leg]) -> tuple[list[Road], list[LaneAlong]]:
@@ -349,19 +349,16 @@ def _parts(network: Network, legs: Sequence[Leg]) -> tuple[list[Road], list[Lane
     roads, lanes = list[Road](), list[LaneAlong]()
     for number, group in groupby(legs, key=lambda leg: leg.road):
         own, member = list(group), network.road(number)
-        profile = member.profile
-        ids = profile.along_ids if profile.leads_along(own[0].lane) else profile.against_ids
         roads.append(_directed(member, own[0]))
-        lanes.append(lane_along(roads[-1], [ids.index(leg.lane) for leg in own]))
+        lanes.append(lane_along(roads[-1], [abs(leg.lane) - 1 for leg in own]))
     return roads, lanes
 
 
-def _profile(roads: Sequence[Road], lanes: Sequence[LaneAlong]) -> Profile:
-    starts = [0.0, *accumulate(road.length for road in roads)]
-    left_shoulder, left, offset, width, right, right_shoulder = (
-        _joined_widths(column, roads, starts) for column in zip(*lanes, strict=True)
-    )
+def _profile(roads: Sequence[Road], beside: Sequence[Width], starts: Sequence[float]) -> Profile:
+    left_shoulder, left, offset, width, right, right_shoulder = beside
     first = next(road.profile for road in roads if road.profile is not None)
+    angles = [road.profile.superelevation_angle for road in roads if road.profile is not None]
+    angle = _joined_widths([0.0 if each is None else each for each in angles], roads, starts)
     marking, edge = first.centre_marking, first.right[first.count[0] - 1].marking
     outer = () if right == 0 else (Lane("driving", right, edge),)
     own: Marking = "broken" if outer else edge
@@ -370,7 +367,8 @@ def _profile(roads: Sequence[Road], lanes: Sequence[LaneAlong]) -> Profile:
         (Lane("driving", width, own), *outer, Lane("shoulder", right_shoulder)),
         0,
         marking,
-        offset=offset,
+        angle if isinstance(angle, CubicProfile) else None,
+        offset,
     )
 
 
@@ -382,4 +380,4 @@ def _joined_widths(widths: Sequence[Width], roads: Sequence[Road], starts: Seque
         own = width.stations if isinstance(width, CubicProfile) else ()
         inside = [0.0, *(s for s in own if 0 < s < road.length - 1e-9)]
         rows += zip((start + s for s in inside), cubics_at(width, inside), strict=True)
-    return CubicProfile.of_rows(rows)
+    return closed(rows, starts[-1])

@@ -2,25 +2,29 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import scipy
 from pydantic import ValidationError
 
 from roadgpt.errors import UsageError, command_line
-from roadgpt.network.design import is_network_design, read_network_design
-from roadgpt.network.map_design import AnyDesign, Blueprint, has_nodes, read_map_design
 from roadgpt.network.road_or_route import made_from, road_from_json
+from roadgpt.network.route import Route
 from roadgpt.reading import json_of, read_json, read_text
-from roadgpt.road import Geometry, Road, World, read_design, read_opendrive
-from roadgpt.road.design import first_error
+from roadgpt.road import Design, Geometry, Road, World, read_design, read_opendrive
+from roadgpt.road.design import first_error, is_design
+from roadgpt.road.opendrive.tree import count_roads
 from roadgpt.road.points import SUFFIXES, plain, points_in, points_of_table
+
+if TYPE_CHECKING:
+    from roadgpt.network.opendrive import ImportedMap
 
 ASTRAY = 1.5  # m; a control point farther than this from all points 1 m apart on a road is not on the road
 OPENDRIVE = ".xodr"
 LINES = ".jsonl"
 LARGEST = 50_000_000  # bytes of a road file
+MAP = 2  # roads; an OpenDRIVE file with fewer is no map
 SHAPES = (
     "a road, a design or a test written by roadgpt, an SBFT or SDC-Scissor test with road_points, "
     "a list of [x, y] or [x, y, z], a table of points (.csv), or an OpenDRIVE file (.xodr)"
@@ -36,7 +40,7 @@ class RoadSource(NamedTuple):
     ``world`` has the fields of a World that it states for its road; see ``OF_FILE``. ``name`` is the id of a
     road in OpenDRIVE, whose name is the ``label``, or the name of the test or file."""
 
-    blueprint: Blueprint
+    blueprint: Design | Road
     remarks: tuple[str, ...]
     world: Mapping[str, Any]
     name: str
@@ -59,13 +63,18 @@ def read_source(path: str | Path) -> RoadSource:
 
 def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource | UsageError]:
     """Reads all roads of a file, those of the name ``wanted``, or one of an OpenDRIVE file; see
-    ``read_opendrive``. A list of tests (.json), or one test in each line (.jsonl), holds several; those that
+    ``read_opendrive``. An OpenDRIVE file with several roads is read as a map without a route, unless one road
+    is wanted. A list of tests (.json), or one test in each line (.jsonl), holds several; those that
     are not valid are returned as errors. Raises UsageError if the file cannot be read or has no such road."""
     path = Path(path, "road.json") if Path(path).is_dir() else Path(path)
     ending, card, world = path.suffix.lower(), path.with_name("run.json"), {}
     try:
         text = "<" if ending == OPENDRIVE else read_text(path, LARGEST, "a road file")
         if text.lstrip()[:1] == "<":
+            if wanted is None and (found_map := map_in(path)) is not None:
+                values, told = found_map.world_values()
+                whole = Route.along(found_map.network, ())
+                return [RoadSource(whole, (*found_map.remarks, *told), values, path.stem)]
             road = read_opendrive(path, wanted)
             return [RoadSource(road.road, road.remarks, road.world_values, road.id, road.name)]
         if ending == LINES:
@@ -85,6 +94,18 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
     if not found:
         raise UsageError(f"{path}: there is no road {wanted} in it")
     return found
+
+
+def map_in(path: Path) -> "ImportedMap | None":
+    """Returns the map in an OpenDRIVE file; None if the file has a single road, which is read by itself."""
+    try:
+        if count_roads(path) < MAP:
+            return None
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from error
+    from roadgpt.network.opendrive import read_map
+
+    return read_map(path)
 
 
 def _is_test(data: Any) -> bool:
@@ -129,22 +150,12 @@ def read_road(path: str | Path, geometry: Geometry = "arcs", world: World | None
     return made_from(source.blueprint, world or World().changed(**source.world), geometry)
 
 
-def read_any_design(data: Mapping[str, Any]) -> tuple[AnyDesign, tuple[str, ...]]:
-    """Reads a dictionary in RoadGPT's JSON format, of a road, a route or a map; returns the design, and a
-    sentence about each contradiction or unusual value. Raises UsageError if a field is missing, misnamed, of
-    the wrong type, out of range or contradicts another."""
-    if isinstance(data, Mapping) and has_nodes(data):
-        return read_map_design(data)
-    return read_network_design(data) if is_network_design(data) else read_design(data)
-
-
-def _blueprint_in(data: Any) -> tuple[Blueprint, tuple[str, ...]]:
+def _blueprint_in(data: Any) -> tuple[Design | Road, tuple[str, ...]]:
     if isinstance(data, dict):
-        is_network = is_network_design(data) or has_nodes(data)
-        if not is_network and "network" in data:
+        if "network" in data:
             return road_from_json(data), ()
-        if is_network or "starting_point" in data:
-            return read_any_design(data)
+        if is_design(data):
+            return read_design(data)
         if "pieces" not in data and ("road_points" in data or "interpolated_points" in data):
             return _test_road(data)
         nodes = data.get("nodes")
@@ -157,7 +168,7 @@ def _blueprint_in(data: Any) -> tuple[Blueprint, tuple[str, ...]]:
     return _through(*found)
 
 
-def _through(points: list[Any], remarks: tuple[str, ...]) -> tuple[Blueprint, tuple[str, ...]]:
+def _through(points: list[Any], remarks: tuple[str, ...]) -> tuple[Design | Road, tuple[str, ...]]:
     return Road.through(points), remarks
 
 

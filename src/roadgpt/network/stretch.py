@@ -11,22 +11,24 @@ from itertools import pairwise
 
 from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import UsageError
-from roadgpt.geometry import CubicProfile, GradeProfile, PieceCurve
+from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile, PieceCurve
+from roadgpt.geometry.elevation import Cubic, closed
 from roadgpt.geometry.pieces import joined
-from roadgpt.network.design import (
+from roadgpt.plural import plural
+from roadgpt.road import Design, Profile, Road, Segment, World
+from roadgpt.road.builder import elevation_of, pieces_of
+from roadgpt.road.design import (
+    CREST_RADIUS,
     MEDIAN,
+    MOST_OF_SEGMENT,
     JunctionDesign,
     LanesChangeDesign,
     LanesDesign,
-    NetworkDesign,
     PlaceDesign,
     RampDesign,
 )
-from roadgpt.plural import plural
-from roadgpt.road import Profile, Road, Segment, World
-from roadgpt.road.builder import elevation_of, pieces_of
-from roadgpt.road.design import CREST_RADIUS, MOST_OF_SEGMENT
-from roadgpt.road.profile import Lane, Marking, width_at
+from roadgpt.road.profile import Lane, Marking, Width, as_cubics, width_at
+from roadgpt.road.road import reversed_cubics, reversed_road
 from roadgpt.road.world import OWN
 
 LEVEL = 1e-9  # ratio; a smaller grade is level
@@ -135,6 +137,51 @@ def joined_grades(roads: Sequence[Road]) -> GradeProfile:
     return GradeProfile.of(height, _increasing(knots))
 
 
+def joined_heights(roads: Sequence[Road]) -> ElevationProfile:
+    """Returns the heights along roads that follow each other, from the start of the first one: grades, or
+    cubics if a road is given by cubics."""
+    if all(isinstance(road.elevation, GradeProfile) for road in roads):
+        return joined_grades(roads)
+    rows, start = list[tuple[float, Cubic]](), 0.0
+    for road in roads:
+        own = road.elevation
+        if isinstance(own, GradeProfile):
+            table = [(s, (*own.at(s), float(own.vertical_curvature(s)) / 2, 0.0)) for s in own.stations[:-1]]
+        else:
+            assert isinstance(own, CubicProfile)
+            table = as_cubics(own).rows
+        rows += [(start + s, cubic) for s, cubic in table if 0 <= s < road.length - LEVEL]
+        start += road.length
+    return CubicProfile.of_rows(rows)
+
+
+def turned(road: Road) -> Road:
+    """Returns a road that leads from the end of a road with lanes to its start, with the same lanes. The car
+    keeps to the outermost driving lane."""
+    profile, length = road.profile, road.length
+    assert profile is not None
+
+    def back(width: Width) -> Width:
+        if not isinstance(width, CubicProfile):
+            return width
+        return closed(reversed_cubics(as_cubics(width), length).rows, length)
+
+    left, right = (
+        tuple(replace(lane, width=back(lane.width)) for lane in side)
+        for side in (profile.right, profile.left)
+    )
+    ids, angle, offset = profile.against_ids, profile.superelevation_angle, back(profile.offset)
+    own = replace(
+        profile,
+        left=left,
+        right=right,
+        driven=abs(ids[-1]) - 1 if ids else 0,
+        offset=offset.negative if isinstance(offset, CubicProfile) else 0.0 - offset,
+        superelevation_angle=None if angle is None else as_cubics(back(angle)).negative,
+    )
+    return reversed_road(road).with_profile(own)
+
+
 def joined_plans(roads: Sequence[Road]) -> PieceCurve:
     """Returns the reference lines of roads, one after another, from the start of the first one."""
     plans = []
@@ -155,8 +202,9 @@ def joined_roads(roads: Sequence[Road]) -> Road:
     return Road(joined_plans(roads), joined_grades(roads), profile=profile)
 
 
-def stretch_profiles(design: NetworkDesign, world: World) -> list[Profile]:
-    """Returns the cross-section of each road of a design, with the tapers of lanes that end or begin."""
+def stretch_profiles(design: Design, world: World) -> list[Profile]:
+    """Returns the cross-section of each road of a route, with the tapers of lanes that end or begin; for a
+    map, the one that all its roads have. For errors see ``refuse_other_lanes`` and ``profiles_between``."""
     section = world.section
     refuse_other_lanes(world)
     first = design.lanes or LanesDesign(width=section.lane_width)
@@ -288,7 +336,7 @@ def _profile(lanes: LanesDesign, shoulder: float) -> Profile:
     if lanes.edge != "solid":
         made = replace(made, left=_edged(made.left, lanes.edge), right=_edged(made.right, lanes.edge))
     if lanes.divided:
-        made = replace(made, median=MEDIAN, centre_marking="solid")
+        made = replace(made, left=(Lane("median", MEDIAN, "solid"), *made.left), centre_marking="solid")
     return made if lanes.centre is None else replace(made, centre_marking=lanes.centre)
 
 

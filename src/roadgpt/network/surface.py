@@ -56,6 +56,8 @@ class NetworkSurface:
         """Returns the surface of a network, divided into its parts."""
         roads = network.roads_outside
         width = max((each.shoulder for each in network.roads), default=0.0)
+        if not network.nodes:  # roads without junctions may be splines, and have no paved area
+            return cls(roads, (), width)
         beside = paved_by([_with_shoulders(each) for each in roads]) if width > 0 else network.paved
         areas = tuple(
             _area_of(network, node, paved, width, beside)
@@ -67,7 +69,7 @@ class NetworkSurface:
     def reach(self) -> float:
         """The largest distance in metres from the reference line of a road in ``roads`` to the outer edge of
         its shoulder; an upper bound."""
-        return self.shoulder + max(each.profile.paved_reach for each in self.roads)
+        return max(each.profile.reach for each in self.roads)
 
 
 def free_ends(network: Network, road: NetworkRoad) -> tuple[bool, bool]:

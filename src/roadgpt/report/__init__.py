@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from roadgpt.network import has_no_route
 from roadgpt.report.birds_eye import Scale, birds_eye
 from roadgpt.report.canvas import FORMATS, PNG, Format, in_our_style, save_all
 from roadgpt.report.height import height_profile, strip
@@ -49,7 +48,7 @@ def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[
         return []
     folder = Path(folder)
     pictures = {"birds_eye.png": birds_eye(run, axes)}
-    if not has_no_route(run.road):
+    if run.road.has_way:
         pictures |= {"height.png": height_profile(run, axes), "curvature_grade.png": strip(run)}
     return [path for name, figure in pictures.items() for path in save_all(figure, folder / name, formats)]
 

@@ -19,7 +19,7 @@ from matplotlib.patches import Polygon, Rectangle
 from roadgpt.check import Finding
 from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
-from roadgpt.network import has_no_route, is_route
+from roadgpt.network import network_of, only_road
 from roadgpt.plural import plural
 from roadgpt.report.canvas import (
     DARKER,
@@ -185,7 +185,7 @@ def _mark_and_label(axes: Axes, run: Run, frame: Frame, centre: Array, per_inch:
         mark(axes, run, place)
     for place in places:
         labels.put((place.x, place.y), place.text, place.letters)
-    ends = () if has_no_route(road) else ((0.0, "start", -1.0), (road.length, "end", 1.0))
+    ends = ((0.0, "start", -1.0), (road.length, "end", 1.0)) if road.has_way else ()
     for s, text, sign in ends:
         heading = float(road.heading(s))
         x, y, _ = road.at(s, float(world.profile_of(road).middle(s)))
@@ -277,19 +277,20 @@ def _draw_rim(axes: Axes, pieces: Array, found: list[Severity]) -> None:
 
 
 def _network_key(road: Road, world: World, frame: Frame, per_inch: float) -> list[KeyEntry]:
-    if not is_route(road):
+    if only_road(road, world) is not None:
         return []
     from roadgpt.report.plan_view import FAR_ROUTE, SIGN_NAMES, TINT, sign_style, signs_shown
 
     colour = FAR_ROUTE if is_far(road, world, per_inch) else TINT
     lane = [("lane of the route", SWATCH, {"lw": RIM, "color": colour})]
-    found = {sign.control for sign in signs_shown(road, per_inch) if frame.holds(*sign.place[:2])}
+    shown = signs_shown(network_of(road, world), per_inch)
+    found = {sign.control for sign in shown if frame.holds(*sign.place[:2])}
     signs = [
         (SIGN_NAMES[control], DOT, {**sign_style(control), "markevery": [0]})
         for control in SIGN_NAMES
         if control in found
     ]
-    return signs if has_no_route(road) else lane + signs
+    return lane + signs if road.has_way else signs
 
 
 def _draw_key(figure: Figure, above: float, entries: list[KeyEntry]) -> None:

@@ -16,7 +16,6 @@ from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.patheffects import withStroke
 
 from roadgpt.errors import UsageError
-from roadgpt.network import has_no_route
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
 from roadgpt.verdict import SEVERITIES, Severity, graded
@@ -166,7 +165,7 @@ def origin(run: Run) -> str:
     """Returns one line with seed, number and length of the road and, if it was driven, by whom."""
     seed = f"seed {run.request.seed}"
     said = [f"{seed}, road {run.index}"] if run.words else [seed] if run.drive is not None else []
-    said.append("no route" if run.road and has_no_route(run.road) else f"{run.length:.0f} m")
+    said.append("no route" if run.road and not run.road.has_way else f"{run.length:.0f} m")
     if run.drive is not None:
         said.append(f"driven by {run.drive.driver} in {run.drive.simulator}")
         said.append(f"oracle {run.world.limits.oracle}")

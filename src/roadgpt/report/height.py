@@ -10,7 +10,6 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 from numpy.typing import NDArray
 
 from roadgpt.brief.junctions import NAMES
-from roadgpt.drive.outlook import passages
 from roadgpt.geometry.curve import Array
 from roadgpt.report.birds_eye import STEP, Scale, name_places, places_of
 from roadgpt.report.canvas import (
@@ -93,7 +92,7 @@ def _curvature(axes: Axes, run: Run, s: Array) -> None:
     assert run.road is not None
     bend, limit = run.road.curvature(s), 1 / run.world.limits.min_radius
     reach = _fill(axes, s, bend, limit)
-    ends = [end for each in passages(run.road) for end in (each.start, each.end)]
+    ends = [end for each in run.road.passages for end in (each.start, each.end)]
     # ways through junctions have a limit of their own
     _limits(axes, limit, f"limit: radius {run.world.limits.min_radius:.1f} m", [0.0, *ends, run.length])
     axes.set_ylabel("curvature, 1/m")
@@ -183,7 +182,7 @@ def shade_junctions(axes: Axes, road: Road, names: Literal["top", "foot"] | None
     low, top = axes.get_xlim()
     per_inch = (top - low) / wide
     ends = [low] * LINES
-    for passage in passages(road):
+    for passage in road.passages:
         axes.axvspan(passage.start, passage.end, fc=SHADE, ec="none", zorder=0.4)
         if names is None:
             continue
@@ -208,7 +207,7 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
     s = stations_of(run.road)
     z = run.road.at(s)[:, 2]
     header = Header.of(run, WIDTH)
-    places, junctions = places_of(run), passages(run.road)
+    places, junctions = places_of(run), run.road.passages
     if scale == "thesis":
         figure, axes, z, label = _thesis(run, z, header.height)
     else:

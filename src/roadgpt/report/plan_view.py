@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Network, NetworkRoad, Route, has_no_route, is_route
+from roadgpt.network import Network, network_of, only_road
 from roadgpt.network.markings import JunctionSign, arrows, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area
 from roadgpt.network.paved import stations_of as stations_on
@@ -43,10 +43,9 @@ ARROW_INCHES = 0.5  # least distance between arrows
 ROUTE_STEP = 0.5  # m between the points of the edges of the route
 
 
-def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
+def draw_network(axes: Axes, route: Road, network: Network, per_inch: float) -> None:
     """Draws a network and the lane of the route; a map without a route has no such lane. ``per_inch`` is the
     number of metres per inch of the picture."""
-    network = route.network
     surface = NetworkSurface.of(network)
     if surface.shoulder > 0:
         _fill(axes, ground_of(network), VERGE, 1)
@@ -57,9 +56,12 @@ def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
         for island in area.green if surface.shoulder > 0 else ():
             _fill(axes, island, GRASS, 2.1)
     for member in network.roads_outside:
-        if member.profile.median:
-            axes.add_patch(Polygon(_median(network, member), fc=GRASS, ec="none", zorder=2.1))
-    if route.legs:
+        if member.profile.is_divided:
+            first, last = between_crosswalks(network, member)
+            s = stations_on(member.road)
+            s = np.r_[first, s[(s > first) & (s < last)], last]
+            _ribbon(axes, member.road, s, member.profile.edges_of(-member.profile.side, s), GRASS, 2.1)
+    if route.has_way:
         _draw_route(axes, route, per_inch)
     painted = strokes(network)
     least = ((("edge", "lane"), LINE_POINTS), (("stop", "give_way"), STOP_POINTS), (("crosswalk",), 0.0))
@@ -73,23 +75,15 @@ def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
             )
     outlines = [each.points[:, :2] for each in arrows(network)]
     axes.add_collection(PolyCollection(outlines, facecolors=PAINT, edgecolors="none", zorder=3))
-    for sign in signs_shown(route, per_inch):
+    for sign in signs_shown(network, per_inch):
         axes.plot(*sign.place[:2], **sign_style(sign.control), zorder=4)
 
 
-def _median(network: Network, member: NetworkRoad) -> Array:
-    first, last = between_crosswalks(network, member)
-    s = stations_on(member.road)
-    s = np.r_[first, s[(s > first) & (s < last)], last]
-    sides = member.profile.sides(s)
-    return np.concatenate([member.road.at(s, sides.left), member.road.at(s, sides.right)[::-1]])[:, :2]
-
-
-def draw_network_from_far(axes: Axes, route: Route, points: float) -> None:
+def draw_network_from_far(axes: Axes, route: Road, network: Network, points: float) -> None:
     """Draws the roads of a network as lines that are ``points`` wide, and the route as a darker line."""
-    lines = [each.road.centreline()[:, :2] for each in route.network.roads]
+    lines = [each.road.centreline()[:, :2] for each in network.roads]
     axes.add_collection(LineCollection(lines, colors=FAR_ROADS, linewidths=points, zorder=2))
-    line = route.centreline() if route.legs else np.empty((0, 3))
+    line = route.centreline() if route.has_way else np.empty((0, 3))
     axes.plot(line[:, 0], line[:, 1], color=FAR_ROUTE, lw=points, zorder=2.2)
 
 
@@ -112,7 +106,7 @@ def path_of(area: Area) -> Outline:
     return Outline(np.concatenate(rings), codes)
 
 
-def _draw_route(axes: Axes, route: Route, per_inch: float) -> None:
+def _draw_route(axes: Axes, route: Road, per_inch: float) -> None:
     assert route.profile is not None
     s = np.linspace(0.0, route.length, max(2, int(route.length / ROUTE_STEP)) + 1)
     left, right = route.profile.lane(s)
@@ -131,9 +125,9 @@ def _draw_route(axes: Axes, route: Route, per_inch: float) -> None:
         )
 
 
-def signs_shown(route: Route, per_inch: float) -> tuple[JunctionSign, ...]:
+def signs_shown(network: Network, per_inch: float) -> tuple[JunctionSign, ...]:
     """Returns the signs and lights to draw in a picture: none with more than 50 metres per inch."""
-    return signs(route.network) if per_inch <= NEAR else ()
+    return signs(network) if per_inch <= NEAR else ()
 
 
 def sign_style(control: Control) -> dict[str, Any]:
@@ -213,27 +207,27 @@ def plan_points(road: Road) -> Array:
     """Returns points ``(n, 2)`` along a road; for a route, also along all roads of its network."""
     s = stations_of(road)
     points: Array = road.at(s[np.linspace(0, len(s) - 1, min(len(s), MOST_POINTS)).astype(int)])[:, :2]
-    if is_route(road):
-        lines = [each.road.centreline(2.0)[:, :2] for each in road.network.roads]
-        return np.concatenate([points, *lines])
-    return points
+    world = World()  # whose lanes do not matter here
+    members = network_of(road, world).roads if only_road(road, world) is None else ()
+    return np.concatenate([points, *(each.road.centreline(2.0)[:, :2] for each in members)])
 
 
 def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
     """Draws shoulders, carriageway and, where lanes are wide enough, markings; ``per_inch`` is the number
     of metres per inch of the picture. For a route, draws the whole network."""
-    s, profile = stations_of(road), world.profile_of(road)
-    if is_route(road):
+    if only_road(road, world) is None:
+        network = network_of(road, world)
         if is_far(road, world, per_inch):
-            draw_network_from_far(axes, road, THINNEST_LANE)
+            draw_network_from_far(axes, road, network, THINNEST_LANE)
         else:
-            draw_network(axes, road, per_inch)
+            draw_network(axes, road, network, per_inch)
         return
+    s, profile = stations_of(road), world.profile_of(road)
     if profile.has_shoulders:
         _ribbon(axes, road, s, profile.rims(s), VERGE, 1)
     _ribbon(axes, road, s, profile.edges(s), ASPHALT, 2)
-    if profile.median:
-        _ribbon(axes, road, s, profile.sides(s), GRASS, 2.1)
+    if profile.is_divided:
+        _ribbon(axes, road, s, profile.edges_of(-profile.side, s), GRASS, 2.1)
     if is_far(road, world, per_inch):
         line = road.at(s)
         axes.plot(line[:, 0], line[:, 1], color=FAR_ASPHALT, lw=THINNEST_LANE, zorder=2)
@@ -263,12 +257,12 @@ def _ribbon(axes: Axes, road: Road, s: Array, edges: Edges, colour: str, layer: 
 def draw_ends(axes: Axes, road: Road, world: World) -> None:
     """Draws a black bar at the start of the road and a chequered bar at the end, over the lanes in the
     direction of the drive; nothing for a map without a route."""
-    if has_no_route(road):
+    if not road.has_way:
         return
     profile = world.profile_of(road)
     for s, colours in ((0.0, ("#1b1e23",)), (road.length, ("#1b1e23", "white"))):
-        outer, inner = profile.edges(s), profile.sides(s)
-        edges = (outer.left, inner.left) if profile.left_hand else (inner.right, outer.right)
+        outer, inner = profile.edges(s), profile.centre(s)
+        edges = (outer.left, inner) if profile.left_hand else (inner, outer.right)
         left, right = (float(t) for t in edges)
         count = max(4, 2 * round((left - right) / 2)) + 1  # squares of about a metre, at least four
         across = road.at(np.full(count, s), np.linspace(right, left, count))[:, :2]

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from roadgpt.campaign import Campaign
 from roadgpt.errors import RoadGPTError, UsageError
-from roadgpt.network import MapDesign, NetworkDesign, Route, made_from
+from roadgpt.network import made_from
 from roadgpt.report.birds_eye import birds_eye, driven_path, mark, places_of
 from roadgpt.report.canvas import encoded, in_our_style, inches_of
 from roadgpt.report.overview import pages
@@ -40,7 +40,7 @@ def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None 
     ax.set_aspect("equal", adjustable="datalim")
     s = stations_of(road)
     edges = np.concatenate([road.at(s, t) for t in world.profile_of(road).edges(s)])[:, :2]
-    ax.update_datalim(np.concatenate([edges, plan_points(road)]) if isinstance(road, Route) else edges)
+    ax.update_datalim(np.concatenate([edges, plan_points(road)]))
     ax.margins(MARGIN)
     ax.autoscale_view()
     low, high = ax.get_xlim()
@@ -61,7 +61,7 @@ def _road_of(what: Any, world: World | None) -> tuple[Road, World]:
         if what.road is None:
             raise UsageError(f"run {what.index} has no road to plot: {what.description}")
         return what.road, world or what.world
-    if isinstance(what, (Design, NetworkDesign, MapDesign, Road)):
+    if isinstance(what, Road | Design):
         world = world or World()
         return made_from(what, world), world
     raise UsageError(f"a {type(what).__name__} cannot be plotted; give a Road, a Design or a Run")

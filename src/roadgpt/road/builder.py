@@ -23,6 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roadgpt.errors import UsageError
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve, wrap_angle
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.pieces import joined
@@ -131,7 +132,12 @@ def build(design: Design, geometry: Geometry = "arcs") -> Road:
 
     The geometry "arcs" keeps the lengths, angles and radii of the design. "spline" is the method of the
     RoadGPT thesis: a cubic spline through nodes at the ends of the segments. Raises UsageError if two
-    neighbouring nodes of the spline coincide, or the road would be longer than 50 km."""
+    neighbouring nodes of the spline coincide, the road would be longer than 50 km, or the design has
+    junctions, lanes or traffic on the left, or is a map; ``roadgpt.build_route`` builds these."""
+    if not design.is_plain:
+        raise UsageError(
+            "a design with junctions, lanes or traffic on the left, and a map, are built by build_route"
+        )
     if geometry == "spline":
         return Road.through(nodes_of(design))
     check_length(sum(segment.distance for segment in design.segments))

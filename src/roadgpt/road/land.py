@@ -1,14 +1,13 @@
 """Creates the terrain around a road: below the road surface near it, and with gentle hills farther away."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy
 
 from roadgpt.geometry.curve import Array
-from roadgpt.road.profile import Profile
 from roadgpt.road.road import Road
-from roadgpt.road.world import World
 
 MARGIN = 130.0  # m around the road
 FINEST, CELLS = 4.0, 160  # m, smallest cell; number of cells along the longer side at most
@@ -33,18 +32,14 @@ class Land:
     cell: float
 
     @classmethod
-    def around(cls, road: Road, world: World) -> "Land":
-        """Returns the terrain around a road. The terrain is flat if the road has no shoulder."""
-        line, profile = road.centreline(LONGEST_STEP), world.profile_of(road)
-        if not profile.has_shoulders:
-            return cls.beneath(line, None, world.site.z_floor)
-        return cls.beneath(_lowest(road, profile, line), profile.reach, world.site.z_floor)
-
-    @classmethod
-    def beneath(cls, line: Array, reach: float | None, floor: float) -> "Land":
-        """Returns the terrain beneath roads, which are given by points ``(n, 3)`` in metres, at most
-        ``LONGEST_STEP`` apart. Up to ``reach`` metres from the points, the terrain lies below the points.
-        With ``reach`` None, the terrain is flat, below all points and at most at height ``floor``."""
+    def around(cls, roads: Sequence[Road], reach: float | None, floor: float) -> "Land":
+        """Returns the terrain around roads. Up to ``reach`` metres from their centre lines, the terrain lies
+        below the roads. With ``reach`` None, the terrain is flat, below all centre lines and at most at
+        height ``floor``, and the roads float above it."""
+        lines = [road.centreline(LONGEST_STEP) for road in roads]
+        if reach is not None:
+            lines = [_lowest(road, line) for road, line in zip(roads, lines, strict=True)]
+        line = np.concatenate(lines)
         low, high = line[:, :2].min(axis=0), line[:, :2].max(axis=0)
         low, high = np.minimum(low, (low + high - LEAST) / 2), np.maximum(high, (low + high + LEAST) / 2)
         span = float((high - low).max()) + 2 * MARGIN
@@ -72,11 +67,11 @@ class Land:
         return np.asarray(low * (1 - v) + (values[j + 1, i] * (1 - u) + values[j + 1, i + 1] * u) * v)
 
 
-def _lowest(road: Road, profile: Profile, line: Array) -> Array:
-    if profile.superelevation_angle is None:
+def _lowest(road: Road, line: Array) -> Array:
+    if road.profile is None or road.profile.superelevation_angle is None:
         return line
     s = np.linspace(0.0, road.length, len(line))
-    rims = profile.rims(s)
+    rims = road.profile.rims(s)
     sides = [road.at(s, t)[:, 2] for t in rims]
     return np.column_stack([line[:, :2], np.minimum(line[:, 2], np.minimum(*sides))])
 

@@ -38,12 +38,20 @@ LINE = 0.12  # m, width of a painted line: narrow mark of rural roads (Germany, 
 DOUBLE = 2 * LINE  # m, between the middles of the two lines of a double line (Germany, RMS-1)
 DASH, GAP = 4.0, 8.0  # m, of a broken line: middle line outside of towns (Germany, RMS-1)
 
-Kind = Literal["driving", "shoulder"]
+Kind = Literal[
+    "driving", "shoulder", "border", "parking", "biking", "sidewalk", "median", "curb", "restricted", "rail",
+    "none",
+]  # fmt: skip
+"""What a lane is for: the names of OpenDRIVE, of which "driving" stands for all lanes that cars may use."""
 Marking = Literal["solid", "broken", "none", "double"]
 """A double line is two solid lines."""
 Width = float | CubicProfile
 """A width in metres: one number, or cubics of the station."""
-KNOWN = {"left", "right", "driven", "centre_marking", "superelevation", "offset", "median", "left_hand"}
+KNOWN = {"left", "right", "driven", "centre_marking", "superelevation", "offset", "left_hand"}
+MEDIAN = "median"
+"""A field of older files: the width in metres of a median on the side of the oncoming lanes."""
+OF_LANES = ("speed_limit", "friction")
+FASTEST = 200.0  # m/s, of a speed limit
 ONLY_NETWORKS = "traffic drives on the left on the roads of networks only"
 MOST_LANES = 20  # on one side
 MOST_ROWS = 20_000
@@ -62,11 +70,13 @@ class Edges(NamedTuple):
 
 @dataclass(frozen=True)
 class Lane:
-    """One lane or one shoulder."""
+    """One lane, or a strip beside the lanes."""
 
     kind: Kind
     width: Width
     marking: Marking = "none"  # the marking at the outer edge of the lane
+    speed_limit: float | None = None  # m/s; None for that of the World
+    friction: float | None = None  # None for that of the World
 
 
 @dataclass(frozen=True)
@@ -77,22 +87,22 @@ class Profile:
     centre line. On a road with superelevation, widths and offsets are measured along the inclined surface.
 
     Args:
-        left: Lanes on the left, from the centre line outwards, driving lanes first.
+        left: Lanes on the left, from the centre line outwards. A median between the directions is the first
+            one on the side of the oncoming lanes.
         right: Lanes on the right in the same order.
-        driven: Index in ``along`` of the lane that the tested car keeps to; ``along`` has at least one lane.
-        centre_marking: The marking on the line between the directions, or on either side of a median.
+        driven: Index in ``along`` of the lane that the tested car keeps to; 0 if no lane leads along the
+            road, as may be in a network.
+        centre_marking: The marking on the line between the directions.
         superelevation_angle: The angle in radians by which the surface is rotated about the centre line,
             positive where it falls to the right, as in OpenDRIVE; None for a level cross-section.
         offset: Offset in metres from the centre line of the road to the line between the lanes on the left
             and those on the right: the element ``laneOffset`` of OpenDRIVE.
-        median: Width in metres of the median between the oncoming lanes and the line between the directions;
-            0 for no median.
         left_hand: Whether traffic drives on the left: the lanes on the left then lead along the road, and
             those on the right against it.
 
     Raises:
-        ValueError: ``driven`` is not the index of a driving lane, a shoulder is followed by a driving lane, a
-            width is negative, or a width, the superelevation or the offset does not end with a constant."""
+        ValueError: ``driven`` is not the index of a driving lane, a width is negative, or a width, the
+            superelevation or the offset does not end with a constant."""
 
     left: tuple[Lane, ...]
     right: tuple[Lane, ...]
@@ -100,16 +110,13 @@ class Profile:
     centre_marking: Marking = "broken"
     superelevation_angle: CubicProfile | None = None
     offset: Width = 0.0
-    median: float = 0.0
     left_hand: bool = False
 
     def __post_init__(self) -> None:
-        if not 0 <= self.driven < self.count[0]:
+        if self.side * (1 + self.driven) not in (self.along_ids or (self.side,)):
             own = "left" if self.left_hand else "right"
             raise ValueError(f"the driven lane must be one of the driving lanes on the {own}")
         lanes = (*self.left, *self.right)
-        if sum(lane.kind == "driving" for lane in lanes) > sum(self.count):
-            raise ValueError("a driving lane cannot be outside a shoulder")
         of_station = [*(lane.width for lane in lanes), self.superelevation_angle, self.offset]
         if any(any(each.coefficients[-1][1:]) for each in of_station if isinstance(each, CubicProfile)):
             raise ValueError("the last width of a lane, and the last superelevation, must be constant")
@@ -167,21 +174,44 @@ class Profile:
         return self.right if self.left_hand else self.left
 
     @cached_property
+    def lanes(self) -> dict[int, Lane]:
+        """All lanes from left to right, by their ids in OpenDRIVE: positive on the left, negative on the
+        right, and 1 or -1 beside the centre line."""
+        left = list(enumerate(self.left, 1))[::-1]
+        return dict(left) | {-number: lane for number, lane in enumerate(self.right, 1)}
+
+    @property
     def count(self) -> tuple[int, int]:
         """The number of driving lanes in the direction of the road, and the number of oncoming lanes."""
-        return len(_driving(self.along)), len(_driving(self.against))
+        return len(self.along_ids), len(self.against_ids)
 
-    @property
-    def along_ids(self) -> range:
+    @cached_property
+    def along_ids(self) -> tuple[int, ...]:
         """The ids in OpenDRIVE of the driving lanes along the road, from the centre line outwards."""
-        return range(self.side, self.side * (1 + self.count[0]), self.side)
+        return _driving(self.along, self.side)
+
+    @cached_property
+    def against_ids(self) -> tuple[int, ...]:
+        """The ids in OpenDRIVE of the oncoming driving lanes, from the centre line outwards."""
+        return _driving(self.against, -self.side)
+
+    @cached_property
+    def carriageway(self) -> tuple[int, int]:
+        """The numbers of lanes on the left and on the right, counted from the centre line, that lie between
+        the outermost driving lanes. If all of these lie on one side, the number of the other side is minus
+        the number of lanes between the centre line and the innermost of them; both are 0 without any."""
+        left, right = (_driving(lanes, 1) for lanes in (self.left, self.right))
+        return (
+            left[-1] if left else 1 - right[0] if right else 0,
+            right[-1] if right else 1 - left[0] if left else 0,
+        )
 
     @property
-    def against_ids(self) -> range:
-        """The ids in OpenDRIVE of the oncoming driving lanes, from the centre line outwards. If there is a
-        median, its id is ``-side``, and these ids begin after it."""
-        first = 2 if self.median else 1
-        return range(-self.side * first, -self.side * (first + self.count[1]), -self.side)
+    def is_divided(self) -> bool:
+        """Whether a median separates the directions."""
+        return bool(self.along_ids and self.against_ids) and "median" in (
+            lane.kind for lane in (*self.left[: self.carriageway[0]], *self.right[: self.carriageway[1]])
+        )
 
     def leads_along(self, lane: int) -> bool:
         """Returns whether the lane with this OpenDRIVE id leads along the road, and not against it."""
@@ -190,8 +220,8 @@ class Profile:
     @property
     def boundaries_to_left(self) -> int:
         """The number of boundaries left of the driven lane: the index of its left edge in ``boundaries``."""
-        along, against = self.count
-        return along - 1 - self.driven if self.left_hand else against + (self.median > 0) + self.driven
+        left = self.carriageway[0]
+        return left - 1 - self.driven if self.left_hand else left + self.driven
 
     @property
     def shoulder_width(self) -> float:
@@ -200,14 +230,16 @@ class Profile:
 
     @property
     def has_shoulders(self) -> bool:
-        """Whether there is a shoulder on at least one side."""
-        return any(lane.kind == "shoulder" for lane in (*self.left, *self.right))
+        """Whether there is a shoulder, or another strip beside the carriageway, on at least one side."""
+        left, right = self.carriageway
+        return len(self.left) > max(left, 0) or len(self.right) > max(right, 0)
 
     @cached_property
     def paved_reach(self) -> float:
         """The largest distance in metres between the centre line and an edge of the carriageway. If the
         widths of several lanes vary, the value is an upper bound."""
-        return self._with_offset(_driving(self.left), _driving(self.right))
+        left, right = self.carriageway
+        return self._with_offset(self.left[: max(left, 0)], self.right[: max(right, 0)])
 
     @cached_property
     def reach(self) -> float:
@@ -221,14 +253,8 @@ class Profile:
         return _extremes(self.offset)
 
     def _with_offset(self, left: Sequence[Lane], right: Sequence[Lane]) -> float:
-        (low, high), begin = self.offset_range, self.begins
-        return max(_reach(left) + begin[0] + high, _reach(right) + begin[1] - low)
-
-    @property
-    def begins(self) -> tuple[float, float]:
-        """The distances in metres from the line between the directions to the first lane on the left and to
-        the first on the right. The median lies on the side of the oncoming lanes."""
-        return (0.0, self.median) if self.left_hand else (self.median, 0.0)
+        low, high = self.offset_range
+        return max(_reach(left) + high, _reach(right) - low)
 
     def centre(self, s: ArrayLike) -> Array:
         """Returns the offset of the line between the lanes on the left and those on the right."""
@@ -240,7 +266,7 @@ class Profile:
 
     def shoulder(self, s: ArrayLike) -> Array:
         """Returns the width of the shoulder beside the lanes along the road; 0 if there is none."""
-        return _sum(self.along[len(_driving(self.along)) :], s)
+        return _sum(self.along[max(self.carriageway[0 if self.left_hand else 1], 0) :], s)
 
     def middle(self, s: ArrayLike) -> Array:
         """Returns the offset of the middle of the driven lane."""
@@ -253,42 +279,41 @@ class Profile:
         return Edges(outer, inner) if self.left_hand else Edges(inner, outer)
 
     def edges(self, s: ArrayLike) -> Edges:
-        """Returns the offsets of the edges of the carriageway."""
-        left, right = self.sides(s)
-        return Edges(left + _sum(_driving(self.left), s), right - _sum(_driving(self.right), s))
+        """Returns the offsets of the edges of the carriageway, from the outermost driving lane on the left to
+        that on the right. Without driving lanes, both are those of the line between the directions."""
+        left, right = self.carriageway
+        return Edges(self._boundary(left, s), self._boundary(-right, s))
 
-    def sides(self, s: ArrayLike) -> Edges:
-        """Returns the offsets at which the lanes on the left and those on the right begin: the edges of the
-        median. Without a median, both are the offset of the line between the directions."""
-        centre, begin = self.centre(s), self.begins
-        return Edges(centre + begin[0], centre - begin[1])
+    def _boundary(self, number: int, s: ArrayLike) -> Array:
+        """Returns the offset of a boundary: 0 is the line between the directions, a positive number the outer
+        edge of the lane with this id on the left, and a negative one that of the lane on the right."""
+        centre = self.centre(s)
+        return centre + _sum(self.left[:number], s) if number > 0 else centre - _sum(self.right[:-number], s)
+
+    def edges_of(self, lane: int, s: ArrayLike) -> Edges:
+        """Returns the offsets of the edges of the lane with this id."""
+        inner, outer = self._boundary(lane - 1 if lane > 0 else lane + 1, s), self._boundary(lane, s)
+        return Edges(outer, inner) if lane > 0 else Edges(inner, outer)
 
     def rims(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the outer edges of the shoulders; without a shoulder, of the lanes."""
-        left, right = self.sides(s)
-        return Edges(left + _sum(self.left, s), right - _sum(self.right, s))
+        return Edges(self._boundary(len(self.left), s), self._boundary(-len(self.right), s))
 
     def lane_edges(self, s: ArrayLike) -> tuple[list[Array], list[Array]]:
         """Returns the offsets of the outer edges of all lanes and shoulders: a list for the left side and one
         for the right, each with one array per lane, from the centre line outwards."""
-        begin = self.sides(s)
-        left = [begin.left + _sum(self.left[: n + 1], s) for n in range(len(self.left))]
-        return left, [begin.right - _sum(self.right[: n + 1], s) for n in range(len(self.right))]
+        left = [self._boundary(n, s) for n in range(1, 1 + len(self.left))]
+        return left, [self._boundary(-n, s) for n in range(1, 1 + len(self.right))]
 
     def boundaries(self, s: ArrayLike) -> list[tuple[Marking, Array]]:
-        """Returns the boundaries of all driving lanes from left to right, each with its marking and offsets.
-        The first and the last one are the edges of the carriageway; a median has a boundary on either side.
-        """
-        left, right = self.lane_edges(s)
-        lanes = [*zip(self.left, left, strict=True)][: len(_driving(self.left))][::-1]
-        lanes_right = [*zip(self.right, right, strict=True)][: len(_driving(self.right))]
-        begin = self.sides(s)
-        return [
-            *((lane.marking, t) for lane, t in lanes),
-            *([(self.centre_marking, begin.left)] if self.median else []),
-            (self.centre_marking, begin.right),
-            *((lane.marking, t) for lane, t in lanes_right),
-        ]
+        """Returns the boundaries of the lanes of the carriageway from left to right, each with its marking
+        and offsets. The first and the last one are the edges of the carriageway."""
+        left, right = self.carriageway
+        return [(self._marking(n), self._boundary(n, s)) for n in range(left, -right - 1, -1)]
+
+    def _marking(self, number: int) -> Marking:
+        side = self.left if number > 0 else self.right
+        return side[abs(number) - 1].marking if number else self.centre_marking
 
     def markings(self, s: ArrayLike) -> list[tuple[Marking, Edges]]:
         """Returns the painted lines from left to right, each with the offsets of its own left and right edge;
@@ -340,9 +365,8 @@ def as_cubics(width: Width) -> CubicProfile:
     return CubicProfile.of_rows([(0.0, (width.coefficients[0][0], 0.0, 0.0, 0.0)), *width.rows])
 
 
-def _driving(lanes: Sequence[Lane]) -> Sequence[Lane]:
-    count = next((n for n, lane in enumerate(lanes) if lane.kind != "driving"), len(lanes))
-    return lanes[:count]
+def _driving(lanes: Sequence[Lane], side: int) -> tuple[int, ...]:
+    return tuple(side * number for number, lane in enumerate(lanes, 1) if lane.kind == "driving")
 
 
 def _at(width: Width, s: ArrayLike) -> Array:
@@ -387,8 +411,6 @@ def profile_to_json(profile: Profile) -> dict[str, Any]:
         "driven": profile.driven,
         "centre_marking": profile.centre_marking,
     }
-    if profile.median:
-        out["median"] = profile.median
     if profile.offset != 0:
         out["offset"] = _written(profile.offset)
     if profile.left_hand:
@@ -400,21 +422,28 @@ def profile_to_json(profile: Profile) -> dict[str, Any]:
 def profile_from_json(data: Any) -> Profile:
     """Restores a cross-section; raises UsageError if a field is missing, unknown, wrong or out of range."""
     try:
-        _only(data, KNOWN)
+        _only(data, KNOWN | {MEDIAN})
         angle = data.get("superelevation")
         driven = data["driven"]
         if not isinstance(driven, int) or isinstance(driven, bool):
             raise ValueError("driven is the index of a lane along the road")
         if not isinstance(left_hand := data.get("left_hand", False), bool):
             raise ValueError("left_hand is true or false")
-        return Profile(
+        left, right, centre = (
             _lanes(data["left"]),
             _lanes(data["right"]),
-            driven,
             _one_of(data["centre_marking"], Marking),
+        )
+        if MEDIAN in data:
+            median = Lane("median", _width(data[MEDIAN]), centre)
+            left, right = (left, (median, *right)) if left_hand else ((median, *left), right)
+        return Profile(
+            left,
+            right,
+            driven,
+            centre,
             None if angle is None else _cubics(angle, STEEPEST),
             _width(data.get("offset", 0.0), -WIDEST),
-            _median(data.get("median", 0.0)),
             left_hand,
         )
     except KeyError as error:
@@ -424,7 +453,8 @@ def profile_from_json(data: Any) -> Profile:
 
 
 def _lane_to_json(lane: Lane) -> dict[str, Any]:
-    return {"kind": lane.kind, "width": _written(lane.width), "marking": lane.marking}
+    told = {name: value for name in OF_LANES if (value := getattr(lane, name)) is not None}
+    return {"kind": lane.kind, "width": _written(lane.width), "marking": lane.marking, **told}
 
 
 def _written(width: Width) -> float | list[list[float]]:
@@ -439,11 +469,22 @@ def _lanes(rows: Any) -> tuple[Lane, ...]:
     if not isinstance(rows, list) or len(rows) > MOST_LANES:
         raise ValueError(f"lanes are a list of up to {MOST_LANES} objects with kind, width and marking")
     for row in rows:
-        _only(row, {"kind", "width", "marking"})
+        _only(row, {"kind", "width", "marking", *OF_LANES})
     return tuple(
-        Lane(_one_of(row["kind"], Kind), _width(row["width"]), _one_of(row["marking"], Marking))
+        Lane(
+            _one_of(row["kind"], Kind),
+            _width(row["width"]),
+            _one_of(row["marking"], Marking),
+            *(None if (value := row.get(name)) is None else _number(value) for name in OF_LANES),
+        )
         for row in rows
     )
+
+
+def _number(data: Any) -> float:
+    if isinstance(data, bool) or not isinstance(data, (int, float)) or not 0 < data <= FASTEST:
+        raise ValueError(f"a speed limit, and a friction, is a number above 0, up to {FASTEST:g}")
+    return float(data)
 
 
 def _width(data: Any, least: float = 0.0) -> Width:
@@ -452,13 +493,6 @@ def _width(data: Any, least: float = 0.0) -> Width:
     if isinstance(data, bool) or not isinstance(data, (int, float)) or not least <= data <= WIDEST:
         raise ValueError(f"a width is a number from {least:g} to {WIDEST:g}, or rows [s, a, b, c, d]")
     return float(data)
-
-
-def _median(data: Any) -> float:
-    width = _width(data)
-    if isinstance(width, CubicProfile):
-        raise ValueError(f"a median is a number from 0 to {WIDEST:g}")
-    return width
 
 
 def _cubics(rows: Any, most: float) -> CubicProfile:

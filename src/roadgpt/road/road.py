@@ -111,6 +111,21 @@ class Road:
         """The length in plan in metres."""
         return self.plan.length
 
+    @property
+    def starts(self) -> tuple[float, ...]:
+        """The stations in metres between which the road follows one lane: the start and the end."""
+        return 0.0, self.length
+
+    @property
+    def passages(self) -> tuple[Any, ...]:
+        """The ways through junctions, each a ``roadgpt.network.Passage``, in driving order: none."""
+        return ()
+
+    @property
+    def has_way(self) -> bool:
+        """Whether it is known where to drive; False only for a map through which no route was asked for."""
+        return True
+
     def at(self, s: ArrayLike, t: ArrayLike = 0.0) -> Array:
         """Returns points ``(..., 3)`` in metres at stations ``s`` and offsets ``t`` to the left, in metres.
         On a road with superelevation, offsets are measured along the surface, which is rotated about the
@@ -150,7 +165,7 @@ class Road:
 
     def with_profile(self, profile: Profile | None) -> Self:
         """Returns the road with the given cross-section; with None, it uses that of the World."""
-        return replace(self, profile=profile, _sampled={})
+        return replace(self, profile=profile)  # samples are those of the centre line
 
     @property
     def mirrored(self) -> Self:
@@ -242,6 +257,8 @@ class Road:
         own = profile_from_json(data["profile"]) if data.get("profile") is not None else None
         if own is not None and own.left_hand and not in_network:
             raise UsageError(f"{ONLY_NETWORKS}; leave left_hand out of the profile")
+        if own is not None and not own.along_ids and not in_network:
+            raise UsageError("no lane leads along the road; give its profile a driving lane on the right")
         if "nodes" in data:
             return cls.through(data["nodes"], data.get("road_points")).with_profile(own)
         try:

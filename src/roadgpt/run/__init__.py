@@ -12,7 +12,6 @@ import traceback
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING
 
 from roadgpt import plugins
 from roadgpt.brief import NoRoomError, read
@@ -32,9 +31,6 @@ from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup, seed_of
 from roadgpt.run.versions import versions_of
 from roadgpt.stopping import look
 from roadgpt.verdict import Verdict, judge
-
-if TYPE_CHECKING:
-    from roadgpt.network import Blueprint
 
 __all__ = [
     "Draw",
@@ -126,7 +122,7 @@ def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Mete
 
 
 def prove(
-    blueprint: "Blueprint",
+    blueprint: Design | Road,
     seed: int = 0,
     world: World = USUAL,
     setup: Setup = PLAIN,
@@ -187,7 +183,7 @@ def _designed(run: Run, brief: Brief, earlier: Sequence[Design]) -> Run:
             if run.road is None:
                 raise
             break
-        if setup.geometry == "spline" and own_geometry is None and isinstance(design, Design):
+        if setup.geometry == "spline" and own_geometry is None and design.is_plain:
             # designers draw bends, which a spline keeps only through many nodes
             design = in_short_segments(design)
         road = made_from(design, world, own_geometry or setup.geometry)

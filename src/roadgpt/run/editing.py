@@ -38,7 +38,7 @@ def original_of(path: str, run: Run | None, world: World) -> tuple[Run, Design, 
         run = Run(Request(world=world), 1, 0, design=blueprint)
     if run.design is None:
         raise UsageError(f"{path} was made from points and has no design; only a design can be changed")
-    if not isinstance(run.design, Design):
+    if not run.design.is_plain:
         raise UsageError(f"{path} has junctions; only a road without junctions can be changed so far")
     return run, run.design, remarks
 

@@ -34,6 +34,7 @@ from roadgpt.drive import Drive
 from roadgpt.errors import UsageError, explained
 from roadgpt.network import road_from_json
 from roadgpt.reading import LARGEST, json_of, read_json, read_model, read_text, strictly
+from roadgpt.road import read_design
 from roadgpt.run import store
 from roadgpt.run.atomic import json_text, refuse_links, to_bytes, whole_folder, write_whole
 from roadgpt.run.execution import test_name, test_text
@@ -276,8 +277,6 @@ def _read(folder: Path, card: dict[str, Any], place: Path) -> Run:
     def value(name: str) -> Any:
         return _loaded(folder / name) if (folder / name).is_file() else None
 
-    from roadgpt.network import read_any_design  # it knows all kinds of designs
-
     data = strictly(_Card, card)
     brief, design, road, verdict = (value(f"{n}.json") for n in ("brief", "design", "road", "verdict"))
     trace = folder / "error.txt"
@@ -288,7 +287,7 @@ def _read(folder: Path, card: dict[str, Any], place: Path) -> Run:
         outcome=data.outcome,
         description=data.description,
         brief=None if brief is None else Brief.model_validate(brief),
-        design=None if design is None else read_any_design(design)[0],
+        design=None if design is None else read_design(design)[0],
         road=None if road is None else road_from_json(road),
         findings=data.findings,
         drive=Drive.load(folder / "drive.npz") if (folder / "drive.npz").is_file() else None,

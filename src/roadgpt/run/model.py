@@ -19,7 +19,6 @@ from roadgpt.road.world import Parts
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
-    from roadgpt.network import AnyDesign
     from roadgpt.verdict import Verdict
 
 Outcome = Literal["PASS", "FAIL", "INVALID", "ERROR", "VALID"]
@@ -107,7 +106,7 @@ class Run:
     description: str = "valid, not driven"
     """The outcome in a sentence."""
     brief: Brief | None = None
-    design: "AnyDesign | None" = None
+    design: Design | None = None
     road: Road | None = None
     findings: tuple[Finding, ...] = ()
     drive: "Drive | None" = None
@@ -146,8 +145,8 @@ class Run:
 
     @property
     def plain_design(self) -> Design | None:
-        """The design if it is a ``Design``; None if there is none, or if it has junctions or is a map."""
-        return self.design if isinstance(self.design, Design) else None
+        """The design of a single road; None if there is none, or if it has junctions or is a map."""
+        return self.design if self.design is not None and self.design.is_plain else None
 
     @property
     def world(self) -> World:

@@ -52,7 +52,7 @@ def versions_of(setups: Sequence[Setup], driver: Any = None, generators: Iterabl
         settings = plugins.find("settings", name)
         found |= {each: _version(each) for each in settings.libraries} | {name: settings.of().summary()}
     used = {("generators", name) for name in generators}
-    used |= {(kind, name) for kind in ("rules", "network_rules") for name in plugins.names(kind)}
+    used |= {("rules", name) for name in plugins.names("rules")}
     for its in setups:
         reader, _, place = its.reader.partition(":")
         weights = Path(place or Path(brief.__file__).parent / "readers" / "model" / "weights")

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from roadgpt.errors import UsageError
 from roadgpt.export.ego import CAR
-from roadgpt.network import Route
+from roadgpt.network import network_of
 from roadgpt.network.surface import NetworkSurface
 from roadgpt.road import Road, World
 from roadgpt.road.land import LONGEST_STEP, Land
@@ -17,10 +17,9 @@ from roadgpt.scene.camera import Camera, Pose, axes_of
 from roadgpt.scene.car import palette_of, saloon
 from roadgpt.scene.light import screen_table
 from roadgpt.scene.mesh import Mesh
-from roadgpt.scene.network_mesh import StationAxis, network_patches
+from roadgpt.scene.network_mesh import patches_of
 from roadgpt.scene.patterns import noise
 from roadgpt.scene.raster import PLANE, SAMPLES, RenderBuffers, draw
-from roadgpt.scene.road_mesh import LitTerrain, road_patches
 from roadgpt.scene.shade import LaneBoundaries, shade, to_screen
 from roadgpt.scene.trees import Trees, overlay, pictures, plant
 
@@ -31,15 +30,13 @@ FARTHEST = 1e7  # m or rad; greatest number in a pose
 
 
 def landscape(road: Road, world: World) -> tuple[Land, Trees]:
-    """Returns the land around a road, or around all roads of a route's network, and the trees on it."""
-    if not isinstance(road, Route):
-        land, line = Land.around(road, world), road.centreline(LONGEST_STEP)
-        return land, plant(line[:, :2], world.profile_of(road).reach, land)
-    parts = NetworkSurface.of(road.network)
-    line = np.concatenate([each.road.centreline(LONGEST_STEP) for each in road.network.roads])
-    # without shoulders, the roads float above flat land
-    land = Land.beneath(line, parts.reach if parts.shoulder > 0 else None, world.site.z_floor)
-    return land, plant(line[:, :2], parts.reach, land)
+    """Returns the land around all roads of a road's network, and the trees on it."""
+    network = network_of(road, world)
+    roads, reach = [each.road for each in network.roads], NetworkSurface.of(network).reach
+    has_shoulders = any(each.profile.has_shoulders for each in network.roads)
+    land = Land.around(roads, reach if has_shoulders else None, world.site.z_floor)
+    line = np.concatenate([each.centreline(LONGEST_STEP) for each in roads])
+    return land, plant(line[:, :2], reach, land)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,16 +61,8 @@ class Scene:
         arguments."""
         road = world.lay(road)
         land, trees = landscape(road, world)
-        terrain = LitTerrain(land)
-        if isinstance(road, Route):
-            parts = NetworkSurface.of(road.network)
-            widest = max([0.0, *(float(np.ptp(each.paved.bounds[::2])) for each in parts.areas)])
-            axis = StationAxis.of(road.network, parts.roads, widest)
-            patches, lanes = network_patches(road, parts, axis, terrain), axis.lanes
-        else:
-            patches = road_patches(road, world, terrain)
-            lanes = LaneBoundaries.of(world.profile_of(road), road.length)
-        return cls(road, world, land, Mesh.of([*patches, *terrain.patches()]), trees, lanes)
+        patches, lanes = patches_of(road, world, land)
+        return cls(road, world, land, Mesh.of(patches), trees, lanes)
 
     def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:
         """Returns an RGB image ``(height, width, 3)`` of bytes, as the camera on a car at ``pose`` sees it.

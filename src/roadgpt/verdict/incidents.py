@@ -18,19 +18,20 @@ when the condition no longer holds; a wrong turn ends when the car is back on th
 """
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry import wrap_angle
-from roadgpt.network import Route
+from roadgpt.network import Network, legs_of, network_of
 from roadgpt.verdict.oracle import is_outside
 from roadgpt.verdict.verdict import Incident, IncidentKind
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
-    from roadgpt.road import World
+    from roadgpt.road import Road, World
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -45,13 +46,16 @@ EDGE = 0.02  # m, by which a tyre may be beyond the polygon of the paved area, w
 STEP = 1.0  # m, between points at which the heading of other roads is known
 
 
-def incidents_of(route: Route, drive: "Drive", world: "World") -> tuple[Incident, ...]:
+def incidents_of(route: "Road", drive: "Drive", world: "World") -> tuple[Incident, ...]:
     """Returns what the car did wrong on a route, in order of time."""
+    network, edges = network_of(route, world), world.profile_of(route).edges(drive["s"])
+    is_beside: BoolArray = (drive["t"] > edges.left) | (drive["t"] < edges.right)
+    others = [each.id for each in network.roads if each.id not in {leg.road for leg in legs_of(route, world)}]
     steps_of: dict[IncidentKind, list[int]] = {
         "out of lane": begins(is_outside(route, drive, world)),
-        "wrong turn": begins(_is_on_wrong_road(route, drive)),
-        "wrong way": begins(_is_backwards(route, drive)),
-        "off road": begins(_is_off_road(route, drive)),
+        "wrong turn": begins(_is_on_wrong_road(network, others, drive, is_beside)),
+        "wrong way": begins(_is_backwards(route, drive, is_beside)),
+        "off road": begins(_is_off_road(network, drive)),
         "stop line": _stops_missed(route, drive),
     }
     found = [(step, kind) for kind, steps in steps_of.items() for step in steps]
@@ -75,24 +79,17 @@ def begins(holds: BoolArray) -> list[int]:
     return [int(step) for step in steps]
 
 
-def _is_beside(route: Route, drive: "Drive") -> BoolArray:
-    assert route.profile is not None
-    edges = route.profile.edges(drive["s"])
-    beside: BoolArray = (drive["t"] > edges.left) | (drive["t"] < edges.right)
-    return beside
-
-
-def _is_on_wrong_road(route: Route, drive: "Drive") -> BoolArray:
+def _is_on_wrong_road(
+    network: Network, others: Sequence[int], drive: "Drive", beside: BoolArray
+) -> BoolArray:
+    """Returns at which steps the car, beside its own road, drives along one of the ``others`` (ids)."""
     from shapely import contains_xy
 
     from roadgpt.network.paved import ribbon
 
-    wrong, beside = np.zeros(len(drive), bool), _is_beside(route, drive)
+    wrong = np.zeros(len(drive), bool)
     steps = np.flatnonzero(beside & (drive["outside"] > GONE))
-    own = {leg.road for leg in route.legs}
-    for member in route.network.roads if len(steps) else ():
-        if member.id in own:
-            continue
+    for member in map(network.road, others if len(steps) else ()):
         x, y = drive["x"][steps], drive["y"][steps]
         on = contains_xy(ribbon(member.road), x, y)
         if not on.any():
@@ -111,9 +108,9 @@ def _is_on_wrong_road(route: Route, drive: "Drive") -> BoolArray:
     return wrong
 
 
-def _is_backwards(route: Route, drive: "Drive") -> BoolArray:
+def _is_backwards(route: "Road", drive: "Drive", beside: BoolArray) -> BoolArray:
     turned = np.abs(wrap_angle(drive["heading"] - route.heading(drive["s"])))
-    against = (turned > BACKWARDS) & ~_is_beside(route, drive)
+    against = (turned > BACKWARDS) & ~beside
     kept = np.zeros(len(drive), bool)
     for first in begins(against):
         rest = np.flatnonzero(~against[first:])
@@ -139,23 +136,21 @@ def wheels(drive: "Drive") -> FloatArray:
     return np.stack([x, y], axis=-1)
 
 
-def _is_off_road(route: Route, drive: "Drive") -> BoolArray:
+def _is_off_road(network: Network, drive: "Drive") -> BoolArray:
     import shapely
 
-    paved = route.network.paved.buffer(EDGE)
+    paved = network.paved.buffer(EDGE)
     shapely.prepare(paved)
     at = wheels(drive)
     off: BoolArray = ~shapely.contains_xy(paved, at[..., 0], at[..., 1]).all(axis=1)
     return off
 
 
-def _stops_missed(route: Route, drive: "Drive") -> list[int]:
+def _stops_missed(route: "Road", drive: "Drive") -> list[int]:
     """Returns the steps at which the front of the car crosses a stop line without having stood before it."""
-    from roadgpt.drive.outlook import passages
-
     front = drive["s"] + drive.car.ahead + drive.car.length / 2
     missed = []
-    for way in passages(route):
+    for way in route.passages:
         line = way.stop_line
         if line is None or not (front > line).any():
             continue

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.errors import UsageError
-from roadgpt.network import is_route
+from roadgpt.network import only_road
 from roadgpt.road.world import share_in_words
 from roadgpt.verdict.oracle import EPSILON, consult, has_departed, is_outside, margins
 from roadgpt.verdict.verdict import Cause, Incident, Side, Verdict, percent
@@ -83,7 +83,11 @@ def judge(
         UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``.
     """
     road = world.lay(road)
-    incidents = _incidents(road, drive, world)
+    incidents = None
+    if only_road(road, world) is None:
+        from roadgpt.verdict.incidents import incidents_of  # a single road does not need it
+
+        incidents = incidents_of(road, drive, world)
     step, cause = known or _first_failure(road, drive, world)
     if cause is None:
         step, cause = _first_of(incidents or (), drive, step)
@@ -118,14 +122,6 @@ def judge(
         own_share=drive.shares.get(drive.driver),
         handed_to=handed_to,
     )
-
-
-def _incidents(road: "Road", drive: "Drive", world: "World") -> tuple[Incident, ...] | None:
-    if not is_route(road):
-        return None
-    from roadgpt.verdict.incidents import incidents_of  # a single road does not need it
-
-    return incidents_of(road, drive, world)
 
 
 def most_beyond(road: "Road", drive: "Drive", world: "World") -> float:

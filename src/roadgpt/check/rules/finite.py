@@ -1,20 +1,50 @@
-"""Requires all coordinates, headings, curvatures and grades of the road to be finite."""
+"""Requires all coordinates, headings, curvatures, grades and widths of the roads to be finite."""
+
+import math
+from dataclasses import replace
 
 import numpy as np
 
 from roadgpt.brief.model import Brief
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, road_finding, single_road
+from roadgpt.geometry import CubicProfile, GradeProfile, PieceCurve
+from roadgpt.network import Network, NetworkRoad
 from roadgpt.road import Road, World
 
 
-def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports the first station where a coordinate, heading, curvature or grade is not finite."""
-    found = missing_number(road)
-    if found is None:
-        return ()
-    s, what = found
-    place = "" if s is None else f"at s = {s:.0f} m: "
-    return (Finding("finite", place + what, s, stops=True),)
+def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
+    """Reports the first place where a number of a road is not finite."""
+    is_single = single_road(route) is not None
+    for member in network.roads:
+        found = None if math.isfinite(_sum(member.road)) else missing_number(member.road)
+        if found is None:
+            if math.isfinite(_sum_of_widths(member)):
+                continue
+            found = 0.0, "the width of a lane is not a number"
+        s, what = found
+        if s is None:
+            where = "" if is_single else f"on road {member.id}: "
+            return (Finding("finite", where + what, stops=True),)
+        told = road_finding("finite", route, member, s, what, stops=True)
+        return (replace(told, x=None, y=None) if is_single else told,)
+    return ()
+
+
+def _sum(road: Road) -> float:
+    """Returns a number that is finite if all numbers of the road are; NaN for a spline."""
+    plan, heights = road.plan, road.elevation
+    if not isinstance(plan, PieceCurve):
+        return math.nan
+    found = plan.x + plan.y + plan.heading0
+    found += sum(piece.length + piece.k0 + piece.k1 for piece in plan.pieces)
+    if isinstance(heights, GradeProfile):
+        found += heights.z0 + sum(heights.stations) + sum(heights.grades)
+    return found
+
+
+def _sum_of_widths(member: NetworkRoad) -> float:
+    widths = [lane.width for lane in (*member.profile.left, *member.profile.right)]
+    return sum(sum(map(sum, w.coefficients)) if isinstance(w, CubicProfile) else w for w in widths)
 
 
 def missing_number(road: Road) -> tuple[float | None, str] | None:

@@ -1,39 +1,49 @@
-"""Requires that no two parts of the road's surface overlap in plan view, whatever their heights.
+"""Requires that no two parts of the surface overlap in plan view outside junctions, whatever their heights.
 
 Source: the SBFT competition's rule against roads that cross themselves. The surface is divided into quads
 about 1 m long. A quad that is not convex shows that the surface folds: the radius of the bend is smaller than
 half the road width. Without folds, quads that are closer together along the road than half a circle of the
 tightest radius cannot overlap (Schur's comparison theorem), so only quads farther apart are compared. The
 curved edge of the road bulges slightly beyond the straight edges of the quads, so the gap between two quads
-must be more than twice this bulge. Where quads nearly touch, the competition's own quads are checked as well,
-in both driving directions, because the competition's spline may run up to a metre beyond the last point."""
+must be more than twice this bulge. Where quads of a single road nearly touch, the competition's own quads are
+checked as well, in both driving directions, because the competition's spline may run up to a metre beyond the
+last point.
+
+Different roads are compared as polygons; an overlap outside junctions would be a crossing that no connection
+describes. Connecting roads of one junction may overlap; roads of one roundabout are compared by the rule
+``ring_too_small``. Findings about networks are called ``conflicting_overlap``."""
 
 import numpy as np
 
 from roadgpt.brief.model import Brief
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, owner_of, road_finding, single_road, station_on
 from roadgpt.check.ribbon import bulge, gaps, is_convex, near_pairs, quads_of, sides
 from roadgpt.check.sbft import SPLINE_REACH, edges, keeps_clear, splines
+from roadgpt.network import Network, NetworkRoad
 from roadgpt.road import Road, World
 
 SURELY = 0.9  # of the tightest radius: between the samples, a bend may be a little tighter
 
 
-def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports the first place where the road overlaps itself, and the earlier place that it overlaps."""
-    found, nearest, gap = overlap_with_itself(road, world)
+def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
+    """Reports the first place where a single road overlaps itself, and the earlier place that it overlaps; of
+    a network, each pair of roads or junctions that overlap, and each road that overlaps itself."""
+    road = single_road(route)
+    if road is None:
+        return _in_network(network, route)
+    found, nearest, gap = overlap_with_itself(network.roads[0])
     if found is not None:
         return (_finding(road, *found),)
     return _on_sbft_s_spline(road, world, nearest) if gap < SPLINE_REACH else ()
 
 
-def overlap_with_itself(road: Road, world: World) -> tuple[tuple[int, str] | None, int, float]:
+def overlap_with_itself(member: NetworkRoad) -> tuple[tuple[int, str] | None, int, float]:
     """Returns three values: the index of the first sample at which the road folds or overlaps an earlier
     part, and what is wrong there (None: nothing is wrong); the index of the sample that is nearest to an
     earlier part (0 if the road folds, or no parts are close); and the metres between these two parts. The
     metres are 0 if the road folds or overlaps itself, and may be infinite above ``SPLINE_REACH``."""
-    samples = road.sample()
-    offsets = world.profile_of(road).edges(samples.s)
+    samples = member.road.sample()
+    offsets = member.profile.edges(samples.s)
     quads = quads_of(*sides(samples, offsets))
     folded = np.flatnonzero(~is_convex(quads))
     if folded.size:
@@ -69,3 +79,31 @@ def _finding(road: Road, index: int, what: str) -> Finding:
     samples = road.sample()
     s, x, y = (float(v[index]) for v in (samples.s, samples.x, samples.y))
     return Finding("no_overlap", f"at s = {s:.0f} m, near ({x:.0f}, {y:.0f}): {what}", s, x, y)
+
+
+def _in_network(network: Network, route: Road | None) -> tuple[Finding, ...]:
+    from roadgpt.check.footprint import footprint  # not for single roads
+
+    shapes, found = footprint(network), []
+    worst: dict[tuple[str, str], tuple[NetworkRoad, NetworkRoad, float, float, float]] = {}
+    for each in shapes.overlaps:
+        one, other, area, *_ = each
+        ring = network.roundabout_of.get(one.id)
+        if ring is not None and ring is network.roundabout_of.get(other.id):
+            continue
+        names = owner_of(network, one), owner_of(network, other)
+        if names not in worst or area > worst[names][2]:
+            worst[names] = each
+    for names, (*members, _, x, y) in worst.items():
+        sentence = (
+            f"near ({x:.0f}, {y:.0f}): {' and '.join(names)} overlap outside a junction; move them apart"
+        )
+        on_route = [station_on(route, member, float(member.road.locate(x, y)[0])) for member in members]
+        s = max((s for s in on_route if s is not None), default=None)
+        found.append(Finding("conflicting_overlap", sentence, s, x, y))
+    for member in shapes.folded:
+        own = overlap_with_itself(member)[0]
+        if own is not None:
+            s = float(member.road.sample().s[own[0]])
+            found.append(road_finding("conflicting_overlap", route, member, s, own[1]))
+    return tuple(found)

@@ -1,4 +1,4 @@
-"""Requires 2 to 500 control points; consecutive control points must not coincide in plan.
+"""Requires 2 to 500 control points of a single road; consecutive ones must not coincide in plan.
 
 Source: the SBFT competition's limits on ``road_points``. Its spline cannot pass through the same point twice
 in a row."""
@@ -6,14 +6,18 @@ in a row."""
 import numpy as np
 
 from roadgpt.brief.model import Brief
-from roadgpt.check.finding import Finding
+from roadgpt.check.finding import Finding, single_road
+from roadgpt.network import Network
 from roadgpt.road import Road, World
 
 FEWEST, MOST = 2, 500  # SBFT validator
 
 
-def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
+def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports too few or too many control points, or the first two neighbours that coincide in plan."""
+    road = single_road(route)
+    if road is None:
+        return ()
     points = road.control_points()
     if not FEWEST <= len(points) <= MOST:
         sentence = f"the road has {len(points)} points; give {FEWEST} to {MOST}"

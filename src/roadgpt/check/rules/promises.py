@@ -1,98 +1,123 @@
-"""Requires the road to meet its Brief: the turns in order, the straights between them, and the grades.
+"""Requires a road, a route or a map to meet its Brief: the turns and straights in order and the grades; the
+junctions in order and the roads between them; or blocks, junctions, dead ends, signs and distances.
 
-The requirements are given as ranges in an Outline. They are compared with what ``check.measures`` measures on
-the centre line of the road. Additional straights are allowed. If the description leaves a count open ("at
-least three right turns, then a hairpin"), the turns of the road are assigned to the requested groups so that
-as few turns as possible violate a requirement."""
+The requirements are compared with what is measured on the finished geometry: see ``check.matching``. Each
+road between junctions is measured and compared with its own requirements in the same way as a single road.
+"""
 
 from collections.abc import Iterator
-from itertools import pairwise
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from roadgpt.brief.model import Brief
-from roadgpt.brief.outline import Outline, outline
-from roadgpt.brief.ranges import Range
-from roadgpt.brief.words import COUNTS, NO_TURN, ROAD, WHOLE_SLOPES
-from roadgpt.check.finding import Finding
-from roadgpt.check.matching import Complaint, fits, likeness_complaints, sequence_complaints, turn_complaints
-from roadgpt.check.measures import LEVEL, Measures, measure
+from roadgpt.brief.outline import outline
+from roadgpt.brief.words import ROAD
+from roadgpt.check.finding import Finding, route_of, single_road
+from roadgpt.check.matching import complaints, lane_complaints, length_range, map_complaints, place_complaints
+from roadgpt.check.measures import (
+    MeasuredJunction,
+    MeasuredLanes,
+    is_beside_ramp,
+    measure,
+    measured_junctions,
+    measured_map,
+    measured_places,
+)
+from roadgpt.network import Network, NetworkRoad, RoadEnd
 from roadgpt.road import Road, World
 
+if TYPE_CHECKING:
+    from roadgpt.network import Route
 
-def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports the requested and the measured value for each requirement that the road does not meet."""
+RULE = "promises"
+
+
+def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
+    """Reports the requested and the measured value for each requirement that is not met."""
     if brief is None:
         return ()
-    asked = outline(brief, world.site.map_size)
-    found = []
-    for broken in complaints(measure(road.centreline(), asked.widest), asked):
-        x, y = (None, None) if broken.s is None else road.at(min(broken.s, road.length))[:2].tolist()
-        found.append(Finding("promises", broken.sentence, broken.s, x, y))
-    return tuple(found)
-
-
-def complaints(found: Measures, asked: Outline) -> list[Complaint]:
-    """Returns one Complaint for each requirement of an Outline that a measured road does not meet."""
-    out = list(_counts(found, asked))
-    if len(found.turns) in asked.turns:
-        out += sequence_complaints(found, asked)
-        if asked.alike:
-            out += likeness_complaints(found, asked)
-    for number, turn in enumerate(found.turns, 1):
-        out += turn_complaints(number, turn, asked.each_turn)
-    out += _slopes(found, asked)
-    for name, row in ROAD.items():
-        span, value = getattr(asked, name), getattr(found, name)
-        if span and value not in span:
-            text = f"asked for {row.asked.format(span)}, has {row.measured.format(value)}"
-            out.append(Complaint(text, on_heights=row.on_heights))
-    return out + list(_ends(found, asked))
-
-
-def _counts(found: Measures, asked: Outline) -> Iterator[Complaint]:
-    number = len(found.turns)
-    counts = {"turns": number, "left": found.count("left"), "right": found.count("right")}
-    for name, has in counts.items():
-        span: Range = getattr(asked, name)
-        if has not in span:
-            plural = "" if span.lo == span.hi == 1 else "s"
-            yield Complaint(f"asked for {span} {COUNTS[name]}{plural}, has {has}")
-    if number in asked.turns and asked.turns.hi == 0 and found.turning not in NO_TURN:
-        yield Complaint(f"asked for a straight road, turns {found.turning:.1f} degrees in all")
-    for second, (one, other) in enumerate(pairwise(found.turns), 2):
-        if asked.alternating and one.side == other.side:
-            text = f"asked for turns to alternate, turns {second - 1} and {second} both go {one.side}"
-            yield Complaint(text, other.start)
-
-
-def _slopes(found: Measures, asked: Outline) -> Iterator[Complaint]:
-    """Checks the whole road: up or down on average and nowhere the other way, or level everywhere."""
-    low, high, mean = found.lowest_grade, found.highest_grade, found.grade
-    whole = 100 * found.climb / found.length
-    is_so = {
-        "up": whole >= LEVEL and low > -LEVEL,
-        "down": whole <= -LEVEL and high < LEVEL,
-        "flat": low > -LEVEL and high < LEVEL,
-    }
-    if asked.grade and not is_so[asked.grade]:
-        grades = f"{whole:.1f} % on average and {low:.1f} to {high:.1f} % over 20 m"
-        yield Complaint(
-            f"asked for a road that {WHOLE_SLOPES[asked.grade]} all the way, has {grades}", on_heights=True
+    size = world.site.map_size
+    if (road := single_road(route)) is not None:
+        asked = outline(brief, size)
+        told = complaints(measure(road.centreline(), asked.widest), asked)
+        at = (None if each.s is None else road.at(min(each.s, road.length))[:2].tolist() for each in told)
+        return tuple(
+            Finding(RULE, each.sentence, each.s, *(place or ())) for each, place in zip(told, at, strict=True)
         )
-    if asked.grade in ("up", "down") and asked.grade_range and mean not in asked.grade_range:
-        yield Complaint(f"asked for a mean grade of {asked.grade_range} %, has {mean:.1f} %", on_heights=True)
+    if brief.map is None:
+        return tuple(_of_route(route_of(route), brief, size))
+    passed = [] if (driven := route_of(route)) is None else measured_junctions(driven)
+    goes = [each.sides[each.exit - 1] for each in passed]
+    wrong = map_complaints(measured_map(network), brief.map, brief.length, goes)
+    return tuple(Finding(RULE, each.sentence, None, *(each.place or ())) for each in wrong)
 
 
-def _ends(found: Measures, asked: Outline) -> Iterator[Complaint]:
-    for feature, index, says in ((asked.starts, 0, "start"), (asked.ends, -1, "end")):
-        if feature is None:
-            continue
-        among = found.turns if feature.kind == "turn" else found.features
-        last = among[index] if among else None
-        if last is None or last.kind != feature.kind:
-            yield Complaint(f"asked to {says} with a {feature.name}, does not")
-        elif feature.kind == "turn":
-            number = len(found.turns) if index else 1
-            yield from turn_complaints(number, last, feature)
-        elif not (fits(last, feature) or fits(last.pieces[index], feature)):
-            text = f"asked to {says} with another straight than the one it has"
-            yield Complaint(text, last.start, on_heights=feature.grade is not None)
+def _of_route(route: "Route | None", brief: Brief, map_size: float) -> Iterator[Finding]:
+    """Yields a Finding for each requirement that a route does not meet. If the number of junctions and lane
+    changes is wrong, nothing else is compared. On a small map, whose side is ``map_size`` metres, "motorway"
+    and "sweeping" require less."""
+    found = [] if route is None else measured_places(route)
+    if len(found) != len(brief.junctions):
+        places = f"{len(brief.junctions)} junctions and places where lanes change"
+        yield Finding(RULE, f"asked for {places}, passes {len(found)}")
+        return
+    if route is not None:
+        for number, (place, asked) in enumerate(zip(found, brief.junctions, strict=True), 1):
+            x, y = route.at(place.s)[:2].tolist()
+            for text in place_complaints(place, asked):
+                yield Finding(RULE, f"junction {number} at s = {place.s:.0f} m: {text}", place.s, x, y)
+        roads = _stretches(route)
+        moved = [0.0, *map(_moved, found, brief.roads[1:]), 0.0]
+        for n, ((start, road), stretch) in enumerate(zip(roads, brief.roads, strict=False)):
+            if not stretch.is_open:
+                more = moved[n + 1] - moved[n]
+                yield from _of_stretch(start, road, stretch, (n > 0, n < len(roads) - 1), more, map_size)
+    length = 0.0 if route is None else route.length
+    if brief.length is not None and length not in (allowed := length_range(brief.length)):
+        quantity = ROAD["length"]
+        text = f"asked for {quantity.asked.format(allowed)}, has {quantity.measured.format(length)}"
+        yield Finding(RULE, text)
+
+
+def _moved(place: MeasuredJunction | MeasuredLanes, behind: Brief) -> float:
+    """Returns the distance in metres from the end of a road to the place where its required length ends: 0 at
+    a lane change if a length is required of the following road, too."""
+    if isinstance(place, MeasuredJunction) or (place.kind == "lane_change" and behind.length is not None):
+        return 0.0
+    return place.behind
+
+
+def _stretches(route: "Route") -> list[tuple[float, Road]]:
+    """Returns the roads of a route outside junctions as pairs (station of the start in metres, road)."""
+    from roadgpt.network.stretch import joined_roads  # not for single roads
+
+    found: list[tuple[float, list[NetworkRoad]]] = []
+    for start, member in route.roads:
+        last = found[-1][1][-1] if found else None
+        is_continued = RoadEnd(member.id, "start") in route.network.continued_at
+        if last is not None and is_continued and is_beside_ramp(route.network, last, member):
+            found[-1][1].append(member)
+        else:
+            found.append((start, [member]))
+    return [(start, joined_roads([member.road for member in own])) for start, own in found]
+
+
+def _of_stretch(
+    start: float, road: Road, asked: Brief, is_level: tuple[bool, bool], more: float, map_size: float
+) -> Iterator[Finding]:
+    """Yields a Finding for each requirement that a road does not meet. ``is_level`` says whether the road was
+    made level at its start and at its end, where it meets junctions; grades are measured as if it had not
+    been. The length counts from where lanes end, begin or change, so ``more`` metres are added to it."""
+    from roadgpt.network.stretch import without_level_ends
+
+    assert road.profile is not None
+    wanted = outline(asked.as_stretch, map_size)
+    found = measure(without_level_ends(road, is_level).centreline(), wanted.widest)
+    heights = road.at(np.array([0.0, road.length]))[:, 2]
+    found = replace(found, climb=float(heights[1] - heights[0]), length=found.length + more)
+    for each in (*lane_complaints(road.profile, asked), *complaints(found, wanted)):
+        s = start if each.s is None else start + each.s
+        x, y = road.at(min(s - start, road.length))[:2].tolist()
+        yield Finding(RULE, f"on the road from s = {start:.0f} m: {each.sentence}", s, x, y)

@@ -5,7 +5,9 @@ vertical acceleration is v^2 / R. Where the description asks for a crest or a di
 are allowed; beyond that, the wheels would lose contact with the road.
 
 v is the speed expected at this place: the car starts from rest, respects the speed limit and slows down only
-for bends (``road.speed_profile.expected_speed``). Sources: ``docs/decisions/0028-vertical-radii.md``."""
+for bends (``road.speed_profile.expected_speed``). A route is checked as one road, so the turns at its
+junctions limit the speed. On every other road the car starts from rest. Sources:
+``docs/decisions/0028-vertical-radii.md``."""
 
 import numpy as np
 
@@ -13,9 +15,11 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.outline import outline
 from roadgpt.check.extremes import vertical_bends
-from roadgpt.check.finding import Finding, findings_at
+from roadgpt.check.finding import Finding, road_finding, single_road
 from roadgpt.check.measures import measure
+from roadgpt.geometry import GradeProfile
 from roadgpt.geometry.curve import Array
+from roadgpt.network import Network, legs_of
 from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import GRAVITY, expected_speed
 
@@ -64,9 +68,24 @@ def _turns_before(brief: Brief, index: int) -> int | None:
     return sum(lo for lo, _ in counts) if all(lo == hi for lo, hi in counts) else None
 
 
-def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports the crest or dip that exceeds its limit by the largest factor, if there is one."""
-    return findings_at("too_abrupt", road, abrupt_place(road, brief, world))
+def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
+    """Reports the crest or dip that exceeds its limit by the largest factor, on the route and on each other
+    road."""
+    found, driven = [], set[int]()
+    if route is not None:
+        driven = {leg.road for leg in legs_of(route, world)}
+        asked = None if single_road(route) is None else brief  # of a route, each road has clauses of its own
+        if (abrupt := abrupt_place(route, asked, world)) is not None:
+            s, what = abrupt
+            x, y = route.at(s)[:2].tolist()
+            found.append(Finding("too_abrupt", f"at s = {s:.0f} m: {what}", s, x, y))
+    for member in network.plain_roads:
+        heights = member.road.elevation
+        if member.id in driven or (isinstance(heights, GradeProfile) and not any(heights.grades)):
+            continue
+        if (abrupt := abrupt_place(member.road, None, world)) is not None:
+            found.append(road_finding("too_abrupt", route, member, *abrupt))
+    return tuple(found)
 
 
 def abrupt_place(road: Road, brief: Brief | None, world: World) -> tuple[float, str] | None:

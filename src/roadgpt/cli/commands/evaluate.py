@@ -42,14 +42,13 @@ def check(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **re
 
 
 def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -> tuple[Row, None]:
-    from roadgpt.network import has_no_route
     from roadgpt.run import Setup, prove
 
     begun = time.perf_counter()
     blueprint, world, remarks = source_of(file, world)
     run = prove(blueprint, world=world, setup=Setup(rules=rules, geometry=geometry, drives=False))
     row = row_of(run, file)
-    if is_only_map := run.road is not None and has_no_route(run.road):
+    if is_only_map := run.road is not None and not run.road.has_way:
         remarks = (*remarks, "the map has no route, so only its roads and junctions are checked")
     for remark in remarks:
         screen.say(f"{file}: {remark}")

@@ -1,10 +1,9 @@
 """The default designer: finds roads, routes through junctions, and maps by random drafts.
 
-See ``design.road_search`` for roads, and ``design.network_draft`` for routes and maps; the latter is imported
+See ``design.road_search`` for roads, and ``design.network_search`` for routes and maps; the latter is loaded
 only where it is used."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +11,6 @@ from roadgpt.brief.model import Brief
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
 from roadgpt.road import Design, World
-
-if TYPE_CHECKING:
-    from roadgpt.network import AnyDesign
 
 
 class Planner:
@@ -27,8 +23,8 @@ class Planner:
 
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
-    ) -> "AnyDesign":
-        """Returns a valid Design that meets the Brief; a NetworkDesign or a MapDesign for a network. The road
+    ) -> Design:
+        """Returns a valid Design that meets the Brief; a road
         differs from the earlier designs as far as possible; for networks, these are ignored. Only the number
         of notes matters, because this number changes the seed. For errors see ``roadgpt.draft``."""
         rng = np.random.default_rng([seed, len(notes)])

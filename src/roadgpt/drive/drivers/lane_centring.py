@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import line_along, pedals_for, stations
-from roadgpt.drive.outlook import passages
 from roadgpt.drive.view import Command, View
 
 if TYPE_CHECKING:
@@ -79,7 +78,7 @@ class LaneCentring:
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Computes the middle of the lane, and forgets the last road."""
-        self._by_person = [(way.start - TAKEN_OVER, way.end + GIVEN_BACK) for way in passages(road)]
+        self._by_person = [(way.start - TAKEN_OVER, way.end + GIVEN_BACK) for way in road.passages]
         self._person, self._is_person = Reference(), False
         self.handed_to: str | None = None
         if self._by_person:

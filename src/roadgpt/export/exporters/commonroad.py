@@ -15,11 +15,11 @@ import numpy as np
 from roadgpt.brief.junctions import SIDE, Control, Way, side_of
 from roadgpt.export.ego import Poses, calm_speed, start_of
 from roadgpt.export.georeference import LATITUDE, LONGITUDE
-from roadgpt.export.lanelets import ONLY, Lanelet, lanelets_of, leading_to
+from roadgpt.export.lanelets import Lanelet, arms_of, lanelets_of
 from roadgpt.export.markup import XmlElement, number
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Arm, Connection, Junction, Network, Route
+from roadgpt.network import Arm, Connection, Junction, Leg, Network, legs_of, network_of
 from roadgpt.network.markings import gives_way_to_ring, line_to_stop_at, place_of_sign
 from roadgpt.road import Road, World
 from roadgpt.road.profile import Marking
@@ -44,12 +44,7 @@ class Crossings:
         lights and intersections."""
         self.network, self.first_free = network, first_free
         self.road_of = {each.id: each.road for each in lanelets}
-        self.arms = [
-            (junction, arm, incoming)
-            for junction in network.junctions
-            for arm in junction.arms
-            if (incoming := leading_to(lanelets, network, arm.end))
-        ]
+        self.arms = arms_of(network, lanelets)
 
     @cached_property
     def _signed(self) -> dict[int, tuple[int, Junction, Arm]]:
@@ -190,28 +185,19 @@ def document(road: Road, world: World) -> XmlElement:
     location.add("gpsLatitude", raw=number(LATITUDE))
     location.add("gpsLongitude", raw=number(LONGITUDE))
     root.add("scenarioTags").add("rural")
-    junctions = Crossings(road.network, lanelets, sign + 2) if isinstance(road, Route) else None
+    junctions = Crossings(network_of(road, world), lanelets, sign + 2)
     for each in lanelets:
         root.extended(_lanelet(each, sign, junctions))
     edges = world.profile_of(road).edges(0.0)
     side = edges.left if world.profile_of(road).left_hand else edges.right
     root.extended(_limit(sign, road.at(0.0, side), world))
-    if junctions is not None:
-        root.extended(*junctions.elements())
-    root.extended(_problem(sign + 1, road, world, _goal(road, world, lanelets)))
-    return root
+    root.extended(*junctions.elements())
+    last = legs_of(road, world)[-1]
+    goal = [each.id for each in lanelets if Leg(each.road, each.lane) == last][-1]
+    return root.extended(_problem(sign + 1, road, world, goal))
 
 
-def _goal(road: Road, world: World, lanelets: Sequence[Lanelet]) -> int:
-    if isinstance(road, Route):
-        number, lane = road.legs[-1]
-    else:
-        profile = world.profile_of(road)
-        number, lane = ONLY, profile.along_ids[profile.driven]
-    return [each.id for each in lanelets if (each.road, each.lane) == (number, lane)][-1]
-
-
-def _lanelet(lanelet: Lanelet, sign: int, junctions: Crossings | None) -> XmlElement:
+def _lanelet(lanelet: Lanelet, sign: int, junctions: Crossings) -> XmlElement:
     out = XmlElement("lanelet", {"id": lanelet.id})
     for name, bound in (("leftBound", lanelet.left), ("rightBound", lanelet.right)):
         element = out.add(name)
@@ -225,14 +211,11 @@ def _lanelet(lanelet: Lanelet, sign: int, junctions: Crossings | None) -> XmlEle
         if neighbour is not None:
             id_, is_same = neighbour
             out.add(name, {"ref": id_, "drivingDir": "same" if is_same else "opposite"})
-    if junctions is not None:
-        out.extended(*junctions.line_of(lanelet.id))
+    out.extended(*junctions.line_of(lanelet.id))
     out.add("laneletType", raw="country")
     out.add("userOneWay", raw="vehicle")
     out.add("trafficSignRef", {"ref": sign})
-    if junctions is not None:
-        out.extended(*junctions.references(lanelet.id))
-    return out
+    return out.extended(*junctions.references(lanelet.id))
 
 
 def _limit(id_: int, place: Array, world: World) -> XmlElement:

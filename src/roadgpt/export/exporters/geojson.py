@@ -11,7 +11,7 @@ from roadgpt.export.ego import Poses
 from roadgpt.export.georeference import degrees
 from roadgpt.export.markup import finite
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Route, has_no_route
+from roadgpt.network import Network, network_of, only_road
 from roadgpt.road import Road, World
 
 STEP = 1.0  # m
@@ -35,8 +35,9 @@ class GeoJson:
         no centre line."""
         s = road.sample(STEP).s
         about = {"length_m": road.length, "speed_kmh": world.limits.speed_limit * 3.6}
-        beside = _paved(road, world) if isinstance(road, Route) else _lanes(road, world, s)
-        lines = [] if has_no_route(road) else [_line("centre line", road.at(s), about)]
+        is_only = only_road(road, world) is not None
+        beside = _lanes(road, world, s) if is_only else _paved(network_of(road, world), world)
+        lines = [_line("centre line", road.at(s), about)] if road.has_way else []
         features = [*lines, *beside]
         if poses is not None:
             way = np.stack([poses.x, poses.y, poses.z], axis=-1)
@@ -69,12 +70,12 @@ def _lanes(road: Road, world: World, s: Array) -> Iterator[dict[str, Any]]:
             yield _feature(name, {"type": "Polygon", "coordinates": [ring]}, properties)
 
 
-def _paved(route: Route, world: World) -> Iterator[dict[str, Any]]:
+def _paved(network: Network, world: World) -> Iterator[dict[str, Any]]:
     """Yields one polygon for each part of the paved area of a network, without heights."""
     from shapely import get_parts
     from shapely.geometry.polygon import orient
 
-    for part in get_parts(route.network.paved):
+    for part in get_parts(network.paved):
         turned = orient(part)  # the outline counter-clockwise and holes clockwise, as the standard requires
         rings = [np.asarray(each.coords, float) for each in (turned.exterior, *turned.interiors)]
         level = [np.column_stack([ring, np.zeros(len(ring))]) for ring in rings]

@@ -126,7 +126,7 @@ def meshes(road: Road, world: World, poses: Poses | None = None) -> list[Triangl
 
 def _ground(road: Road, world: World, s: Array) -> TriangleMesh:
     """Returns the land around the road, and the embankments from its edges and ends down to the land."""
-    land = Land.around(road, world)
+    land = Land.around([road], world.profile_of(road).reach, world.site.z_floor)
     near = slice(len(FAR), -len(FAR))  # the outer rows and columns are only for the horizon
     x, y = np.meshgrid(land.x[near], land.y[near])
     slope_y, slope_x = np.gradient(land.heights[near, near], land.y[near], land.x[near])

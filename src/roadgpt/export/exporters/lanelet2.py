@@ -13,10 +13,10 @@ import numpy as np
 from roadgpt.brief.junctions import Control
 from roadgpt.export.ego import Poses
 from roadgpt.export.georeference import degrees
-from roadgpt.export.lanelets import LaneletBound, lanelets_of, leading_to
+from roadgpt.export.lanelets import LaneletBound, arms_of, lanelets_of
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Arm, Junction, Network, Route
+from roadgpt.network import Arm, Junction, Network, network_of
 from roadgpt.network.markings import line_to_stop_at, place_of_sign
 from roadgpt.road import Road, World
 from roadgpt.road.profile import Marking
@@ -68,12 +68,10 @@ def document(road: Road, world: World) -> XmlElement:
                     ways[bound] = map_.way(bound.points, TAGS[bound.marking])
         for each in own:
             map_.lanelet(each.id, ways[each.left], ways[each.right])
-    if isinstance(road, Route):
-        for junction in road.network.junctions:
-            for arm in junction.arms:
-                incoming = leading_to(lanelets, road.network, arm.end)
-                if incoming and arm.control != "none":
-                    map_.signal(road.network, junction, arm, [each.id for each in incoming])
+    network = network_of(road, world)
+    for junction, arm, incoming in arms_of(network, lanelets):
+        if arm.control != "none":
+            map_.signal(network, junction, arm, [each.id for each in incoming])
     root = XmlElement("osm", {"version": "0.6", "generator": "RoadGPT", "upload": "false"})
     return root.extended(*map_.nodes, *map_.ways, *map_.lanelets.values(), *map_.rules)
 

@@ -14,10 +14,10 @@ import numpy as np
 from shapely.geometry import LineString
 
 from roadgpt.export.ego import CAR, Poses, SpeedProfile, calm_profile, goal_of, on_the_ground, start_of
-from roadgpt.export.exporters.opendrive import ROAD, OpenDrive
+from roadgpt.export.exporters.opendrive import OpenDrive
 from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Route
+from roadgpt.network import legs_of, network_of, only_road
 from roadgpt.road import Road, World
 
 EGO = "Ego"
@@ -59,21 +59,18 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
     plan = calm_profile(road, world)
     # stations are those of the rear axle
     start, near = max(start_of(road) + CAR.rear_axle, 0.0), road.length - (goal_of(road) + CAR.rear_axle)
+    middles = [mean(both) for both in pairwise(road.starts)]
+    waypoints = [_on_route(road, world, s) for s in (start, *middles[1:-1], road.length)]
+    told = "A car drives the right lane from the start of the road to its end."
+    measured = {"coordinateSystem": "road", "relativeDistanceType": "longitudinal"}
     also: dict[str, XmlElement] = {}
-    if isinstance(road, Route):
+    if only_road(road, world) is None:
         told = "A car drives a route through a network of roads."
-        middles = [mean(both) for both in pairwise(road.starts)]
-        waypoints = [_on_route(road, s) for s in (start, *middles[1:-1], road.length)]
         measured = {"coordinateSystem": "entity", "relativeDistanceType": "euclidianDistance"}
         # a route that turns back ends beside its start
         driven = XmlElement("EntityCondition")
         driven.add("TraveledDistanceCondition", {"value": round(road.length / 2, DECIMALS)})
         also["half of it is driven"] = _of_ego(driven)
-    else:
-        told = "A car drives the right lane from the start of the road to its end."
-        lane = -1 - world.profile_of(road).driven
-        waypoints = [_in_lane(lane, s) for s in (start, road.length)]
-        measured = {"coordinateSystem": "road", "relativeDistanceType": "longitudinal"}
     root, actions, story = _frame(world, map_, told)
     actions.add("PrivateAction").add("TeleportAction").extended(waypoints[0])
     actions.add("PrivateAction").extended(_speed(0.0))
@@ -90,14 +87,18 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
     return root
 
 
-def _on_route(route: Route, s: float) -> XmlElement:
-    number = min(max(bisect_right(route.starts, s) - 1, 0), len(route.legs) - 1)
-    leg = route.legs[number]
-    first = next(n for n in range(number, -1, -1) if n == 0 or route.legs[n - 1].road != leg.road)
-    member = route.network.road(leg.road)
-    along = min(s - route.starts[first], member.road.length)
+def _on_route(road: Road, world: World, s: float) -> XmlElement:
+    legs = legs_of(road, world)
+    number = min(max(bisect_right(road.starts, s) - 1, 0), len(legs) - 1)
+    leg = legs[number]
+    first = next(n for n in range(number, -1, -1) if n == 0 or legs[n - 1].road != leg.road)
+    member = network_of(road, world).road(leg.road)
+    along = min(s - road.starts[first], member.road.length)
     is_along = member.profile.leads_along(leg.lane)
-    return _in_lane(leg.lane, along if is_along else member.road.length - along, leg.road)
+    place = {"s": along if is_along else member.road.length - along, "offset": 0}
+    out = XmlElement("Position")
+    out.add("LanePosition", {"roadId": str(leg.road), "laneId": str(leg.lane), **place})
+    return out
 
 
 def _of_ego(condition: XmlElement) -> XmlElement:
@@ -227,12 +228,6 @@ def _profile(profile: SpeedProfile) -> XmlElement:
     for duration, value in zip(np.diff(time, prepend=0.0).tolist(), speed.tolist(), strict=True):
         entry: dict[str, Value] = {"speed": round(value, DECIMALS), "time": round(duration, DECIMALS)}
         action.add("SpeedProfileEntry", entry)
-    return out
-
-
-def _in_lane(lane: int, s: float, road: int = ROAD) -> XmlElement:
-    out = XmlElement("Position")
-    out.add("LanePosition", {"roadId": str(road), "laneId": str(lane), "s": s, "offset": 0})
     return out
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Route
+from roadgpt.network import Network, network_of, only_road
 from roadgpt.network.markings import arrows, strokes
 from roadgpt.report.overview import Thumbnail
 from roadgpt.road import Road, World
@@ -150,10 +150,10 @@ def site_of(road: Road, world: World, drive: Drive | None, station: float) -> Fa
     heading = float(road.heading(max(0.0, station - 2 * BEHIND)))
     profile = world.profile_of(road)
     at = road.at(station, profile.middle(station))[:2]
-    if isinstance(road, Route):
-        none = np.empty((0, 2))
-        rings, lines = _network_around(road, at)
-        painted = _near([arrow.points[:, :2] for arrow in arrows(road.network)], at)
+    if only_road(road, world) is None:
+        network, none = network_of(road, world), np.empty((0, 2))
+        rings, lines = _network_around(network, at)
+        painted = _near([arrow.points[:, :2] for arrow in arrows(network)], at)
         return FailureSite(none, lines, none, path, car, at, heading, rings, painted)
     s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
     (_, left), *inner, (_, right) = [(mark, road.at(s, t)[:, :2]) for mark, t in profile.boundaries(s)]
@@ -161,13 +161,13 @@ def site_of(road: Road, world: World, drive: Drive | None, station: float) -> Fa
     return FailureSite(left, lines, right, path, car, at, heading)
 
 
-def _network_around(route: Route, at: Array) -> tuple[tuple[Array, ...], tuple[tuple[Array, bool], ...]]:
+def _network_around(network: Network, at: Array) -> tuple[tuple[Array, ...], tuple[tuple[Array, bool], ...]]:
     import shapely
 
     box = shapely.box(*(at - ACROSS), *(at + ACROSS))
-    parts = shapely.get_parts(shapely.intersection(route.network.paved, box))
+    parts = shapely.get_parts(shapely.intersection(network.paved, box))
     rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
-    lines = _near([stroke.points[:, :2] for stroke in strokes(route.network)], at)
+    lines = _near([stroke.points[:, :2] for stroke in strokes(network)], at)
     outlines = tuple(np.asarray(ring.coords, float)[:, :2] for ring in rings)
     return outlines, tuple((line, False) for line in lines)
 

@@ -24,7 +24,7 @@ from roadgpt.errors import ExportError, RoadGPTError, UsageError, explained
 from roadgpt.export.edges import FOOT, OUTSIDE, RUN, stations
 from roadgpt.export.ego import CAR
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Route, has_no_route
+from roadgpt.network import network_of, only_road
 from roadgpt.network.markings import PaintedStroke, arrows, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area
 from roadgpt.network.route import ground_of
@@ -152,16 +152,17 @@ def scene(run: Run) -> dict[str, Any]:
     """Returns everything that the HTML page shows of a Run, in metres, seconds and radians."""
     if run.road is None:
         raise UsageError(f"there is no road to show: {run.description}")
-    more = {"network": network_values(run.road)} if isinstance(run.road, Route) else {}
+    is_only = only_road(run.road, run.world) is not None
+    more = {} if is_only else {"network": network_values(run.road, run.world)}
     return {
         "title": run.title,
         "outcome": outcome_of(run),
         "colour": OUTCOMES.get(outcome_of(run), INK),
         "letters": LETTERS.get(OUTCOMES.get(outcome_of(run), INK), "#ffffff"),
         "description": run.description,
-        "about": origin(run) + (OF_FIRST_ROAD if has_no_route(run.road) else ""),
+        "about": origin(run) + ("" if run.road.has_way else OF_FIRST_ROAD),
         "words": _words(run.road),
-        "road": _road(run.road, run.world),
+        "road": _road(run.road, run.world, is_only),
         "land": _land(*landscape(run.world.lay(run.road), run.world)),
         "world": {name: run.world.values()[name] for name in WORLD},
         "marking": {"width": LINE, "dash": DASH, "gap": GAP},
@@ -173,7 +174,7 @@ def scene(run: Run) -> dict[str, Any]:
 
 
 def _words(road: Road) -> str:
-    if has_no_route(road):
+    if not road.has_way:
         return ""
     try:
         return sentence(describe(road))
@@ -181,10 +182,10 @@ def _words(road: Road) -> str:
         return ""
 
 
-def _road(road: Road, world: World) -> dict[str, Any]:
+def _road(road: Road, world: World, is_only: bool) -> dict[str, Any]:
     """Returns the values of a road; a route's edges stand for its rims, as the ground is the network's."""
     profile = world.profile_of(road)
-    if not isinstance(road, Route):
+    if is_only:
         return road_columns(road, profile)
     made = road_columns(road, profile, profile.paved_reach)
     bounds = made["lanes"]["bounds"]
@@ -235,9 +236,10 @@ def _places(run: Run) -> list[dict[str, Any]]:
     return found
 
 
-def network_values(route: Route) -> dict[str, Any]:
+def network_values(route: Road, world: World) -> dict[str, Any]:
     """Returns everything that the HTML page shows of the network of a route, in metres."""
-    network, parts = route.network, NetworkSurface.of(route.network)
+    network = network_of(route, world)
+    parts = NetworkSurface.of(network)
     roads = []
     for each in parts.roads:
         columns = road_columns(each.road, each.profile, median=between_crosswalks(network, each))
@@ -274,7 +276,7 @@ def network_values(route: Route) -> dict[str, Any]:
             }
             for each in route.passages
         ],
-        "hasRoute": bool(route.legs),
+        "hasRoute": route.has_way,
         "shoulder": round(parts.shoulder, MILLIMETRES),
     }
 
@@ -352,7 +354,7 @@ def road_columns(
 
 
 def _median(profile: Profile, span: tuple[float, float]) -> dict[str, float] | None:
-    if not profile.median:
+    if not profile.is_divided:
         return None
     at = profile.count[0] if profile.left_hand else profile.count[1]
     return {"strip": at, "from": round(span[0], MILLIMETRES), "to": round(span[1], MILLIMETRES)}

@@ -18,10 +18,12 @@ import numpy as np
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, SplineCurve
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.elevation import closed
 from roadgpt.road.opendrive.line import (
     KINK,
     GeometryElement,
     SampledLine,
+    corners,
     exact,
     fitted,
     lies_on_the_line,
@@ -37,7 +39,6 @@ from roadgpt.road.opendrive.profile import (
     Lanes,
     carried_over,
     checked,
-    closed,
     edge_heights,
     elevation,
     friction,
@@ -54,8 +55,6 @@ from roadgpt.road.world import World
 
 __all__ = ["ImportedRoad", "read_opendrive"]
 
-NODES = 5.0  # m between the nodes of a spline that rounds off kinks
-CLOSEST = 0.5  # m between such nodes
 MOST_SPANS = 3  # spans that a remark lists
 MOST_STATIONS = 10_000  # pairs of corresponding stations in the file and on the Road, for interpolation
 PLACES = 1_000  # stations at which the spline is compared with the line, and at which widths are sampled
@@ -219,13 +218,7 @@ def _away(found: SampledLine, road: Road) -> float:
 
 def _rounded(found: SampledLine, heights: Array) -> tuple[Road, Array]:
     """Returns a spline through a line with very close joins, and the stations of its nodes in the file."""
-    kept = [0]
-    for i in range(1, len(found.s) - 1):
-        since = found.s[i] - found.s[kept[-1]]
-        is_corner = abs(found.kinks[i]) > KINK / 10
-        if (since >= NODES or (is_corner and since > CLOSEST)) and found.s[-1] - found.s[i] > CLOSEST:
-            kept.append(i)
-    kept.append(len(found.s) - 1)
+    kept = corners(found)
     return Road.through(np.column_stack([found.poses[:, :2], heights])[kept]), found.s[kept]
 
 

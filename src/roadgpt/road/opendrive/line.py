@@ -56,6 +56,7 @@ HARDLY_TURNS = 0.02  # rad; over such a slight turn a clothoid deviates by micro
 LEAST = 0.1  # m between the poses of a polynomial
 FEWEST = 2  # parts of an element: its middle tells its direction best
 TOGETHER = 1e-3  # m; joints closer together than this are merged
+NODES, APART = 5.0, 0.5  # m between the places of a line with very close joins, and at least
 LEFT_OVER = 0.05  # m of lane edge that must remain per m of line in a bend
 
 
@@ -287,6 +288,39 @@ def bridged(line: SampledLine) -> SampledLine | None:
     poses[0, 2] += line.kinks[line.s < line.s[0] + NEAREST].sum()
     poses[-1, 2] -= line.kinks[line.s > line.s[-1] - NEAREST].sum()
     return replace(line, poses=poses).only(kept)
+
+
+def corners(line: SampledLine) -> list[int]:
+    """Returns the indices of poses about 5 m apart, and of those at kinks, through which a smooth line leads
+    where the joins of elements are too close together for ``bridged``."""
+    kept = [0]
+    for i in range(1, len(line.s) - 1):
+        since = line.s[i] - line.s[kept[-1]]
+        is_corner = abs(line.kinks[i]) > KINK / 10
+        if (since >= NODES or (is_corner and since > APART)) and line.s[-1] - line.s[i] > APART:
+            kept.append(i)
+    return [*kept, len(line.s) - 1]
+
+
+def smoothed(line: SampledLine) -> tuple[PieceCurve, Array, Array] | None:
+    """Returns a curve as ``fitted`` does, of clothoids through the ``corners`` only, in the directions of
+    their neighbours."""
+    kept = np.array(corners(line))
+    points = line.poses[kept, :2]
+    if len(points) < 3:
+        return None
+    chords = np.diff(points, axis=0)
+    length = np.hypot(*chords.T)
+    along = np.unwrap(np.arctan2(chords[:, 1], chords[:, 0]))
+    # the longer a chord, the less it says about the direction at its end
+    middle = (along[:-1] * length[1:] + along[1:] * length[:-1]) / (length[1:] + length[:-1])
+    heading = np.r_[2 * along[0] - middle[0], middle, 2 * along[-1] - middle[-1]]
+    pieces = clothoids(np.column_stack([points, heading]))
+    if pieces is None:
+        return None
+    stations = np.r_[0.0, np.cumsum([piece.length for piece in pieces])]
+    x, y = points[0].tolist()
+    return PieceCurve(x, y, float(heading[0]), joined(pieces)), line.s[kept], stations
 
 
 def turns_back(line: SampledLine) -> tuple[float, float] | None:

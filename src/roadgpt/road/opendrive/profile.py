@@ -22,7 +22,7 @@ import numpy as np
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile, shifted
 from roadgpt.geometry.curve import Array
-from roadgpt.geometry.elevation import Cubic
+from roadgpt.geometry.elevation import SHORTEST, Row, closed, constant, value_at
 from roadgpt.road.opendrive.tree import DRIVING, cubics, number
 from roadgpt.road.profile import MOST_LANES, MOST_ROWS, STEEPEST, WIDEST, Kind, Lane, Marking, Profile, Width
 from roadgpt.road.world import FRICTIONS, LANE_WIDTHS, SPEEDS
@@ -157,7 +157,7 @@ def read_lanes(road: Element, length: float) -> Lanes:
     starts = [number(node, "s") for node in nodes]
     centres = [tuple(node.findall("center/lane")) for node in nodes]
     on_right, on_left = (
-        [_elements(node, side, s) for node, s in zip(nodes, starts, strict=True)]
+        [lane_elements(node, side, s) for node, s in zip(nodes, starts, strict=True)]
         for side in ("right", "left")
     )
     right, left = (
@@ -180,7 +180,9 @@ def _section(
     return LaneSection(s, lanes, others, centre, first)
 
 
-def _elements(section: Element, side: str, s: float) -> tuple[LaneElement, ...]:
+def lane_elements(section: Element, side: str, s: float) -> tuple[LaneElement, ...]:
+    """Returns the lanes on the side "left" or "right" of a section that begins at station ``s``, from the
+    inside out. Raises UsageError if there are more than 200."""
     nodes = sorted(section.findall(f"{side}/lane"), key=lambda lane: abs(number(lane, "id")))
     if len(nodes) > MOST_ACROSS:
         raise UsageError(f"its lane section at s = {s:g} has more than {MOST_ACROSS} lanes on one side")
@@ -289,12 +291,7 @@ def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfi
     return CubicProfile.of_table(stations[:-1].tolist(), table * scale)
 
 
-Row = tuple[float, Cubic]
-"""A station in metres, and the cubic that begins there."""
-
-SAME = 1e-12  # m; two constants closer than this are treated as equal
 TOUCHES = 1e-9  # m by which a cubic may be beyond a limit, because of rounding
-SHORTEST = 1e-6  # m between two stations
 UNITS = {"m/s": 1.0, "km/h": 3.6, "mph": 3600 / 1609.344}  # per m/s
 MOST_CHANGES = 3  # that a sentence lists
 ADJOINS = 1e-3  # m; lanes for oncoming cars that are farther from the centre line lie behind a median
@@ -325,17 +322,6 @@ def combined(parts: Sequence[tuple[float, CubicProfile]], start: float, end: flo
     return CubicProfile.of_table(stations, table).rows
 
 
-def value_at(row: Row, s: float) -> float:
-    """Returns the value that the cubic of a row has at station ``s``."""
-    (a, b, c, d), u = row[1], s - row[0]
-    return float(a + u * (b + u * (c + u * d)))
-
-
-def constant(s: float, value: float) -> Row:
-    """Returns a row with a constant cubic that begins at station ``s``."""
-    return s, (value, 0.0, 0.0, 0.0)
-
-
 def limited(rows: Sequence[Row], end: float, low: float, high: float) -> list[Row]:
     """Returns the rows with their values clamped to the range from ``low`` to ``high``. The last row ends at
     station ``end`` in metres. The result is exact: a row is cut where its cubic crosses a limit."""
@@ -364,27 +350,6 @@ def _cuts(row: Row, end: float, low: float, high: float) -> list[tuple[float, fl
             if abs(root.imag) < TOUCHES and SHORTEST < root.real < reach - SHORTEST:
                 places.add(start + float(root.real))
     return [*pairwise(sorted(places))]
-
-
-def closed(rows: Sequence[Row], length: float) -> CubicProfile:
-    """Converts the rows to a CubicProfile of a road of ``length`` metres. Beyond the end of the road, the
-    profile keeps its last value. A constant row that repeats the row before is left out."""
-    kept: list[Row] = []
-    for row in rows:
-        if kept and row[0] >= length - SHORTEST:
-            break
-        if kept and row[0] - kept[-1][0] < SHORTEST:
-            kept.pop()
-        repeats = kept and _is_constant(kept[-1]) and _is_constant(row)
-        if not (repeats and abs(kept[-1][1][0] - row[1][0]) < SAME):
-            kept.append(row)
-    if not _is_constant(kept[-1]):
-        kept.append(constant(length, value_at(kept[-1], length)))
-    return CubicProfile.of_rows(kept)
-
-
-def _is_constant(row: Row) -> bool:
-    return not any(row[1][1:])
 
 
 class MarkedLane(NamedTuple):
@@ -572,13 +537,19 @@ def read_profile(road: Element, lanes: Lanes) -> FileProfile:
 
 def _outward(span: Span) -> Iterator[WideLane]:
     lanes = span.section.lanes
-    return (WideLane(lanes[n], _width(lanes, n, span)) for n in range(span.section.first, len(lanes)))
+    return (
+        WideLane(lanes[n], width_rows(lanes, n, span.start, span.end))
+        for n in range(span.section.first, len(lanes))
+    )
 
 
 def _inward(span: Span) -> Iterator[WideLane]:
     lanes, others = span.section.lanes, span.section.others
-    inner = (WideLane(lanes[n], _width(lanes, n, span)) for n in reversed(range(span.section.first)))
-    beyond = (WideLane(others[n], _width(others, n, span)) for n in range(len(others)))
+    inner = (
+        WideLane(lanes[n], width_rows(lanes, n, span.start, span.end))
+        for n in reversed(range(span.section.first))
+    )
+    beyond = (WideLane(others[n], width_rows(others, n, span.start, span.end)) for n in range(len(others)))
     return (each for found in (inner, beyond) for each in found if _is_wide(each.width, span.end))
 
 
@@ -587,7 +558,8 @@ def _is_wide(rows: list[Row], end: float) -> bool:
     return any(any(row[1][1:]) or row[1][0] > ADJOINS for row in rows) or value_at(rows[-1], end) > ADJOINS
 
 
-def _width(lanes: Sequence[LaneElement], place: int, span: Span) -> list[Row]:
+def width_rows(lanes: Sequence[LaneElement], place: int, start: float, end: float) -> list[Row]:
+    """Returns the width of the lane with this index in ``lanes``, from a station to another, in metres."""
     lane = lanes[place]
     parts: list[tuple[float, CubicProfile]] = []
     if lane.width is not None:
@@ -600,7 +572,7 @@ def _width(lanes: Sequence[LaneElement], place: int, span: Span) -> list[Row]:
             elif inner.border is not None:
                 parts.append((-_sign(inner.border), inner.border))
                 break
-    return combined(parts, span.start, span.end)
+    return combined(parts, start, end)
 
 
 def _sign(border: CubicProfile) -> float:
@@ -746,7 +718,9 @@ def _inner(span: Span) -> Element:
     section = span.section
     for place in reversed(range(section.first)):
         lane = section.lanes[place]
-        if lane.node.findall("roadMark") or _is_wide(_width(section.lanes, place, span), span.end):
+        if lane.node.findall("roadMark") or _is_wide(
+            width_rows(section.lanes, place, span.start, span.end), span.end
+        ):
             return lane.node
     return section.centre[0]
 

@@ -1,4 +1,4 @@
-"""Reads one road from an OpenDRIVE file, skips the rest of the file, and is safe against malicious XML.
+"""Reads the roads of an OpenDRIVE file one after another, and is safe against malicious XML.
 
 A file with a DOCTYPE is refused, so that no XML entities can be declared, fetched or expanded. Limits on file
 size, number of elements, depth and tag length bound the time and memory that reading takes."""
@@ -6,7 +6,7 @@ size, number of elements, depth and tag length bound the time and memory that re
 import math
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -32,8 +32,26 @@ READ = frozenset({
     "elevationProfile", "elevation", "lateralProfile", "superelevation", "lanes", "laneOffset", "laneSection",
     "left", "center", "right", "lane", "width", "border", "roadMark", "material",
 })  # fmt: skip
-"""The elements of a road that RoadGPT reads."""
-SILENT = ("objects", "signals", "surface", "link", "userData", "dataQuality", "sway", "explicit")
+"""The elements of a single road that RoadGPT reads."""
+OF_MAPS = READ | {
+    "link", "predecessor", "successor", "objects", "object", "signals", "signal", "signalReference",
+    "junction", "connection", "laneLink", "priority",
+}  # fmt: skip
+"""The elements of a map that RoadGPT reads."""
+TOPS = ("road", "junction")
+OF_JUNCTIONS = ("boundary", "controller", "outline", "outlines", "validity")
+"""Elements of a map that say nothing more than what is read, or where the edges of an object lie."""
+SILENT = (
+    *OF_JUNCTIONS,
+    "objects",
+    "signals",
+    "surface",
+    "link",
+    "userData",
+    "dataQuality",
+    "sway",
+    "explicit",
+)
 """Elements of a road that are neither read nor reported; those in them that ``COUNTED`` names are."""
 COUNTED = {
     "object": "object",
@@ -117,7 +135,31 @@ def read_tree(path: Path, wanted: str | None) -> Choice:
     ``wanted`` is None, roads with a driving lane are preferred, then roads outside junctions, then longer
     roads. Raises UsageError if the file cannot be read, is not OpenDRIVE, is too large, or has no such road.
     """
-    reader = _RoadSelector(wanted)
+    choice = _Selection(wanted)
+    reader = _Reader(READ, choice.wants, choice.compare)
+    _read(path, reader)
+    return choice.made(reader)
+
+
+def count_roads(path: Path) -> int:
+    """Returns the number of roads in a file; raises UsageError as ``read_tree`` does."""
+    reader = _Reader(frozenset(), lambda tag, attributes: False, lambda node, passed: None)
+    _read(path, reader)
+    return len(reader.ids)
+
+
+def read_map_tree(path: Path, take: Callable[[Element, Counter[str]], None]) -> "frozenset[str]":
+    """Calls ``take`` with each road, junction and group of junctions of a file, in order, and with the number
+    of its elements that RoadGPT does not read, by their name. Returns the names of such elements of the
+    header. Raises UsageError as ``read_tree`` does."""
+    reader = _Reader(OF_MAPS, lambda tag, attributes: tag in TOPS, take)
+    _read(path, reader)
+    if not reader.ids:
+        raise UsageError("there is no road in it")
+    return frozenset(() if OURS in reader.header else reader.header)
+
+
+def _read(path: Path, reader: "_Reader") -> None:
     parser = expat.ParserCreate()
     parser.buffer_text = True
     parser.StartElementHandler, parser.EndElementHandler = reader.start, reader.end
@@ -139,20 +181,23 @@ def read_tree(path: Path, wanted: str | None) -> Choice:
         ) from error
     except (expat.ExpatError, UnicodeError, LookupError, ValueError) as error:
         raise UsageError(f"it is not well-formed XML ({error}); save it again as OpenDRIVE") from error
-    return reader.choice()
 
 
 def _refuse_doctype(name: str, system: str | None, public: str | None, internal: int) -> None:
     raise UsageError("it has a DOCTYPE, which OpenDRIVE has no use for; remove it")
 
 
-class _RoadSelector:
-    """Counts what is skipped, and keeps the selected road."""
+class _Reader:
+    """Builds the elements below the root that are wanted, one at a time, and counts what is skipped."""
 
-    def __init__(self, wanted: str | None) -> None:
-        self.wanted = wanted
+    def __init__(
+        self,
+        known: frozenset[str],
+        wants: Callable[[str, Mapping[str, str]], bool],
+        take: Callable[[Element, Counter[str]], None],
+    ) -> None:
+        self.known, self.wants, self.take = known, wants, take
         self.ids: list[str] = []
-        self.best: tuple[tuple[bool, bool, float], Element, Counter[str]] | None = None
         self.header: set[str] = set()
         self.passed: Counter[str] = Counter()
         self.elements = self.kept = self.depth = self.hidden = 0
@@ -169,7 +214,7 @@ class _RoadSelector:
         if self.depth == 1 and tag != "OpenDRIVE":
             kind = f", but a file of {OTHER_KINDS[tag]}" if tag in OTHER_KINDS else ""
             raise UsageError(f"it is XML but not OpenDRIVE{kind}: it begins with <{tag[:40]}>")
-        if self.hidden or (self.stack and tag not in READ and self.stack[-1].tag != "geometry"):
+        if self.hidden or (self.stack and tag not in self.known and self.stack[-1].tag != "geometry"):
             self.hidden += 1
             values = [attributes[name].strip("+-0.e") for name in VALUES & attributes.keys()]
             is_told = self.hidden == 1 and tag not in SILENT and (any(values) or not values)
@@ -184,9 +229,10 @@ class _RoadSelector:
                 )
             self.stack[-1].append(node)
             self.stack.append(node)
-        elif self.depth == 2 and tag == "road":
-            self.ids.append(attributes.get("id", ""))
-            if self.wanted is None or attributes.get("id") == self.wanted:
+        elif self.depth == 2 and tag in TOPS:
+            if tag == "road":
+                self.ids.append(attributes.get("id", ""))
+            if self.wants(tag, attributes):
                 self.stack.append(Element(tag, attributes))
                 self.kept = 0
                 self.passed = Counter()
@@ -196,33 +242,46 @@ class _RoadSelector:
             self.header.add(OURS)
 
     def end(self, tag: str) -> None:
-        """Handles the end tag of an XML element. A complete road is compared with the best one so far."""
+        """Handles the end tag of an XML element. A complete element is passed on."""
         self.depth -= 1
         if self.hidden:
             self.hidden -= 1
         elif self.stack:
             node = self.stack.pop()
             if not self.stack:
-                self._compare(node)
+                self.take(node, self.passed)
 
-    def _compare(self, road: Element) -> None:
+
+class _Selection:
+    """The best of the roads, or the one that is wanted."""
+
+    def __init__(self, wanted: str | None) -> None:
+        self.wanted = wanted
+        self.best: tuple[tuple[bool, bool, float], Element, Counter[str]] | None = None
+
+    def wants(self, tag: str, attributes: Mapping[str, str]) -> bool:
+        """Returns whether an element is a road that may be selected."""
+        return tag == "road" and self.wanted in (None, attributes.get("id"))
+
+    def compare(self, road: Element, passed: Counter[str]) -> None:
+        """Compares a complete road with the best one so far."""
         is_driven = any(lane.get("type") in DRIVING for lane in road.findall("lanes/laneSection/*/lane"))
         is_free = road.get("junction", "-1") == "-1"
         length = road.get("length", "0")
         rank = (is_driven, is_free, float(length) if NUMBER.fullmatch(length) else 0.0)
         if self.best is None or rank > self.best[0]:
-            self.best = (rank, road, self.passed)
+            self.best = (rank, road, passed)
 
-    def choice(self) -> Choice:
+    def made(self, read: _Reader) -> Choice:
         """Returns the selected road, after the whole file has been parsed."""
         if self.best is None:
-            if not self.ids:
+            if not read.ids:
                 raise UsageError("there is no road in it")
-            told = ", ".join(self.ids[:12]) + (", ..." if len(self.ids) > 12 else "")
+            told = ", ".join(read.ids[:12]) + (", ..." if len(read.ids) > 12 else "")
             raise UsageError(f"there is no road {self.wanted} in it; there are: {told}")
         _, road, passed = self.best
-        header = set() if OURS in self.header else self.header
-        return Choice(road, tuple(self.ids), passed, frozenset(header))
+        header = set() if OURS in read.header else read.header
+        return Choice(road, tuple(read.ids), passed, frozenset(header))
 
 
 def in_order(road: Element) -> list[str]:

@@ -35,7 +35,6 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
     normal_of,
     step_once,
 )
-from roadgpt.network import is_route
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -97,7 +96,7 @@ class Vehicle:
         rims = np.column_stack(profile.rims(stations_of(sampled)))
         lane = LanePolygon.along(road, world)
         beyond = profile.reach
-        if is_route(road):  # whose shoulders reach around the corners of junctions
+        if road.passages:  # shoulders reach around the corners of junctions
             beyond = float(profile.shoulder(road.length))
         return cls(car, Ground(sampled, rims, beyond, world.site.friction, lane))
 

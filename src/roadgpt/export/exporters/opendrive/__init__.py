@@ -4,7 +4,7 @@ written, except the boundaries of junctions.
 Source: ASAM OpenDRIVE 1.8.1, user guide and XML schema."""
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
 
@@ -16,16 +16,15 @@ from roadgpt.export.exporters.opendrive.signals import Signals
 from roadgpt.export.georeference import PROJECTION
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import PieceCurve
-from roadgpt.network import Junction, Network, NetworkRoad, RoadEnd, Route
+from roadgpt.network import Junction, Network, NetworkRoad, RoadEnd, legs_of, network_of, only_road
 from roadgpt.road import Road, World
 
-__all__ = ["ROAD", "OpenDrive", "document"]
+__all__ = ["OpenDrive", "document"]
 
 ROUTE = ".route.json"
 """Suffix of the file that names the roads and lanes of a route: ``{"route": [[road, lane], ...]}``."""
 REVISION = 8  # ASAM OpenDRIVE 1.8
 WITH_BOUNDARIES = 8  # first minor revision in which a junction has a boundary
-ROAD = 1  # id of the road if the file has only one
 
 
 class OpenDrive:
@@ -42,25 +41,43 @@ class OpenDrive:
 
         ``poses`` is ignored, because OpenDRIVE cannot hold a drive."""
         path.write_bytes(document(road, world, self.revision).to_text().encode())
-        if isinstance(road, Route):
-            legs = road.to_route_json()
-        else:
-            profile = world.profile_of(road)
-            legs = {"route": [[ROAD, profile.along_ids[profile.driven]]]}
-        path.with_suffix(ROUTE).write_text(json.dumps(legs) + "\n")
+        path.with_suffix(ROUTE).write_text(json.dumps({"route": legs_of(road, world)}) + "\n")
 
 
 def document(road: Road, world: World, revision: int = REVISION) -> XmlElement:
-    """Returns the XML document of a road, or of the network of a route. ``revision`` is the minor one of
+    """Returns the XML document of the network of a road or a route. ``revision`` is the minor one of
     OpenDRIVE 1: 7, or 8 with the boundaries of junctions.
 
     If a number of the road is not finite, ``to_text`` of the document raises ExportError."""
-    if isinstance(road, Route):
-        return _network_document(road.network, world, revision)
-    x, y = road.centreline()[:, :2].T
-    reach = world.profile_of(road).reach
-    bounds = (x.min() - reach, y.min() - reach, x.max() + reach, y.max() + reach)
-    return XmlElement("OpenDRIVE").extended(_header(bounds, revision), _road(road, ROAD, RoadParts(world)))
+    network, only = network_of(road, world), only_road(road, world)
+    signals, parts = Signals(network), RoadParts(world)
+    if only is None:
+        plans = [each.road.plan for each in network.roads]
+        starts: list[list[Start] | None] = [
+            *starts_of([each for each in plans if isinstance(each, PieceCurve)])
+        ]
+        bounds = bounds_of(
+            [each for each in starts if each], [reaches(each.profile) for each in network.roads]
+        )
+    else:
+        x, y, reach = *only.road.centreline()[:, :2].T, only.profile.reach
+        starts, bounds = [None], (x.min() - reach, y.min() - reach, x.max() + reach, y.max() + reach)
+    root = XmlElement("OpenDRIVE").extended(_header(bounds, revision))
+    for member, own in zip(network.roads, starts, strict=True):
+        made = _road(network, member, parts, own, is_only=only is not None)
+        root.extended(made.extended(*signals.on_road(member.id)))
+    root.extended(*signals.controllers())
+    for junction in network.junctions:
+        made = XmlElement("junction", {"id": str(junction.id), "name": f"junction {junction.id}"})
+        made.extended(*_connections(junction), *signals.of_junction(junction.id))
+        if revision >= WITH_BOUNDARIES:
+            made.extended(boundary(network, junction))
+        root.extended(made)
+    for n, ring in enumerate(network.roundabouts, 1):
+        group = root.add("junctionGroup", {"name": f"roundabout {n}", "id": str(n), "type": "roundabout"})
+        for inside in ring.junctions:
+            group.add("junctionReference", {"junction": str(inside)})
+    return root
 
 
 def _header(bounds: Sequence[float], revision: int) -> XmlElement:
@@ -85,83 +102,35 @@ def _header(bounds: Sequence[float], revision: int) -> XmlElement:
 
 
 def _road(
-    road: Road,
-    number: int,
-    parts: RoadParts,
-    links: Iterable[XmlElement] | None = None,
-    junction: int = -1,
-    lane_links: LaneLinks | None = None,
-    starts: Sequence[Start] | None = None,
+    network: Network, member: NetworkRoad, parts: RoadParts, starts: Sequence[Start] | None, is_only: bool
 ) -> XmlElement:
-    """Returns the element ``road`` with its geometry and its lanes.
-
-    Args:
-        road: The road.
-        number: The id of the road.
-        parts: Creates the elements that the roads of the file share.
-        links: The elements ``predecessor`` and ``successor``; None for a single road.
-        junction: The id of the junction to which a connecting road belongs; -1 for any other road.
-        lane_links: The links from lanes of the road to lanes of other roads.
-        starts: The starts of the pieces of the reference line; None if they have not been computed yet."""
+    """Returns the element ``road``. ``starts`` are those of the pieces of the reference line; None if they
+    have not been computed yet."""
+    road, junction = member.road, -1 if member.junction is None else member.junction
     body = XmlElement(
         "road",
         {
-            "name": "road" if links is None else f"road {number}",
+            "name": "road" if is_only else f"road {member.id}",
             "length": road.length,
-            "id": str(number),
+            "id": str(member.id),
             "junction": str(junction),
-            "rule": "LHT" if parts.world.profile_of(road).left_hand else "RHT",
+            "rule": "LHT" if member.profile.left_hand else "RHT",
         },
     )
-    if links is not None:
-        body.add("link").extended(*links)
+    if not is_only:
+        body.add("link").extended(*_links(network, member))
     body.extended(parts.road_type)
     body.add("planView").extended(*geometries(road.plan, starts))
-    lanes = parts.lanes(road, lane_links, is_inside=junction >= 0)
+    lanes = parts.lanes(road, _lane_links(network, member), is_inside=junction >= 0)
     return body.extended(parts.heights(road), *lateral_profile(road), lanes)
 
 
-def _network_document(network: Network, world: World, revision: int) -> XmlElement:
-    starts = starts_of([_curve(each) for each in network.roads])
-    bounds = bounds_of(starts, [reaches(each.profile) for each in network.roads])
-    signals, parts = Signals(network), RoadParts(world)
-    root = XmlElement("OpenDRIVE").extended(_header(bounds, revision))
-    for member, own in zip(network.roads, starts, strict=True):
-        links, inside, lane_links = _place(network, member)
-        made = _road(
-            member.road, member.id, parts, links=links, junction=inside, lane_links=lane_links, starts=own
-        )
-        root.extended(made.extended(*signals.on_road(member.id)))
-    root.extended(*signals.controllers())
-    for junction in network.junctions:
-        made = XmlElement("junction", {"id": str(junction.id), "name": f"junction {junction.id}"})
-        made.extended(*_connections(junction), *signals.of_junction(junction.id))
-        if revision >= WITH_BOUNDARIES:
-            made.extended(boundary(network, junction))
-        root.extended(made)
-    for n, ring in enumerate(network.roundabouts, 1):
-        group = root.add("junctionGroup", {"name": f"roundabout {n}", "id": str(n), "type": "roundabout"})
-        for inside in ring.junctions:
-            group.add("junctionReference", {"junction": str(inside)})
-    return root
-
-
-def _curve(member: NetworkRoad) -> PieceCurve:
-    assert isinstance(member.road.plan, PieceCurve)
-    return member.road.plan
-
-
-def _place(network: Network, member: NetworkRoad) -> tuple[Iterable[XmlElement], int, LaneLinks]:
-    """Returns where a road is in its network: ``links``, ``junction`` and ``lane_links`` as in ``_road``."""
-    found = network.connection_of.get(member.id)
-    if found is None:
-        return _links(network, member), -1, _continued_lanes(network, member)
-    junction, way = found
-    links = _to_road("predecessor", way.incoming), _to_road("successor", way.outgoing)
-    return links, junction.id, {own: (before, after) for before, own, after in way.lanes}
-
-
 def _links(network: Network, member: NetworkRoad) -> Iterator[XmlElement]:
+    way = network.connection_of.get(member.id)
+    if way is not None:
+        yield _to_road("predecessor", way[1].incoming)
+        yield _to_road("successor", way[1].outgoing)
+        return
     for name, end in (("predecessor", RoadEnd(member.id, "start")), ("successor", RoadEnd(member.id, "end"))):
         if (junction := network.junction_at.get(end)) is not None:
             yield XmlElement(name, {"elementType": "junction", "elementId": str(junction)})
@@ -176,7 +145,9 @@ def _to_road(name: str, end: RoadEnd) -> XmlElement:
     return XmlElement(name, link, is_shared=True)
 
 
-def _continued_lanes(network: Network, member: NetworkRoad) -> LaneLinks:
+def _lane_links(network: Network, member: NetworkRoad) -> LaneLinks:
+    if (way := network.connection_of.get(member.id)) is not None:
+        return {own: (before, after) for before, own, after in way[1].lanes}
     before: dict[int, int] = {}
     after: dict[int, int] = {}
     for end, links in ((RoadEnd(member.id, "start"), before), (RoadEnd(member.id, "end"), after)):

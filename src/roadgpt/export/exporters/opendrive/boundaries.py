@@ -20,7 +20,6 @@ from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Connection, Junction, Network, RoadEnd
 from roadgpt.network.paved import outline_of, paved_by, stations_of
-from roadgpt.road.profile import width_at
 
 if TYPE_CHECKING:
     from shapely import LinearRing
@@ -110,16 +109,8 @@ def _corner(network: Network, junction: Junction, end: RoadEnd, which: int) -> A
     member = network.road(end.road)
     lane = _lanes_across(junction, end)[which]
     s = 0.0 if end.contact == "start" else member.road.length
-    side, first = (
-        (member.profile.left, member.profile.sides(s).left)
-        if lane > 0
-        else (member.profile.right, member.profile.sides(s).right)
-    )
-    oncoming = member.profile.against_ids
-    count = oncoming.index(lane) + 1 if lane in oncoming else -min(lane, 0)
-    width = sum(width_at(each.width, s) for each in side[:count])
-    t = float(first) + (width if lane > 0 else -width)
-    return member.road.at(s, t)[:2]
+    edges = member.profile.edges_of(lane, s)
+    return member.road.at(s, edges.left if lane > 0 else edges.right)[:2]
 
 
 def _between(

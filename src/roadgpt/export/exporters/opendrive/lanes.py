@@ -29,6 +29,7 @@ class RoadParts:
     world: World
     _made: dict[object, XmlElement] = field(default_factory=dict)
     _level: dict[float, XmlElement] = field(default_factory=dict)
+    _surfaces: dict[tuple[float | None, float | None], tuple[XmlElement, ...]] = field(default_factory=dict)
 
     @property
     def _speed_limit(self) -> dict[str, Value]:
@@ -51,28 +52,23 @@ class RoadParts:
             self._level[level] = made
         return self._level[level]
 
-    def lanes(self, road: Road, links: LaneLinks | None = None, is_inside: bool = False) -> XmlElement:
+    def lanes(self, road: Road, links: LaneLinks, is_inside: bool) -> XmlElement:
         """Returns the OpenDRIVE element ``lanes`` with all lanes, shoulders and road markings.
 
         ``is_inside`` says whether the road is a connecting road in a junction. Lanes without a marking then
         get the marking "none"."""
         profile = self.world.profile_of(road)
         length = None if _is_constant(profile) else road.length
-        own = (profile.left, profile.right, profile.centre_marking, profile.offset, profile.begins)
-        key = (*own, length, tuple((links or {}).items()), is_inside)
+        own = (profile.left, profile.right, profile.centre_marking, profile.offset)
+        key = (*own, length, tuple(links.items()), is_inside)
         if key not in self._made:
-            self._made[key] = self._lanes(profile, road.length, links or {}, is_inside)
+            self._made[key] = self._lanes(profile, road.length, links, is_inside)
         return self._made[key]
 
     def _lanes(self, profile: Profile, length: float, links: LaneLinks, is_inside: bool) -> XmlElement:
         section = XmlElement("laneSection", {"s": 0})
-        ids = profile.along_ids.start, profile.against_ids.start
-        left = list(self._side(profile.left, max(ids), length, links, is_inside))
-        right = list(self._side(profile.right, min(ids), length, links, is_inside))
-        if profile.median:
-            width = XmlElement("width", {"sOffset": 0, "a": profile.median, "b": 0, "c": 0, "d": 0})
-            made = _lane(-profile.side, "median").extended(width, *_mark(profile.centre_marking, is_inside))
-            (right if profile.left_hand else left).insert(0, made)
+        left = list(self._side(profile.left, 1, length, links, is_inside))
+        right = list(self._side(profile.right, -1, length, links, is_inside))
         if left:
             section.add("left").extended(*reversed(left))
         section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking, is_inside)))
@@ -82,11 +78,11 @@ class RoadParts:
         return XmlElement("lanes", is_shared=True).extended(*offset, section)
 
     def _side(
-        self, side: Sequence[Lane], first: int, length: float, links: LaneLinks, is_inside: bool
+        self, side: Sequence[Lane], sign: int, length: float, links: LaneLinks, is_inside: bool
     ) -> Iterator[XmlElement]:
         kept = [lane for lane in side if isinstance(lane.width, CubicProfile) or lane.width >= NO_SHOULDER]
-        for index, lane in enumerate(kept):
-            number = first + index if first > 0 else first - index
+        for index, lane in enumerate(kept, 1):
+            number = sign * index
             widths = rows("width", "sOffset", as_cubics(lane.width), length)
             made = _lane(number, lane.kind)
             before, after = links.get(number, (None, None))
@@ -95,17 +91,22 @@ class RoadParts:
                 for name, other in (("predecessor", before), ("successor", after)):
                     if other is not None:
                         link.add(name, {"id": other})
-            rules = self._driven_on if lane.kind == "driving" else ()
+            rules = self._driven_on(lane.speed_limit, lane.friction) if lane.kind == "driving" else ()
             yield made.extended(*widths, *_mark(lane.marking, is_inside), *rules)
 
-    @cached_property
-    def _driven_on(self) -> tuple[XmlElement, ...]:
-        friction = self.world.site.friction
-        surface: dict[str, Value] = {"sOffset": 0, "friction": friction, "surface": "asphalt", "roughness": 0}
-        return (
-            XmlElement("material", surface, is_shared=True),
-            XmlElement("speed", {"sOffset": 0, **self._speed_limit}, is_shared=True),
-        )
+    def _driven_on(self, limit: float | None, friction: float | None) -> tuple[XmlElement, ...]:
+        """Returns the surface and the speed limit of a lane; None for those of the World."""
+        if (limit, friction) not in self._surfaces:
+            own = self.world.site.friction if friction is None else friction
+            surface: dict[str, Value] = {"sOffset": 0, "friction": own, "surface": "asphalt", "roughness": 0}
+            speed = dict(self._speed_limit)
+            if limit is not None:
+                speed["max"] = round(limit * 3.6, 6)
+            self._surfaces[limit, friction] = (
+                XmlElement("material", surface, is_shared=True),
+                XmlElement("speed", {"sOffset": 0, **speed}, is_shared=True),
+            )
+        return self._surfaces[limit, friction]
 
 
 def _is_constant(profile: Profile) -> bool:

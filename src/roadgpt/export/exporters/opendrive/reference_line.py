@@ -226,8 +226,8 @@ def reaches(profile: Profile) -> tuple[float, float]:
 
     Where widths vary, the distances are upper bounds."""
     left, right = (sum(_widest(lane.width) for lane in side) for side in (profile.left, profile.right))
-    (low, high), begin = profile.offset_range, profile.begins
-    return left + begin[0] + high, right + begin[1] - low
+    low, high = profile.offset_range
+    return left + high, right - low
 
 
 def _widest(width: Width) -> float:

@@ -8,10 +8,11 @@ Source: OpenDRIVE 1.8, road linkage: linked lanes connect without gaps."""
 import math
 from functools import lru_cache
 
+from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding, junction_finding
 from roadgpt.check.footprint import footprint
-from roadgpt.network import Connection, LaneLink, Network, RoadEnd, Route
-from roadgpt.road import World
+from roadgpt.network import Connection, LaneLink, Network, RoadEnd
+from roadgpt.road import Road, World
 from roadgpt.road.profile import width_at
 
 MOST = 1e-3  # m
@@ -21,7 +22,7 @@ LaneEnd = tuple[RoadEnd, int]
 """One end of one lane: the end of its road, and the id of the lane."""
 
 
-def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports each lane link that names a missing arm or a missing lane, or joins lanes that do not meet."""
     found = []
     for junction in network.junctions:
@@ -43,32 +44,21 @@ def _no_arm(each: Connection, arms: set[RoadEnd]) -> str | None:
 
 def _wrong(network: Network, each: Connection, lanes: LaneLink) -> str | None:
     lane, own, target = lanes
-    start, finish = RoadEnd(each.road, "start"), RoadEnd(each.road, "end")
+    start, finish, points = RoadEnd(each.road, "start"), RoadEnd(each.road, "end"), _points(network)
     if lane not in network.lanes_into(each.incoming):
         return f"road {each.incoming.road} has no lane {lane} that leads into it; name a lane that does"
     if own not in network.lanes_out_of(start):
         return f"connecting road {each.road} has no lane {own} along it; name a lane that it has"
-    apart = _gap(network, (each.incoming, lane), (start, own))
-    if apart > MOST:
-        return _said(each.road, each.incoming.road, apart)
-    if target not in network.lanes_out_of(each.outgoing):
-        return f"road {each.outgoing.road} has no lane {target} that leads out of it; name a lane that does"
-    apart = _gap(network, (finish, own), (each.outgoing, target))
-    return _said(each.road, each.outgoing.road, apart) if apart > MOST else None
-
-
-def _said(connecting: int, road: int, apart: float) -> str:
-    return (
-        f"the lanes of roads {connecting} and {road} do not meet: their edges are {apart:.3f} m apart; give "
-        "both the same place, heading and width there"
-    )
-
-
-def _gap(network: Network, one: LaneEnd, other: LaneEnd) -> float:
-    """Returns the larger of two distances in metres: of the inner and of the outer edges of two lanes."""
-    points = _points(network)
-    (a, b), (c, d) = points[one], points[other]
-    return max(math.dist(a, c), math.dist(b, d))
+    for arm, its_lane, end in ((each.incoming, lane, start), (each.outgoing, target, finish)):
+        if end is finish and target not in network.lanes_out_of(arm):
+            return f"road {arm.road} has no lane {target} that leads out of it; name a lane that does"
+        apart = max(map(math.dist, points[arm, its_lane], points[end, own]))  # of inner and outer edges
+        if apart > MOST:
+            return (
+                f"the lanes of roads {each.road} and {arm.road} do not meet: their edges are {apart:.3f} m "
+                "apart; give both the same place, heading and width there"
+            )
+    return None
 
 
 @lru_cache(maxsize=2)
@@ -78,15 +68,11 @@ def _points(network: Network) -> dict[LaneEnd, tuple[Point, Point]]:
         member = network.road(end.road)
         s = 0.0 if end.contact == "start" else member.road.length
         profile = member.profile
-        begin = width_at(profile.offset, s)
-        for ids, lanes, t in (
-            (profile.along_ids, profile.along, begin),
-            (profile.against_ids, profile.against, begin - profile.side * profile.median),
-        ):
+        for sign, lanes in ((1, profile.left), (-1, profile.right)):
+            t = width_at(profile.offset, s)
             outer = pose.beside(t)
-            for lane, own in zip(ids, lanes, strict=False):
-                width = width_at(own.width, s)
-                t = t - width if lane < 0 else t + width
+            for number, lane in enumerate(lanes, 1):
+                t += sign * width_at(lane.width, s)
                 inner, outer = outer, pose.beside(t)
-                found[(end, lane)] = (inner, outer)
+                found[(end, sign * number)] = (inner, outer)
     return found

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from network.changing import (
+    built,
+    design,
     passing,
     raised,
     with_heights,
@@ -17,8 +19,8 @@ from network.changing import (
 )
 from network.ruled import findings, the_finding
 from roadgpt.geometry import GradeProfile, Piece
-from roadgpt.network import Connection, LaneLink, Network, build_route, read_network_design
-from roadgpt.road import Profile, World
+from roadgpt.network import Connection, LaneLink, Network, build_route
+from roadgpt.road import Profile, World, read_design
 from roadgpt.road.profile import Lane
 
 
@@ -214,7 +216,7 @@ class TestRampTooShort:
     )
     def test_the_lane_beside_a_ramp(self, kind: str, length: float, is_short: bool) -> None:
         lanes = {"forward": 2, "backward": 0}
-        design = {
+        data = {
             "starting_point": [20, 60, 0],
             "theta": 0,
             "lanes": lanes,
@@ -222,7 +224,81 @@ class TestRampTooShort:
             "junction1": {"after": 1, "kind": kind, "take": "main", "length": length},
             "road_segment2": {"distance": 80, "direction": "straight", "incline": 0, "turn_degrees": 0},
         }
-        network = build_route(read_network_design(design)[0], World()).network
+        network = build_route(read_design(data)[0], World()).network
         said = [each.sentence for each in findings("ramp_too_short", network)]
         assert len(said) == is_short
         assert all(f"is {length + 0.196 * 60:.0f} m long, shorter than 28 m" in each for each in said)
+
+
+class TestRingTooSmall:
+    @pytest.mark.parametrize(("radius", "is_small"), [(1.51, False), (1.49, True)])
+    def test_the_outer_diameter_is_measured_on_the_ring(self, radius: float, is_small: bool) -> None:
+        """The ring of an island of 16 m is 5 m wide: 13 m outside is a radius of 1.5 m inside."""
+        network = passing("roundabout").network
+        (ring,) = network.roundabouts
+        for number in ring.ring:
+            network = with_road(
+                network,
+                number,
+                lambda each: with_plan(
+                    each, pieces=(Piece(each.road.length * radius / 16, 1 / radius, 1 / radius),)
+                ),
+            )
+        said = [each.sentence for each in findings("ring_too_small", network)]
+        assert any(f"outer diameter of {2 * (radius + 5):.1f} m" in each for each in said) == is_small
+
+    def test_mouths_that_overlap(self) -> None:
+        """One mouth is turned around the centre onto its neighbour."""
+        network = passing("roundabout").network
+        (ring,) = network.roundabouts
+        x, y, _ = ring.centre
+        angle = -math.radians(60)
+        for each in network.junction(ring.junctions[1]).connections:
+            plan = network.road(each.road).road.plan
+            dx, dy = plan.x - x, plan.y - y  # type: ignore[attr-defined]
+            cos, sin = math.cos(angle), math.sin(angle)
+            network = with_road(
+                network,
+                each.road,
+                lambda member, at=(x + cos * dx - sin * dy, y + sin * dx + cos * dy), h=plan.heading0: (
+                    with_plan(  # type: ignore[attr-defined,misc]
+                        member, x=at[0], y=at[1], heading0=h + angle
+                    )
+                ),
+            )
+        assert "the mouths of two arms overlap" in the_finding("ring_too_small", network).sentence
+
+
+class TestArmsTooClose:
+    @pytest.mark.parametrize(("length", "count"), [(4.6, 1), (4.8, 0)])
+    def test_two_junctions_with_less_than_a_car_between_them(self, length: float, count: int) -> None:
+        junction = {"kind": "t_junction", "take": "straight", "arms": [{"angle": 0}, {"angle": -90}]}
+        other = {**junction, "arms": [{"angle": 0}, {"angle": 90}]}
+        found = findings("arms_too_close", built(design(60.0, junction, length, other, 60.0)))
+        assert len(found) == count
+        for each in found:
+            assert "the T-junction near" in each.sentence
+            assert (
+                "is only 4.6 m away along the road between them, less than the 4.7 m of a car"
+                in each.sentence
+            )
+
+    def test_an_arm_that_begins_too_near_the_node(self) -> None:
+        """At right angles, the edges of roads 8 m wide meet 4 m from the node; a kerb of r needs r more."""
+        network = passing("crossroads").network
+        x, y, _ = network.junctions[0].node
+        first = network.road(1)
+        for room, what in ((1.02, None), (0.98, "only a kerb of 1.0 m fits"), (-0.5, "no kerb fits")):
+            longer = x - 4.0 - room - first.road.plan.x  # type: ignore[attr-defined]
+            damaged = with_road(
+                network,
+                1,
+                lambda each, to=longer: with_plan(each, pieces=(Piece(to),)),  # type: ignore[misc]
+            )
+            said = [each.sentence for each in findings("arms_too_close", damaged)]
+            if what is None:
+                assert not said
+            else:
+                assert len(said) == 2  # the arms on both sides of it
+                assert all(what in each and f"near ({x:.0f}, {y:.0f})" in each for each in said)
+                assert any("180 and 270 degrees" in each for each in said)

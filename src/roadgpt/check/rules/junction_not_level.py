@@ -9,17 +9,18 @@ import math
 
 import numpy as np
 
+from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding, junction_finding
 from roadgpt.check.footprint import EndPose, footprint
 from roadgpt.geometry import GradeProfile
-from roadgpt.network import Junction, Network, RoadEnd, Route
-from roadgpt.road import World
+from roadgpt.network import Junction, Network, RoadEnd
+from roadgpt.road import Road, World
 
 MOST = 1e-3  # m, largest step in height
 MOST_GRADE = 1e-3  # ratio, largest difference between the grades of a road and of the plane
 
 
-def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports each junction at which heights differ or roads do not lie in one plane."""
     found = []
     for junction in network.junctions:

@@ -6,11 +6,12 @@ Source: Merkblatt für die Anlage von Kreisverkehren (FGSV, 2006): mini roundabo
 
 import math
 
+from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding, junction_finding
 from roadgpt.check.footprint import footprint
 from roadgpt.geometry import PieceCurve
-from roadgpt.network import Network, NetworkRoad, Roundabout, Route
-from roadgpt.road import World
+from roadgpt.network import Network, NetworkRoad, Roundabout
+from roadgpt.road import Road, World
 
 LEAST = 13.0  # m, outer diameter
 OVERLAP = 1e-3  # m^2
@@ -18,7 +19,7 @@ ONCE = 1e-6  # rad, largest deviation of the sum of the turns of a ring's pieces
 ROUNDING = 1e-9  # m
 
 
-def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports each roundabout that is too small, and each one whose mouths overlap."""
     found = []
     for ring in network.roundabouts:

@@ -9,18 +9,19 @@ import math
 from itertools import combinations
 
 from roadgpt.brief.junctions import RAMPS
+from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding, junction_finding, name_of
 from roadgpt.check.footprint import footprint
-from roadgpt.network import Network, RoadEnd, Route
+from roadgpt.network import Network, RoadEnd
 from roadgpt.network.building import OPPOSITE, edges_at
-from roadgpt.road import World
+from roadgpt.road import Road, World
 
 KERB = 1.0  # m
 CAR = 4.7  # m, length of the tested car
 ROUNDING = 1e-9  # m
 
 
-def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports each pair of neighbouring arms and each pair of junctions that are too close together."""
     found = []
     for junction in network.junctions:
@@ -74,7 +75,7 @@ def _outwards(network: Network, end: RoadEnd) -> Outwards:
     return pose.heading + math.pi, pose.beside(left), pose.beside(right)
 
 
-def _between_junctions(network: Network, route: Route | None) -> list[Finding]:
+def _between_junctions(network: Network, route: Road | None) -> list[Finding]:
     poses, found = footprint(network).ends, []
     ends = [
         (number, junction, arm.end, poses[arm.end])

@@ -4,12 +4,13 @@ A lane that ends at a junction without a connection would be a trap for traffic,
 reaches would stay empty. In a network of several roads, each road must meet a junction or another road.
 Source: OpenDRIVE 1.8, junctions: connections describe all ways through a junction."""
 
+from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding, junction_finding, road_finding
-from roadgpt.network import Network, RoadEnd, Route
-from roadgpt.road import World
+from roadgpt.network import Network, RoadEnd
+from roadgpt.road import Road, World
 
 
-def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports each lane that lacks a connection at its junction, and each road that meets no other."""
     found = []
     for junction in network.junctions:

@@ -1,1 +1,0 @@
-"""Contains the rules of networks: each module defines one function ``inspect`` and states its source."""

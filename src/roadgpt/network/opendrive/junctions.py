@@ -1,0 +1,527 @@
+"""Joins the roads of an OpenDRIVE map: with each other, and by junctions with their signs and lights.
+
+The kind of a junction follows from the angles between its roads. Signs are those of the German catalogue,
+which most maps use (205 give way, 206 stop, 301 and 306 priority), of the American one (R1-1, R1-2), or have
+such a name; a signal that changes is a light. A sign applies to the junction behind it."""
+
+import math
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from xml.etree.ElementTree import Element
+
+import numpy as np
+
+from roadgpt.brief.junctions import Control
+from roadgpt.errors import UsageError
+from roadgpt.geometry.curve import wrapped
+from roadgpt.network.markings import CROSSWALK
+from roadgpt.network.network import (
+    OTHER_CONTACT,
+    Arm,
+    Connection,
+    Continuation,
+    Junction,
+    Kind,
+    LaneLink,
+    Network,
+    NetworkRoad,
+    RoadEnd,
+    Roundabout,
+)
+from roadgpt.network.opendrive.roads import FileRoad, LaneStretch, Remarks, RoadBuilder, Way
+from roadgpt.network.pose import Point
+from roadgpt.road.opendrive.tree import number
+
+T_GAP = (145.0, 215.0)  # degrees, the largest gap between the arms of a T-junction
+T_OTHERS = 55.0  # degrees, least other gap
+Y_GAP = (85.0, 155.0)  # degrees, every gap between the arms of a fork
+CROSSED = 35.0  # degrees, that opposite arms of crossroads may be off one line
+PARALLEL = 30.0  # degrees; arms that are closer together belong to a merge or an exit
+BEFORE = 60.0  # m before a junction, within which a sign or a light applies to it
+CROSSING = 25.0  # m from a junction, within which a crosswalk belongs to it
+SIGNS: Mapping[str, Control] = {
+    **dict.fromkeys(("206", "r1-1", "stop"), "stop"),
+    **dict.fromkeys(("205", "r1-2", "yield"), "yield"),
+    **dict.fromkeys(("306", "301"), "priority"),
+}
+NAMED: Mapping[str, Control] = {"stop": "stop", "yield": "yield", "give way": "yield", "giveway": "yield"}
+LIGHTS = re.compile(r"10000(01|02|07|08|09|10|11|12|13|20)|traffic.?light.*")
+"""The types of lights in OpenDRIVE's own catalogue of signals."""
+STRONGEST: tuple[Control, ...] = ("lights", "stop", "yield", "priority", "none")
+PAINTED = ("294", "341")  # stop line, give-way line: what the signs already say
+LARGEST_RING = 100.0  # m, radius
+FULL = 0.35  # rad, by which the roads and ways around a roundabout may fail to make a full turn
+ROUND = 0.15  # ratio by which the distances from the middle of a roundabout may differ
+
+Lanes = dict[int, int]
+"""Ids of lanes of the network, by their ids in the file."""
+
+
+class Joining:
+    """The roads of a file as those of a network, and what joins them."""
+
+    def __init__(self, roads: Sequence[FileRoad], junctions: Sequence[Element], remarks: Remarks) -> None:
+        self.remarks = remarks
+        self.files = {road.id: road for road in roads}
+        if len(self.files) < len(roads):
+            raise UsageError("two of its roads have the same id; give each one of its own")
+        known = [each for each in (*self.files, *(j.get("id", "") for j in junctions)) if _is_number(each)]
+        self._last = max(map(int, known), default=0)
+        self.members: dict[int, NetworkRoad] = {}
+        self.parts: dict[str, list[int]] = defaultdict(list)
+        self.ways: dict[str, list[tuple[int, Way]]] = {}
+        self.continuations: dict[frozenset[RoadEnd], Continuation] = {}
+        self.junctions: dict[str, Junction] = {}
+        for road in roads:
+            if not road.junction:
+                self._add_road(road)
+        for one in self.files.values():
+            for name in ("predecessor", "successor"):
+                self._continue(one, name)
+        for node in junctions:
+            self._add_junction(node)
+
+    def numbers(self, network: Network) -> dict[str, tuple[int, ...]]:
+        """Returns the ids of the roads of a network by those of the file."""
+        there = {each.id for each in network.roads}
+        return {name: own for name, ids in self.parts.items() if (own := tuple(n for n in ids if n in there))}
+
+    def _number(self, road: FileRoad) -> int:
+        if _is_number(road.id) and not self.parts[road.id] and int(road.id) not in self.members:
+            return int(road.id)
+        self._last += 1
+        return self._last
+
+    def _add(self, road: FileRoad, made: NetworkRoad) -> int:
+        self.members[made.id] = made
+        self.parts[road.id].append(made.id)
+        return made.id
+
+    def _add_road(self, road: FileRoad) -> None:
+        builder = RoadBuilder(road, self.remarks)
+        for stretch in road.stretches:
+            made = self._add(road, NetworkRoad(self._number(road), builder.build(stretch)))
+            profile = self.members[made].profile
+            if not (profile.along_ids or profile.against_ids):  # they are too narrow
+                del self.members[made]
+                self.remarks.add("left out: parts of roads without a lane for cars", f"road {road.id}")
+        for n, joint in enumerate(road.joints):
+            one, two = (RoadEnd(self.parts[road.id][n + at], "start" if at else "end") for at in (0, 1))
+            self._join(one, two, _numbered(joint, road.stretches[n], road.stretches[n + 1]))
+
+    def _join(self, one: RoadEnd, two: RoadEnd, pairs: Iterable[tuple[int, int]]) -> None:
+        """Lets lanes continue each other, of which the first one is of ``one``; lanes for cars only."""
+        if one.road not in self.members or two.road not in self.members:
+            return
+        first, second = self.members[one.road], self.members[two.road]
+        into, out = first.ids_towards(one.contact), second.ids_towards(OTHER_CONTACT[two.contact])
+        back_in, back_out = second.ids_towards(two.contact), first.ids_towards(OTHER_CONTACT[one.contact])
+        lanes = sorted(
+            {(a, b) for a, b in pairs if (a in into and b in out) or (a in back_out and b in back_in)}
+        )
+        taken = {end for known in self.continuations for end in known}
+        if not lanes or frozenset((one, two)) in self.continuations:
+            return
+        if one in taken or two in taken or one == two:
+            where = f"road {self._file_of(one.road).id}"
+            self.remarks.add("left out: a second road that continues the same end of a road", where)
+            return
+        self.continuations[frozenset((one, two))] = Continuation(one, two, tuple(lanes))
+
+    def _end(self, road: str, contact: str) -> RoadEnd | None:
+        """Returns the end of a road of the file that is no connecting road."""
+        own = self.parts.get(road) if road in self.files and not self.files[road].junction else None
+        if not own or contact not in ("start", "end"):
+            return None
+        end = RoadEnd(own[0], "start") if contact == "start" else RoadEnd(own[-1], "end")
+        return end if end.road in self.members else None
+
+    def _lanes_at(self, road: str, contact: str) -> Lanes:
+        """Returns the lanes at an end of a road of the file."""
+        file = self.files[road]
+        stretch, ids = (
+            (file.stretches[0], file.entry) if contact == "start" else (file.stretches[-1], file.exit)
+        )
+        return {a: stretch.lanes[b] for a, b in ids.items() if b in stretch.lanes}
+
+    def _continue(self, road: FileRoad, name: str) -> None:
+        link, contact = road.ends(name), "start" if name == "predecessor" else "end"
+        if road.junction or link is None or link[0] != "road":
+            return
+        other, own = self._end(link[1], link[2]), self._end(road.id, contact)
+        if other is None or own is None:
+            if link[1] not in self.files:
+                self.remarks.add("it is linked to a road that is left out or not there", f"road {road.id}")
+            return
+        here, there = self._lanes_at(road.id, contact), self._lanes_at(link[1], link[2])
+        pairs = _outward_links(road, contact)
+        pairs |= {(b, a) for a, b in _outward_links(self.files[link[1]], link[2])}
+        if not pairs:
+            same = 1 if contact != link[2] else -1
+            pairs = {(lane, same * lane) for lane in here}
+        self._join(own, other, [(here[a], there[b]) for a, b in pairs if a in here and b in there])
+
+    def _add_junction(self, node: Element) -> None:
+        name = node.get("id", "?")[:40]
+        where = f"junction {name}"
+        kind = node.get("type", "default")
+        if kind in ("direct", "virtual", "crossing"):
+            self.remarks.add(f"left out: {kind} junctions", where)
+            return
+        found: dict[int, Connection] = {}
+        for each in node.findall("connection"):
+            made = self._connection(each, where)
+            if made is not None:
+                known = found.get(made.road)
+                links = made.lanes if known is None else dict.fromkeys((*known.lanes, *made.lanes))
+                found[made.road] = replace(made, lanes=tuple(links))
+        if not found:
+            self.remarks.add("left out: junctions without a way through them that can be read", where)
+            return
+        is_free = _is_number(name) and int(name) not in {each.id for each in self.junctions.values()}
+        self._last += not is_free
+        junction = int(name) if is_free else self._last
+        for road in found:
+            self.members[road] = replace(self.members[road], junction=junction)
+        self.junctions[name] = self._made(junction, list(found.values()), node)
+
+    def _connection(self, node: Element, where: str) -> Connection | None:
+        """Returns a way through a junction; None, with a remark, if it cannot be read."""
+        file = self.files.get(node.get("connectingRoad", ""))
+        contact = node.get("contactPoint", "start")
+        if file is None or not file.junction:
+            self.remarks.add("left out: ways on roads that are left out or are no connecting roads", where)
+            return None
+        if file.id not in self.ways:
+            made = RoadBuilder(file, self.remarks).ways()
+            self.ways[file.id] = [
+                (self._add(file, NetworkRoad(self._number(file), way.road, 0)), way) for way in made
+            ]
+        found = next((each for each in self.ways[file.id] if each[1].is_along == (contact == "start")), None)
+        names = ("predecessor", "successor") if contact == "start" else ("successor", "predecessor")
+        links = [file.ends(name) for name in names]
+        ends = [
+            self._end(each[1], each[2]) if each is not None and each[0] == "road" else None for each in links
+        ]
+        before, after = ends
+        if found is None or before is None or after is None or links[0] is None or links[1] is None:
+            self.remarks.add("left out: ways that lead from or to no road, or on which no lane does", where)
+            return None
+        road, way = found
+        first, last = (way.at_start, way.at_end) if way.is_along else (way.at_end, way.at_start)
+        here, there = self._lanes_at(*links[0][1:]), self._lanes_at(*links[1][1:])
+        into = {(int(number(each, "from")), int(number(each, "to"))) for each in node.findall("laneLink")}
+        into = into or {(b, a) for a, b in _outward_links(file, "start" if way.is_along else "end")}
+        out = _outward_links(file, "end" if way.is_along else "start")
+        out |= {
+            (b, a)
+            for a, b in _outward_links(self.files[links[1][1]], links[1][2])
+            if self.files[links[1][1]].ends("predecessor" if links[1][2] == "start" else "successor")
+            == ("road", file.id, "end" if way.is_along else "start")
+        }
+        onward = {last[a]: there[b] for a, b in sorted(out) if a in last and b in there}
+        incoming, outgoing = self.members[before.road], self.members[after.road]
+        lanes = tuple(
+            LaneLink(here[a], first[b], onward[first[b]])
+            for a, b in sorted(into, key=lambda pair: (abs(pair[1]), abs(pair[0])))
+            if a in here
+            and b in first
+            and first[b] in onward
+            and here[a] in incoming.ids_towards(before.contact)
+            and onward[first[b]] in outgoing.ids_towards(OTHER_CONTACT[after.contact])
+        )
+        if not lanes:
+            self.remarks.add("left out: ways that lead from or to no road, or on which no lane does", where)
+            return None
+        return Connection(road, before, after, lanes)
+
+    def _made(self, junction: int, connections: Sequence[Connection], node: Element) -> Junction:
+        ends = list(dict.fromkeys(end for each in connections for end in (each.incoming, each.outgoing)))
+        places = np.array([self._pose(end)[:2] for end in ends])
+        middle = places.mean(axis=0)
+        around = np.arctan2(*(places - middle).T[::-1])
+        order = [ends[n] for n in np.argsort(around, kind="stable")]
+        controls = self._controls(order, connections, node)
+        arms = tuple(Arm(end, self._pose(end)[2], controls[end], False) for end in order)
+        point = self._meeting(order)
+        return Junction(junction, self._kind(arms), arms, tuple(connections), point, 0.0)
+
+    def _pose(self, end: RoadEnd) -> tuple[float, float, float]:
+        """Returns x, y and the heading out of the junction at an end of a road."""
+        road = self.members[end.road].road
+        s = 0.0 if end.contact == "start" else road.length
+        x, y = road.plan.at(s).tolist()
+        return x, y, float(road.heading(s)) + (math.pi if end.contact == "end" else 0.0)
+
+    def _meeting(self, ends: Sequence[RoadEnd]) -> Point:
+        """Returns the point nearest to the lines that go on from the ends of roads into a junction."""
+        poses = np.array([self._pose(end) for end in ends])
+        normal = np.stack([-np.sin(poses[:, 2]), np.cos(poses[:, 2])], axis=1)
+        found, _, rank, _ = np.linalg.lstsq(normal, (normal * poses[:, :2]).sum(axis=1), rcond=1e-2)
+        middle = poses[:, :2].mean(axis=0)
+        reach = 2 * np.linalg.norm(poses[:, :2] - middle, axis=1).max() + 1.0
+        if rank < 2 or np.linalg.norm(found - middle) > reach:
+            found = middle
+        heights = [self._height(end) for end in ends]
+        return float(found[0]), float(found[1]), float(np.mean(heights))
+
+    def _height(self, end: RoadEnd) -> float:
+        road = self.members[end.road].road
+        return float(road.elevation.height(0.0 if end.contact == "start" else road.length))
+
+    def _kind(self, arms: Sequence[Arm]) -> Kind:
+        directions = sorted(math.degrees(arm.direction) % 360 for arm in arms)
+        gaps = [(b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
+        if len(arms) == 3:
+            into = [bool(self.members[arm.end.road].ids_towards(arm.end.contact)) for arm in arms]
+            out = [
+                bool(self.members[arm.end.road].ids_towards(OTHER_CONTACT[arm.end.contact])) for arm in arms
+            ]
+            if min(gaps) < PARALLEL and sum(into) != sum(out):
+                return "merge" if sum(into) > sum(out) else "diverge"
+            if min(gaps) < PARALLEL:
+                return "junction"
+            if T_GAP[0] <= max(gaps) <= T_GAP[1] and min(gaps) >= T_OTHERS:
+                return "t_junction"
+            return "y_junction" if Y_GAP[0] <= min(gaps) and max(gaps) <= Y_GAP[1] else "junction"
+        if len(arms) == 4 and all(abs(gaps[n] + gaps[n + 1] - 180) <= CROSSED for n in range(2)):
+            return "crossroads"
+        return "star" if len(arms) > 4 else "junction"
+
+    def _controls(
+        self, ends: Sequence[RoadEnd], connections: Sequence[Connection], node: Element
+    ) -> dict[RoadEnd, Control]:
+        found: dict[RoadEnd, set[Control]] = {end: {"none"} for end in ends}
+        for end in ends:
+            for control, away in self._signs(end):
+                if away <= BEFORE:
+                    found[end].add(control)
+        for each in connections:
+            file = self._file_of(each.road)
+            way = next(way for road, way in self.ways[file.id] if road == each.road)
+            for control, orientation in self._signs_inside(file):
+                if orientation in ("none", "+" if way.is_along else "-"):
+                    found[each.incoming].add(control)
+        ranks: tuple[tuple[str, Control], ...] = (("high", "priority"), ("low", "yield"))
+        for priority in node.findall("priority"):
+            for name, control in ranks:
+                for end in ends:
+                    if self._file_of(end.road).id == priority.get(name) and found[end] == {"none"}:
+                        found[end] = {control}
+        chosen = {end: next(each for each in STRONGEST if each in own) for end, own in found.items()}
+        into = {end: self.members[end.road].ids_towards(end.contact) for end in ends}
+        return {end: control if into[end] else "none" for end, control in chosen.items()}
+
+    def _file_of(self, road: int) -> FileRoad:
+        return self.files[next(name for name, own in self.parts.items() if road in own)]
+
+    def _signs(self, end: RoadEnd) -> Iterator[tuple[Control, float]]:
+        """Yields the signs and lights for traffic towards an end of a road, with their distance from it."""
+        file = self._file_of(end.road)
+        if end.road != self.parts[file.id][-1 if end.contact == "end" else 0]:
+            return
+        length = file.stretches[-1].end
+        for control, orientation, s in _signals(file, self._signal_types):
+            if orientation in ("none", "+" if end.contact == "end" else "-"):
+                yield control, length - s if end.contact == "end" else s
+
+    def _signs_inside(self, file: FileRoad) -> Iterator[tuple[Control, str]]:
+        for control, orientation, _ in _signals(file, self._signal_types):
+            yield control, orientation
+
+    @property
+    def _signal_types(self) -> Mapping[str, Control]:
+        if not hasattr(self, "_types"):
+            self._types = {
+                node.get("id", ""): control
+                for file in self.files.values()
+                for node in file.node.findall("signals/signal")
+                if (control := _control(node)) is not None
+            }
+        return self._types
+
+    def network(self) -> Network:
+        """Returns the network of all roads and junctions."""
+        crossed = self._crosswalks()
+        junctions = [
+            replace(
+                junction,
+                arms=tuple(replace(arm, crosswalk=arm.end in crossed) for arm in junction.arms),
+            )
+            for junction in self.junctions.values()
+        ]
+        self._tell_left_out()
+        at_junctions = {arm.end for junction in junctions for arm in junction.arms}
+        joined = [
+            each for each in self.continuations.values() if not {each.before, each.after} & at_junctions
+        ]
+        used = {each.road for junction in junctions for each in junction.connections}
+        roads = [each for each in self.members.values() if each.junction is None or each.id in used]
+        whole = Network(tuple(sorted(roads, key=lambda each: each.id)), tuple(junctions), (), tuple(joined))
+        return _with_roundabouts(whole)
+
+    def _crosswalks(self) -> set[RoadEnd]:
+        found = set[RoadEnd]()
+        arms = [arm.end for junction in self.junctions.values() for arm in junction.arms]
+        places = np.array([self._pose(end)[:2] for end in arms]).reshape(-1, 2)
+        for file in self.files.values():
+            for node in file.node.findall("objects/object"):
+                if node.get("type") != "crosswalk":
+                    continue
+                at = file.line.plan.at(file.line.station(number(node, "s")))
+                away = np.linalg.norm(places - at, axis=1)
+                own = [n for n, end in enumerate(arms) if end.road in self.parts[file.id]]
+                usual = CROSSWALK[0] + CROSSWALK[1] / 2 if own else 0.0
+                nearest = min(own or range(len(arms)), key=lambda n: abs(away[n] - usual), default=None)
+                if nearest is not None and away[nearest] <= CROSSING:
+                    found.add(arms[nearest])
+                else:
+                    self.remarks.add("left out: crosswalks away from junctions", f"road {file.id}")
+        return found
+
+    def _tell_left_out(self) -> None:
+        for file in self.files.values():
+            for node in file.node.findall("objects/object"):
+                kind = node.get("type", "")
+                if kind not in ("crosswalk", "roadMark", "-1", "", "none"):
+                    self.remarks.add(f"left out: objects of type {kind[:30]}", f"road {file.id}")
+            for node in file.node.findall("signals/signal"):
+                kind = node.get("type", "")
+                if _control(node) is None and kind not in (*PAINTED, "-1", "", "none"):
+                    self.remarks.add(f"left out: signs of type {kind[:30]}", f"road {file.id}")
+            if file.junction and file.id not in self.ways:
+                self.remarks.add("left out: connecting roads that no junction names", f"road {file.id}")
+
+
+def _is_number(name: str) -> bool:
+    return name.isascii() and name.isdigit() and len(name) <= 9
+
+
+def _numbered(joint: Iterable[tuple[int, int]], one: LaneStretch, two: LaneStretch) -> list[tuple[int, int]]:
+    return [(one.lanes[a], two.lanes[b]) for a, b in joint if a in one.lanes and b in two.lanes]
+
+
+def _outward_links(road: FileRoad, contact: str) -> set[tuple[int, int]]:
+    """Returns the links of the lanes at an end of a road to those of the next road, by ids in the file."""
+    name = "predecessor" if contact == "start" else "successor"
+    nodes = road.node.findall("lanes/laneSection")
+    section = nodes[0 if contact == "start" else -1]
+    return {
+        (int(number(lane, "id")), int(number(link, "id")))
+        for side in ("left", "right")
+        for lane in section.findall(f"{side}/lane")
+        for link in lane.findall(f"link/{name}")
+    }
+
+
+def _control(node: Element) -> Control | None:
+    """Returns what a signal means at a junction; None if nothing."""
+    kind, name = node.get("type", "").lower(), node.get("name", "").lower()
+    if LIGHTS.fullmatch(kind.replace(".", "")) and node.get("dynamic", "yes") == "yes":
+        return "lights"
+    if kind in SIGNS:
+        return SIGNS[kind]
+    return next((control for word, control in NAMED.items() if word in name and "line" not in name), None)
+
+
+def _signals(file: FileRoad, types: Mapping[str, Control]) -> Iterator[tuple[Control, str, float]]:
+    """Yields the signs and lights of a road, also those of other roads to which it refers: what they mean,
+    for which direction of traffic (+, - or none), and at which station in metres."""
+    for node in file.node.findall("signals/*"):
+        if node.tag == "signalReference":
+            control = types.get(node.get("id", ""))
+        else:
+            control = _control(node) if node.tag == "signal" else None
+        if control is not None:
+            yield control, node.get("orientation", "none"), number(node, "s")
+
+
+def _with_roundabouts(network: Network) -> Network:
+    """Returns a network in which rings of one-way roads that turn about a middle are roundabouts. Each of
+    their junctions must have one road besides those of the ring."""
+    side, found = (-1 if network.left_hand else 1), list[Roundabout]()
+    starts = {
+        end.road: network.junction(number)
+        for end, number in network.junction_at.items()
+        if end.contact == "start" and not network.road(end.road).profile.against_ids
+    }
+    taken = set[int]()
+    for first in starts:
+        ring = _ring(network, first, starts, side) if first not in taken else None
+        if ring is not None:
+            taken |= {*ring.ring}
+            found.append(ring)
+    inside = {number for ring in found for number in ring.junctions}
+    on_ring = {road for ring in found for road in ring.ring}
+    junctions = tuple(
+        replace(
+            each,
+            kind="roundabout",
+            arms=_from_outside(each.arms, on_ring),
+            node=next(ring.centre for ring in found if each.id in ring.junctions),
+        )
+        if each.id in inside
+        else each
+        for each in network.junctions
+    )
+    return replace(network, junctions=junctions, roundabouts=tuple(found))
+
+
+def _from_outside(arms: tuple[Arm, ...], ring: set[int]) -> tuple[Arm, ...]:
+    first = next(n for n, arm in enumerate(arms) if arm.end.road not in ring)
+    return (*arms[first:], *arms[:first])
+
+
+def _ring(network: Network, first: int, starts: Mapping[int, Junction], side: int) -> Roundabout | None:
+    ring, junctions, ways, turned = [first], [starts[first].id], list[int](), 0.0
+    while True:
+        road = network.road(ring[-1]).road
+        turned += float(road.heading(road.length) - road.heading(0.0)) * side
+        at = network.junction_at.get(RoadEnd(ring[-1], "end"))
+        if at is None or len(ring) > 12 or turned > 2 * math.pi + FULL:
+            return None
+        onward = [
+            each
+            for each in network.junction(at).connections
+            if each.incoming == RoadEnd(ring[-1], "end")
+            and each.outgoing.contact == "start"
+            and each.outgoing.road in starts
+        ]
+        bends = [_turn(network, each.road) * side for each in onward]
+        if not bends:
+            return None
+        way = onward[int(np.argmax(bends))]
+        ways.append(way.road)
+        turned += max(bends)
+        if way.outgoing.road == first:
+            break
+        ring.append(way.outgoing.road)
+        junctions.append(at)
+    if abs(turned - 2 * math.pi) > FULL or len(set(junctions)) < max(2, len(ring)):
+        return None
+    if any(len([a for a in network.junction(n).arms if a.end.road not in ring]) != 1 for n in junctions):
+        return None
+    lines = [network.road(each).road for each in (*ring, *ways)]
+    points = np.concatenate([road.centreline() for road in lines])
+    # the circle x^2 + y^2 - 2 x0 x - 2 y0 y = c that fits best
+    plan = points[:, :2] - points[:, :2].mean(axis=0)
+    terms = np.column_stack([2 * plan, np.ones(len(plan))])
+    x, y = np.linalg.lstsq(terms, (plan**2).sum(axis=1), rcond=None)[0][:2] + points[:, :2].mean(axis=0)
+    away = np.hypot(points[:, 0] - x, points[:, 1] - y)
+    edges = network.road(first).profile.edges(0.0)
+    inner = max(side * float(edges.left if side > 0 else edges.right), 0.0)
+    if np.ptp(away) > ROUND * away.mean() or away.mean() > LARGEST_RING:
+        return None
+    radius = float(away.mean()) - inner
+    width = float(edges.left - edges.right)
+    return Roundabout(
+        tuple(junctions), tuple(ring), (float(x), float(y), float(points[:, 2].mean())), radius, width
+    )
+
+
+def _turn(network: Network, road: int) -> float:
+    own = network.road(road).road
+    return float(wrapped(float(own.heading(own.length) - own.heading(0.0))))

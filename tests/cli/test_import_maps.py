@@ -1,0 +1,97 @@
+"""``roadgpt import`` of whole maps: what is written is viewed, checked, driven and searched on."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from command_line import invoke
+from roadgpt.export import exporter_of
+from roadgpt.network import Route, build_route, read_road
+from roadgpt.road import World, read_design
+
+CROSSING = {
+    "starting_point": [400_000, 0, 0],
+    "theta": 0,
+    "road_segment1": {"distance": 90, "direction": "straight", "incline": 0, "turn_degrees": 0},
+    "junction1": {"after": 1, "kind": "crossroads", "take": "left", "control": "stop"},
+    "road_segment2": {"distance": 80, "direction": "straight", "incline": 0, "turn_degrees": 0},
+}
+
+
+ROUTE = build_route(read_design(CROSSING)[0], World())
+
+
+@pytest.fixture(scope="module")
+def town(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A crossing 400 km away, as another tool would have written it."""
+    path = tmp_path_factory.mktemp("maps") / "town.xodr"
+    exporter_of("opendrive").save(ROUTE, path, World())
+    path.write_text(path.read_text().replace('vendor="RoadGPT"', 'vendor="other"'))
+    return path
+
+
+def test_a_map_is_read_whole_and_viewed_checked_and_exported(town: Path, tmp_path: Path) -> None:
+    out = tmp_path / "map.json"
+    result = invoke("import", str(town), "--out", str(out))
+    assert result.exit_code == 0, result.output
+    assert "crossroads" in result.stdout
+    assert f"view it: roadgpt view {out}" in result.stdout
+    assert "it is moved by (" in result.stderr
+    assert "<geoReference> of the map" in result.stderr
+    found = read_road(out)
+    assert isinstance(found, Route)
+    assert (len(found.network.roads_outside), found.legs) == (4, ())
+    assert json.loads(out.read_text())["world"]["speed_limit"] == pytest.approx(70 / 3.6)
+    again = tmp_path / "again"
+    assert invoke("export", str(out), "--to", "opendrive", "--out", str(again)).exit_code == 0
+    assert next(again.glob("*.xodr")).read_text().count("<road ") == len(found.network.roads)
+    told = invoke("drive", str(out))
+    assert told.exit_code == 2
+    assert "a map without a route cannot be driven" in told.stderr
+
+
+def test_random_routes_are_written_and_driven(town: Path, tmp_path: Path) -> None:
+    routes = tmp_path / "routes"
+    result = invoke("import", str(town), "--random-routes", "3", "--seed", "5", "--out", str(routes))
+    assert result.exit_code == 0, result.output
+    files = sorted(routes.iterdir())
+    assert [file.name for file in files] == ["route-1.json", "route-2.json", "route-3.json"]
+    again = tmp_path / "again"
+    invoke("import", str(town), "--random-routes", "3", "--seed", "5", "--out", str(again))
+    assert [file.read_bytes() for file in sorted(again.iterdir())] == [file.read_bytes() for file in files]
+    driven = invoke("drive", str(routes), "--json")
+    rows = [json.loads(line) for line in driven.stdout.splitlines()]
+    assert [row["test_outcome"] for row in rows] == ["PASS"] * 3
+    assert result.stdout.count("over roads") == 3
+    assert "199 m through 1 crossroads, over roads" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--route", "1,99"), "there is no road 99 on the map; there are: 1, 2"),
+        (("--route", "1", "--random-routes", "2"), "ask for different routes; give one of them"),
+        (("--from", "3,4"), "a route needs both ends; give --from X,Y and --to X,Y"),
+        (("--from", "3,x", "--to", "3,4"), "'3,x' is no point; give x and y in metres"),
+        (("--from", "3,nan", "--to", "3,4"), "'3,nan' is not finite"),
+        (("--from", "3,4", "--to", "3,5"), "there is no road within 10 m of (3, 4)"),
+        (("--road", "1", "--route", "1"), "--route is for a map"),
+    ],
+)
+def test_what_cannot_be_a_route_is_said(town: Path, options: tuple[str, ...], said: str) -> None:
+    result = invoke("import", str(town), *options)
+    assert result.exit_code == 2
+    assert said in result.stderr
+
+
+def test_a_named_route_and_one_between_points_are_the_same(town: Path, tmp_path: Path) -> None:
+    named, between = tmp_path / "named.json", tmp_path / "between.json"
+    assert invoke("import", str(town), "--route", "1,4", "--out", str(named)).exit_code == 0
+    x, y, _ = ROUTE.at(ROUTE.length - 10.0).tolist()
+    ends = ("--from", "400010,-2", "--to", f"{x:.3f},{y:.3f}")
+    assert invoke("import", str(town), *ends, "--out", str(between)).exit_code == 0
+    assert named.read_bytes() == between.read_bytes()
+    route = read_road(named)
+    assert isinstance(route, Route)
+    assert route.legs == ROUTE.legs
