@@ -83,7 +83,7 @@ def test_a_map_may_have_no_route(route: list[int] | None, left_hand: bool) -> No
 
 
 def test_a_map_without_a_route_is_not_driven() -> None:
-    with pytest.raises(UsageError, match=r'a map without a route cannot be driven; .*, or take'):
+    with pytest.raises(UsageError, match=r"a map without a route cannot be driven; .*, or take"):
         simulate(built(changed(route=None)).on_ground(), World(), "reference")
 
 
