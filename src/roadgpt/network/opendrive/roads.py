@@ -48,6 +48,7 @@ from roadgpt.road.profile import MOST_LANES, STEEPEST, WIDEST, Kind, Lane, Marki
 
 SHORT = 0.05  # m; a shorter lane section is left out, and the lanes before it go on in those behind it
 NO_WIDTH = 1e-3  # m; a lane that is nowhere wider is left out
+MEETS, SAME_WAY = 0.002, 0.001  # m and rad, between the elements of a line that stays as it is
 FAR = 0.1  # m, that a line may be rounded off without saying how much
 TOLD = 3  # places that a remark lists
 THIN = 0.25  # m; a lane that is nowhere wider is no lane that a car could use
@@ -221,7 +222,7 @@ def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
 
 def _line(node: Element, remarks: Remarks, where: str) -> PlacedLine:
     line = reference_line(node)
-    plan = exact(line)
+    plan = exact(line, MEETS, SAME_WAY)
     if plan is not None:
         ends = np.array([0.0, plan.length])
         return PlacedLine(plan, ends, ends)

@@ -384,8 +384,10 @@ def misses(line: SampledLine) -> str:
     return " and ".join(parts)
 
 
-def exact(line: list[GeometryElement]) -> PieceCurve | None:
-    """Returns the reference line unchanged; None if it is not made of lines, arcs and spirals that meet."""
+def exact(line: list[GeometryElement], meets: float = MEETS, same_way: float = SAME_WAY) -> PieceCurve | None:
+    """Returns the reference line unchanged; None if it is not made of lines, arcs and spirals that meet. Each
+    follows the one before and begins at most ``meets`` metres and ``same_way`` radians from where its file
+    has it."""
     shapes = [each.shape for each in line]
     pieces = [shape for shape in shapes if isinstance(shape, Piece)]
     if len(pieces) < len(shapes):
@@ -396,7 +398,7 @@ def exact(line: list[GeometryElement]) -> PieceCurve | None:
     told = np.array([(each.x, each.y, each.heading, each.s) for each in line])
     apart = np.maximum(np.hypot(*(plan.at(starts) - told[:, :2]).T), np.abs(starts - told[:, 3]))
     turned = np.abs(wrap_angle(plan.heading(starts) - told[:, 2]))
-    return plan if apart.max() < MEETS and turned.max() < SAME_WAY else None
+    return plan if apart.max() < meets and turned.max() < same_way else None
 
 
 def lies_on_the_line(lanes: Lanes, length: float) -> bool:
