@@ -45,15 +45,19 @@ def away(read: ImportedMap, slow: SlowMap) -> list[float]:
     return found
 
 
-def movements(lanes: Lanes) -> list[Movement]:
-    """The steps of traffic of a network, as those of the second reader."""
+def movements(lanes: Lanes, read: ImportedMap) -> list[Movement]:
+    """The steps of traffic of a network, as those of the second reader: not those from one part of a road of
+    the file to the next part of it."""
     found = []
+    file_of = {number: name for name, numbers in read.roads.items() for number in numbers}
     for lane in lanes:
         if lane.member.junction is not None:
             continue
         for each in lane.successors:
             goals = [each] if lanes[each].member.junction is None else lanes[each].successors
             for goal in goals:
+                if lanes[each].member.junction is None and file_of[goal.road] == file_of[lane.id.road]:
+                    continue
                 ends = lane.at(lane.length)[:2].tolist(), lanes[goal].at(0.0)[:2].tolist()
                 found.append(Movement(*(tuple(each) for each in ends)))
     return found
@@ -89,7 +93,7 @@ def main() -> None:
     options.add_argument("folder", type=Path)
     options.add_argument("--routes", type=int, default=0)
     given = options.parse_args()
-    lines, same, maps, kept, driven = [], 0, 0, 0, 0
+    lines, whole, same, maps, kept, driven = [], 0, 0, 0, 0, 0
     for path in sorted(given.folder.rglob("*.xodr")):
         begin = time.perf_counter()
         try:
@@ -99,11 +103,12 @@ def main() -> None:
             continue
         seconds = time.perf_counter() - begin
         lanes, slow = lanes_of(read.network), SlowMap(path)
-        far, own, others = away(read, slow), movements(lanes), [*slow.movements()]
+        far, own, others = away(read, slow), movements(lanes, read), [*slow.movements()]
         lacking, more = unlike(others, own), unlike(own, others)
         lines += far
         maps += 1
-        same += lacking == 0
+        whole += lacking == 0
+        same += lacking == more == 0
         said = f"{path.name}: {len(far)} roads, {len(lanes)} lanes, {seconds:.1f} s"
         said += f"; lines {1000 * max(far):.2f} mm; steps {len(others)}, lacking {lacking}, more {more}"
         if given.routes and read.network.junctions:
@@ -112,7 +117,9 @@ def main() -> None:
             said += f"; kept {good} of {good + len(failed)}" + "".join(f"\n    {each}" for each in failed)
         print(said, flush=True)
     shares = [f"{100 * np.mean(np.array(lines) <= most / 1000):.1f} % within {most} mm" for most in (1, 2)]
-    print(f"{maps} maps, {len(lines)} roads: {', '.join(shares)}; all steps on {same} maps")
+    print(
+        f"{maps} maps, {len(lines)} roads: {', '.join(shares)}; all steps on {whole} maps, no others on {same}"
+    )
     if driven:
         print(f"kept {kept} of {driven} routes")
 

@@ -108,7 +108,7 @@ def test_damaged_weights_are_refused_in_a_sentence(tmp_path: Path, name: str) ->
 
 def test_sentences_of_usual_briefs_are_read_back() -> None:
     missed = []
-    plans = [pair.plan for pair in islice(pairs(2026), 0, 60, 3) if not pair.plan.startswith("!")]
+    plans = [pair.plan for pair in islice(pairs(2026), 60) if not pair.plan.startswith("!")]
     for line in plans:
         wanted = normal(read_plan(line))
         try:
