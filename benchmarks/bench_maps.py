@@ -117,9 +117,8 @@ def main() -> None:
             said += f"; kept {good} of {good + len(failed)}" + "".join(f"\n    {each}" for each in failed)
         print(said, flush=True)
     shares = [f"{100 * np.mean(np.array(lines) <= most / 1000):.1f} % within {most} mm" for most in (1, 2)]
-    print(
-        f"{maps} maps, {len(lines)} roads: {', '.join(shares)}; all steps on {whole} maps, no others on {same}"
-    )
+    print(f"{maps} maps, {len(lines)} roads: {', '.join(shares)}")
+    print(f"all steps on {whole} maps, and no others on {same}")
     if driven:
         print(f"kept {kept} of {driven} routes")
 
