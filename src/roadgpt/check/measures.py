@@ -38,6 +38,7 @@ from roadgpt.geometry import CubicProfile, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.pieces import along_all
 from roadgpt.network import Connection, Junction, Network, NetworkRoad, RoadEnd
+from roadgpt.network.network import kinds_of
 from roadgpt.road.design import LEAST_WIDTH
 
 if TYPE_CHECKING:
@@ -56,10 +57,6 @@ HALF_WINDOW = 5  # stations to either side for the grade that cuts a straight in
 LONG_WINDOW, SHORT_WINDOW = 20, 10  # stations: for climbing and falling, and for the steepest place
 FULL = 0.9  # of the width of a lane, above which it is not yet in its taper
 OUT = 15.0  # m, from a contact to the point that gives the direction of its arm
-T_GAP = (145.0, 215.0)  # degrees, the largest gap between the arms of a T-junction
-T_OTHERS = 55.0  # degrees, least other gap
-Y_GAP = (85.0, 155.0)  # degrees, every gap between the arms of a fork
-LINE = 35.0  # degrees, that opposite arms of crossroads may be off one line
 LANE_STEP = 0.5  # m, between stations at which the width of a lane is measured
 STRAIGHT_ROAD = math.radians(5.0)  # largest change of heading of a road that counts as straight
 
@@ -547,23 +544,6 @@ def directions_of(network: Network, arms: Sequence[RoadEnd]) -> list[float]:
         stations.append(np.array([0.0, far] if end.contact == "start" else [plan.length, plan.length - far]))
     points = along_all(plans, stations)[0] if plans else np.empty((0, 2))
     return [math.degrees(math.atan2(y, x)) for x, y in (points[1::2] - points[::2]).tolist()]
-
-
-def kinds_of(gaps: list[float]) -> tuple[JunctionKind, ...]:
-    """Returns the kinds of junction that fit the angles between neighbouring arms, degrees; may be empty."""
-    found: list[JunctionKind] = []
-    least, *_, most = sorted(gaps)
-    if len(gaps) == 3:
-        if least >= T_OTHERS and T_GAP[0] <= most <= T_GAP[1]:
-            found.append("t_junction")
-        if least >= Y_GAP[0] and most <= Y_GAP[1]:
-            found.append("y_junction")
-    elif len(gaps) == 4:
-        if all(abs(gaps[n] + gaps[n + 1] - 180) <= LINE for n in range(2)):
-            found.append("crossroads")
-    elif len(gaps) > 4:
-        found.append("star")
-    return tuple(found)
 
 
 @dataclass(frozen=True)

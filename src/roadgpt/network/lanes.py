@@ -5,11 +5,11 @@ lane is driven from its start to its end, whatever the direction of its road: it
 distance in metres along its middle, and its offset ``t`` is positive to the left of the traffic in it."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from heapq import heappop, heappush
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,7 +34,9 @@ RANK: Mapping[Control, int] = {"priority": 2, "lights": 1, "none": 1, "yield": 0
 """Of two ways with different ranks, the one with the lower rank gives way (Vienna Convention on Road Signs
 and Signals, 1968, Annex 1, B 1 to B 4)."""
 CROSSED = ("broken", "none")  # markings that a car may cross to change lanes
-Cost = Literal["length", "changes"]
+Cost = tuple[float, float]
+"""What a way costs: the smaller first number is better and, where both are equal, the smaller second one."""
+State = TypeVar("State", bound=tuple[Any, ...])
 
 
 class LanePlace(NamedTuple):
@@ -217,34 +219,22 @@ class Lanes:
                 out[point].append(LanePlace(lane, float(s), float(t)))
         return [tuple(each) for each in out]
 
-    def shortest(self, start: Leg, goal: Leg, cost: Cost = "length") -> list[Leg] | None:
+    def shortest(
+        self, start: Leg, goal: Leg, least: Literal["length", "changes"] = "length"
+    ) -> list[Leg] | None:
         """Returns the lanes of the shortest way from one lane to another one, both included; None if no way
         leads there. A change to the neighbouring lane is one step of the way. ``length`` counts the metres of
         all lanes that are driven to their end, and ``changes`` first the changes of lane."""
-        best, came, reached = {start: (0.0, 0.0)}, {start: start}, set[Leg]()
-        queue = [((0.0, 0.0), start)]
-        while queue:
-            so_far, here = heappop(queue)
-            if here == goal:
-                way = [here]
-                while way[-1] != start:
-                    way.append(came[way[-1]])
-                return way[::-1]
-            if here in reached:
-                continue
-            reached.add(here)
+
+        def steps(here: Leg) -> Iterator[tuple[Leg, Cost]]:
             lane = self.by_id[here]
-            metres = (lane.length, 0.0) if cost == "length" else (0.0, lane.length)
-            change = (0.0, 1.0) if cost == "length" else (1.0, 0.0)
-            beside = [(lane.left, lane.may_change_left), (lane.right, lane.may_change_right)]
-            steps = [(each, metres) for each in lane.successors]
-            steps += [(each, change) for each, may in beside if each is not None and may]
-            for there, (first, second) in steps:
-                total = (so_far[0] + first, so_far[1] + second)
-                if total < best.get(there, (math.inf, math.inf)):
-                    best[there], came[there] = total, here
-                    heappush(queue, (total, there))
-        return None
+            for each in lane.successors:
+                yield each, (lane.length, 0.0) if least == "length" else (0.0, lane.length)
+            for beside, may in ((lane.left, lane.may_change_left), (lane.right, lane.may_change_right)):
+                if beside is not None and may:
+                    yield beside, (0.0, 1.0) if least == "length" else (1.0, 0.0)
+
+        return cheapest([start], lambda here: here == goal, steps)
 
     def ahead(self, start: Leg, s: float, metres: float) -> list[tuple[Leg, ...]]:
         """Returns every way on from station ``s`` of a lane, without changes of lane, as long as it is needed
@@ -329,6 +319,34 @@ class Lanes:
         if ring is not None and end.road in ring.ring:
             return max(RANK.values()) + 1
         return RANK[next(arm.control for arm in junction.arms if arm.end == end)]
+
+
+def cheapest(
+    starts: Iterable[State],
+    is_goal: Callable[[State], bool],
+    steps: Callable[[State], Iterable[tuple[State, Cost]]],
+) -> list[State] | None:
+    """Returns the states of the cheapest way from one of the starts to a goal, both included; None if no way
+    leads there. ``steps`` gives the states that follow a state, and what each step costs. Source: Dijkstra,
+    A note on two problems in connexion with graphs, Numerische Mathematik 1 (1959)."""
+    best, came, done = dict.fromkeys(starts, (0.0, 0.0)), dict[State, State](), set[State]()
+    queue = [(cost, state) for state, cost in best.items()]
+    while queue:
+        (first, second), here = heappop(queue)
+        if here in done:
+            continue
+        if is_goal(here):
+            way = [here]
+            while way[-1] in came:
+                way.append(came[way[-1]])
+            return way[::-1]
+        done.add(here)
+        for there, more in steps(here):
+            total = (first + more[0], second + more[1])
+            if total < best.get(there, (math.inf, math.inf)):
+                best[there], came[there] = total, here
+                heappush(queue, (total, there))
+    return None
 
 
 @lru_cache(maxsize=16)

@@ -8,7 +8,7 @@ way round. Every junction has its own connecting roads, one for each way from on
 A road file with a route has two more fields: ``route``, a list of [road, lane], and ``network``."""
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal, NamedTuple, cast
@@ -16,7 +16,7 @@ from typing import Any, Literal, NamedTuple, cast
 import numpy as np
 from pydantic import TypeAdapter
 
-from roadgpt.brief.junctions import Control, MapJunctionKind
+from roadgpt.brief.junctions import Control, MapJunctionKind, PlainKind
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.network.paved import (
@@ -39,6 +39,27 @@ Contact = Literal["start", "end"]
 OTHER_CONTACT: dict[Contact, Contact] = {"start": "end", "end": "start"}
 Kind = Literal[MapJunctionKind, "merge", "diverge"]
 MOST_ROADS = 20_000
+T_GAP = (145.0, 215.0)  # degrees, the largest gap between the arms of a T-junction
+T_OTHERS = 55.0  # degrees, least other gap
+Y_GAP = (85.0, 155.0)  # degrees, every gap between the arms of a fork
+CROSSED = 35.0  # degrees, that opposite arms of crossroads may be off one line
+
+
+def kinds_of(gaps: Sequence[float]) -> tuple[PlainKind, ...]:
+    """Returns the kinds of junction that fit the angles between neighbouring arms, degrees; may be empty."""
+    found: list[PlainKind] = []
+    least, *_, most = sorted(gaps)
+    if len(gaps) == 3:
+        if least >= T_OTHERS and T_GAP[0] <= most <= T_GAP[1]:
+            found.append("t_junction")
+        if least >= Y_GAP[0] and most <= Y_GAP[1]:
+            found.append("y_junction")
+    elif len(gaps) == 4:
+        if all(abs(gaps[n] + gaps[n + 1] - 180) <= CROSSED for n in range(2)):
+            found.append("crossroads")
+    elif len(gaps) > 4:
+        found.append("star")
+    return tuple(found)
 
 
 class RoadEnd(NamedTuple):

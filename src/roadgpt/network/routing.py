@@ -4,7 +4,6 @@ A route leads from the start of its first road to the end of its last one. It ch
 possible, only where the marking may be crossed, and only on roads that are long enough for that. It leads
 along no part of a lane that is too narrow for a car, such as the beginning of a turn lane."""
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from heapq import heappop, heappush
@@ -13,7 +12,7 @@ from itertools import groupby
 import numpy as np
 
 from roadgpt.errors import UsageError
-from roadgpt.network.lanes import Lane, Lanes
+from roadgpt.network.lanes import Cost, Lane, Lanes, cheapest
 from roadgpt.network.network import Leg
 
 CHANGE = 30.0  # m of road for each change of lanes
@@ -136,27 +135,17 @@ def _shortest(
     is_goal: Callable[[State], bool],
     onward: Callable[[State, Leg], State | None],
 ) -> tuple[Leg, ...] | None:
-    best = {state: (0.0, 0.0) for state in starts if _is_wide(lanes.by_id[state[0]], 0.0, 0.5)}
-    came: dict[State, State] = {}
-    queue = [(cost, state) for state, cost in best.items()]
-    done = set[State]()
-    while queue:
-        (changes, metres), here = heappop(queue)
-        if here in done:
-            continue
-        if is_goal(here) and _is_wide(lanes.by_id[here[0]], 0.5, 1.0):
-            way = [here]
-            while way[-1] in came:
-                way.append(came[way[-1]])
-            return tuple(lane for lane, _ in way[::-1])
-        done.add(here)
-        for lane, more, length in _steps(lanes, here[0]):
-            there = onward(here, lane)
-            total = (changes + more, metres + length)
-            if there is not None and total < best.get(there, (math.inf, math.inf)):
-                best[there], came[there] = total, here
-                heappush(queue, (total, there))
-    return None
+    def steps(here: State) -> Iterator[tuple[State, Cost]]:
+        for lane, changes, metres in _steps(lanes, here[0]):
+            if (there := onward(here, lane)) is not None:
+                yield there, (changes, metres)
+
+    way = cheapest(
+        (state for state in starts if _is_wide(lanes.by_id[state[0]], 0.0, 0.5)),
+        lambda here: is_goal(here) and _is_wide(lanes.by_id[here[0]], 0.5, 1.0),
+        steps,
+    )
+    return None if way is None else tuple(lane for lane, _ in way)
 
 
 def _reached(lanes: Lanes, start: Leg, most: float) -> list[tuple[Leg, float]]:

@@ -220,6 +220,13 @@ def test_what_a_map_says_of_speed_and_friction_is_that_of_its_lanes(tmp_path: Pa
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, plan=BROKEN)], "left out: roads of which"),
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, to("predecessor", "road", 3, "start"))],
          "a second road that continues the same end of a road (road 3)"),
+        ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1), lane(-2, 0.04)))],
+         "a lane for cars that is nowhere wider than 0.25 m is a strip here (road 3)"),
+        ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1)) + section(4, lane(-1), lane(-2)))],
+         "no lane is linked to those behind it, and lanes with the same ids continue each other (road 3)"),
+        ([*crossing(), road(3, (0, 9, 0, 9), TWO, to("successor", "road", 4, "start")),
+          road(4, (9, 9, 0, 9), TWO)],
+         "no lane is linked to those behind it, and lanes with the same ids continue each other (road 3)"),
     ],
 )  # fmt: skip
 def test_what_is_left_out_is_said_by_name(tmp_path: Path, parts: list[str], sentence: str) -> None:

@@ -30,15 +30,12 @@ from roadgpt.network.network import (
     NetworkRoad,
     RoadEnd,
     Roundabout,
+    kinds_of,
 )
-from roadgpt.network.opendrive.roads import FileRoad, LaneStretch, Remarks, RoadBuilder, Way
+from roadgpt.network.opendrive.roads import UNLINKED, FileRoad, LaneStretch, Remarks, RoadBuilder, Way
 from roadgpt.network.pose import Point
 from roadgpt.road.opendrive.tree import number
 
-T_GAP = (145.0, 215.0)  # degrees, the largest gap between the arms of a T-junction
-T_OTHERS = 55.0  # degrees, least other gap
-Y_GAP = (85.0, 155.0)  # degrees, every gap between the arms of a fork
-CROSSED = 35.0  # degrees, that opposite arms of crossroads may be off one line
 PARALLEL = 30.0  # degrees; arms that are closer together belong to a merge or an exit
 BEFORE = 60.0  # m before a junction, within which a sign or a light applies to it
 CROSSING = 25.0  # m from a junction, within which a crosswalk belongs to it
@@ -160,6 +157,7 @@ class Joining:
         pairs = _outward_links(road, contact)
         pairs |= {(b, a) for a, b in _outward_links(self.files[link[1]], link[2])}
         if not pairs:
+            self.remarks.add(UNLINKED, f"road {road.id}")
             same = 1 if contact != link[2] else -1
             pairs = {(lane, same * lane) for lane in here}
         self._join(own, other, [(here[a], there[b]) for a, b in pairs if a in here and b in there])
@@ -284,12 +282,7 @@ class Joining:
                 return "merge" if sum(into) > sum(out) else "diverge"
             if min(gaps) < PARALLEL:
                 return "junction"
-            if T_GAP[0] <= max(gaps) <= T_GAP[1] and min(gaps) >= T_OTHERS:
-                return "t_junction"
-            return "y_junction" if Y_GAP[0] <= min(gaps) and max(gaps) <= Y_GAP[1] else "junction"
-        if len(arms) == 4 and all(abs(gaps[n] + gaps[n + 1] - 180) <= CROSSED for n in range(2)):
-            return "crossroads"
-        return "star" if len(arms) > 4 else "junction"
+        return next(iter(kinds_of(gaps)), "junction") if len(arms) > 2 else "junction"
 
     def _controls(
         self, ends: Sequence[RoadEnd], connections: Sequence[Connection], node: Element

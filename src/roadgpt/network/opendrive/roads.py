@@ -52,6 +52,7 @@ MEETS, SAME_WAY = 0.002, 0.001  # m and rad, between the elements of a line that
 FAR = 0.1  # m, that a line may be rounded off without saying how much
 TOLD = 3  # places that a remark lists
 THIN = 0.25  # m; a lane that is nowhere wider is no lane that a car could use
+UNLINKED = "no lane is linked to those behind it, and lanes with the same ids continue each other"
 KINDS: Mapping[str, Kind] = {
     **dict.fromkeys(DRIVING, "driving"),
     "shoulder": "shoulder",
@@ -197,6 +198,8 @@ def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
     heights = elevation(node)
     if jumps(heights, length):
         remarks.add("its height jumps", where)
+    if not all(_linked(one, two) for one, two in pairwise(sections)):
+        remarks.add(UNLINKED, where)
     stretches, joints, entry, leaving = _stretches(sections)
     junction = node.get("junction", "-1")
     return FileRoad(
@@ -297,10 +300,13 @@ def _followed(lanes: dict[int, int], joint: Pairs) -> dict[int, int]:
     return {lane: onward[at] for lane, at in lanes.items() if at in onward}
 
 
-def _joint(one: FileSection, two: FileSection) -> Pairs:
+def _linked(one: FileSection, two: FileSection) -> Pairs:
     found = one.links("successor") | {(b, a) for a, b in two.links("predecessor")}
-    known = {(a, b) for a, b in found if a in one.ids and b in two.ids}
-    return known or {(lane, lane) for lane in one.ids.keys() & two.ids.keys()}
+    return {(a, b) for a, b in found if a in one.ids and b in two.ids}
+
+
+def _joint(one: FileSection, two: FileSection) -> Pairs:
+    return _linked(one, two) or {(lane, lane) for lane in one.ids.keys() & two.ids.keys()}
 
 
 def speed_of(node: Element, remarks: Remarks, where: str) -> float | None:
@@ -428,6 +434,9 @@ class RoadBuilder:
         kind = KINDS.get(own.kind, "none")
         if kind == "driving" and widest <= THIN:
             kind = "none"
+            self.remarks.add(
+                f"a lane for cars that is nowhere wider than {THIN:g} m is a strip here", self.name
+            )
         parts = [(each.start, each.end, each.ids[lane]) for each in stretch.sections]
         nodes = [(start, end, part.node) for start, end, part in parts]
         if kind != "driving":
