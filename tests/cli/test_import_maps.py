@@ -51,6 +51,29 @@ def test_a_map_is_read_whole_and_viewed_checked_and_exported(town: Path, tmp_pat
     assert "a map without a route cannot be driven" in told.stderr
 
 
+def test_a_road_with_lanes_on_its_left_only_goes_through_every_command(town: Path, tmp_path: Path) -> None:
+    """As tools write one-way roads: nothing leads along the reference line."""
+    text = town.read_text()
+    begin = text.index('<road name="road 2"')
+    own = text[begin : text.index("</road>", begin)]
+    bare = own[: own.index("<right>")] + own[own.index("</right>") + len("</right>") :]
+    path = tmp_path / "one-way.xodr"
+    path.write_text(text.replace(own, bare))
+    out = tmp_path / "map.json"
+    assert invoke("import", str(path), "--random-routes", "1", "--out", str(out)).exit_code == 0
+    found = read_road(out)
+    assert isinstance(found, Route)
+    assert found.network.road(2).profile.along_ids == ()
+    assert invoke("check", str(out)).exit_code in (0, 1)
+    drives = tmp_path / "drives"
+    assert invoke("drive", str(out), "--out", str(drives)).exit_code in (0, 1)
+    page, pictures = tmp_path / "page.html", tmp_path / "pictures"
+    assert invoke("view", str(drives / "runs" / "0001"), "--out", str(page)).exit_code == 0
+    assert invoke("view", str(out), "--format", "png", "--out", str(pictures)).exit_code == 0
+    assert page.stat().st_size > 100_000
+    assert list(pictures.rglob("*.png"))
+
+
 def test_random_routes_are_written_and_driven(town: Path, tmp_path: Path) -> None:
     routes = tmp_path / "routes"
     result = invoke("import", str(town), "--random-routes", "3", "--seed", "5", "--out", str(routes))

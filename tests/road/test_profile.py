@@ -159,6 +159,10 @@ def test_strips_of_any_kind_lie_beside_each_other_in_any_order(seed: int) -> Non
         assert profile.lane(0.0).left == pytest.approx(bound)
         assert profile.middle(0.0) == pytest.approx((bound + bounds[profile.boundaries_to_left + 1][1]) / 2)
     else:
+        assert profile.driven_id == max(profile.against_ids)
+        assert profile.middle(0.0) == pytest.approx(sum(profile.edges_of(profile.driven_id, 0.0)) / 2)
+        assert profile.lane(0.0) == pytest.approx(profile.edges_of(profile.driven_id, 0.0))
+        assert bounds[profile.boundaries_to_left][1] == pytest.approx(profile.lane(0.0).left)
         with pytest.raises(UsageError, match="no lane leads along the road"):
             Road.from_json(BEND.with_profile(profile).to_json())
     assert profile_from_json(profile_to_json(profile)) == profile

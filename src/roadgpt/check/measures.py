@@ -458,10 +458,10 @@ def _narrow_part(member: NetworkRoad, at_end: bool) -> float:
     length = member.road.length
     s = np.linspace(0.0, length, math.ceil(length / LANE_STEP) + 1)
     found = 0.0
-    for lane in member.profile.along[: member.profile.count[0]]:
-        if isinstance(lane.width, CubicProfile):
-            wide = s[lane.width.height(s) >= LEAST_WIDTH]
-            found = max(found, length - wide[-1] if at_end else wide[0])
+    for width in (member.profile.lanes[lane].width for lane in member.profile.along_ids):
+        if isinstance(width, CubicProfile):
+            wide = np.append(s[width.height(s) >= LEAST_WIDTH], [] if at_end else length)
+            found = max(found, length - wide.max(initial=0.0) if at_end else wide[0])
     return float(found)
 
 
@@ -482,9 +482,11 @@ def ramp_of(network: Network, junction: Junction) -> MeasuredRamp | None:
     roads = [network.road(each.road).road for each in junction.connections]
     turns = [float(road.heading(road.length) - road.heading(0.0)) for road in roads]
     way, turn = max(zip(junction.connections, turns, strict=True), key=lambda pair: abs(pair[1]))
-    beside = network.road((way.outgoing if junction.kind == "merge" else way.incoming).road)
+    is_merge = junction.kind == "merge"
+    beside = network.road((way.outgoing if is_merge else way.incoming).road)
+    lanes = network.lanes_out_of(way.outgoing) if is_merge else network.lanes_into(way.incoming)
     is_outer = (turn > 0) == network.left_hand
-    width = beside.profile.along[beside.profile.count[0] - 1 if is_outer else 0].width
+    width = beside.profile.lanes[lanes[-1 if is_outer else 0]].width
     full = taper = 0.0
     if isinstance(width, CubicProfile):
         s = np.linspace(0.0, beside.road.length, max(2, round(beside.road.length)))

@@ -59,7 +59,7 @@ def legs_of(road: Road, world: World) -> "tuple[Leg, ...]":
     from roadgpt.network.network import Leg
 
     profile = world.profile_of(road)
-    return (Leg(ONLY, profile.along_ids[profile.driven]),)
+    return (Leg(ONLY, profile.driven_id),)
 
 
 def only_road(road: Road, world: World) -> "NetworkRoad | None":

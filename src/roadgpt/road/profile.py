@@ -218,10 +218,16 @@ class Profile:
         return lane * self.side > 0
 
     @property
+    def driven_id(self) -> int:
+        """The id in OpenDRIVE of the driven lane. Where no lane leads along the road, as may be in a network,
+        it is the outermost of the oncoming ones."""
+        return self.side * (1 + self.driven) if self.along_ids else self.against_ids[-1]
+
+    @property
     def boundaries_to_left(self) -> int:
         """The number of boundaries left of the driven lane: the index of its left edge in ``boundaries``."""
-        left = self.carriageway[0]
-        return left - 1 - self.driven if self.left_hand else left + self.driven
+        left, number = self.carriageway[0], self.driven_id
+        return left - number if number > 0 else left - 1 - number
 
     @property
     def shoulder_width(self) -> float:
@@ -262,7 +268,7 @@ class Profile:
 
     def width(self, s: ArrayLike) -> Array:
         """Returns the width of the driven lane."""
-        return _at(self.along[self.driven].width, s)
+        return _at(self.lanes[self.driven_id].width, s)
 
     def shoulder(self, s: ArrayLike) -> Array:
         """Returns the width of the shoulder beside the lanes along the road; 0 if there is none."""
@@ -270,13 +276,21 @@ class Profile:
 
     def middle(self, s: ArrayLike) -> Array:
         """Returns the offset of the middle of the driven lane."""
-        return self.centre(s) + self.side * (_sum(self.along[: self.driven], s) + self.width(s) / 2)
+        sign, inside = self._inside_driven
+        return self.centre(s) + sign * (_sum(inside, s) + self.width(s) / 2)
+
+    @cached_property
+    def _inside_driven(self) -> tuple[int, tuple[Lane, ...]]:
+        """Returns the side of the driven lane, 1 for left, and the lanes between it and the centre line."""
+        number = self.driven_id
+        return (1, self.left[: number - 1]) if number > 0 else (-1, self.right[: -1 - number])
 
     def lane(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the edges of the driven lane."""
-        inside, centre = _sum(self.along[: self.driven], s), self.centre(s)
-        inner, outer = centre + self.side * inside, centre + self.side * (inside + self.width(s))
-        return Edges(outer, inner) if self.left_hand else Edges(inner, outer)
+        sign, lanes = self._inside_driven
+        inside, centre = _sum(lanes, s), self.centre(s)
+        inner, outer = centre + sign * inside, centre + sign * (inside + self.width(s))
+        return Edges(outer, inner) if sign > 0 else Edges(inner, outer)
 
     def edges(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the edges of the carriageway, from the outermost driving lane on the left to

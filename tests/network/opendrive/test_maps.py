@@ -167,6 +167,8 @@ def test_lanes_that_change_inside_a_junction_lead_through_it_where_they_go_on(tm
 SIGN = '<signal id="1" s="{s}" t="-4" orientation="{way}" dynamic="{changes}" type="{kind}"/>'
 TREE = '<objects><object id="1" type="tree" s="1"/></objects>'
 BROKEN = "<geometry s='0' x='a'/>"
+FAST, ICE = '<speed sOffset="0" max="1000"/>', '<material sOffset="0" friction="0"/>'
+CLIFF = '<elevationProfile><elevation s="0" a="0" b="46"/></elevationProfile>'
 
 
 @pytest.mark.parametrize(
@@ -220,6 +222,11 @@ def test_what_a_map_says_of_speed_and_friction_is_that_of_its_lanes(tmp_path: Pa
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, plan=BROKEN)], "left out: roads of which"),
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, to("predecessor", "road", 3, "start"))],
          "a second road that continues the same end of a road (road 3)"),
+        ([*crossing(), road(3, (0, 9, 0, 9), TWO, more=CLIFF)], "roads of which the road has a grade of 46"),
+        ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1, more=FAST)))],
+         "a speed limit of 1000 is not used (road 3)"),
+        ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1, more=ICE)))],
+         "a friction of 0 is not used (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1), lane(-2, 0.04)))],
          "a lane for cars that is nowhere wider than 0.25 m is a strip here (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1)) + section(4, lane(-1), lane(-2)))],

@@ -281,20 +281,23 @@ def _free(stem: str, ending: str) -> Path:
 
 def _write(file: Path, source: "RoadSource", out: Path, keep_place: bool, quiet: bool) -> str:
     """Writes a road file, prints remarks, and returns in a sentence what the road is like."""
+    from roadgpt import plugins
     from roadgpt.brief import sentence
-    from roadgpt.check import inspect
     from roadgpt.check.describing import describe
     from roadgpt.check.measures import ups_and_downs
-    from roadgpt.network import is_route
+    from roadgpt.network import is_route, network_of, road_from_json
     from roadgpt.road import Road, World
 
     assert isinstance(source.blueprint, Road)
     is_plain = not is_route(source.blueprint)
     road, size, moved_by, told = roads.on_a_map(source.blueprint, World().changed(**source.world), keep_place)
     world = {**source.world, "map_size": size}
-    found = inspect(road, None, World().changed(**world)) if is_plain else ()
-    short = [finding.sentence for finding in found if finding.rule == "too_short"]
-    for remark in () if quiet else (*source.remarks, *told, *short):
+    own = World().changed(**world)
+    too_short = plugins.find("rules", "too_short")
+    found = too_short(network_of(road, own), road, None, own) if is_plain else ()
+    if not is_plain:
+        road_from_json(road.to_json())  # so that no map is written that cannot be read
+    for remark in () if quiet else (*source.remarks, *told, *(finding.sentence for finding in found)):
         warn(f"{file}: {remark}")
     origin = {"origin": [0.0 - each for each in moved_by]} if any(moved_by) else {}
     with explained(RoadGPTError, f"cannot write {out}", "name another file with --out"):

@@ -44,7 +44,8 @@ from roadgpt.road.opendrive.profile import (
     width_rows,
 )
 from roadgpt.road.opendrive.tree import DRIVING, cubics, in_order, number
-from roadgpt.road.profile import MOST_LANES, STEEPEST, WIDEST, Kind, Lane, Marking
+from roadgpt.road.profile import FASTEST, MOST_LANES, STEEPEST, WIDEST, Kind, Lane, Marking
+from roadgpt.road.road import check_grade
 
 SHORT = 0.05  # m; a shorter lane section is left out, and the lanes before it go on in those behind it
 NO_WIDTH = 1e-3  # m; a lane that is nowhere wider is left out
@@ -196,6 +197,7 @@ def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
         remarks.add("left out: roads without a lane for cars", where)
         return None
     heights = elevation(node)
+    check_grade(heights, length)
     if jumps(heights, length):
         remarks.add("its height jumps", where)
     if not all(_linked(one, two) for one, two in pairwise(sections)):
@@ -316,8 +318,14 @@ def speed_of(node: Element, remarks: Remarks, where: str) -> float | None:
         return None
     if (unit := node.get("unit", "m/s")) not in UNITS:
         remarks.add(f"a speed limit is in '{unit[:20]}', and is taken as one in m/s", where)
-    limit = number(node, "max") / UNITS.get(unit, 1.0)
-    return limit if limit > 0 else None
+    return _usable(number(node, "max") / UNITS.get(unit, 1.0), "speed limit", remarks, where)
+
+
+def _usable(value: float, what: str, remarks: Remarks, where: str) -> float | None:
+    if 0 < value <= FASTEST:
+        return value
+    remarks.add(f"a {what} of {value:.4g} is not used", where)
+    return None
 
 
 class _Scale(NamedTuple):
@@ -459,7 +467,7 @@ class RoadBuilder:
             for each, (a, b) in zip(nodes, pairwise(at), strict=True):
                 value = speed_of(each, self.remarks, self.name) if tag == "speed" else None
                 if tag == "material" and "friction" in each.attrib:
-                    value = number(each, "friction")
+                    value = _usable(number(each, "friction"), "friction", self.remarks, self.name)
                 found.append(Stretch(a, b, value))
         values = longest_first(found)
         if len(values) > 1:
