@@ -5,7 +5,7 @@ All roads here have a profile, a reference line of pieces, and no superelevation
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,13 +58,20 @@ def filled(area: Area) -> Area:
     import shapely
 
     parts = []
-    for part in shapely.get_parts(area):
-        if part.geom_type != "Polygon" or part.is_empty:  # of a road that is nowhere wide
-            continue
+    for part in polygons_in(area):
         rings = shapely.get_rings(part)
         holes = rings[1:][shapely.area(shapely.polygons(rings[1:])) > SLIVER]
         parts.append(shapely.Polygon(rings[0], holes))
     return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
+
+
+def polygons_in(shape: Any) -> list["Polygon"]:
+    """Returns the polygons of a shape, also those inside of its collections, without lines and points: a road
+    that is nowhere wide at one place leaves a line there."""
+    import shapely
+
+    parts = shapely.get_parts(shapely.get_parts(shape))
+    return [part for part in parts if part.geom_type == "Polygon" and part.area > 0]
 
 
 def without_small_islands(whole: Area, nodes: Sequence[Area], least: Sequence[float]) -> tuple[Area, ...]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.geometry.curve import Array
 from roadgpt.network.network import Junction, Kind, Network, NetworkRoad, RoadEnd
-from roadgpt.network.paved import NEAR, Area, paved_by
+from roadgpt.network.paved import NEAR, Area, paved_by, polygons_in
 from roadgpt.road import Road
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ def polygons(shape: Any) -> Area:
     """Returns the polygons among the parts of a shape, without lines and points."""
     import shapely
 
-    parts = [part for part in shapely.get_parts(shape) if part.geom_type == "Polygon" and part.area > 0]
+    parts = polygons_in(shape)
     return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
 
 

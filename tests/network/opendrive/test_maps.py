@@ -5,13 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from shapely import LineString, points
+from shapely import GeometryCollection, LineString, MultiPolygon, box, points
 
 from roadgpt import judge, simulate
 from roadgpt.errors import UsageError
 from roadgpt.network import Leg, Route
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.opendrive import ImportedMap, read_map
+from roadgpt.network.paved import filled
 from roadgpt.network.routing import between, over_roads, random_routes
 from roadgpt.road import World
 from slow_opendrive import SlowMap
@@ -300,6 +301,23 @@ def test_a_route_follows_its_lane_where_reference_lines_jump_aside(tmp_path: Pat
     assert route.starts == pytest.approx((0.0, 80.0, 160.0))
     world = World().changed(speed_limit=50 / 3.6)
     assert judge(route, simulate(route, world, "reference", seed=1), world).kept
+
+
+def test_the_ground_lies_under_every_lane_also_where_a_road_shrinks_to_a_line(tmp_path: Path) -> None:
+    """A lane that narrows to nothing leaves a line behind in the union of all areas."""
+    thin = '<lane id="-1" type="driving"><width sOffset="0" a="3"/><width sOffset="20" a="0"/></lane>'
+    found = read(
+        tmp_path, *crossing(), road(3, (0, 40, 0, 60), section(0, thin)), road(4, (0, 90, 0, 30), TWO)
+    )
+    collection = GeometryCollection(
+        [MultiPolygon([box(0, 0, 2, 2), box(5, 0, 7, 2)]), LineString([(9, 0), (9, 5)])]
+    )
+    assert filled(collection).area == pytest.approx(8.0)
+    for lane_there in lanes_of(found.network):
+        s = np.linspace(2, lane_there.length - 2, 50)  # a step of the width is drawn as a short taper
+        wide = np.minimum(lane_there.width(s - 2), lane_there.width(s + 2)) > 0.3
+        under = points(lane_there.at(s)[wide, :2])
+        assert found.network.paved.buffer(0.01).contains(under).all()
 
 
 def test_routes_between_points_and_at_random(tmp_path: Path) -> None:
