@@ -13,9 +13,9 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, wrap_angle
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.elevation import Row, closed
+from roadgpt.geometry.fitting import SampledLine, fitted
 from roadgpt.network.lane_along import LaneAlong
 from roadgpt.road import Road
-from roadgpt.road.opendrive.line import SampledLine, fitted
 from roadgpt.road.profile import as_cubics
 
 APART, TURNED = 0.01, 0.01  # m and rad, between the end of a reference line and the start of the next

@@ -359,7 +359,7 @@ def _profile(roads: Sequence[Road], beside: Sequence[Width], starts: Sequence[fl
     first = next(road.profile for road in roads if road.profile is not None)
     angles = [road.profile.superelevation_angle for road in roads if road.profile is not None]
     angle = _joined_widths([0.0 if each is None else each for each in angles], roads, starts)
-    marking, edge = first.centre_marking, first.right[first.count[0] - 1].marking
+    marking, edge = first.centre_marking, first.lanes[first.along_ids[-1]].marking
     outer = () if right == 0 else (Lane("driving", right, edge),)
     own: Marking = "broken" if outer else edge
     return Profile(

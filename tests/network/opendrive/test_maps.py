@@ -224,7 +224,7 @@ def test_what_a_map_says_of_speed_and_friction_is_that_of_its_lanes(tmp_path: Pa
          "a second road that continues the same end of a road (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, more=CLIFF)], "roads of which the road has a grade of 46"),
         ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1, more=FAST)))],
-         "a speed limit of 1000 is not used (road 3)"),
+         "a speed limit of 3600 km/h is not used (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1, more=ICE)))],
          "a friction of 0 is not used (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1), lane(-2, 0.04)))],

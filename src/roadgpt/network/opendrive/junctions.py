@@ -32,9 +32,9 @@ from roadgpt.network.network import (
     Roundabout,
     kinds_of,
 )
-from roadgpt.network.opendrive.roads import UNLINKED, FileRoad, LaneStretch, Remarks, RoadBuilder, Way
+from roadgpt.network.opendrive.roads import UNLINKED, FileRoad, LaneStretch, RoadBuilder, Way
+from roadgpt.network.opendrive.tree import Remarks, number
 from roadgpt.network.pose import Point
-from roadgpt.road.opendrive.tree import number
 
 PARALLEL = 30.0  # degrees; arms that are closer together belong to a merge or an exit
 BEFORE = 60.0  # m before a junction, within which a sign or a light applies to it
@@ -100,7 +100,8 @@ class Joining:
     def _add_road(self, road: FileRoad) -> None:
         builder = RoadBuilder(road, self.remarks)
         for stretch in road.stretches:
-            made = self._add(road, NetworkRoad(self._number(road), builder.build(stretch)))
+            own, (stretch.lanes, *_) = builder.build(stretch.parts)
+            made = self._add(road, NetworkRoad(self._number(road), own))
             profile = self.members[made].profile
             if not (profile.along_ids or profile.against_ids):  # they are too narrow
                 del self.members[made]
@@ -316,7 +317,7 @@ class Joining:
         file = self._file_of(end.road)
         if end.road != self.parts[file.id][-1 if end.contact == "end" else 0]:
             return
-        length = file.stretches[-1].end
+        length = file.whole.sections[-1].end
         for control, orientation, s in _signals(file, self._signal_types):
             if orientation in ("none", "+" if end.contact == "end" else "-"):
                 yield control, length - s if end.contact == "end" else s
@@ -377,16 +378,26 @@ class Joining:
 
     def _tell_left_out(self) -> None:
         for file in self.files.values():
-            for node in file.node.findall("objects/object"):
-                kind = node.get("type", "")
-                if kind not in ("crosswalk", "roadMark", "-1", "", "none"):
-                    self.remarks.add(f"left out: objects of type {kind[:30]}", f"road {file.id}")
-            for node in file.node.findall("signals/signal"):
-                kind = node.get("type", "")
-                if _control(node) is None and kind not in (*PAINTED, "-1", "", "none"):
-                    self.remarks.add(f"left out: signs of type {kind[:30]}", f"road {file.id}")
+            tell_unread(file.node, self.remarks, f"road {file.id}", is_alone=False)
             if file.junction and file.id not in self.ways:
                 self.remarks.add("left out: connecting roads that no junction names", f"road {file.id}")
+
+
+def tell_unread(road: Element, remarks: Remarks, where: str, is_alone: bool) -> None:
+    """Adds remarks about objects and signs of a road that are not used. A road that ``is_alone`` has no
+    junction to which crosswalks, signs and lights would belong."""
+    for node in road.findall("objects/object"):
+        kind = node.get("type", "")
+        if is_alone or kind not in ("crosswalk", "roadMark"):
+            remarks.add(f"left out: objects {_of_type(kind)}", where)
+    for node in road.findall("signals/*"):
+        kind = node.get("type", "")
+        if is_alone or (node.tag == "signal" and _control(node) is None and kind not in PAINTED):
+            remarks.add(f"left out: signs {_of_type(kind)}", where)
+
+
+def _of_type(kind: str) -> str:
+    return "without a type" if kind in ("", "-1", "none") else f"of type {kind[:30]}"
 
 
 def _is_number(name: str) -> bool:
