@@ -111,22 +111,16 @@ def _blended(one: Width, other: Width, knots: Array) -> Width:
     start, end = knots[0], knots[-1]
     before, after = as_cubics(one), as_cubics(other)
     smooth = CubicProfile.smooth([(start, 0.0), (end, 1.0)])
-    share, rise, step = smooth.height(knots), smooth.grade(knots), np.diff(knots)
+    share, rise = smooth.height(knots), smooth.grade(knots)
     value = (1 - share) * before.height(knots) + share * after.height(knots)
     slope = (1 - share) * before.grade(knots) + share * after.grade(knots)
     slope += rise * (after.height(knots) - before.height(knots))
-    mean = np.diff(value) / step
-    rows = [
-        value[:-1],
-        slope[:-1],
-        (3 * mean - 2 * slope[:-1] - slope[1:]) / step,
-        (slope[:-1] + slope[1:] - 2 * mean) / step**2,
-    ]
+    inside = CubicProfile.through(knots, value, slope)
     early = [s for s in before.stations if s < start - ROUNDING]
     late = [s for s in after.stations if s > end + ROUNDING]
     at_end = max([end, *(s for s in after.stations if abs(s - end) <= ROUNDING)])
     table = np.concatenate(
-        (before.cubics(np.array(early)), np.stack(rows, axis=-1), after.cubics(np.array([at_end, *late])))
+        (before.cubics(np.array(early)), inside.coefficients, after.cubics(np.array([at_end, *late])))
     )
     return CubicProfile.of_table([*early, *knots.tolist(), *late], table)
 
