@@ -345,16 +345,19 @@ def _joint(one: FileSection, two: FileSection) -> Pairs:
 
 def _slots(parts: FileSections, side: int) -> list[Slot]:
     """Returns the lanes on one side, 1 for the left, from the centre line outwards. A lane that continues
-    none of the section before is one of its own, or goes on where a lane of its kind has ended."""
+    none of the section before is one of its own, or goes on where a lane of its kind has ended; strips on
+    which cars do not drive need no link for that."""
     slots, kinds = list[Slot](), list[Kind]()
     for n, section in enumerate(parts.sections):
-        place = 0
+        place, linked = 0, {a for a, _ in parts.joints[n - 1]} if n else set()
         for lane, own in ((lane, own) for lane, own in section.ids.items() if lane * side > 0):
             before = {a for a, b in parts.joints[n - 1] if b == lane} if n else set()
             fits = [k for k in range(place, len(slots)) if kinds[k] == own.kind]
             found = next((k for k in fits if slots[k].get(n - 1) in before), None)
-            if found is None and place in fits and n - 1 not in slots[place]:
-                found = place
+            if found is None and place in fits:
+                last = slots[place].get(n - 1)
+                is_free = last is None or (last not in linked and own.kind != "driving")
+                found = place if is_free else None
             if found is None:
                 found = place
                 slots.insert(place, {})
