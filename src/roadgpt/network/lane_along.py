@@ -189,12 +189,13 @@ def _beside(network: Network, road: int, lane: int, left: int) -> int:
 
 
 def _ways(network: Network, one: int, two: int) -> Ways:
-    if (found := network.connection_of.get(two)) is not None and found[1].incoming.road == one:
-        return {way.incoming: way.own for way in found[1].lanes}
-    if (found := network.connection_of.get(one)) is not None and found[1].outgoing.road == two:
-        return {way.own: way.outgoing for way in found[1].lanes}
-    for each in network.continuations:
-        if (each.before.road, each.after.road) == (one, two):
-            profile = network.road(one).profile
-            return {lane: after for lane, after in each.lanes if profile.leads_along(lane)}
-    raise UsageError(f"no way leads from road {one} to road {two}")
+    onward = network.following
+    found = {
+        lane: to.lane
+        for lane in network.road(one).profile.lanes
+        for to in onward.get(Leg(one, lane), ())
+        if to.road == two
+    }
+    if not found:
+        raise UsageError(f"no way leads from road {one} to road {two}")
+    return found

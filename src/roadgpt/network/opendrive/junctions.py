@@ -9,6 +9,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from itertools import pairwise
 from xml.etree.ElementTree import Element
 
@@ -69,6 +70,7 @@ class Joining:
         self._last = max(map(int, known), default=0)
         self.members: dict[int, NetworkRoad] = {}
         self.parts: dict[str, list[int]] = defaultdict(list)
+        self.file_of: dict[int, FileRoad] = {}
         self.ways: dict[str, list[tuple[int, Way]]] = {}
         self.continuations: dict[frozenset[RoadEnd], Continuation] = {}
         self.junctions: dict[str, Junction] = {}
@@ -94,6 +96,7 @@ class Joining:
 
     def _add(self, road: FileRoad, made: NetworkRoad) -> int:
         self.members[made.id] = made
+        self.file_of[made.id] = road
         self.parts[road.id].append(made.id)
         return made.id
 
@@ -124,7 +127,7 @@ class Joining:
         if not lanes or frozenset((one, two)) in self.continuations:
             return
         if one in taken or two in taken or one == two:
-            where = f"road {self._file_of(one.road).id}"
+            where = f"road {self.file_of[one.road].id}"
             self.remarks.add("left out: a second road that continues the same end of a road", where)
             return
         self.continuations[frozenset((one, two))] = Continuation(one, two, tuple(lanes))
@@ -294,27 +297,24 @@ class Joining:
                 if away <= BEFORE:
                     found[end].add(control)
         for each in connections:
-            file = self._file_of(each.road)
+            file = self.file_of[each.road]
             way = next(way for road, way in self.ways[file.id] if road == each.road)
-            for control, orientation in self._signs_inside(file):
+            for control, orientation, _ in _signals(file, self._signal_types):
                 if orientation in ("none", "+" if way.is_along else "-"):
                     found[each.incoming].add(control)
         ranks: tuple[tuple[str, Control], ...] = (("high", "priority"), ("low", "yield"))
         for priority in node.findall("priority"):
             for name, control in ranks:
                 for end in ends:
-                    if self._file_of(end.road).id == priority.get(name) and found[end] == {"none"}:
+                    if self.file_of[end.road].id == priority.get(name) and found[end] == {"none"}:
                         found[end] = {control}
         chosen = {end: next(each for each in STRONGEST if each in own) for end, own in found.items()}
         into = {end: self.members[end.road].ids_towards(end.contact) for end in ends}
         return {end: control if into[end] else "none" for end, control in chosen.items()}
 
-    def _file_of(self, road: int) -> FileRoad:
-        return self.files[next(name for name, own in self.parts.items() if road in own)]
-
     def _signs(self, end: RoadEnd) -> Iterator[tuple[Control, float]]:
         """Yields the signs and lights for traffic towards an end of a road, with their distance from it."""
-        file = self._file_of(end.road)
+        file = self.file_of[end.road]
         if end.road != self.parts[file.id][-1 if end.contact == "end" else 0]:
             return
         length = file.whole.sections[-1].end
@@ -322,20 +322,14 @@ class Joining:
             if orientation in ("none", "+" if end.contact == "end" else "-"):
                 yield control, length - s if end.contact == "end" else s
 
-    def _signs_inside(self, file: FileRoad) -> Iterator[tuple[Control, str]]:
-        for control, orientation, _ in _signals(file, self._signal_types):
-            yield control, orientation
-
-    @property
+    @cached_property
     def _signal_types(self) -> Mapping[str, Control]:
-        if not hasattr(self, "_types"):
-            self._types = {
-                node.get("id", ""): control
-                for file in self.files.values()
-                for node in file.node.findall("signals/signal")
-                if (control := _control(node)) is not None
-            }
-        return self._types
+        return {
+            node.get("id", ""): control
+            for file in self.files.values()
+            for node in file.node.findall("signals/signal")
+            if (control := _control(node)) is not None
+        }
 
     def network(self) -> Network:
         """Returns the network of all roads and junctions."""
@@ -347,7 +341,10 @@ class Joining:
             )
             for junction in self.junctions.values()
         ]
-        self._tell_left_out()
+        for file in self.files.values():
+            tell_unread(file.node, self.remarks, f"road {file.id}", is_alone=False)
+            if file.junction and file.id not in self.ways:
+                self.remarks.add("left out: connecting roads that no junction names", f"road {file.id}")
         at_junctions = {arm.end for junction in junctions for arm in junction.arms}
         joined = [
             each for each in self.continuations.values() if not {each.before, each.after} & at_junctions
@@ -375,12 +372,6 @@ class Joining:
                 else:
                     self.remarks.add("left out: crosswalks away from junctions", f"road {file.id}")
         return found
-
-    def _tell_left_out(self) -> None:
-        for file in self.files.values():
-            tell_unread(file.node, self.remarks, f"road {file.id}", is_alone=False)
-            if file.junction and file.id not in self.ways:
-                self.remarks.add("left out: connecting roads that no junction names", f"road {file.id}")
 
 
 def tell_unread(road: Element, remarks: Remarks, where: str, is_alone: bool) -> None:

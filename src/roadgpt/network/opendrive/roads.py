@@ -290,7 +290,10 @@ def lane_elements(section: Element, side: str, s: float) -> tuple[LaneElement, .
 def _long_enough(sections: list[FileSection]) -> tuple[FileSections, dict[int, int], dict[int, int]]:
     """Leaves out the sections that are shorter than ``SHORT``; returns the others, and the lanes at both ends
     by their ids in the file."""
-    joints = [_joint(one, two) for one, two in pairwise(sections)]
+    joints = [
+        _linked(one, two) or {(lane, lane) for lane in one.ids.keys() & two.ids.keys()}
+        for one, two in pairwise(sections)
+    ]
     entry, leaving = ({lane: lane for lane in sections[at].ids} for at in (0, -1))
     kept = list(sections)
     n = 0
@@ -337,10 +340,6 @@ def _followed(lanes: dict[int, int], joint: Pairs) -> dict[int, int]:
 def _linked(one: FileSection, two: FileSection) -> Pairs:
     found = one.links("successor") | {(b, a) for a, b in two.links("predecessor")}
     return {(a, b) for a, b in found if a in one.ids and b in two.ids}
-
-
-def _joint(one: FileSection, two: FileSection) -> Pairs:
-    return _linked(one, two) or {(lane, lane) for lane in one.ids.keys() & two.ids.keys()}
 
 
 def _slots(parts: FileSections, side: int) -> list[Slot]:
