@@ -18,7 +18,8 @@ from roadgpt.brief import read
 from roadgpt.design import draft
 from roadgpt.errors import DesignError
 from roadgpt.export import save
-from roadgpt.road import CrossSection, Limits, Road, Site, World, build, in_short_segments, read_opendrive
+from roadgpt.network import read_opendrive
+from roadgpt.road import CrossSection, Limits, Road, Site, World, build, in_short_segments
 
 PLANS = (
     "turn x3 | up",

@@ -18,8 +18,8 @@ __version__ = "0.1.0"
 # Every public class and function, by the sub-package or module that defines it.
 _OFFERED = {
     "brief": "Brief Outline outline read sentence",
-    "road": "World Site CrossSection Limits Design Road build read_design read_opendrive",
-    "network": "Network Route build_route read_map read_road read_source",
+    "road": "World Site CrossSection Limits Design Road build read_design",
+    "network": "Network Route build_route read_map read_opendrive read_road read_source",
     "check": "Finding inspect",
     "design": "draft",
     "drive": "Drive simulate",

@@ -15,9 +15,10 @@ import pytest
 from exported import ROADS, WORLD, program, python_with
 from profiled import missed, outer_edges, random_road
 from roadgpt.export import save
-from roadgpt.road import Road, read_opendrive
+from roadgpt.network import read_opendrive
+from roadgpt.road import Road
 
-DATA = Path(__file__).parents[1] / "road" / "opendrive" / "data"
+DATA = Path(__file__).parents[1] / "network" / "opendrive" / "data"
 PROFILED = {f"seed{seed}": random_road(seed) for seed in (1, 9, 17)}
 CONFIG = """<Config><Param name="InputFile" value="{file}"/><CheckerBundle application="xodrBundle">
 <Param name="resultFile" value="{result}"/></CheckerBundle></Config>"""

@@ -26,7 +26,7 @@ from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
 from roadgpt.errors import UsageError
-from roadgpt.road.opendrive import read_opendrive
+from roadgpt.network import read_opendrive
 from roadgpt.run import Run
 
 CUTS = ["--driver", "beamng_like", "--oracle", "thesis"]  # cuts the inside of bends

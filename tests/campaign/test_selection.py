@@ -14,7 +14,7 @@ from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.selection import chosen, selection_of
 from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
-from roadgpt.road import read_opendrive
+from roadgpt.network import read_opendrive
 from roadgpt.run import read_run
 from rows import rows
 

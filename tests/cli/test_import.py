@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from command_line import invoke
 from network.ruled import findings
 from roadgpt.cli.roads import on_a_map
-from roadgpt.network import read_road, read_source
-from roadgpt.road import World, read_opendrive
+from roadgpt.network import read_opendrive, read_road, read_source
+from roadgpt.road import World
 from rows import rows
 
 LANES = """<lanes><laneSection s="0"><left>

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import re
 import warnings
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
@@ -295,3 +296,20 @@ def test_tables_and_maps_name_every_lane(tmp_path: Path) -> None:
     assert names == ["centre line", "right lane 1", "right lane 2", "left lane"]
     assert features[1]["properties"]["width_min_m"] == 3.0
     assert features[1]["properties"]["width_max_m"] == 4.0
+
+
+@pytest.mark.parametrize("format_", ["geojson", "lanelet2", "sbft", "sumo"])
+def test_lanes_lie_where_they_are_whatever_line_they_lie_beside(tmp_path: Path, format_: str) -> None:
+    """The same lanes beside two lines that are 6 m apart, with a median of 2 m."""
+    at, numbers = {0.0: 60.0, 6.0: 54.0}, []
+    for offset, y in at.items():
+        own = Profile.of(2, 1, 3.5, 1.0)
+        own = replace(own, left=(Lane("median", 2.0, "solid"), *own.left), offset=offset)
+        road = Road(PieceCurve(60.0, y, 0.0, (Piece(LENGTH),)), GradeProfile.level(LENGTH), profile=own)
+        files = save(road, tmp_path / str(y), [format_], WORLD)
+        numbers.append([float(n) for file in files for n in re.findall(r"-?\d+\.\d+", file.read_text())])
+    assert numbers[0] == pytest.approx(numbers[1], abs=2e-4)
+    if format_ == "sumo":
+        edges = element(tmp_path / "54.0/road.edg.xml").iter("edge")
+        starts = [edge.attrib["shape"].split()[-1 if edge.attrib["id"] == "back" else 0] for edge in edges]
+        assert [float(start.split(",")[1]) for start in starts] == pytest.approx([60.0, 62.0])

@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 from roadgpt.errors import UsageError
 from roadgpt.export import save
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
-from roadgpt.network import read_source
-from roadgpt.road import Profile, Road, World, read_opendrive
+from roadgpt.network import read_opendrive, read_source
+from roadgpt.road import Profile, Road, World
 from roadgpt.road.profile import STEEPEST, WIDEST
 
 LENGTH = 110.0
@@ -74,7 +74,7 @@ def test_superelevation(
     is_told = "its superelevation" in said
     assert is_told == (most > STEEPEST + 1e-6) or abs(most - STEEPEST - 1e-6) < 1e-9
     if is_told:
-        assert f"is {math.degrees(side * most):.4g} degrees at s = {ramp:.4g} m" in said
+        assert f"({math.degrees(side * most):.4g} degrees at s = {ramp:.4g} m" in said
     *_, path = save(road, folder, ["opendrive"], World(), "again")
     again = read_opendrive(path)
     assert "superelevation" not in " ".join(again.remarks)
@@ -91,7 +91,7 @@ def test_width_of_a_shoulder(tmp_path_factory: pytest.TempPathFactory, most: flo
     said, road, _ = told_and_read(folder, "", WIDTH, f'<lane id="-2" type="shoulder">{wide}</lane>')
     assert road.profile is not None
     assert road.profile.right[1].width.extremes()[1] <= WIDEST + 1.01e-6  # type: ignore[union-attr]
-    assert (f"the width of its lane -2 is {most:.4g} m at s = {ramp:.4g} m" in said) == (
+    assert (f"the width of a lane is limited (lane -2: {most:.4g} m at s = {ramp:.4g} m" in said) == (
         most > WIDEST + 1e-6
     ) or (abs(most - WIDEST - 1e-6) < 1e-9)
 
@@ -105,9 +105,9 @@ def test_width_of_the_driven_lane(tmp_path_factory: pytest.TempPathFactory, some
     assert profile is not None
     assert 2 - 1.01e-6 <= profile.width(S).min() <= profile.width(S).max() <= 10 + 1.01e-6
     excess = max(2.0 - some, some - 10.0)
-    assert (f"the width of its lane is {some:.4g} m at s = {ramp:.4g} m" in said) == (excess > 1e-6) or (
-        abs(excess - 1e-6) < 1e-9
-    )
+    assert (f"the width of the driven lane is limited ({some:.4g} m at s = {ramp:.4g} m" in said) == (
+        excess > 1e-6
+    ) or (abs(excess - 1e-6) < 1e-9)
 
 
 @given(st.floats(0, 3), st.floats(-2, 9))
@@ -142,7 +142,7 @@ def test_the_world_of_an_export_comes_back_or_is_limited_in_a_sentence(
     assert source.world["friction"] == pytest.approx(min(friction, 2.0), abs=1e-9)
     for what, name, value, low, high in (
         ("speed limit", "speed_limit", speed, 5 / 3.6, 300 / 3.6),
-        ("width of its lane", "lane_width", width, 2.0, 10.0),
+        ("width of the driven lane", "lane_width", width, 2.0, 10.0),
     ):
         back = source.world.get(name) or float(source.blueprint.profile.width(9.0))  # type: ignore[union-attr]
         assert back == pytest.approx(min(max(value, low), high), abs=1.1e-6)

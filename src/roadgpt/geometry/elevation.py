@@ -153,6 +153,20 @@ class CubicProfile:
         rows.append((knots[-1][1], 0.0, 0.0, 0.0))
         return cls(tuple(s for s, _ in knots), tuple(rows))
 
+    @classmethod
+    def through(cls, stations: Array, heights: Array, grades: Array) -> "CubicProfile":
+        """Returns the profile with these heights in metres and grades at two or more stations."""
+        step = np.diff(stations)
+        mean = np.diff(heights) / step
+        first, last = grades[:-1], grades[1:]
+        table = [
+            heights[:-1],
+            first,
+            (3 * mean - 2 * first - last) / step,
+            (first + last - 2 * mean) / step**2,
+        ]
+        return cls.of_table(stations[:-1].tolist(), np.stack(table, axis=-1))
+
     @property
     def rows(self) -> list[tuple[float, Cubic]]:
         """Each station, with the cubic that begins there."""

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
         Roundabout,
         moved_network,
     )
-    from roadgpt.network.opendrive import read_map
+    from roadgpt.network.opendrive import ImportedRoad, read_map, read_opendrive
     from roadgpt.network.route import Passage, Route
     from roadgpt.network.source import read_road, read_source
 
@@ -45,6 +45,7 @@ __all__ = [
     "Arm",
     "Connection",
     "Continuation",
+    "ImportedRoad",
     "Junction",
     "LaneLink",
     "Leg",
@@ -63,6 +64,7 @@ __all__ = [
     "network_of",
     "only_road",
     "read_map",
+    "read_opendrive",
     "read_road",
     "read_source",
     "refuse_without_route",
@@ -73,7 +75,7 @@ _LATER = {
     "growing": "build_route",
     "network": "Arm Connection Continuation Junction LaneLink Leg Network NetworkRoad RoadEnd Roundabout "
     "moved_network",
-    "opendrive": "read_map",
+    "opendrive": "ImportedRoad read_map read_opendrive",
     "route": "Passage Route",
     "source": "read_road read_source",
 }

@@ -50,7 +50,6 @@ from roadgpt.network.network import (
     Contact,
     Continuation,
     Junction,
-    Kind,
     LaneLink,
     Network,
     NetworkRoad,
@@ -99,13 +98,12 @@ class Builder:
         distances: Sequence[float],
         controls: Sequence[Control],
     ) -> Junction | Roundabout:
-        """Builds the junction or the roundabout at which the stubs meet, and returns it; the arguments are
-        those of ``build_crossing``."""
-        kerb, crosswalk = junction.kerb, junction.crosswalk
-        if junction.kind != "roundabout":
-            return build_crossing(self, junction.kind, node, stubs, distances, controls, kerb, crosswalk)
-        size = junction.radius, stubs, controls, kerb, junction.ring_lanes, crosswalk
-        return build_roundabout(self, node, *size)
+        """Builds the junction or the roundabout at which the stubs meet, and returns it. ``node`` is the
+        point in metres at which the reference lines would meet. ``distances`` are those in metres from the
+        node to the contacts of the stubs. All sequences are in counter-clockwise order."""
+        if junction.kind == "roundabout":
+            return build_roundabout(self, junction, node, stubs, controls)
+        return build_crossing(self, junction, node, stubs, distances, controls)
 
     def through(self, built: Junction | Roundabout, start: int, to: int) -> list[int]:
         """Returns the ids of the roads that lead through a junction or roundabout, in driving order, from the
@@ -362,19 +360,14 @@ def setbacks(mouths: Sequence[Mouth], kerb: float) -> list[float]:
 
 def build_crossing(
     builder: Builder,
-    kind: Kind,
+    design: JunctionDesign,
     node: tuple[float, float, float],
     stubs: Sequence[Stub],
     distances: Sequence[float],
     controls: Sequence[Control],
-    kerb: float,
-    crosswalk: bool = False,
 ) -> Junction:
-    """Adds a junction and its connecting roads to a network that has the roads of all stubs; returns it.
-
-    ``node`` is the point in metres at which the reference lines would meet. ``distances`` are those in metres
-    from the node to the contacts of the stubs. All sequences are in counter-clockwise order. ``kerb`` is the
-    requested radius in metres, which is only stored: ``distances`` decide how much room there is."""
+    """Adds a junction and its connecting roads to a network that has the roads of all stubs; returns it. Its
+    kerb is only stored: ``distances`` decide how much room there is. See ``Builder.join``."""
     number = builder.number()
     connections = []
     for i in range(len(stubs)):
@@ -382,10 +375,10 @@ def build_crossing(
             ends, far = (stubs[i], stubs[j]), (distances[i], distances[j])
             connections.append(connected(builder, number, node, ends, far, way))
     arms = tuple(
-        Arm(stub.end, stub.direction, control, crosswalk)
+        Arm(stub.end, stub.direction, control, design.crosswalk)
         for stub, control in zip(stubs, controls, strict=True)
     )
-    junction = Junction(number, kind, arms, tuple(connections), node, kerb)
+    junction = Junction(number, design.kind, arms, tuple(connections), node, design.kerb)
     builder.junctions.append(junction)
     return junction
 
@@ -472,20 +465,15 @@ def around_length(radius: float, directions: Sequence[float], angle: float, lane
 
 def build_roundabout(
     builder: Builder,
+    design: JunctionDesign,
     centre: tuple[float, float, float],
-    radius: float,
     stubs: Sequence[Stub],
     controls: Sequence[Control],
-    kerb: float,
-    lanes: int = 1,
-    crosswalk: bool = False,
 ) -> Roundabout:
-    """Adds a roundabout to a network that has the roads of all stubs; returns the roundabout.
-
-    The ``centre`` and the ``radius`` of the island, at least ``smallest_radius``, are in metres. The stubs
-    are in counter-clockwise order, and so are their signs or lights; each ends ``contact_distance`` from the
-    centre. ``kerb`` is the requested radius in metres, which is only stored. Raises UsageError if a road has
-    more lanes in one direction than the ring."""
+    """Adds a roundabout to a network that has the roads of all stubs; returns the roundabout. Its radius is
+    at least ``smallest_radius``, each stub ends ``contact_distance`` from the centre, and its kerb is only
+    stored. Raises UsageError if a road has more lanes in one direction than the ring."""
+    radius, lanes = design.radius, design.ring_lanes
     if any(max(len(stub.into), len(stub.out_of)) > lanes for stub in stubs):
         said = "one lane" if lanes == 1 else f"{lanes} lanes"
         raise UsageError(
@@ -507,11 +495,11 @@ def build_roundabout(
         before, after = RoadEnd(ring[i - 1], "end"), RoadEnd(ring[i], "start")
         connections = _mouth(builder, found, numbers[i], stub, (before, after), half, lanes)
         arms = (
-            Arm(stub.end, stub.direction, controls[i], crosswalk),
+            Arm(stub.end, stub.direction, controls[i], design.crosswalk),
             Arm(after, stub.direction + half + math.pi / 2),
             Arm(before, stub.direction - half - math.pi / 2),
         )
-        builder.junctions.append(Junction(numbers[i], "roundabout", arms, connections, centre, kerb))
+        builder.junctions.append(Junction(numbers[i], "roundabout", arms, connections, centre, design.kerb))
     builder.roundabouts.append(found)
     return found
 

@@ -111,22 +111,16 @@ def _blended(one: Width, other: Width, knots: Array) -> Width:
     start, end = knots[0], knots[-1]
     before, after = as_cubics(one), as_cubics(other)
     smooth = CubicProfile.smooth([(start, 0.0), (end, 1.0)])
-    share, rise, step = smooth.height(knots), smooth.grade(knots), np.diff(knots)
+    share, rise = smooth.height(knots), smooth.grade(knots)
     value = (1 - share) * before.height(knots) + share * after.height(knots)
     slope = (1 - share) * before.grade(knots) + share * after.grade(knots)
     slope += rise * (after.height(knots) - before.height(knots))
-    mean = np.diff(value) / step
-    rows = [
-        value[:-1],
-        slope[:-1],
-        (3 * mean - 2 * slope[:-1] - slope[1:]) / step,
-        (slope[:-1] + slope[1:] - 2 * mean) / step**2,
-    ]
+    inside = CubicProfile.through(knots, value, slope)
     early = [s for s in before.stations if s < start - ROUNDING]
     late = [s for s in after.stations if s > end + ROUNDING]
     at_end = max([end, *(s for s in after.stations if abs(s - end) <= ROUNDING)])
     table = np.concatenate(
-        (before.cubics(np.array(early)), np.stack(rows, axis=-1), after.cubics(np.array([at_end, *late])))
+        (before.cubics(np.array(early)), inside.coefficients, after.cubics(np.array([at_end, *late])))
     )
     return CubicProfile.of_table([*early, *knots.tolist(), *late], table)
 
@@ -195,12 +189,13 @@ def _beside(network: Network, road: int, lane: int, left: int) -> int:
 
 
 def _ways(network: Network, one: int, two: int) -> Ways:
-    if (found := network.connection_of.get(two)) is not None and found[1].incoming.road == one:
-        return {way.incoming: way.own for way in found[1].lanes}
-    if (found := network.connection_of.get(one)) is not None and found[1].outgoing.road == two:
-        return {way.own: way.outgoing for way in found[1].lanes}
-    for each in network.continuations:
-        if (each.before.road, each.after.road) == (one, two):
-            profile = network.road(one).profile
-            return {lane: after for lane, after in each.lanes if profile.leads_along(lane)}
-    raise UsageError(f"no way leads from road {one} to road {two}")
+    onward = network.following
+    found = {
+        lane: to.lane
+        for lane in network.road(one).profile.lanes
+        for to in onward.get(Leg(one, lane), ())
+        if to.road == two
+    }
+    if not found:
+        raise UsageError(f"no way leads from road {one} to road {two}")
+    return found

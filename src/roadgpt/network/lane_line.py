@@ -13,9 +13,9 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, wrap_angle
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.elevation import Row, closed
+from roadgpt.geometry.fitting import SampledLine, fitted
 from roadgpt.network.lane_along import LaneAlong
 from roadgpt.road import Road
-from roadgpt.road.opendrive.line import SampledLine, fitted
 from roadgpt.road.profile import as_cubics
 
 APART, TURNED = 0.01, 0.01  # m and rad, between the end of a reference line and the start of the next
@@ -56,7 +56,7 @@ def along_lanes(roads: Sequence[Road], lanes: Sequence[LaneAlong]) -> tuple[Road
     own = np.asarray(np.interp(way, known, stations))
     s, first = np.unique(own, return_index=True)
     rows = np.asarray(rows)
-    heights = _through(s, rows[first, 4], rows[first, 5], plan.length)
+    heights = closed(CubicProfile.through(s, rows[first, 4], rows[first, 5]).rows, plan.length)
     left_shoulder, left, offset, width, right, right_shoulder = (
         _straight(own, rows[:, n], plan.length) for n in range(6, 12)
     )
@@ -78,19 +78,6 @@ def _sampled(road: Road, lane: LaneAlong) -> Array:
     heading = road.heading(s) + np.arctan2(slope, 1 - middle * road.curvature(s))
     values[2] = width / 2
     return np.column_stack([s, points[:, :2], heading, points[:, 2], road.grade(inside), *values])
-
-
-def _through(s: Array, z: Array, grade: Array, length: float) -> CubicProfile:
-    """Returns the cubics with these heights and grades at the stations."""
-    step = np.diff(s)
-    mean = np.diff(z) / step
-    table = np.column_stack([
-        z[:-1],
-        grade[:-1],
-        (3 * mean - 2 * grade[:-1] - grade[1:]) / step,
-        (grade[:-1] + grade[1:] - 2 * mean) / step**2,
-    ])  # fmt: skip
-    return closed(CubicProfile.of_table(s[:-1].tolist(), table).rows, length)
 
 
 def _straight(s: Array, values: Array, length: float) -> CubicProfile:

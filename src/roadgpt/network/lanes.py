@@ -177,7 +177,7 @@ class Lanes:
     @cached_property
     def by_id(self) -> Mapping[Leg, Lane]:
         """The lanes in the order of the roads, on each from the left to the right of its reference line."""
-        following, ends = _links(self.network), _ends(self.network)
+        following, ends = self.network.following, _ends(self.network)
         preceding: dict[Leg, list[Leg]] = {}
         for one, others in following.items():
             for other in others:
@@ -353,22 +353,6 @@ def cheapest(
 def lanes_of(network: Network) -> Lanes:
     """Returns the lanes of a network; the same object for the same network."""
     return Lanes(network)
-
-
-def _links(network: Network) -> dict[Leg, list[Leg]]:
-    """Returns the lanes that continue each lane."""
-    found: dict[Leg, list[Leg]] = {}
-    for _, way in network.connection_of.values():
-        for incoming, own, outgoing in way.lanes:
-            found.setdefault(Leg(way.incoming.road, incoming), []).append(Leg(way.road, own))
-            found.setdefault(Leg(way.road, own), []).append(Leg(way.outgoing.road, outgoing))
-    for each in network.continuations:
-        towards = network.lanes_into(each.before)
-        for before, after in each.lanes:
-            pair = Leg(each.before.road, before), Leg(each.after.road, after)
-            one, two = pair if before in towards else pair[::-1]
-            found.setdefault(one, []).append(two)
-    return found
 
 
 _Ends = dict[RoadEnd, tuple[Control, float | None]]

@@ -259,11 +259,6 @@ class Network:
         """Returns the ids of the driving lanes that lead away from an end of a road."""
         return self.road(end.road).ids_towards(OTHER_CONTACT[end.contact])
 
-    def ends_of(self, leg: Leg) -> tuple[RoadEnd, RoadEnd]:
-        """Returns the ends of a leg's road at which traffic in the leg's lane enters and leaves the road."""
-        start, end = RoadEnd(leg.road, "start"), RoadEnd(leg.road, "end")
-        return (start, end) if self.road(leg.road).profile.leads_along(leg.lane) else (end, start)
-
     @cached_property
     def plain_roads(self) -> tuple[NetworkRoad, ...]:
         """The roads that are not connecting roads; the pieces of rings are among them."""
@@ -293,6 +288,22 @@ class Network:
     def continued_at(self) -> dict[RoadEnd, Continuation]:
         """Maps each end of a road that is part of a continuation to the continuation."""
         return {end: each for each in self.continuations for end in (each.before, each.after)}
+
+    @cached_property
+    def following(self) -> dict[Leg, list[Leg]]:
+        """Maps each lane that goes on to the lanes that continue it, in the direction of its traffic."""
+        found: dict[Leg, list[Leg]] = {}
+        for _, way in self.connection_of.values():
+            for incoming, own, outgoing in way.lanes:
+                found.setdefault(Leg(way.incoming.road, incoming), []).append(Leg(way.road, own))
+                found.setdefault(Leg(way.road, own), []).append(Leg(way.outgoing.road, outgoing))
+        for each in self.continuations:
+            towards = self.lanes_into(each.before)
+            for before, after in each.lanes:
+                pair = Leg(each.before.road, before), Leg(each.after.road, after)
+                one, two = pair if before in towards else pair[::-1]
+                found.setdefault(one, []).append(two)
+        return found
 
     @cached_property
     def roundabout_of(self) -> dict[int, Roundabout]:

@@ -21,7 +21,6 @@ from roadgpt.network.lane_line import along_lanes, continue_each_other
 from roadgpt.network.markings import STOP_LINE, line_before
 from roadgpt.network.network import (
     Arm,
-    Continuation,
     Junction,
     Leg,
     Network,
@@ -317,25 +316,8 @@ def _check_joint(network: Network, one: Leg, two: Leg) -> None:
                 "to the next lane of the same direction"
             )
         return
-    (_, left), (entered, _) = network.ends_of(one), network.ends_of(two)
-    if (continued := network.continued_at.get(left)) is not None:
-        is_joined = _continues(continued, one, two)
-    elif (found := network.connection_of.get(two.road)) is not None:
-        is_joined = found[1].incoming == left and (one.lane, two.lane) in [way[:2] for way in found[1].lanes]
-    elif (found := network.connection_of.get(one.road)) is not None:
-        is_joined = found[1].outgoing == entered and (one.lane, two.lane) in [
-            way[1:] for way in found[1].lanes
-        ]
-    else:
-        is_joined = False
-    if not is_joined:
+    if two not in network.following.get(one, ()):
         raise UsageError(f"no way leads from road {one.road} to road {two.road}, as the route asks")
-
-
-def _continues(found: Continuation, one: Leg, two: Leg) -> bool:
-    if one.road == found.before.road:
-        return two.road == found.after.road and (one.lane, two.lane) in found.lanes
-    return two.road == found.before.road and (two.lane, one.lane) in found.lanes
 
 
 def _directed(member: NetworkRoad, leg: Leg) -> Road:
@@ -359,7 +341,7 @@ def _profile(roads: Sequence[Road], beside: Sequence[Width], starts: Sequence[fl
     first = next(road.profile for road in roads if road.profile is not None)
     angles = [road.profile.superelevation_angle for road in roads if road.profile is not None]
     angle = _joined_widths([0.0 if each is None else each for each in angles], roads, starts)
-    marking, edge = first.centre_marking, first.right[first.count[0] - 1].marking
+    marking, edge = first.centre_marking, first.lanes[first.along_ids[-1]].marking
     outer = () if right == 0 else (Lane("driving", right, edge),)
     own: Marking = "broken" if outer else edge
     return Profile(

@@ -78,7 +78,7 @@ def random_routes(lanes: Lanes, count: int, seed: int) -> list[tuple[Leg, ...]]:
             ends = [state for state in _reached(lanes, start, LONGEST) if state[1] >= least]
             if ends:
                 goal = ends[int(rng.integers(len(ends)))][0]
-                way = _shortest(lanes, [(start, 0)], partial(_is_at, goal), _anywhere)
+                way = _shortest(lanes, [(start, 0)], partial(_is_at, goal), lambda _, lane: (lane, 0))
                 if way is not None and _length(lanes, way) <= LONGEST:
                     found.setdefault(tuple(dict.fromkeys(leg.road for leg in way)), way)
     return list(found.values())
@@ -86,10 +86,6 @@ def random_routes(lanes: Lanes, count: int, seed: int) -> list[tuple[Leg, ...]]:
 
 def _is_at(goal: Leg, state: State) -> bool:
     return state[0] == goal
-
-
-def _anywhere(state: State, lane: Leg) -> State:
-    return lane, 0
 
 
 def _driving(lanes: Lanes) -> Iterator[Lane]:

@@ -12,9 +12,8 @@ from roadgpt.errors import UsageError, command_line
 from roadgpt.network.road_or_route import made_from, road_from_json
 from roadgpt.network.route import Route
 from roadgpt.reading import json_of, read_json, read_text
-from roadgpt.road import Design, Geometry, Road, World, read_design, read_opendrive
+from roadgpt.road import Design, Geometry, Road, World, read_design
 from roadgpt.road.design import first_error, is_design
-from roadgpt.road.opendrive.tree import count_roads
 from roadgpt.road.points import SUFFIXES, plain, points_in, points_of_table
 
 if TYPE_CHECKING:
@@ -75,6 +74,8 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
                 values, told = found_map.world_values()
                 whole = Route.along(found_map.network, ())
                 return [RoadSource(whole, (*found_map.remarks, *told), values, path.stem)]
+            from roadgpt.network.opendrive import read_opendrive
+
             road = read_opendrive(path, wanted)
             return [RoadSource(road.road, road.remarks, road.world_values, road.id, road.name)]
         if ending == LINES:
@@ -98,13 +99,14 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
 
 def map_in(path: Path) -> "ImportedMap | None":
     """Returns the map in an OpenDRIVE file; None if the file has a single road, which is read by itself."""
+    from roadgpt.network.opendrive import read_map
+    from roadgpt.network.opendrive.tree import count_roads
+
     try:
         if count_roads(path) < MAP:
             return None
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from error
-    from roadgpt.network.opendrive import read_map
-
     return read_map(path)
 
 

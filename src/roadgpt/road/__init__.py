@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from roadgpt.road.builder import build, in_short_segments
     from roadgpt.road.design import Design, Segment, read_design
-    from roadgpt.road.opendrive import ImportedRoad, read_opendrive
     from roadgpt.road.profile import Edges, Profile
     from roadgpt.road.road import Road, Samples, moved
     from roadgpt.road.world import ORACLES, CrossSection, Geometry, Limits, Site, World
@@ -21,7 +20,6 @@ __all__ = [
     "Design",
     "Edges",
     "Geometry",
-    "ImportedRoad",
     "Limits",
     "Profile",
     "Road",
@@ -33,14 +31,12 @@ __all__ = [
     "in_short_segments",
     "moved",
     "read_design",
-    "read_opendrive",
 ]
 
 
 _MODULES = {
     "builder": "build in_short_segments",
     "design": "Design Segment read_design",
-    "opendrive": "ImportedRoad read_opendrive",
     "profile": "Edges Profile",
     "road": "Road Samples moved",
     "world": "ORACLES CrossSection Geometry Limits Site World",

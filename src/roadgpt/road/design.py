@@ -45,7 +45,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
-from typing import Annotated, Any, Literal, NamedTuple, TypeVar
+from typing import Annotated, Any, Literal, NamedTuple, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
@@ -67,6 +67,7 @@ REQUIRED = ("distance", "direction", "incline", "turn_degrees")  # fields of eac
 FITS = 0.99  # a remark is made if less than this share of a given vertical radius can be built
 SEGMENT_KEY = re.compile(r"road_segment(\d{1,6})")
 Direction = Literal["left", "right", "straight"]
+ANGLES = ("turn_degrees", "angle")  # fields that are positive to the left
 OTHER_DIRECTION: dict[Direction, Direction] = {"left": "right", "right": "left", "straight": "straight"}
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Length = Annotated[float, Field(ge=0.001, le=100_000, allow_inf_nan=False)]
@@ -190,6 +191,19 @@ class FrozenFields(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
+    def mirrored(self) -> Self:
+        """Returns the value with left and right exchanged: sides, and the signs of angles. The number of an
+        exit stays, because the mirrored exits are counted the other way round."""
+        changes = dict[str, Any]()
+        for name, value in self:
+            if value in ("left", "right"):
+                changes[name] = OTHER_DIRECTION[value]
+            elif name in ANGLES:
+                changes[name] = 0.0 - value
+            elif name in ("segments", "arms"):
+                changes[name] = tuple(each.mirrored() for each in value)[:: -1 if name == "arms" else 1]
+        return self.model_copy(update=changes)
+
 
 class Segment(FrozenFields):
     """One segment of a road: its length, the side and angle of its turn, and its grade."""
@@ -208,11 +222,6 @@ class Segment(FrozenFields):
     vertical_radius: Length | None = None
     """Radius in metres of the vertical curve at the start of the segment. This curve joins the grade of the
     previous segment to the grade of this one."""
-
-    def mirrored(self) -> "Segment":
-        """Returns the segment with left and right exchanged."""
-        turn = {"direction": OTHER_DIRECTION[self.direction], "turn_degrees": 0.0 - self.turn_degrees}
-        return self.model_copy(update=turn)
 
 
 class LanesDesign(FrozenFields):
@@ -255,11 +264,6 @@ class RampDesign(FrozenFields):
         """Whether the ramp lies on the left of its road, where traffic drives on the right."""
         return self.side == "left"
 
-    def mirrored(self) -> "RampDesign":
-        """Returns the ramp with left and right exchanged."""
-        side = None if self.side is None else OTHER_DIRECTION[self.side]
-        return self.model_copy(update={"side": side})
-
 
 class LanesChangeDesign(FrozenFields):
     """A place where a lane ends or begins, or where the route changes to the next lane."""
@@ -274,10 +278,6 @@ class LanesChangeDesign(FrozenFields):
     lanes: LanesDesign | None = None
     """The lanes of the road behind this place; None for the lanes of the road before it, less the lane that
     ends or plus the lane that begins."""
-
-    def mirrored(self) -> "LanesChangeDesign":
-        """Returns the place with left and right exchanged."""
-        return self.model_copy(update={"side": OTHER_DIRECTION[self.side]})
 
 
 def narrow_part(taper: float, width: float) -> float:
@@ -313,11 +313,6 @@ class ArmDesign(FrozenFields):
         """The segments of the road of the arm, out of the junction: those given, or a straight, level one."""
         return self.segments or (Segment(distance=self.length or STUB, direction="straight"),)
 
-    def mirrored(self) -> "ArmDesign":
-        """Returns the arm with left and right exchanged."""
-        segments = tuple(segment.mirrored() for segment in self.segments)
-        return self.model_copy(update={"angle": 0.0 - self.angle, "segments": segments})
-
 
 class JunctionDesign(FrozenFields):
     """A junction on the route."""
@@ -346,14 +341,6 @@ class JunctionDesign(FrozenFields):
         """The arms, given or usual, in counter-clockwise order from the road on which the route arrives."""
         arms = self.arms or tuple(ArmDesign(angle=angle) for angle in USUAL_ARMS[self.kind])
         return tuple(sorted(arms, key=lambda arm: arm.angle))
-
-    def mirrored(self) -> "JunctionDesign":
-        """Returns the junction with left and right exchanged. The number of an exit stays, because the
-        mirrored exits are counted the other way round."""
-        take = self.take if isinstance(self.take, int) else OTHER_DIRECTION[self.take]
-        return self.model_copy(
-            update={"take": take, "arms": tuple(arm.mirrored() for arm in reversed(self.arms))}
-        )
 
     def arm_taken(self, left_hand: bool) -> ArmDesign | None:
         """Returns the arm that the route takes; None if the route turns back at a roundabout. Raises

@@ -276,21 +276,13 @@ class Profile:
 
     def middle(self, s: ArrayLike) -> Array:
         """Returns the offset of the middle of the driven lane."""
-        sign, inside = self._inside_driven
-        return self.centre(s) + sign * (_sum(inside, s) + self.width(s) / 2)
-
-    @cached_property
-    def _inside_driven(self) -> tuple[int, tuple[Lane, ...]]:
-        """Returns the side of the driven lane, 1 for left, and the lanes between it and the centre line."""
         number = self.driven_id
-        return (1, self.left[: number - 1]) if number > 0 else (-1, self.right[: -1 - number])
+        inside = self.left[: number - 1] if number > 0 else self.right[: -1 - number]
+        return self.centre(s) + (1 if number > 0 else -1) * (_sum(inside, s) + self.width(s) / 2)
 
     def lane(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the edges of the driven lane."""
-        sign, lanes = self._inside_driven
-        inside, centre = _sum(lanes, s), self.centre(s)
-        inner, outer = centre + sign * inside, centre + sign * (inside + self.width(s))
-        return Edges(outer, inner) if sign > 0 else Edges(inner, outer)
+        return self.edges_of(self.driven_id, s)
 
     def edges(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the edges of the carriageway, from the outermost driving lane on the left to

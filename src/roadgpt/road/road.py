@@ -223,7 +223,12 @@ class Road:
             return self.road_points
         if self.nodes is not None:
             return self.nodes[:, :2]
-        return self.plan.at(control_stations(self.sample().s, self.sample().curvature))
+        return self.axis(control_stations(self.sample().s, self.sample().curvature))[:, :2]
+
+    def axis(self, s: Array) -> Array:
+        """Returns points ``(n, 3)`` in metres of the line between the lanes on the left and those on the
+        right. It is the centre line, unless the cross-section has an offset."""
+        return self.at(s, 0.0 if self.profile is None else self.profile.centre(s))
 
     def to_json(self) -> dict[str, Any]:
         """Returns the road as JSON data, from which ``Road.from_json`` restores it exactly."""

@@ -199,7 +199,9 @@ def _kept(drive: "Drive", world: "World", margin: float, beyond: float) -> str:
 
 def _failed(road: "Road", drive: "Drive", world: "World", step: int, cause: Cause, side: Side | None) -> str:
     profile = world.profile_of(road)
-    is_beside = side == ("right" if profile.left_hand else "left") and profile.driven > 0
+    is_beside = (
+        side == ("right" if profile.left_hand else "left") and profile.driven_id != profile.along_ids[0]
+    )
     has_crossed = cause == "out of lane" and has_departed(road, drive, world)[step]
     return FAILED[cause].format(
         side=side,

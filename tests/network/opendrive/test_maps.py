@@ -165,6 +165,20 @@ def test_lanes_that_change_inside_a_junction_lead_through_it_where_they_go_on(tm
     assert lane_there.successors == (Leg(2, -1),)
 
 
+def test_strips_need_no_links_to_go_on_inside_a_junction(tmp_path: Path) -> None:
+    """Every metre has a section of its own, whose inner strips are not linked to the next ones."""
+    lanes = lane(-3, predecessor=-3, successor=-3), lane(-1, 0.5, "none"), lane(-2, 1.0, "median")
+    parts = crossing(inner="".join(section(s, *lanes[1:], lanes[0]) for s in range(20)))
+    parts[1] = parts[1].replace('predecessor id="-3"', 'predecessor id="-1"', 1)
+    parts[1] = '"-1"'.join(parts[1].rsplit('"-3"', 1))
+    parts[-1] = parts[-1].replace('to="-1"', 'to="-3"')
+    found = read(tmp_path, *parts)
+    own = found.network.road(5)
+    assert own.profile.count == (1, 0)
+    assert own.road.at([0.0, 20.0], own.profile.edges_of(-1, [0.0, 20.0]).left)[:, 1] == pytest.approx(-1.5)
+    assert lanes_of(found.network)[Leg(1, -1)].successors == (Leg(5, -1),)
+
+
 SIGN = '<signal id="1" s="{s}" t="-4" orientation="{way}" dynamic="{changes}" type="{kind}"/>'
 TREE = '<objects><object id="1" type="tree" s="1"/></objects>'
 BROKEN = "<geometry s='0' x='a'/>"
@@ -225,7 +239,7 @@ def test_what_a_map_says_of_speed_and_friction_is_that_of_its_lanes(tmp_path: Pa
          "a second road that continues the same end of a road (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, more=CLIFF)], "roads of which the road has a grade of 46"),
         ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1, more=FAST)))],
-         "a speed limit of 1000 is not used (road 3)"),
+         "a speed limit of 3600 km/h is not used (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1, more=ICE)))],
          "a friction of 0 is not used (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1), lane(-2, 0.04)))],

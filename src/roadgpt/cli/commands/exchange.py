@@ -143,10 +143,10 @@ def import_(
     exported. To drive on it, name the roads of a route, or the points from which and to which it leads, or
     let routes be drawn; each is written as a file of its own.
 
-    With --road, or of a file with a single road, the centre line of the imported road is the inner edge of
-    the innermost driving lane: the edge nearest to lane 0. A road or a map that is off RoadGPT's map is moved
-    onto it. The file can then be checked, driven and viewed like any other road: it holds the size of the
-    map, the move, and the lane width, speed limit and friction that FILE states.
+    With --road, or of a file with a single road, one road is read, with all its lanes; its centre line is the
+    reference line of the file. A road or a map that is off RoadGPT's map is moved onto it. The file can then
+    be checked, driven and viewed like any other road: it holds the size of the map, the move, and the
+    lane width, speed limit and friction that FILE states.
 
     \b
     roadgpt import town.xodr

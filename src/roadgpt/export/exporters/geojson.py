@@ -53,17 +53,15 @@ def _lanes(road: Road, world: World, s: Array) -> Iterator[dict[str, Any]]:
 
     If there are several lanes on a side, their names contain numbers, from 1 at the centre line."""
     profile = world.profile_of(road)
-    edges = profile.lane_edges(s)
-    counts = profile.count[::-1] if profile.left_hand else profile.count
-    for side, outer, count in zip(("right", "left"), edges[::-1], counts, strict=True):
-        for n in range(count):
-            inner = outer[n - 1] if n else np.zeros(len(s))
-            width = np.abs(outer[n] - inner)
+    sides = profile.along_ids, profile.against_ids
+    for side, ids in zip(("right", "left"), sides[::-1] if profile.left_hand else sides, strict=True):
+        for n, lane in enumerate(ids, 1):
+            high, low = profile.edges_of(lane, s)
+            width = high - low
             one = {"width_m": float(width[0])}
             several = {"width_min_m": float(width.min()), "width_max_m": float(width.max())}
             properties = {**(several if np.ptp(width) > SAME else one), "friction": world.site.friction}
-            low, high = (outer[n], inner) if side == "right" else (inner, outer[n])
-            name = f"{side} lane" if count == 1 else f"{side} lane {n + 1}"
+            name = f"{side} lane" if len(ids) == 1 else f"{side} lane {n}"
             # counter-clockwise, as the standard requires
             right, left = road.at(s, low), road.at(s, high)
             ring = _on_globe(np.concatenate([right, left[::-1], right[:1]]))

@@ -29,6 +29,6 @@ class Sbft:
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the test without a result. Campaigns write results to their ``test.NNNN.json`` files."""
-        points = {"road_points": road.control_points(), "interpolated_points": road.centreline(STEP)}
+        points = {"road_points": road.control_points(), "interpolated_points": road.axis(road.sample(STEP).s)}
         data = {name: (np.round(finite(each), DECIMALS) + 0.0).tolist() for name, each in points.items()}
         path.write_bytes((json.dumps(data) + "\n").encode())

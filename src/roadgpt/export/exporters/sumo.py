@@ -46,11 +46,10 @@ class Sumo:
         """Writes NAME.nod.xml, .edg.xml, .netccfg, .rou.xml and .sumocfg; also .net.xml if netconvert is
         installed."""
         stem = path.name.removesuffix(self.suffix)
-        shape = np.round(line(road, stations(road, world.profile_of(road).paved_reach), 0.0), DECIMALS) + 0.0
-        limits = speed_zones(road, world)
+        limits, ways = speed_zones(road, world), _ways(road, world.profile_of(road))
         files = {
-            self.suffix: _nodes(shape),
-            ".edg.xml": _edges(shape, road, world, limits),
+            self.suffix: _nodes(ways[0].shape),
+            ".edg.xml": _edges(ways, world, limits),
             ".netccfg": _configuration(
                 {
                     "input": {"node-files": f"{stem}.nod.xml", "edge-files": f"{stem}.edg.xml"},
@@ -93,6 +92,29 @@ def _nodes(shape: Array) -> XmlElement:
     return out
 
 
+class Way(NamedTuple):
+    """The lanes of one direction, which lie to the right of a line, from the inside out."""
+
+    name: str
+    start: str
+    end: str
+    shape: Array
+    widths: list[float]  # m
+
+
+def _ways(road: Road, profile: Profile) -> list[Way]:
+    at, s = stations(road, profile.paved_reach), road.sample().s
+    found, sides = [], (("road", profile.along_ids), ("back", profile.against_ids))
+    for name, ids in sides:
+        if ids:
+            inner = profile.edges_of(ids[0], at)[name == "back"]
+            shape = np.round(line(road, at, inner), DECIMALS) + 0.0
+            widths = [_mean(profile.lanes[lane].width, s) for lane in ids]
+            ends = ("start", "end") if name == "road" else ("end", "start")
+            found.append(Way(name, *ends, shape if name == "road" else shape[::-1], widths))
+    return found
+
+
 class SpeedZone(NamedTuple):
     """A stretch of road with one speed limit; it ends where the next zone starts."""
 
@@ -117,17 +139,12 @@ def speed_zones(road: Road, world: World) -> list[SpeedZone]:
     return out
 
 
-def _edges(shape: Array, road: Road, world: World, limits: Sequence[SpeedZone]) -> XmlElement:
-    along = float(np.hypot(*np.diff(shape[:, :2], axis=0).T).sum())
+def _edges(ways: Sequence[Way], world: World, limits: Sequence[SpeedZone]) -> XmlElement:
+    along = float(np.hypot(*np.diff(ways[-1].shape[:, :2], axis=0).T).sum())
     ends = [*(limit.start for limit in limits[1:]), along]
     back = [SpeedZone(along - end, limit.speed) for end, limit in zip(ends, limits, strict=True)][::-1]
     out = XmlElement("edges")
-    on_right, on_left = _widths(road, world.profile_of(road))
-    ways = [
-        ("road", "start", "end", shape, limits, on_right),
-        ("back", "end", "start", shape[::-1], back, on_left),
-    ]
-    for name, start, end, points, pieces, widths in ways if on_left else ways[:1]:
+    for (name, start, end, points, widths), pieces in zip(ways, (limits, back), strict=False):
         lanes: dict[str, Value] = {
             "numLanes": len(widths),
             "speed": round(pieces[0].speed, 6),
@@ -146,14 +163,6 @@ def _edges(shape: Array, road: Road, world: World, limits: Sequence[SpeedZone]) 
     return out
 
 
-def _widths(road: Road, profile: Profile) -> tuple[list[float], list[float]]:
-    forward, backward = profile.count
-    s = road.sample().s
-    sides = profile.right[:forward], profile.left[:backward]
-    along, against = ([_mean(lane.width, s) for lane in side] for side in sides)
-    return along, against
-
-
 def _mean(width: Width, s: Array) -> float:
     if not isinstance(width, CubicProfile):
         return width
@@ -164,7 +173,7 @@ def _trip(limits: Sequence[SpeedZone], profile: Profile) -> XmlElement:
     out = XmlElement("routes")
     car = {"length": CAR.length, "width": CAR.width, "accel": PULL, "decel": PULL}
     out.add("vType", {"id": "saloon", "vClass": "passenger", **car, "sigma": 0, "speedDev": 0})
-    lane = profile.count[0] - 1 - profile.driven  # SUMO counts from the right
+    lane = profile.along_ids[::-1].index(profile.driven_id)  # SUMO counts from the right
     begin: dict[str, Value] = {"depart": 0, "departPos": "base", "departSpeed": 0}
     place = {"departLane": lane} if lane else {}
     ego = out.add("vehicle", {"id": "ego", "type": "saloon", **place, **begin})

@@ -1,9 +1,13 @@
-"""Reads whole maps from ASAM OpenDRIVE files, versions 1.1 to 1.8. Main function: ``read_map``.
+"""Reads ASAM OpenDRIVE files, versions 1.1 to 1.8. Main functions: ``read_map`` for whole maps, and
+``read_opendrive`` for one road of a file.
 
+tree        reads the XML within limits and without entities; sorts the records of a road by station
+line        computes the plan curve of a road: unchanged where possible, otherwise of clothoids
 roads       reads the roads with all their lanes
-junctions   joins them: continuations, junctions with their signs and lights, roundabouts"""
+junctions   joins them: continuations, junctions with their signs and lights, roundabouts
+one_road    takes one road of a file by itself, and selects its driven lane"""
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,11 +16,11 @@ from xml.etree.ElementTree import Element
 from roadgpt.errors import UsageError
 from roadgpt.network.network import MOST_ROADS, Leg, Network
 from roadgpt.network.opendrive.junctions import Joining
-from roadgpt.network.opendrive.roads import FileRoad, Remarks, read_road
-from roadgpt.road.opendrive.tree import read_map_tree
-from roadgpt.road.world import FRICTIONS, SPEEDS
+from roadgpt.network.opendrive.one_road import ImportedRoad, read_opendrive
+from roadgpt.network.opendrive.roads import FileRoad, left_out, read_road, unread, world_values
+from roadgpt.network.opendrive.tree import Remarks, read_tree
 
-__all__ = ["ImportedMap", "read_map"]
+__all__ = ["ImportedMap", "ImportedRoad", "read_map", "read_opendrive"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,32 +34,17 @@ class ImportedMap:
 
     def world_values(self, legs: Sequence[Leg] = ()) -> tuple[dict[str, float], tuple[str, ...]]:
         """Returns the speed limit in m/s and the friction that hold for the longest part of a route, or of
-        all lanes, as the fields of a World; and a sentence about each that differs on another part. What the
-        file does not state, or states outside the limits of a World, is left out."""
-        network, found, remarks = self.network, dict[str, float](), list[str]()
-        lanes = legs or [
-            Leg(each.id, lane)
-            for each in network.roads
-            for lane in (*each.profile.along_ids, *each.profile.against_ids)
+        all lanes, as the fields of a World; and a sentence about each that differs on another part, or is
+        limited. What the file does not state is left out."""
+        profiles = {each.id: each.profile for each in self.network.roads}
+        legs = legs or [
+            Leg(number, lane)
+            for number, own in profiles.items()
+            for lane in (*own.along_ids, *own.against_ids)
         ]
-        for name, (low, high) in (("speed_limit", SPEEDS), ("friction", FRICTIONS)):
-            metres = defaultdict[float, float](float)
-            for leg in lanes:
-                value = getattr(network.road(leg.road).profile.lanes[leg.lane], name)
-                if value is not None and low <= value <= high:
-                    metres[value] += network.road(leg.road).road.length
-            if metres:
-                used = max(metres, key=lambda value: (metres[value], value))
-                found[name] = used
-            if len(metres) > 1:
-                what, factor, unit = (
-                    ("speed limit", 3.6, " km/h") if name == "speed_limit" else ("friction", 1.0, "")
-                )
-                said = [f"{value * factor:.4g}" for value in (min(metres), max(metres), used)]
-                remarks.append(
-                    f"its {what} is {said[0]} to {said[1]}{unit}; {said[2]}{unit} is used everywhere"
-                )
-        return found, tuple(remarks)
+        return world_values(
+            [(self.network.road(leg.road).road.length, profiles[leg.road].lanes[leg.lane]) for leg in legs]
+        )
 
 
 def read_map(path: Path | str) -> ImportedMap:
@@ -67,23 +56,24 @@ def read_map(path: Path | str) -> ImportedMap:
     Raises UsageError if the file cannot be read or is too large, is not OpenDRIVE, or has no road that can be
     read; a road that cannot be read is left out, and the remarks say why."""
     path, remarks = Path(path), Remarks()
-    roads, junctions, passed = list[FileRoad](), list[Element](), Counter[str]()
+    roads, junctions, passed, others = list[FileRoad](), list[Element](), Counter[str](), set[str]()
 
     def take(node: Element, skipped: Counter[str]) -> None:
         passed.update(skipped)
         if node.tag == "junction":
             junctions.append(node)
+            return
+        try:
+            others.update(unread(node))
+            road = read_road(node, remarks)
+        except UsageError as error:
+            said = str(error).partition(" at s = ")[0].partition(";")[0]
+            remarks.add(f"left out: roads of which {said}", f"road {node.get('id', '?')[:40]}")
         else:
-            try:
-                road = read_road(node, remarks)
-            except UsageError as error:
-                said = str(error).partition(" at s = ")[0].partition(";")[0]
-                remarks.add(f"left out: roads of which {said}", f"road {node.get('id', '?')[:40]}")
-            else:
-                roads.extend([] if road is None else [road])
+            roads.extend([] if road is None else [road])
 
     try:
-        header = read_map_tree(path, take)
+        _, header = read_tree(path, take)
         if len({road.left_hand for road in roads}) > 1:
             raise UsageError("traffic drives on the left on some of its roads only; take them from two files")
         joining = Joining(roads, junctions, remarks)
@@ -94,7 +84,5 @@ def read_map(path: Path | str) -> ImportedMap:
             raise UsageError(f"it has {what} that can be read; {'; '.join(why)}")
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from error
-    left = [f"{count:,} {what}{'s' * (count > 1 and what[-1] != '>')}" for what, count in passed.items()]
-    left += [f"<{name}> of the map" for name in sorted(header)]
-    told = [f"left out: {', '.join(sorted(left))}"] if left else []
+    told = left_out(passed, others, header)
     return ImportedMap(network, joining.numbers(network), (*remarks.sentences(), *told))

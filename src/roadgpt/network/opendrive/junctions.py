@@ -9,6 +9,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from itertools import pairwise
 from xml.etree.ElementTree import Element
 
@@ -32,9 +33,9 @@ from roadgpt.network.network import (
     Roundabout,
     kinds_of,
 )
-from roadgpt.network.opendrive.roads import UNLINKED, FileRoad, LaneStretch, Remarks, RoadBuilder, Way
+from roadgpt.network.opendrive.roads import UNLINKED, FileRoad, LaneStretch, RoadBuilder, Way
+from roadgpt.network.opendrive.tree import Remarks, number
 from roadgpt.network.pose import Point
-from roadgpt.road.opendrive.tree import number
 
 PARALLEL = 30.0  # degrees; arms that are closer together belong to a merge or an exit
 BEFORE = 60.0  # m before a junction, within which a sign or a light applies to it
@@ -69,6 +70,7 @@ class Joining:
         self._last = max(map(int, known), default=0)
         self.members: dict[int, NetworkRoad] = {}
         self.parts: dict[str, list[int]] = defaultdict(list)
+        self.file_of: dict[int, FileRoad] = {}
         self.ways: dict[str, list[tuple[int, Way]]] = {}
         self.continuations: dict[frozenset[RoadEnd], Continuation] = {}
         self.junctions: dict[str, Junction] = {}
@@ -94,13 +96,15 @@ class Joining:
 
     def _add(self, road: FileRoad, made: NetworkRoad) -> int:
         self.members[made.id] = made
+        self.file_of[made.id] = road
         self.parts[road.id].append(made.id)
         return made.id
 
     def _add_road(self, road: FileRoad) -> None:
         builder = RoadBuilder(road, self.remarks)
         for stretch in road.stretches:
-            made = self._add(road, NetworkRoad(self._number(road), builder.build(stretch)))
+            own, (stretch.lanes, *_) = builder.build(stretch.parts)
+            made = self._add(road, NetworkRoad(self._number(road), own))
             profile = self.members[made].profile
             if not (profile.along_ids or profile.against_ids):  # they are too narrow
                 del self.members[made]
@@ -123,7 +127,7 @@ class Joining:
         if not lanes or frozenset((one, two)) in self.continuations:
             return
         if one in taken or two in taken or one == two:
-            where = f"road {self._file_of(one.road).id}"
+            where = f"road {self.file_of[one.road].id}"
             self.remarks.add("left out: a second road that continues the same end of a road", where)
             return
         self.continuations[frozenset((one, two))] = Continuation(one, two, tuple(lanes))
@@ -293,48 +297,39 @@ class Joining:
                 if away <= BEFORE:
                     found[end].add(control)
         for each in connections:
-            file = self._file_of(each.road)
+            file = self.file_of[each.road]
             way = next(way for road, way in self.ways[file.id] if road == each.road)
-            for control, orientation in self._signs_inside(file):
+            for control, orientation, _ in _signals(file, self._signal_types):
                 if orientation in ("none", "+" if way.is_along else "-"):
                     found[each.incoming].add(control)
         ranks: tuple[tuple[str, Control], ...] = (("high", "priority"), ("low", "yield"))
         for priority in node.findall("priority"):
             for name, control in ranks:
                 for end in ends:
-                    if self._file_of(end.road).id == priority.get(name) and found[end] == {"none"}:
+                    if self.file_of[end.road].id == priority.get(name) and found[end] == {"none"}:
                         found[end] = {control}
         chosen = {end: next(each for each in STRONGEST if each in own) for end, own in found.items()}
         into = {end: self.members[end.road].ids_towards(end.contact) for end in ends}
         return {end: control if into[end] else "none" for end, control in chosen.items()}
 
-    def _file_of(self, road: int) -> FileRoad:
-        return self.files[next(name for name, own in self.parts.items() if road in own)]
-
     def _signs(self, end: RoadEnd) -> Iterator[tuple[Control, float]]:
         """Yields the signs and lights for traffic towards an end of a road, with their distance from it."""
-        file = self._file_of(end.road)
+        file = self.file_of[end.road]
         if end.road != self.parts[file.id][-1 if end.contact == "end" else 0]:
             return
-        length = file.stretches[-1].end
+        length = file.whole.sections[-1].end
         for control, orientation, s in _signals(file, self._signal_types):
             if orientation in ("none", "+" if end.contact == "end" else "-"):
                 yield control, length - s if end.contact == "end" else s
 
-    def _signs_inside(self, file: FileRoad) -> Iterator[tuple[Control, str]]:
-        for control, orientation, _ in _signals(file, self._signal_types):
-            yield control, orientation
-
-    @property
+    @cached_property
     def _signal_types(self) -> Mapping[str, Control]:
-        if not hasattr(self, "_types"):
-            self._types = {
-                node.get("id", ""): control
-                for file in self.files.values()
-                for node in file.node.findall("signals/signal")
-                if (control := _control(node)) is not None
-            }
-        return self._types
+        return {
+            node.get("id", ""): control
+            for file in self.files.values()
+            for node in file.node.findall("signals/signal")
+            if (control := _control(node)) is not None
+        }
 
     def network(self) -> Network:
         """Returns the network of all roads and junctions."""
@@ -346,7 +341,10 @@ class Joining:
             )
             for junction in self.junctions.values()
         ]
-        self._tell_left_out()
+        for file in self.files.values():
+            tell_unread(file.node, self.remarks, f"road {file.id}", is_alone=False)
+            if file.junction and file.id not in self.ways:
+                self.remarks.add("left out: connecting roads that no junction names", f"road {file.id}")
         at_junctions = {arm.end for junction in junctions for arm in junction.arms}
         joined = [
             each for each in self.continuations.values() if not {each.before, each.after} & at_junctions
@@ -375,18 +373,22 @@ class Joining:
                     self.remarks.add("left out: crosswalks away from junctions", f"road {file.id}")
         return found
 
-    def _tell_left_out(self) -> None:
-        for file in self.files.values():
-            for node in file.node.findall("objects/object"):
-                kind = node.get("type", "")
-                if kind not in ("crosswalk", "roadMark", "-1", "", "none"):
-                    self.remarks.add(f"left out: objects of type {kind[:30]}", f"road {file.id}")
-            for node in file.node.findall("signals/signal"):
-                kind = node.get("type", "")
-                if _control(node) is None and kind not in (*PAINTED, "-1", "", "none"):
-                    self.remarks.add(f"left out: signs of type {kind[:30]}", f"road {file.id}")
-            if file.junction and file.id not in self.ways:
-                self.remarks.add("left out: connecting roads that no junction names", f"road {file.id}")
+
+def tell_unread(road: Element, remarks: Remarks, where: str, is_alone: bool) -> None:
+    """Adds remarks about objects and signs of a road that are not used. A road that ``is_alone`` has no
+    junction to which crosswalks, signs and lights would belong."""
+    for node in road.findall("objects/object"):
+        kind = node.get("type", "")
+        if is_alone or kind not in ("crosswalk", "roadMark"):
+            remarks.add(f"left out: objects {_of_type(kind)}", where)
+    for node in road.findall("signals/*"):
+        kind = node.get("type", "")
+        if is_alone or (node.tag == "signal" and _control(node) is None and kind not in PAINTED):
+            remarks.add(f"left out: signs {_of_type(kind)}", where)
+
+
+def _of_type(kind: str) -> str:
+    return "without a type" if kind in ("", "-1", "none") else f"of type {kind[:30]}"
 
 
 def _is_number(name: str) -> bool:

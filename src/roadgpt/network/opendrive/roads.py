@@ -1,59 +1,53 @@
-"""Reads the roads of an OpenDRIVE map, with all their lanes.
+"""Reads the roads of an OpenDRIVE file, with all their lanes.
 
-A road of a network has the same lanes from its start to its end. So a road of the file becomes one road for
-each stretch of its lane sections that have the same lanes, and these are joined. A connecting road inside a
+A road of a network has the same lanes from its start to its end. So a road of a map becomes one road for each
+stretch of its lane sections that have the same lanes, and these are joined. A connecting road inside a
 junction becomes one road for each direction of its traffic; if its lanes change on the way, these roads have
-only the lanes that lead all the way through."""
+only the lanes that lead all the way through. A road that is read by itself stays one road: its lanes have no
+width where the file has no such lane."""
 
-from collections import defaultdict
-from collections.abc import Mapping, Sequence
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
-from typing import NamedTuple
+from itertools import groupby, pairwise
+from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from roadgpt.errors import UsageError
-from roadgpt.geometry import CubicProfile, ElevationProfile, Piece, PieceCurve, project
-from roadgpt.geometry.curve import Array
-from roadgpt.geometry.elevation import Row, closed, shifted
+from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile
+from roadgpt.geometry.elevation import SHORTEST, Row, closed, constant, shifted, value_at
+from roadgpt.network.lane_along import added
+from roadgpt.network.opendrive.line import PlacedLine, placed_line
+from roadgpt.network.opendrive.tree import DRIVING, Remarks, cubics, in_order, number
 from roadgpt.network.stretch import turned
 from roadgpt.road import Profile, Road
-from roadgpt.road.opendrive.line import (
-    exact,
-    fitted,
-    misses,
-    reference_line,
-    smoothed,
-    turns_back,
-    walk,
-)
-from roadgpt.road.opendrive.profile import (
-    MARKS,
-    UNITS,
-    LaneElement,
-    Stretch,
-    combined,
-    elevation,
-    jumps,
-    lane_elements,
-    limited,
-    longest_first,
-    plain,
-    width_rows,
-)
-from roadgpt.road.opendrive.tree import DRIVING, cubics, in_order, number
-from roadgpt.road.profile import FASTEST, MOST_LANES, STEEPEST, WIDEST, Kind, Lane, Marking
+from roadgpt.road.profile import FASTEST, LINE, MOST_LANES, STEEPEST, WIDEST, Kind, Lane, Marking, Width
 from roadgpt.road.road import check_grade
+from roadgpt.road.world import FRICTIONS, SPEEDS
 
 SHORT = 0.05  # m; a shorter lane section is left out, and the lanes before it go on in those behind it
 NO_WIDTH = 1e-3  # m; a lane that is nowhere wider is left out
-MEETS, SAME_WAY = 0.002, 0.001  # m and rad, between the elements of a line that stays as it is
-FAR = 0.1  # m, that a line may be rounded off without saying how much
-TOLD = 3  # places that a remark lists
 THIN = 0.25  # m; a lane that is nowhere wider is no lane that a car could use
+SAME_HEIGHT = 1e-9  # m, and as a ratio: heights and grades closer than this are treated as equal
+STEP = 0.05  # m; a remark is made about a larger step of the height
+TOUCHES = 1e-9  # m by which a cubic may be beyond a limit, because of rounding
+UNITS = {"m/s": 1.0, "km/h": 3.6, "mph": 3600 / 1609.344}  # per m/s
+MOST_CHANGES = 3  # that a sentence lists
+BROAD = 0.2  # m; a wider line is reported
 UNLINKED = "no lane is linked to those behind it, and lanes with the same ids continue each other"
+UNREAD = ("color", "direction", "dynamicLaneDirection", "dynamicLaneType", "level", "roadWorks", "roughness",
+          "singleSide", "weight")  # fmt: skip
+USUAL = ("", "false", "standard", "white")  # values of these attributes that are not reported, like 0
+PLAIN = ("none", "solid", "broken", "solid solid")  # types of road marks that are painted as they are
+MARKS: Mapping[str, Marking] = {
+    **dict.fromkeys(("solid", "solid broken", "broken solid", "custom"), "solid"),
+    **dict.fromkeys(("broken", "broken broken", "botts dots"), "broken"),
+    "solid solid": "double",
+}
+"""The marking for each type of road mark that is a line."""
 KINDS: Mapping[str, Kind] = {
     **dict.fromkeys(DRIVING, "driving"),
     "shoulder": "shoulder",
@@ -72,26 +66,22 @@ KINDS: Mapping[str, Kind] = {
 
 Pairs = set[tuple[int, int]]
 """Ids of lanes in the file, each with the id of the lane that continues it."""
+Slot = dict[int, int]
+"""One lane of a road: its ids in the file, by the number of the lane section; it need not be in all."""
 
 
-class Remarks:
-    """Sentences about what was changed or left out, each with the roads on which that happened."""
+class LaneElement(NamedTuple):
+    """One lane of a section, with either its width or its ``border``, the offset of its outer edge."""
 
-    def __init__(self) -> None:
-        self._where = defaultdict[str, list[str]](list)
+    id: int
+    node: Element
+    width: CubicProfile | None
+    border: CubicProfile | None
 
-    def add(self, what: str, where: str) -> None:
-        """Adds a sentence about one place, such as a road."""
-        self._where[what].append(where)
-
-    def sentences(self) -> tuple[str, ...]:
-        """Returns one sentence for each remark, with the first places and the number of all others."""
-        return tuple(f"{what} ({_listed(list(dict.fromkeys(at)))})" for what, at in self._where.items())
-
-
-def _listed(places: Sequence[str]) -> str:
-    more = f" and {len(places) - TOLD:,} more" if len(places) > TOLD else ""
-    return f"{', '.join(places[:TOLD])}{more}"
+    @property
+    def kind(self) -> Kind:
+        """What the lane is for."""
+        return KINDS.get(self.node.get("type", ""), "none")
 
 
 class FileSection(NamedTuple):
@@ -108,12 +98,12 @@ class FileSection(NamedTuple):
     @property
     def ids(self) -> dict[int, LaneElement]:
         """The lanes by their ids in the file."""
-        return {int(number(lane.node, "id")): lane for lane in (*self.left, *self.right)}
+        return {lane.id: lane for lane in (*self.left, *self.right)}
 
     @property
     def driving(self) -> set[int]:
         """The ids of the lanes that cars may use."""
-        return {lane for lane, own in self.ids.items() if own.kind in DRIVING}
+        return {lane for lane, own in self.ids.items() if own.kind == "driving"}
 
     def links(self, name: str) -> Pairs:
         """Returns the links of the lanes, as pairs of an own id and the id in the neighbouring section."""
@@ -124,24 +114,20 @@ class FileSection(NamedTuple):
         return found
 
 
-@dataclass
-class LaneStretch:
-    """Lane sections of a road, one after another, that have the same lanes."""
+class FileSections(NamedTuple):
+    """Lane sections of a road, one after another, and which lanes continue each other between them."""
 
     sections: list[FileSection]
-    road: Road | None = None
+    joints: list[Pairs]
+
+
+@dataclass
+class LaneStretch:
+    """Lane sections of a road that have the same lanes."""
+
+    parts: FileSections
     lanes: dict[int, int] = field(default_factory=dict)
     """The ids of the lanes in the network, by their ids in the file."""
-
-    @property
-    def start(self) -> float:
-        """The station in metres at which it begins in the file."""
-        return self.sections[0].start
-
-    @property
-    def end(self) -> float:
-        """The station in metres at which it ends in the file."""
-        return self.sections[-1].end
 
 
 @dataclass
@@ -152,10 +138,11 @@ class FileRoad:
     node: Element
     junction: str  # the id of its junction; empty if it is no connecting road
     left_hand: bool
-    line: "PlacedLine"
+    line: PlacedLine
     heights: CubicProfile
     offset: CubicProfile
     angle: CubicProfile | None  # the superelevation in radians, positive where it falls to the right
+    whole: FileSections
     stretches: list[LaneStretch]
     joints: list[Pairs]  # which lanes continue each other from one stretch to the next
     entry: dict[int, int]  # the lanes of the first stretch, by the ids in the first section of the file
@@ -171,38 +158,29 @@ class FileRoad:
         return kind, node.get("elementId", ""), node.get("contactPoint", "start")
 
 
-class PlacedLine(NamedTuple):
-    """The reference line of a road, and the stations of the file at stations of the line, both in metres."""
-
-    plan: PieceCurve
-    of_file: Array
-    own: Array
-
-    def station(self, s: float) -> float:
-        """Returns the station on the line of a station in the file."""
-        return float(np.interp(s, self.of_file, self.own))
-
-
 def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
     """Returns a road of the file, or None if it has no lane that cars may use. Raises UsageError if its line
     or its lanes cannot be read."""
     road_id = node.get("id", "?")[:40]
     where = f"road {road_id}"
-    for remark in in_order(node):
-        remarks.add(remark.partition(" (")[0], where)
-    line = _line(node, remarks, where)
+    in_order(node, remarks, where)
+    line = placed_line(node, remarks, where)
     length = float(line.of_file[-1])
-    sections = _sections(node, length)
+    sections = _sections(node, float(line.of_file[0]), length)
     if not any(section.driving for section in sections):
         remarks.add("left out: roads without a lane for cars", where)
         return None
-    heights = elevation(node)
+    heights = cubics(node.findall("elevationProfile/elevation"), "s") or CubicProfile.constant(0.0)
     check_grade(heights, length)
-    if jumps(heights, length):
-        remarks.add("its height jumps", where)
+    if jump := _jump(heights, length):
+        remarks.add("its height jumps", where, jump)
+    if len(node.findall("lanes/laneSection/*/lane")) > sum(
+        len(each.ids) + len(each.centre) for each in sections
+    ):
+        remarks.add("several lanes of a section have the same id, and the last of them is taken", where)
     if not all(_linked(one, two) for one, two in pairwise(sections)):
         remarks.add(UNLINKED, where)
-    stretches, joints, entry, leaving = _stretches(sections)
+    whole, entry, leaving = _long_enough(sections)
     junction = node.get("junction", "-1")
     return FileRoad(
         road_id,
@@ -213,8 +191,8 @@ def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
         heights,
         cubics(node.findall("lanes/laneOffset"), "s") or CubicProfile.constant(0.0),
         cubics(node.findall("lateralProfile/superelevation"), "s"),
-        stretches,
-        joints,
+        whole,
+        *_stretches(whole),
         entry,
         leaving,
         [
@@ -225,32 +203,71 @@ def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
     )
 
 
-def _line(node: Element, remarks: Remarks, where: str) -> PlacedLine:
-    line = reference_line(node)
-    plan = exact(line, MEETS, SAME_WAY)
-    if plan is not None:
-        ends = np.array([0.0, plan.length])
-        return PlacedLine(plan, ends, ends)
-    walked = walk(line, None)
-    if turns_back(walked) is not None:
-        raise UsageError("its line turns back")
-    fit = fitted(walked) or smoothed(walked)
-    if fit is None:
-        raise UsageError("its line has gaps or kinks so close together that no curve follows it")
-    if misses(walked):
-        apart = float(np.abs(project(fit[0], walked.poses[:, :2])[1]).max())
-        by = f", by more than {FAR:g} m" if apart > FAR else ""
-        remarks.add(f"its line has kinks or gaps, and is rounded off there{by}", where)
-    return PlacedLine(*fit)
+def unread(road: Element) -> set[str]:
+    """Returns what the elements of a road say that is not used."""
+    nodes, marks = [*road.iter()], [*road.iter("roadMark")]
+    others = {mark.get("type", "none")[:20] for mark in marks} - {*PLAIN}
+    found = {f"what road marks of type {kind} look like" for kind in others}
+    found |= {
+        f"the attribute {name}"
+        for name in UNREAD
+        if any(node.get(name, "").strip("0.") not in USUAL for node in nodes)
+    }
+    if any(node.find("width") is not None and node.find("border") is not None for node in nodes):
+        found.add("borders of lanes that have widths")
+    if any(number(mark, "width", LINE) > BROAD for mark in marks):
+        found.add("the width of broad road marks")
+    return found
 
 
-def _sections(node: Element, length: float) -> list[FileSection]:
+def left_out(passed: Counter[str], others: Iterable[str], header: Iterable[str]) -> tuple[str, ...]:
+    """Returns a sentence about the elements of roads that were not read, by their number, about other
+    contents, and about the elements of the header; no sentence if there are none."""
+    parts = [f"{count:,} {what}{'s' * (count > 1 and what[-1] != '>')}" for what, count in passed.items()]
+    parts += [*others, *(f"<{name}> of the map" for name in header)]
+    return (f"left out: {', '.join(sorted(parts))}",) if parts else ()
+
+
+def world_values(lanes: Sequence[tuple[float, Lane]]) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Returns the speed limit in m/s and the friction that hold on most metres of lanes, each given with its
+    length, as the fields of a World; see ``ImportedMap.world_values``."""
+    found, remarks = dict[str, float](), list[str]()
+    for name, limits in (("speed_limit", SPEEDS), ("friction", FRICTIONS)):
+        what, metres = name.replace("_", " "), Counter[float]()
+        for length, lane in lanes:
+            if (value := getattr(lane, name)) is not None:
+                metres[value] += length  # type: ignore[assignment]
+        if not metres:
+            continue
+        most = max(metres, key=lambda value: (metres[value], value))
+        found[name] = min(max(most, limits[0]), limits[1])
+        least, largest, used = (said_of(what, value) for value in (min(metres), max(metres), found[name]))
+        if len(metres) > 1:
+            remarks.append(
+                f"its {what} is {least.removesuffix(' km/h')} to {largest}; {used} is used everywhere"
+            )
+        elif found[name] != most:
+            remarks.append(f"its {what} of {least} is taken as {used}")
+    return found, tuple(remarks)
+
+
+def _jump(heights: CubicProfile, length: float) -> str:
+    """Returns the largest step in height in words; nothing if no step is larger than 5 cm."""
+    worst, where = 0.0, 0.0
+    for s, end in pairwise(heights.stations):
+        if end < length:
+            step = abs(float(heights.height(end) - heights.height(np.nextafter(end, s))))
+            worst, where = max((worst, where), (step, end))
+    return f"by {worst:.2f} m at s = {where:.1f}" if worst > STEP else ""
+
+
+def _sections(node: Element, first: float, last: float) -> list[FileSection]:
     nodes = node.findall("lanes/laneSection")
     if not nodes:
         raise UsageError("it has no lane section")
-    starts = [max(number(each, "s"), 0.0) for each in nodes]
+    starts = [first, *(max(number(each, "s"), first) for each in nodes[1:])]
     found = []
-    for each, (start, end) in zip(nodes, pairwise([*starts, length]), strict=True):
+    for each, (start, end) in zip(nodes, pairwise([*starts, last]), strict=True):
         left, right = (lane_elements(each, side, start) for side in ("left", "right"))
         if max(len(left), len(right)) > MOST_LANES:
             raise UsageError(f"it has more than {MOST_LANES} lanes on one side")
@@ -258,12 +275,25 @@ def _sections(node: Element, length: float) -> list[FileSection]:
     return found
 
 
-def _stretches(
-    sections: list[FileSection],
-) -> tuple[list[LaneStretch], list[Pairs], dict[int, int], dict[int, int]]:
-    """Joins sections that have the same lanes, and leaves out those that are shorter than ``SHORT``; returns
-    the stretches, the links between them, and the lanes at both ends by their ids in the file."""
-    joints = [_joint(one, two) for one, two in pairwise(sections)]
+def lane_elements(section: Element, side: str, s: float) -> tuple[LaneElement, ...]:
+    """Returns the lanes on the side "left" or "right" of a section that begins at station ``s``, from the
+    inside out."""
+    nodes = {int(number(lane, "id")): lane for lane in section.findall(f"{side}/lane")}
+    return tuple(
+        LaneElement(
+            n, nodes[n], *(cubics(nodes[n].findall(tag), "sOffset", s) for tag in ("width", "border"))
+        )
+        for n in sorted(nodes, key=abs)
+    )
+
+
+def _long_enough(sections: list[FileSection]) -> tuple[FileSections, dict[int, int], dict[int, int]]:
+    """Leaves out the sections that are shorter than ``SHORT``; returns the others, and the lanes at both ends
+    by their ids in the file."""
+    joints = [
+        _linked(one, two) or {(lane, lane) for lane in one.ids.keys() & two.ids.keys()}
+        for one, two in pairwise(sections)
+    ]
     entry, leaving = ({lane: lane for lane in sections[at].ids} for at in (0, -1))
     kept = list(sections)
     n = 0
@@ -284,17 +314,22 @@ def _stretches(
             joints[n - 1 : n + 1] = [{(a, d) for a, b in joints[n - 1] for c, d in joints[n] if b == c}]
             kept[n - 1] = kept[n - 1]._replace(end=own.end)
         del kept[n]
-    stretches, between = [LaneStretch([kept[0]])], list[Pairs]()
-    for joint, section in zip(joints, kept[1:], strict=True):
-        before = stretches[-1].sections[-1]
+    return FileSections(kept, joints), entry, leaving
+
+
+def _stretches(whole: FileSections) -> tuple[list[LaneStretch], list[Pairs]]:
+    """Joins sections that have the same lanes; returns the stretches, and the links between them."""
+    stretches, between = [LaneStretch(FileSections([whole.sections[0]], []))], list[Pairs]()
+    for joint, (before, section) in zip(whole.joints, pairwise(whole.sections), strict=True):
         same = [(lane, own.kind) for lane, own in before.ids.items()]
         goes_on = same == [(lane, own.kind) for lane, own in section.ids.items()]
         if goes_on and joint >= {(lane, lane) for lane in section.driving} and len(joint) <= len(same):
-            stretches[-1].sections.append(section)
+            stretches[-1].parts.sections.append(section)
+            stretches[-1].parts.joints.append(joint)
         else:
-            stretches.append(LaneStretch([section]))
+            stretches.append(LaneStretch(FileSections([section], [])))
             between.append(joint)
-    return stretches, between, entry, leaving
+    return stretches, between
 
 
 def _followed(lanes: dict[int, int], joint: Pairs) -> dict[int, int]:
@@ -307,57 +342,131 @@ def _linked(one: FileSection, two: FileSection) -> Pairs:
     return {(a, b) for a, b in found if a in one.ids and b in two.ids}
 
 
-def _joint(one: FileSection, two: FileSection) -> Pairs:
-    return _linked(one, two) or {(lane, lane) for lane in one.ids.keys() & two.ids.keys()}
+def _slots(parts: FileSections, side: int) -> list[Slot]:
+    """Returns the lanes on one side, 1 for the left, from the centre line outwards. A lane that continues
+    none of the section before is one of its own, or goes on where a lane of its kind has ended; strips on
+    which cars do not drive need no link for that."""
+    slots, kinds = list[Slot](), list[Kind]()
+    for n, section in enumerate(parts.sections):
+        place, linked = 0, {a for a, _ in parts.joints[n - 1]} if n else set()
+        for lane, own in ((lane, own) for lane, own in section.ids.items() if lane * side > 0):
+            before = {a for a, b in parts.joints[n - 1] if b == lane} if n else set()
+            fits = [k for k in range(place, len(slots)) if kinds[k] == own.kind]
+            found = next((k for k in fits if slots[k].get(n - 1) in before), None)
+            if found is None and place in fits:
+                last = slots[place].get(n - 1)
+                is_free = last is None or (last not in linked and own.kind != "driving")
+                found = place if is_free else None
+            if found is None:
+                found = place
+                slots.insert(place, {})
+                kinds.insert(place, own.kind)
+            slots[found][n] = lane
+            place = found + 1
+    return slots
 
 
 def speed_of(node: Element, remarks: Remarks, where: str) -> float | None:
     """Returns the speed limit in m/s of an element ``speed``; None if it states none."""
-    text = node.get("max", "undefined")
-    if text in ("no limit", "undefined"):
+    text = node.get("max")
+    if text is None:
         return None
     if (unit := node.get("unit", "m/s")) not in UNITS:
         remarks.add(f"a speed limit is in '{unit[:20]}', and is taken as one in m/s", where)
-    return _usable(number(node, "max") / UNITS.get(unit, 1.0), "speed limit", remarks, where)
+    is_none = text in ("no limit", "undefined")
+    value = 0.0 if is_none else number(node, "max") / UNITS.get(unit, 1.0)
+    return _usable(value, "speed limit", remarks, where)
 
 
 def _usable(value: float, what: str, remarks: Remarks, where: str) -> float | None:
     if 0 < value <= FASTEST:
         return value
-    remarks.add(f"a {what} of {value:.4g} is not used", where)
+    said = said_of(what, value) if value else f"0{', or of no limit,' * (what == 'speed limit')}"
+    remarks.add(f"a {what} of {said} is not used", where)
     return None
 
 
-class _Scale(NamedTuple):
-    """How stations of the file become stations of one road of the network."""
-
-    start: float
-    end: float
-    length: float  # m, of the road
-
-    def moved(self, rows: Sequence[Row]) -> CubicProfile:
-        ratio = self.length / (self.end - self.start)
-        return closed(
-            [
-                ((s - self.start) * ratio, (a, b / ratio, c / ratio**2, d / ratio**3))
-                for s, (a, b, c, d) in rows
-            ],
-            self.length,
-        )
+def said_of(what: str, value: float | None) -> str:
+    """Returns a speed limit in m/s, or a friction, in words."""
+    if value is None:
+        return "none"
+    return f"{value * 3.6:.4g} km/h" if what == "speed limit" else f"{value:.4g}"
 
 
-def _part(line: PlacedLine, start: float, end: float) -> PieceCurve:
-    """Returns the reference line between two stations of the file."""
-    a, b = line.station(start), line.station(end)
-    pieces, at = list[Piece](), 0.0
-    for piece in line.plan.pieces:
-        low, high = max(a - at, 0.0), min(b - at, piece.length)
-        if high - low > 1e-9:
-            bend = (piece.k1 - piece.k0) / piece.length
-            pieces.append(Piece(high - low, piece.k0 + low * bend, piece.k0 + high * bend))
-        at += piece.length
-    x, y = line.plan.at(a).tolist()
-    return PieceCurve(x, y, float(line.plan.heading(a)), tuple(pieces))
+def combined(parts: Sequence[tuple[float, CubicProfile]], start: float, end: float) -> list[Row]:
+    """Returns the sum of cubics, each times its factor, between two stations in metres, as rows."""
+    inner = {s for _, each in parts for s in each.stations if start < s < end}
+    stations = [start, *sorted(inner)]
+    table = np.zeros((len(stations), 4))
+    for factor, each in parts:
+        table += factor * each.cubics(np.array(stations))
+    return CubicProfile.of_table(stations, table).rows
+
+
+def limited(rows: Sequence[Row], end: float, low: float, high: float) -> list[Row]:
+    """Returns the rows with their values clamped to the range from ``low`` to ``high``. The last row ends at
+    station ``end`` in metres. The result is exact: a row is cut where its cubic crosses a limit."""
+    out: list[Row] = []
+    ends = [*(s for s, _ in rows[1:]), end]
+    for row, stop in zip(rows, ends, strict=True):
+        for start, until in _cuts(row, stop, low, high):
+            value = value_at(row, (start + until) / 2)
+            if low - TOUCHES <= value <= high + TOUCHES:
+                a, b, c, d = shifted(np.array(row[1]), start - row[0]).tolist()
+                out.append((start, (a, b, c, d)) if start > row[0] else row)
+            else:
+                out.append(constant(start, low if value < low else high))
+    return out
+
+
+def _cuts(row: Row, end: float, low: float, high: float) -> list[tuple[float, float]]:
+    start, (a, b, c, d) = row
+    reach = end - start
+    swing = reach * (abs(b) + reach * (abs(c) + reach * abs(d)))
+    if (low <= a - swing and a + swing <= high) or (b, c, d) == (0.0, 0.0, 0.0):
+        return [(start, end)]
+    places = {start, end}
+    for limit in (low, high):
+        for root in np.roots([d, c, b, a - limit]):
+            if abs(root.imag) < TOUCHES and SHORTEST < root.real < reach - SHORTEST:
+                places.add(start + float(root.real))
+    return [*pairwise(sorted(places))]
+
+
+def width_rows(lanes: Sequence[LaneElement], place: int, start: float, end: float) -> list[Row]:
+    """Returns the width of the lane with this index in ``lanes``, from a station to another, in metres."""
+    lane = lanes[place]
+    parts: list[tuple[float, CubicProfile]] = []
+    if lane.width is not None:
+        parts.append((1.0, lane.width))
+    elif lane.border is not None:
+        parts.append((_sign(lane.border), lane.border))
+        for inner in reversed(lanes[:place]):
+            if inner.width is not None:
+                parts.append((-1.0, inner.width))
+            elif inner.border is not None:
+                parts.append((-_sign(inner.border), inner.border))
+                break
+    return combined(parts, start, end)
+
+
+def _sign(border: CubicProfile) -> float:
+    return -1.0 if next((row[0] for row in border.coefficients if row[0]), 0.0) < 0 else 1.0
+
+
+def plain(profile: CubicProfile, length: float) -> ElevationProfile:
+    """Returns a profile of constant grades and parabolas as a GradeProfile, and any other one as cubics, both
+    up to a length in metres."""
+    stations = [s for s in profile.stations if s < length - SAME_HEIGHT]
+    stations = [0.0, *(s for s in stations if s > SAME_HEIGHT)]
+    table = profile.cubics(np.array(stations))
+    a, b, c, d = table.T
+    u = np.diff([*stations, length])
+    z, grades = a + u * (b + u * c), b + 2 * u * c
+    steps = np.abs(z[:-1] - a[1:]) / np.maximum(1.0, np.abs(a[1:]))
+    if np.any(d) or max([0.0, *steps, *np.abs(grades[:-1] - b[1:])]) > SAME_HEIGHT:
+        return CubicProfile.of_table(stations, table)
+    return GradeProfile(float(a[0]), (*stations, length), (*b.tolist(), float(grades[-1])))
 
 
 def _reaching(rows: list[Row], start: float) -> list[Row]:
@@ -367,201 +476,226 @@ def _reaching(rows: list[Row], start: float) -> list[Row]:
     return [(start, (a, b, c, d)), *rest]
 
 
-def _constant(width: CubicProfile) -> float | CubicProfile:
+def _constant(width: CubicProfile) -> Width:
     varies = len(width.stations) > 1 or any(width.coefficients[0][1:])
     return width if varies else width.coefficients[0][0]
 
 
-def _marking(lanes: Sequence[tuple[float, float, Element]]) -> Marking:
-    """Returns the marking that a lane has on the longest part of its sections, given by start, end and XML
-    element."""
-    found: dict[Marking, float] = {}
-    for start, end, node in lanes:
-        marks = node.findall("roadMark")
-        at = [start, *(min(max(start + number(each, "sOffset", 0.0), start), end) for each in marks), end]
-        kinds: list[Marking] = ["none", *(MARKS.get(each.get("type", "none"), "none") for each in marks)]
-        for kind, (a, b) in zip(kinds, pairwise(at), strict=True):
-            found[kind] = found.get(kind, 0.0) + b - a
-    return max(found, key=lambda kind: found[kind])
+def _sum(terms: Sequence[tuple[float, Width]], length: float) -> Width:
+    total = added(terms, length)
+    return _constant(closed(total.rows, length)) if isinstance(total, CubicProfile) else total
+
+
+class Stretch(NamedTuple):
+    """A part of a lane between two stations in metres, with what is stated there; None if nothing is."""
+
+    start: float
+    end: float
+    value: Any
+
+
+Nodes = Sequence[tuple[float, float, Element]]
+"""The XML elements of a lane, with the stations in metres between which each holds."""
+
+
+def stated(lanes: Nodes, tag: str, read: Callable[[Element], Any]) -> list[Stretch]:
+    """Returns what the records ``tag`` of a lane state, in order along the road. ``read`` reads a record."""
+    out: list[Stretch] = []
+    for start, end, lane in lanes:
+        nodes = lane.findall(tag)
+        starts = [start + number(node, "sOffset", 0.0) for node in nodes]
+        held = [start, *(min(max(each, start), end) for each in starts), end]
+        out += map(Stretch, held, held[1:], [None, *map(read, nodes)])
+    return out
+
+
+def longest_first(stretches: Iterable[Stretch]) -> list[Any]:
+    """Returns the values that are stated, that of the longest part of the road first."""
+    lengths: dict[Any, float] = {}
+    for start, end, value in stretches:
+        if value is not None and end > start:
+            lengths[value] = lengths.get(value, 0.0) + end - start
+    return sorted(lengths, key=lambda value: -lengths[value])
 
 
 class RoadBuilder:
     """Makes the roads of a network from those of a file."""
 
     def __init__(self, road: FileRoad, remarks: Remarks) -> None:
-        self.file, self.remarks = road, remarks
+        self.file, self.remarks, self.name = road, remarks, f"road {road.id}"
 
-    def _widths(self, stretch: LaneStretch, lane: int) -> list[Row]:
-        """Returns the width of a lane of a stretch, on the stations of the file."""
-        rows = list[Row]()
-        for section in stretch.sections:
-            side = section.left if lane > 0 else section.right
-            place = next(n for n, own in enumerate(side) if int(number(own.node, "id")) == lane)
-            rows += _reaching(width_rows(side, place, *section.own), section.start)
-        if closed(rows, stretch.end).beyond(0.0, WIDEST):
-            self.remarks.add("the width of a lane is negative or above 100 m, and is limited", self.name)
-        return limited(rows, stretch.end, 0.0, WIDEST)
-
-    def _offset(self, stretch: LaneStretch) -> list[Row]:
-        """Returns the offset of the line between the directions, on the stations of the file."""
-        parts = [
-            _reaching(combined([(1.0, self.file.offset)], *section.own), section.start)
-            for section in stretch.sections
-        ]
-        return [row for part in parts for row in part]
-
-    @property
-    def name(self) -> str:
-        """What remarks call the road."""
-        return f"road {self.file.id}"
-
-    def build(self, stretch: LaneStretch) -> Road:
-        """Returns the road of a stretch, and stores the ids of its lanes there."""
-        plan = _part(self.file.line, stretch.start, stretch.end)
-        scale = _Scale(stretch.start, stretch.end, plan.length)
-        first = stretch.sections[0]
-        sides = list[tuple[Lane, ...]]()
-        for sign, lanes in ((1, first.left), (-1, first.right)):
+    def build(self, parts: FileSections) -> tuple[Road, list[dict[int, int]]]:
+        """Returns the road of some sections, and for each section the ids of the lanes in this road by those
+        in the file."""
+        sections, ids, sides = parts.sections, [dict[int, int]() for _ in parts.sections], []
+        start, end = sections[0].start, sections[-1].end
+        for side in (1, -1):
             made = list[Lane]()
-            for own in lanes:
-                lane = int(number(own.node, "id"))
-                found = self._lane(stretch, lane, own, scale)
-                if found is not None:
-                    made.append(found)
-                    stretch.lanes[lane] = sign * len(made)
+            slots = _slots(parts, side)
+            if len(slots) > MOST_LANES:
+                self.remarks.add(f"lanes beyond the first {MOST_LANES} of a side are left out", self.name)
+            for slot in slots[:MOST_LANES]:
+                lane = self._lane(sections, slot)
+                if lane is not None:
+                    made.append(lane)
+                    for n, own in slot.items():
+                        ids[n][own] = side * len(made)
             sides.append(tuple(made))
-        offset = _constant(scale.moved(self._offset(stretch)))
-        centre = [(each.start, each.end, each.centre[0]) for each in stretch.sections if each.centre]
-        return self._road(plan, scale, sides, offset, _marking(centre) if centre else "none")
+        offset = [
+            row
+            for each in sections
+            for row in _reaching(combined([(1.0, self.file.offset)], *each.own), each.start)
+        ]
+        centre = [(each.start, each.end, each.centre[0]) for each in sections if each.centre]
+        left, right = sides
+        along, angle = left if self.file.left_hand else right, None
+        if self.file.angle is not None:
+            rows, unit = combined([(1.0, self.file.angle)], start, end), (math.degrees(1), "degrees")
+            angle = self._limited(rows, start, end, (-STEEPEST, STEEPEST), "its superelevation", unit=unit)
+            angle = angle if any(any(cubic) for cubic in angle.coefficients) else None
+        driven = max((n for n, lane in enumerate(along) if lane.kind == "driving"), default=0)
+        centre_offset = _constant(self.file.line.moved(offset, start, end))
+        profile = Profile(
+            left, right, driven, self._marking(centre), angle, centre_offset, self.file.left_hand
+        )
+        plan = self.file.line.part(start, end)
+        heights = self.file.line.moved(combined([(1.0, self.file.heights)], start, end), start, end)
+        return Road(plan, plain(heights, plan.length), profile=profile), ids
 
-    def _lane(self, stretch: LaneStretch, lane: int, own: LaneElement, scale: _Scale) -> Lane | None:
-        width = scale.moved(self._widths(stretch, lane))
-        widest = max(width.extremes()[1], 0.0)
+    def _limited(
+        self,
+        rows: Sequence[Row],
+        start: float,
+        end: float,
+        limits: tuple[float, float],
+        what: str,
+        which: str = "",
+        unit: tuple[float, str] = (1.0, "m"),
+    ) -> CubicProfile:
+        """Returns the rows, on the stations of the file, within limits on the stations of the road."""
+        if found := closed(rows, end).beyond(*limits):
+            value, low, high = (f"{each * unit[0]:.4g}" for each in (found[1], *limits))
+            where = f"{which}{value} {unit[1]} at s = {found[0]:.4g} m, outside {low} to {high} {unit[1]}"
+            self.remarks.add(f"{what} is limited", self.name, where)
+            rows = limited(rows, end, *limits)
+        return self.file.line.moved(rows, start, end)
+
+    def _lane(self, sections: Sequence[FileSection], slot: Slot) -> Lane | None:
+        rows, start, end = list[Row](), sections[0].start, sections[-1].end
+        for n, section in enumerate(sections):
+            if n in slot:
+                side = section.left if slot[n] > 0 else section.right
+                place = [own.id for own in side].index(slot[n])
+                rows += _reaching(width_rows(side, place, *section.own), section.start)
+            else:
+                rows.append(constant(section.start, 0.0))
+        parts = [(sections[n].start, sections[n].end, sections[n].ids[slot[n]]) for n in sorted(slot)]
+        which = f"lane {slot[min(slot)]}: "
+        width = self._limited(rows, start, end, (0.0, WIDEST), "the width of a lane", which)
+        widest = width.extremes()[1]
         if widest <= NO_WIDTH:
             return None
-        kind = KINDS.get(own.kind, "none")
+        kind, nodes = parts[0][2].kind, [(start, end, own.node) for start, end, own in parts]
         if kind == "driving" and widest <= THIN:
             kind = "none"
             self.remarks.add(
                 f"a lane for cars that is nowhere wider than {THIN:g} m is a strip here", self.name
             )
-        parts = [(each.start, each.end, each.ids[lane]) for each in stretch.sections]
-        nodes = [(start, end, part.node) for start, end, part in parts]
         if kind != "driving":
-            return Lane(kind, _constant(width), _marking(nodes))
-        limit, friction = (self._stated(nodes, tag) for tag in ("speed", "material"))
-        middle = (stretch.start + stretch.end) / 2
-        if limit is None:
-            limit = next((v for s, v in reversed(self.file.speeds) if s <= middle), None)
-        for name in ("access", "rule"):
-            if any(node.find(name) is not None for _, _, node in nodes):
-                self.remarks.add(f"left out: the element {name} of lanes", self.name)
-        return Lane(kind, _constant(width), _marking(nodes), limit, friction)
+            if any(node.find(tag) is not None for _, _, node in nodes for tag in ("speed", "material")):
+                what = "left out: speed limits and frictions of lanes that are not for cars"
+                self.remarks.add(what, self.name)
+            return Lane(kind, _constant(width), self._marking(nodes))
+        limit, friction = (self._used(nodes, what) for what in ("speed limit", "friction"))
+        return Lane(kind, _constant(width), self._marking(nodes), limit, friction)
 
-    def _stated(self, lanes: Sequence[tuple[float, float, Element]], tag: str) -> float | None:
+    def _marking(self, lanes: Nodes) -> Marking:
+        """Returns the marking that a lane has on the longest part of its sections."""
+        marked = stated(lanes, "roadMark", lambda mark: MARKS.get(mark.get("type", "none"), "none"))
+        found: list[Marking] = longest_first(each._replace(value=each.value or "none") for each in marked)
+        if len(found) > 1:
+            what = "its road marks change along the road, and the most frequent ones are painted"
+            self.remarks.add(what, self.name)
+        return found[0] if found else "none"
+
+    def _used(self, lanes: Nodes, what: str) -> float | None:
         """Returns the speed limit in m/s, or the friction, that holds for most of a lane."""
-        found = list[Stretch]()
-        for start, end, node in lanes:
-            nodes = node.findall(tag)
-            at = [*(min(start + number(each, "sOffset", 0.0), end) for each in nodes), end]
-            for each, (a, b) in zip(nodes, pairwise(at), strict=True):
-                value = speed_of(each, self.remarks, self.name) if tag == "speed" else None
-                if tag == "material" and "friction" in each.attrib:
-                    value = _usable(number(each, "friction"), "friction", self.remarks, self.name)
-                found.append(Stretch(a, b, value))
-        values = longest_first(found)
-        if len(values) > 1:
-            what = "the speed limit" if tag == "speed" else "the friction"
-            said = f"{what} of a lane changes on its way, and the one for most of it is taken"
-            self.remarks.add(said, self.name)
+        if what == "friction":
+            found = stated(lanes, "material", self._friction)
+        else:
+            found = self._or_of_road(
+                stated(lanes, "speed", lambda node: speed_of(node, self.remarks, self.name))
+            )
+        groups = groupby((each for each in found if each.end > each.start), lambda each: each.value)
+        firsts, values = [next(group) for _, group in groups], longest_first(found)
+        if values and len(firsts) > 1:
+            steps = [f"to {said_of(what, value)} at s = {s:g} m" for s, _, value in firsts[1:]]
+            more = f" and so on ({len(steps)} changes)" if len(steps) > MOST_CHANGES else ""
+            first = f"lane {lanes[0][2].get('id', '?')[:10]} from {said_of(what, firsts[0].value)}"
+            changes = f"{first} {', '.join(steps[:MOST_CHANGES])}{more}"
+            told = f"the {what} of a lane changes on its way, and the one for most of it is taken"
+            self.remarks.add(told, self.name, f"{changes}; {said_of(what, values[0])} is taken")
         return values[0] if values else None
 
-    def _road(
-        self,
-        plan: PieceCurve,
-        scale: _Scale,
-        sides: Sequence[tuple[Lane, ...]],
-        offset: float | CubicProfile,
-        centre: Marking,
-    ) -> Road:
-        start, end = scale.start, scale.end
-        heights: ElevationProfile = scale.moved(combined([(1.0, self.file.heights)], start, end))
-        assert isinstance(heights, CubicProfile)
-        angle = None
-        if self.file.angle is not None:
-            rows = combined([(1.0, self.file.angle)], start, end)
-            angle = scale.moved(limited(rows, end, -STEEPEST, STEEPEST))
-            angle = angle if any(any(cubic) for cubic in angle.coefficients) else None
-        left, right = sides
-        along = left if self.file.left_hand else right
-        driven = max((n for n, lane in enumerate(along) if lane.kind == "driving"), default=0)
-        profile = Profile(left, right, driven, centre, angle, offset, self.file.left_hand)
-        return Road(plan, plain(heights, plan.length), profile=profile)
+    def _or_of_road(self, own: Iterable[Stretch]) -> list[Stretch]:
+        """Returns the speed limits of a lane and, where it states none, those of its road."""
+        found = list[Stretch]()
+        for start, end, value in own:
+            cuts = [start, *(s for s, _ in self.file.speeds if start < s < end), end]
+            for s, until in pairwise(cuts):
+                of_road = next((speed for at, speed in reversed(self.file.speeds) if at <= s), None)
+                found.append(Stretch(s, until, of_road if value is None else value))
+        return found
+
+    def _friction(self, node: Element) -> float | None:
+        if "friction" not in node.attrib:
+            return None
+        return _usable(number(node, "friction"), "friction", self.remarks, self.name)
 
     def ways(self) -> "list[Way]":
         """Returns the roads of a connecting road, one for each direction in which lanes lead through it."""
+        road, ids = self.build(self.file.whole)
         side = 1 if self.file.left_hand else -1
-        return [way for sign in (side, -side) if (way := self._way(sign, sign == side)) is not None]
+        found = [self._way(road, ids, sign, sign == side) for sign in (side, -side)]
+        return [way for way in found if way is not None]
 
-    def _way(self, sign: int, is_along: bool) -> "Way | None":
-        stretches, joints = self.file.stretches, self.file.joints
-        first = stretches[0].sections[0]
-        chains = [[lane] for lane in sorted(first.driving, key=abs) if lane * sign > 0]
-        for joint, stretch in zip(joints, stretches[1:], strict=True):
-            onward = {a: b for a, b in joint if b in stretch.sections[0].driving and b * sign > 0}
-            if any(chain[-1] not in onward for chain in chains):
-                self.remarks.add("left out: lanes that begin or end inside a junction", self.name)
-            chains = [[*chain, onward[chain[-1]]] for chain in chains if chain[-1] in onward]
-        start, end = stretches[0].start, stretches[-1].end
-        plan = _part(self.file.line, start, end)
-        scale = _Scale(start, end, plan.length)
-        edges = [[self._edges(stretch, chain[n]) for n, stretch in enumerate(stretches)] for chain in chains]
-        lanes, ids, outer = list[Lane](), dict[int, int](), list[Row]()
-        for chain, own in zip(chains, edges, strict=True):
-            inside, beyond = ([row for part in own for row in part[n]] for n in (0, 1))
-            width = _difference(beyond, inside, start, end, sign)
-            if max(scale.moved(width).extremes()[1], 0.0) <= THIN:
-                self.remarks.add("left out: lanes that are too narrow for cars", self.name)
+    def _way(self, road: Road, ids: Sequence[dict[int, int]], sign: int, is_along: bool) -> "Way | None":
+        profile = road.profile
+        assert profile is not None
+        through = set.intersection(*(set(each.values()) for each in ids))
+        offset, kept, lanes, inside = (
+            profile.offset,
+            dict[int, int](),
+            list[Lane](),
+            list[tuple[float, Width]](),
+        )
+        for n, lane in enumerate(profile.left if sign > 0 else profile.right, 1):
+            if lane.kind != "driving" or sign * n not in through:
+                inside.append((1.0, lane.width))
+                if lane.kind == "driving":
+                    self.remarks.add("left out: lanes that begin or end inside a junction", self.name)
                 continue
-            if lanes:
-                gap = scale.moved(limited(_difference(inside, outer, start, end, sign), end, 0.0, WIDEST))
-                if gap.extremes()[1] > NO_WIDTH:
-                    lanes.append(Lane("none", _constant(gap)))
-            else:
-                offset = _constant(scale.moved(inside))
-            element = first.ids[chain[0]]
-            model = self._lane(stretches[0], chain[0], element, scale) if len(stretches) == 1 else None
-            made = Lane("driving", _constant(scale.moved(limited(width, end, 0.0, WIDEST))))
-            if model is not None:
-                made = replace(made, speed_limit=model.speed_limit, friction=model.friction)
-            nodes = [
-                (each.start, each.end, each.ids[lane].node)
-                for stretch, lane in zip(stretches, chain, strict=True)
-                for each in stretch.sections
-            ]
-            lanes.append(replace(made, marking=_marking(nodes)))
-            ids[chain[0]] = sign * len(lanes)
-            outer = beyond
-        if not ids:
+            gap = _sum(inside, road.length)
+            if not lanes:
+                offset = _sum([(1.0, offset), (float(sign), gap)], road.length)
+            elif gap != 0:
+                lanes.append(Lane("none", gap))
+            lanes.append(lane)
+            kept[sign * n], inside = sign * len(lanes), []
+        if not kept:
             return None
-        last = {chain[-1]: ids[chain[0]] for chain in chains if chain[0] in ids}
         sides = (tuple(lanes), ()) if sign > 0 else ((), tuple(lanes))
-        road = self._road(plan, scale, sides, offset, "none")
-        at_start = {a: ids[b] for a, b in self.file.entry.items() if b in ids}
-        at_end = {a: last[b] for a, b in self.file.exit.items() if b in last}
+        driven = len(lanes) - 1 if is_along else 0
+        road = road.with_profile(replace(
+            profile, left=sides[0], right=sides[1], driven=driven, centre_marking="none", offset=offset
+        ))  # fmt: skip
+        at_start, at_end = (
+            {lane: kept[there[own]] for lane, own in lanes_at.items() if there.get(own) in kept}
+            for lanes_at, there in ((self.file.entry, ids[0]), (self.file.exit, ids[-1]))
+        )
         if is_along:
             return Way(road, True, at_start, at_end)
         return Way(turned(road), False, *({a: -b for a, b in each.items()} for each in (at_start, at_end)))
-
-    def _edges(self, stretch: LaneStretch, lane: int) -> tuple[list[Row], list[Row]]:
-        """Returns the offsets of the inner and the outer edge of a lane, on the stations of the file."""
-        sign = 1 if lane > 0 else -1
-        inside = [each for each in stretch.sections[0].ids if each * sign > 0 and abs(each) < abs(lane)]
-        terms = [(float(sign), CubicProfile.of_rows(self._widths(stretch, each))) for each in inside]
-        own = (float(sign), CubicProfile.of_rows(self._widths(stretch, lane)))
-        whole = [(1.0, CubicProfile.of_rows(self._offset(stretch))), *terms]
-        inner, outer = (combined(some, stretch.start, stretch.end) for some in (whole, [*whole, own]))
-        return inner, outer
 
 
 class Way(NamedTuple):
@@ -571,8 +705,3 @@ class Way(NamedTuple):
     is_along: bool  # whether it leads along the road of the file
     at_start: dict[int, int]  # ids of its lanes, by those in the first section of the file
     at_end: dict[int, int]  # ids of its lanes, by those in the last section of the file
-
-
-def _difference(one: list[Row], other: list[Row], start: float, end: float, sign: int) -> list[Row]:
-    terms = [(float(sign), CubicProfile.of_rows(one)), (-float(sign), CubicProfile.of_rows(other))]
-    return combined(terms, start, end)

@@ -356,8 +356,13 @@ def road_columns(
 def _median(profile: Profile, span: tuple[float, float]) -> dict[str, float] | None:
     if not profile.is_divided:
         return None
-    at = profile.count[0] if profile.left_hand else profile.count[1]
-    return {"strip": at, "from": round(span[0], MILLIMETRES), "to": round(span[1], MILLIMETRES)}
+    left, right = profile.carriageway
+    kinds = [lane.kind for lane in (*profile.left[:left][::-1], *profile.right[:right])]
+    return {
+        "strip": kinds.index("median"),
+        "from": round(span[0], MILLIMETRES),
+        "to": round(span[1], MILLIMETRES),
+    }
 
 
 def _lanes(profile: Profile, s: Array) -> dict[str, Any]:

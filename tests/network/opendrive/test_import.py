@@ -14,14 +14,8 @@ from roadgpt.errors import UsageError
 from roadgpt.export import save
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.geometry import GradeProfile
-from roadgpt.network import read_source
-from roadgpt.road import (
-    ImportedRoad,
-    Road,
-    World,
-    build,
-    read_opendrive,
-)
+from roadgpt.network import ImportedRoad, read_opendrive, read_source
+from roadgpt.road import Road, World, build
 from strategies import designs
 from tables import rows
 
@@ -145,12 +139,12 @@ def test_cubic_heights_are_kept_and_steps_are_told_of(tmp_path: Path) -> None:
     found = read_opendrive(file(tmp_path, rest=heights))
     assert float(found.road.at(10.0)[2]) == pytest.approx(3 + 0.2 + 0.1 - 0.02, abs=1e-9)
     assert float(found.road.at(30.0)[2]) == 9
-    assert found.remarks == ("its height jumps by 5.36 m at s = 20.0",)
+    assert found.remarks == ("its height jumps (by 5.36 m at s = 20.0)",)
     assert apart(Road.from_json(found.road.to_json()), found.road) == 0
 
 
-def test_the_edge_of_the_driven_lane_is_the_centre_line(tmp_path: Path) -> None:
-    """A median of 1.5 m widens to 2.5 m; lane 0 itself lies 0.5 m to the left."""
+def test_all_lanes_lie_beside_the_line_of_the_file(tmp_path: Path) -> None:
+    """A median of 1.5 m widens to 2.5 m; lane 0 lies 0.5 m to the left of the line."""
     right = (
         '<lane id="-1" type="median"><width sOffset="0" a="1.5" b="0.025"/></lane>'
         '<lane id="-2" type="driving"><width sOffset="0" a="3.2"/></lane>'
@@ -159,9 +153,12 @@ def test_the_edge_of_the_driven_lane_is_the_centre_line(tmp_path: Path) -> None:
     found = read_opendrive(file(tmp_path, arc, right=right, offset='<laneOffset s="0" a="0.5"/>'))
     assert found.lane_width == 3.2
     assert found.shoulder == 0
-    x, y, _ = found.road.centreline().T
-    around = np.arctan2(x, 50 - y)
-    assert np.hypot(x, y - 50) == pytest.approx(50 + 1.0 + 0.025 * 50 * around, abs=1e-3)
+    profile, s = found.road.profile, np.linspace(0, 40, 41)
+    assert profile is not None
+    assert [each.kind for each in profile.lanes.values()] == ["driving", "median", "driving"]
+    x, y, _ = found.road.at(s, profile.lane(s).left).T
+    assert np.arctan2(x, 50 - y) == pytest.approx(s / 50, abs=1e-9)
+    assert np.hypot(x, y - 50) == pytest.approx(50 + 1.0 + 0.025 * s, abs=1e-9)
 
 
 def test_a_road_with_left_lanes_only_is_taken_the_other_way(tmp_path: Path) -> None:
@@ -196,8 +193,10 @@ def test_what_a_road_cannot_show_is_told_by_name_and_number(tmp_path: Path) -> N
     assert read_opendrive(path).remarks == (
         "it is made for left-hand traffic, and is driven on the right here",
         "the car keeps to lane 2 from the centre line, the rightmost that is 2 m wide everywhere",
-        "left out: 2 further lanes (2 sidewalk), 1 <height>, 1 <shape>, 2 objects, 1 railway, 2 signals, "
-        "1 surface, 1 tunnel, junction 7, <geoReference> and <offset> of the map",
+        "left out: objects without a type",
+        "left out: signs without a type",
+        "left out: 1 <height>, 1 <shape>, 1 railway, 1 surface, 1 tunnel, <geoReference> of the map, "
+        "<offset> of the map, junction 7",
     )
 
 

@@ -6,8 +6,7 @@ size, number of elements, depth and tag length bound the time and memory that re
 import math
 import re
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -30,35 +29,18 @@ CHUNK = 65_536  # bytes
 READ = frozenset({
     "type", "speed", "planView", "geometry", "line", "spiral", "arc", "poly3", "paramPoly3",
     "elevationProfile", "elevation", "lateralProfile", "superelevation", "lanes", "laneOffset", "laneSection",
-    "left", "center", "right", "lane", "width", "border", "roadMark", "material",
+    "left", "center", "right", "lane", "width", "border", "roadMark", "material", "link", "predecessor",
+    "successor", "objects", "object", "signals", "signal", "signalReference", "junction", "connection",
+    "laneLink", "priority",
 })  # fmt: skip
-"""The elements of a single road that RoadGPT reads."""
-OF_MAPS = READ | {
-    "link", "predecessor", "successor", "objects", "object", "signals", "signal", "signalReference",
-    "junction", "connection", "laneLink", "priority",
-}  # fmt: skip
-"""The elements of a map that RoadGPT reads."""
+"""The elements that RoadGPT reads."""
 TOPS = ("road", "junction")
-OF_JUNCTIONS = ("boundary", "controller", "outline", "outlines", "validity")
-"""Elements of a map that say nothing more than what is read, or where the edges of an object lie."""
-SILENT = (
-    *OF_JUNCTIONS,
-    "objects",
-    "signals",
-    "surface",
-    "link",
-    "userData",
-    "dataQuality",
-    "sway",
-    "explicit",
-)
-"""Elements of a road that are neither read nor reported; those in them that ``COUNTED`` names are."""
+SILENT = ("boundary", "controller", "outline", "outlines", "validity", "objectReference", "surface",
+          "userData", "dataQuality", "sway", "explicit")  # fmt: skip
+"""Elements that are neither read nor reported; those in them that ``COUNTED`` names are."""
 COUNTED = {
-    "object": "object",
     "bridge": "bridge",
     "tunnel": "tunnel",
-    "signal": "signal",
-    "signalReference": "signal",
     "railroad": "railway",
     "CRG": "surface",
     "include": "included file",
@@ -79,6 +61,30 @@ OF_LANE = ("width", "border", "roadMark", "material", "speed")
 CUBICS = ("elevation", "superelevation", "laneOffset", "width", "border")
 END = 1e-6  # m; a record this close to the end is at the end
 MERGED = 0.1  # m; the length of a road may differ by this much from that of its line
+TOLD = 3  # places that a remark lists
+
+
+class Remarks:
+    """Sentences about what was changed or left out, each with the places at which that happened. Those about
+    a file ``of_one_road`` do not name the road."""
+
+    def __init__(self, of_one_road: bool = False) -> None:
+        self.of_one_road = of_one_road
+        self._where = defaultdict[str, dict[str, None]](dict)
+
+    def add(self, what: str, where: str, more: str = "") -> None:
+        """Adds a sentence about one place, such as a road, and what more is to be said of this place."""
+        named = ("" if self.of_one_road else where, more)
+        self._where[what][": ".join(each for each in named if each)] = None
+
+    def sentences(self) -> tuple[str, ...]:
+        """Returns one sentence for each remark, with the first places and the number of all others."""
+        return tuple(what + _listed([*filter(None, at)]) for what, at in self._where.items())
+
+
+def _listed(places: Sequence[str]) -> str:
+    more = f" and {len(places) - TOLD:,} more" if len(places) > TOLD else ""
+    return f" ({', '.join(places[:TOLD])}{more})" if places else ""
 
 
 def number(node: Element, name: str, missing: float | None = None) -> float:
@@ -117,46 +123,26 @@ def cubics(nodes: Iterable[Element], station: str, start: float = 0.0) -> CubicP
     return CubicProfile(tuple(kept), tuple(kept.values()))
 
 
-@dataclass(frozen=True)
-class Choice:
-    """The road that was selected from a file, and information about the other contents of the file."""
-
-    road: Element
-    others: tuple[str, ...]  # ids of all roads in the file
-    passed: Mapping[str, int]
-    """Number of skipped elements of the road for each type of element, such as objects and signals."""
-    header: frozenset[str]
-    """Names of the header elements (``geoReference``, ``offset``) that the file contains and that are
-    skipped."""
+Take = Callable[[Element, Counter[str]], None]
+"""Takes a road or a junction, and the number of its elements that RoadGPT does not read, by their name."""
 
 
-def read_tree(path: Path, wanted: str | None) -> Choice:
-    """Returns the road with the id ``wanted``, and information about the other contents of the file. If
-    ``wanted`` is None, roads with a driving lane are preferred, then roads outside junctions, then longer
-    roads. Raises UsageError if the file cannot be read, is not OpenDRIVE, is too large, or has no such road.
-    """
-    choice = _Selection(wanted)
-    reader = _Reader(READ, choice.wants, choice.compare)
+def read_tree(
+    path: Path, take: Take, wants: Callable[[str, Mapping[str, str]], bool] = lambda tag, _: True
+) -> tuple[list[str], frozenset[str]]:
+    """Calls ``take`` with each road and junction of a file, in order, of which ``wants`` returns True for the
+    name and the attributes. Returns the ids of all roads, and the elements of the header that RoadGPT does
+    not read. Raises UsageError if the file cannot be read, is not OpenDRIVE, is too large, or has no road."""
+    reader = _Reader(wants, take)
     _read(path, reader)
-    return choice.made(reader)
+    if not reader.ids:
+        raise UsageError("there is no road in it")
+    return reader.ids, frozenset(() if OURS in reader.header else reader.header)
 
 
 def count_roads(path: Path) -> int:
     """Returns the number of roads in a file; raises UsageError as ``read_tree`` does."""
-    reader = _Reader(frozenset(), lambda tag, attributes: False, lambda node, passed: None)
-    _read(path, reader)
-    return len(reader.ids)
-
-
-def read_map_tree(path: Path, take: Callable[[Element, Counter[str]], None]) -> "frozenset[str]":
-    """Calls ``take`` with each road, junction and group of junctions of a file, in order, and with the number
-    of its elements that RoadGPT does not read, by their name. Returns the names of such elements of the
-    header. Raises UsageError as ``read_tree`` does."""
-    reader = _Reader(OF_MAPS, lambda tag, attributes: tag in TOPS, take)
-    _read(path, reader)
-    if not reader.ids:
-        raise UsageError("there is no road in it")
-    return frozenset(() if OURS in reader.header else reader.header)
+    return len(read_tree(path, lambda node, passed: None, lambda tag, attributes: False)[0])
 
 
 def _read(path: Path, reader: "_Reader") -> None:
@@ -190,13 +176,8 @@ def _refuse_doctype(name: str, system: str | None, public: str | None, internal:
 class _Reader:
     """Builds the elements below the root that are wanted, one at a time, and counts what is skipped."""
 
-    def __init__(
-        self,
-        known: frozenset[str],
-        wants: Callable[[str, Mapping[str, str]], bool],
-        take: Callable[[Element, Counter[str]], None],
-    ) -> None:
-        self.known, self.wants, self.take = known, wants, take
+    def __init__(self, wants: Callable[[str, Mapping[str, str]], bool], take: Take) -> None:
+        self.wants, self.take = wants, take
         self.ids: list[str] = []
         self.header: set[str] = set()
         self.passed: Counter[str] = Counter()
@@ -214,7 +195,7 @@ class _Reader:
         if self.depth == 1 and tag != "OpenDRIVE":
             kind = f", but a file of {OTHER_KINDS[tag]}" if tag in OTHER_KINDS else ""
             raise UsageError(f"it is XML but not OpenDRIVE{kind}: it begins with <{tag[:40]}>")
-        if self.hidden or (self.stack and tag not in self.known and self.stack[-1].tag != "geometry"):
+        if self.hidden or (self.stack and tag not in READ and self.stack[-1].tag != "geometry"):
             self.hidden += 1
             values = [attributes[name].strip("+-0.e") for name in VALUES & attributes.keys()]
             is_told = self.hidden == 1 and tag not in SILENT and (any(values) or not values)
@@ -252,61 +233,35 @@ class _Reader:
                 self.take(node, self.passed)
 
 
-class _Selection:
-    """The best of the roads, or the one that is wanted."""
-
-    def __init__(self, wanted: str | None) -> None:
-        self.wanted = wanted
-        self.best: tuple[tuple[bool, bool, float], Element, Counter[str]] | None = None
-
-    def wants(self, tag: str, attributes: Mapping[str, str]) -> bool:
-        """Returns whether an element is a road that may be selected."""
-        return tag == "road" and self.wanted in (None, attributes.get("id"))
-
-    def compare(self, road: Element, passed: Counter[str]) -> None:
-        """Compares a complete road with the best one so far."""
-        is_driven = any(lane.get("type") in DRIVING for lane in road.findall("lanes/laneSection/*/lane"))
-        is_free = road.get("junction", "-1") == "-1"
-        length = road.get("length", "0")
-        rank = (is_driven, is_free, float(length) if NUMBER.fullmatch(length) else 0.0)
-        if self.best is None or rank > self.best[0]:
-            self.best = (rank, road, passed)
-
-    def made(self, read: _Reader) -> Choice:
-        """Returns the selected road, after the whole file has been parsed."""
-        if self.best is None:
-            if not read.ids:
-                raise UsageError("there is no road in it")
-            told = ", ".join(read.ids[:12]) + (", ..." if len(read.ids) > 12 else "")
-            raise UsageError(f"there is no road {self.wanted} in it; there are: {told}")
-        _, road, passed = self.best
-        header = set() if OURS in read.header else read.header
-        return Choice(road, tuple(read.ids), passed, frozenset(header))
-
-
-def in_order(road: Element) -> list[str]:
-    """Sorts the records of a road in place, and removes those that begin beyond its end. Returns a sentence
-    for each kind of record that was not in order, had several at one station, begins late, or begins beyond
-    the end, and for a wrong length. Raises UsageError if a station is not a number."""
+def in_order(road: Element, remarks: Remarks, where: str) -> None:
+    """Sorts the records of a road in place, and removes those that begin beyond its end. Adds a remark for
+    each kind of record that was not in order, had several at one station, begins late, or begins beyond the
+    end, and for a wrong length. Raises UsageError if a station is not a number."""
     line = road.findall("planView/geometry")
     end = max((number(each, "s") + abs(number(each, "length")) for each in line), default=0.0)
-    told = defaultdict[str, list[str]](list)
+
+    def tell(what: str, more: str) -> None:
+        remarks.add(what, where, more)
+
     for path in OF_ROAD if line else ():
-        _sort(road, path, "s", (0.0, end), "", told)
+        _sort(road, path, "s", (0.0, end), "", tell)
     sections = road.findall("lanes/laneSection")
     starts = [number(section, "s") for section in sections]
     for section, part in zip(sections, pairwise([*starts, end]), strict=True):
         for lane in section.findall("*/lane"):
             for tag in OF_LANE:
-                _sort(lane, tag, "sOffset", part, f" of lane {lane.get('id', '?')[:10]}", told)
+                _sort(lane, tag, "sOffset", part, f" of lane {lane.get('id', '?')[:10]}", tell)
     if abs((said := number(road, "length", end)) - end) > MERGED:
-        told[f"its length is said to be {said:g} m, and that of its line is taken"] = [f"{end:g} m"]
-    firsts = (f"{len(at)} times, first at {at[0]}" if len(at) > 1 else f"at {at[0]}" for at in told.values())
-    return [f"{what} ({where})" for what, where in zip(told, firsts, strict=True)]
+        tell("its length is not that of its line, which is taken", f"{said:g} m, not {end:g} m")
 
 
 def _sort(
-    holder: Element, path: str, station: str, part: tuple[float, float], of: str, told: dict[str, list[str]]
+    holder: Element,
+    path: str,
+    station: str,
+    part: tuple[float, float],
+    of: str,
+    tell: Callable[[str, str], None],
 ) -> None:
     """Sorts the records of one list. ``part`` is the part of the road that they are for, in metres."""
     (start, end), (above, _, tag) = part, path.rpartition("/")
@@ -323,8 +278,8 @@ def _sort(
         (f"its first <{tag}> begins late, and its value there is taken for what comes before", late),
         (f"a <{tag}> begins beyond the end of what it is for, and has no effect", beyond),
     ):
-        if stations:
-            told[what] += [f"s = {s:g} m{of}" for s in stations]
+        for s in stations:
+            tell(what, f"at s = {s:g} m{of}")
     parents = holder.findall(above or ".")
     for parent in reversed(parents):
         parent[:] = [node for node in parent if node.tag != tag]

@@ -14,8 +14,8 @@ import pytest
 from exported import ROADS, WORLD
 from roadgpt.errors import UsageError
 from roadgpt.export.exporters.opendrive import document
-from roadgpt.road import read_opendrive
-from roadgpt.road.opendrive import tree
+from roadgpt.network import read_opendrive
+from roadgpt.network.opendrive import tree
 
 SOUND = document(ROADS["arcs"], WORLD).to_text()
 BODY = SOUND.split("?>", 1)[1]

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from roadgpt.road import ImportedRoad, Profile, read_opendrive
+from roadgpt.network import ImportedRoad, read_opendrive
+from roadgpt.road import Profile
 
 LENGTH = 90.0
 ROAD = """<OpenDRIVE><road id="1" length="90"><planView>
@@ -14,11 +15,12 @@ ROAD = """<OpenDRIVE><road id="1" length="90"><planView>
 SOLID, BROKEN = '<roadMark sOffset="0" type="solid"/>', '<roadMark sOffset="0" type="broken"/>'
 
 
-def lane(id_: int, width: str | float, kind: str = "driving", mark: str = "") -> str:
+def lane(id_: int, width: str | float, kind: str = "driving", mark: str = "", before: int = 0) -> str:
     """A lane; ``width`` is a number, or the attributes of several elements."""
     rows = [f'sOffset="0" a="{width}"'] if isinstance(width, float | int) else width.split(";")
     widths = "".join(f"<width {row}/>" for row in rows)
-    return f'<lane id="{id_}" type="{kind}">{widths}{mark}</lane>'
+    link = f'<link><predecessor id="{before}"/></link>' if before else ""
+    return f'<lane id="{id_}" type="{kind}">{link}{widths}{mark}</lane>'
 
 
 def section(*lanes: str, s: float = 0.0, centre: str = BROKEN) -> str:
@@ -76,7 +78,9 @@ def test_a_lane_added_between_two_others_leaves_them_where_they_are(tmp_path: Pa
     """From s = 40 on, a lane grows between lane -1 and the outer lane, which becomes lane -3."""
     first = section(lane(1, 3), lane(-1, 3), lane(-2, 3.5))
     grows = 'sOffset="0" a="0" b="0.1";sOffset="30" a="3"'
-    second = section(lane(1, 3), lane(-1, 3), lane(-2, grows), lane(-3, 3.5), s=40.0)
+    second = section(
+        lane(1, 3, before=1), lane(-1, 3, before=-1), lane(-2, grows), lane(-3, 3.5, before=-2), s=40.0
+    )
     _, profile = read(tmp_path, first, second)
     assert profile.count == (3, 1)
     assert profile.driven == 2
@@ -85,22 +89,21 @@ def test_a_lane_added_between_two_others_leaves_them_where_they_are(tmp_path: Pa
         assert profile.middle(s) == pytest.approx(-3 - between - 1.75)
 
 
-def test_lanes_behind_a_median_are_left_out_and_the_road_is_one_way(tmp_path: Path) -> None:
+def test_lanes_behind_a_median_are_oncoming_lanes(tmp_path: Path) -> None:
     found, profile = read(tmp_path, section(lane(1, 1.0, "median"), lane(2, 3), lane(-1, 3), lane(-2, 3)))
-    assert profile.count == (2, 0)
-    assert profile.left == ()
-    assert (
-        "its lanes for oncoming cars do not adjoin its other lanes; the road is one-way here" in found.remarks
-    )
-    assert "left out: 2 further lanes (1 driving, 1 median)" in found.remarks
+    assert profile.count == (2, 1)
+    assert [each.kind for each in profile.left] == ["median", "driving"]
+    assert profile.edges(10.0).left == pytest.approx(4.0)
+    assert not any("left out" in remark for remark in found.remarks)
 
 
 def test_superelevation_turns_the_surface_about_the_reference_line(tmp_path: Path) -> None:
     """The lanes begin 5 m to the right of the line about which the surface is turned by 0.1 rad."""
     bank = '<lateralProfile><superelevation s="0" a="0.1" b="0" c="0" d="0"/></lateralProfile>'
     found, profile = read(tmp_path, section(lane(-1, 5, "median"), lane(-2, 3)), rest=bank)
-    for s, t in ((0.0, 0.0), (30.0, -3.0), (85.0, -1.5)):
-        wanted = (s, (t - 5) * math.cos(0.1), (t - 5) * math.sin(0.1))
+    assert profile.lane(9.0).left == pytest.approx(-5.0)
+    for s, t in ((0.0, 0.0), (30.0, -8.0), (85.0, -6.5)):
+        wanted = (s, t * math.cos(0.1), t * math.sin(0.1))
         assert found.road.at(s, t) == pytest.approx(wanted, abs=1e-6)
     assert profile.superelevation(20.0) == pytest.approx(0.1)
 
@@ -121,4 +124,4 @@ def test_the_longest_road_mark_is_taken(tmp_path: Path) -> None:
     marks = '<roadMark sOffset="0" type="broken"/><roadMark sOffset="20" type="solid solid"/>'
     found, profile = read(tmp_path, section(lane(1, 3, mark=SOLID), lane(-1, 3), centre=marks))
     assert profile.centre_marking == "double"
-    assert found.remarks == ("its road marks change along the road; the most frequent ones are painted here",)
+    assert found.remarks == ("its road marks change along the road, and the most frequent ones are painted",)

@@ -16,9 +16,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.errors import UsageError
-from roadgpt.road import ImportedRoad, Profile, World, read_opendrive
-from roadgpt.road.opendrive import UNREAD
-from roadgpt.road.opendrive.tree import COUNTED, DRIVING, READ, SILENT
+from roadgpt.network import ImportedRoad, read_opendrive
+from roadgpt.network.opendrive.roads import UNREAD
+from roadgpt.network.opendrive.tree import COUNTED, DRIVING, READ, SILENT
+from roadgpt.road import Profile, World
 
 LENGTH = 200.0
 LINE = '<geometry s="0" x="0" y="0" hdg="0" length="200"><line/></geometry>'
@@ -186,15 +187,15 @@ def test_a_line_that_does_not_begin_at_0_keeps_its_stations(tmp_path: Path, begi
 
 FRICTION = [
     # records, friction that is taken, words that are told
-    ([(0, 1.0), (100, 0.2)], 1.0, ["changes from 1 to 0.2 at s = 100 m", "; 1 is used everywhere"]),
-    ([(0, 1.0), (90, 0.2)], 0.2, ["changes from 1 to 0.2 at s = 90 m", "; 0.2 is used everywhere"]),
-    ([(90, 0.2), (0, 1.0)], 0.2, ["changes from 1 to 0.2 at s = 90 m"]),
-    ([(120, 0.2)], 0.2, ["changes from none to 0.2 at s = 120 m"]),
+    ([(0, 1.0), (100, 0.2)], 1.0, ["lane -1 from 1 to 0.2 at s = 100 m", "; 1 is taken"]),
+    ([(0, 1.0), (90, 0.2)], 0.2, ["from 1 to 0.2 at s = 90 m", "; 0.2 is taken"]),
+    ([(90, 0.2), (0, 1.0)], 0.2, ["from 1 to 0.2 at s = 90 m"]),
+    ([(120, 0.2)], 0.2, ["from none to 0.2 at s = 120 m"]),
     ([(0, 1.0), (0, 0.3)], 0.3, ["several <material>", "s = 0 m"]),
-    ([(0, 3.5)], 2.0, ["friction of 3.5 at s = 0 m is taken as 2"]),
+    ([(0, 3.5)], 2.0, ["its friction of 3.5 is taken as 2"]),
     ([(0, 0.8), (150, 3.5)], 0.8, ["to 3.5 at s = 150 m"]),
-    ([(0, 0)], None, ["a friction of 0 at s = 0 m is not used"]),
-    ([(0, -0.5), (50, 0.4)], 0.4, ["a friction of -0.5 at s = 0 m is not used", "from none to 0.4"]),
+    ([(0, 0)], None, ["a friction of 0 is not used"]),
+    ([(0, -0.5), (50, 0.4)], 0.4, ["a friction of -0.5 is not used", "from none to 0.4"]),
     ([(0, 0.01)], 0.01, []),
     ([(0, 2.0)], 2.0, []),
     ([(0, 0.4), (250, 0.9)], 0.4, ["<material> begins beyond the end", "s = 250 m"]),
@@ -216,15 +217,15 @@ def test_one_friction_is_taken_and_the_others_are_told(
 
 SPEEDS = [
     ([(0, "50", "km/h")], 50, []),
-    ([(0, "50", "km/h"), (150, "30", "km/h")], 50, ["changes from 50 km/h to 30 km/h at s = 150 m"]),
-    ([(150, "30", "km/h"), (0, "50", "km/h")], 50, ["changes from 50 km/h to 30 km/h at s = 150 m"]),
-    ([(0, "500", "km/h")], 300, ["speed limit of 500 km/h at s = 0 m is taken as 300 km/h"]),
-    ([(0, "2", "km/h")], 5, ["speed limit of 2 km/h at s = 0 m is taken as 5 km/h"]),
+    ([(0, "50", "km/h"), (150, "30", "km/h")], 50, ["from 50 km/h to 30 km/h at s = 150 m"]),
+    ([(150, "30", "km/h"), (0, "50", "km/h")], 50, ["from 50 km/h to 30 km/h at s = 150 m"]),
+    ([(0, "500", "km/h")], 300, ["speed limit of 500 km/h is taken as 300 km/h"]),
+    ([(0, "2", "km/h")], 5, ["speed limit of 2 km/h is taken as 5 km/h"]),
     ([(0, "300", "km/h")], 300, []),
-    ([(0, "no limit", "km/h")], None, ["a speed limit of 0, or of no limit, at s = 0 m is not used"]),
-    ([(0, "0", "km/h")], None, ["a speed limit of 0, or of no limit, at s = 0 m is not used"]),
+    ([(0, "no limit", "km/h")], None, ["a speed limit of 0, or of no limit, is not used"]),
+    ([(0, "0", "km/h")], None, ["a speed limit of 0, or of no limit, is not used"]),
     ([(0, "20", "knots")], 72, ["a speed limit is in 'knots', and is taken as one in m/s"]),
-    ([(0, "no limit", "km/h"), (100, "80", "km/h")], 80, ["changes from none to 80 km/h at s = 100 m"]),
+    ([(0, "no limit", "km/h"), (100, "80", "km/h")], 80, ["from none to 80 km/h at s = 100 m"]),
 ]
 
 
@@ -253,16 +254,19 @@ def test_a_lane_s_own_speed_limit_goes_before_that_of_the_road(tmp_path: Path) -
     rest = '<type s="0" type="rural"><speed max="90" unit="km/h"/></type>'
     found = read(tmp_path, section(0.0, lane(-1, WIDTH + MARK + own_limit)), rest=rest)
     assert found.speed_limit == pytest.approx(90 / 3.6)
-    assert told(found, "changes from 90 km/h to 30 km/h at s = 120 m")
+    assert told(found, "from 90 km/h to 30 km/h at s = 120 m")
 
 
 @pytest.mark.parametrize("kind", ["driving", "shoulder"])
-def test_a_friction_of_further_lanes_alone_is_told(tmp_path: Path, kind: str) -> None:
+def test_a_friction_of_further_lanes_alone_is_theirs(tmp_path: Path, kind: str) -> None:
     ice = lane(-2, WIDTH + MARK + '<material sOffset="0" friction="0.3"/>', kind)
     ice = ice if kind == "shoulder" else ice.replace('"-2"', '"1"')
     found = read(tmp_path, section(0.0, lane(-1) + ice) if kind == "shoulder" else section(0.0, None, ice))
     assert found.friction is None
-    assert told(found, "a friction of 0.3 is stated for other lanes", "is not used")
+    if kind == "driving":
+        assert own(found).lanes[1].friction == 0.3
+    else:
+        assert told(found, "left out: speed limits and frictions of lanes that are not for cars")
 
 
 TOLD = {
@@ -309,12 +313,9 @@ TOLD = {
         "first <width> begins late"),
     "negative": (
         lane(-1) + lane(-2, rows("width", "sOffset", [(0.0, 1.0, -0.01, 0, 0)]) + MARK), "",
-        "the width of its lane -2 is -1 m at s = 200 m, outside 0 to 100 m",
+        "the width of a lane is limited (lane -2: -1 m at s = 200 m, outside 0 to 100 m)",
     ),
-    "shoulder": (
-        lane(-1) + lane(-2, kind="sidewalk") + lane(-3, kind="shoulder"), "",
-        "2 further lanes (1 shoulder, 1 sidewalk)",
-    ),
+    "twice": (lane(-1) + lane(-1), "", "several lanes of a section have the same id"),
 }  # fmt: skip
 
 
@@ -341,7 +342,7 @@ def test_what_is_left_out_or_changed_is_told(tmp_path: Path, name: str) -> None:
 def test_a_length_that_is_not_that_of_the_line_is_told(tmp_path: Path, length: str, is_told: bool) -> None:
     found = read(tmp_path, road=f'length="{length}"')
     assert found.road.length == 200
-    assert told(found, "its length is said to be", length) == is_told
+    assert told(found, "its length is not that of its line", length) == is_told
 
 
 @pytest.mark.parametrize(

@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from roadgpt.errors import UsageError
-from roadgpt.road import ImportedRoad, read_opendrive
+from roadgpt.network import ImportedRoad, read_opendrive
 
 LANES = """<lanes>{offset}<laneSection s="0"><left>
 <lane id="1" type="driving"><width sOffset="0" a="3"/></lane></left>
 <center><lane id="0" type="none"><roadMark sOffset="0" type="broken"/></lane></center>
 <right>{right}</right></laneSection></lanes>"""
+ROUNDED = "its line has kinks or gaps, and is rounded off there"
 RIGHT = '<lane id="-1" type="driving"><width sOffset="0" a="3"/></lane>'
 
 
@@ -118,7 +119,7 @@ def test_a_tight_spiral_of_a_few_centimetres_is_a_kink(tmp_path: Path) -> None:
     pen.tiny(0.0377, 0.0, '<spiral curvStart="0.11" curvEnd="13.8553"/>')
     pen.x += 0.0377
     found = pen.line(30, math.radians(15)).read(tmp_path)
-    assert found.remarks[0].startswith("its line has 1 kink of 15.0 degrees (at s = 22.0); it is rounded off")
+    assert found.remarks[0].startswith(f"{ROUNDED} (1 kink of 15.0 degrees (at s = 22.0), at most")
     assert tightest(found) > 8
     assert pen.away(found) < 0.2
 
@@ -134,9 +135,7 @@ def test_what_is_told_of_a_kink_is_measured(tmp_path: Path, degrees: float) -> N
         assert tightest(found) > 200
         return
     (remark,) = found.remarks
-    assert remark.startswith(
-        f"its line has 1 kink of {degrees:.1f} degrees (at s = 40.0); it is rounded off,"
-    )
+    assert remark.startswith(f"{ROUNDED} (1 kink of {degrees:.1f} degrees (at s = 40.0), at most")
     told = float(re.findall(r"at most ([\d.]+) m from the file's line", remark)[0])
     assert told == pytest.approx(away, abs=0.011)
     assert tightest(found) > 1 / (2 * math.radians(degrees) / 5)  # twice as tight as an arc over 5 m
@@ -149,7 +148,7 @@ def test_a_gap_becomes_no_wriggle(tmp_path: Path, aside: float, least: float) ->
     assert tightest(found) > least
     assert pen.away(found) < aside + 0.002  # brute force sees 1 mm
     if aside > 0.01:
-        assert found.remarks[0].startswith(f"its line has 1 gap of {aside:.2f} m (at s = 40.0)")
+        assert found.remarks[0].startswith(f"{ROUNDED} (1 gap of {aside:.2f} m (at s = 40.0)")
         told = float(re.findall(r"at most ([\d.]+) m from", found.remarks[0])[0])
         assert told == pytest.approx(pen.away(found), abs=0.007)
     else:

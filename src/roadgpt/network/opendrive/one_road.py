@@ -1,0 +1,213 @@
+"""Takes one road of an OpenDRIVE file by itself, and selects the lane that is driven."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import inf
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+import numpy as np
+
+from roadgpt.errors import UsageError
+from roadgpt.geometry.elevation import closed
+from roadgpt.network.opendrive.junctions import tell_unread
+from roadgpt.network.opendrive.roads import (
+    FileRoad,
+    RoadBuilder,
+    left_out,
+    limited,
+    read_road,
+    unread,
+    world_values,
+)
+from roadgpt.network.opendrive.tree import DRIVING, NUMBER, Remarks, read_tree
+from roadgpt.network.stretch import turned
+from roadgpt.road import Profile, Road, World
+from roadgpt.road.profile import Lane, Marking, as_cubics
+from roadgpt.road.world import LANE_WIDTHS
+
+PLACES = 1_000  # stations at which widths are sampled
+
+
+@dataclass(frozen=True)
+class ImportedRoad:
+    """A road that was read from an OpenDRIVE file, with its lane width, speed limit and friction."""
+
+    road: Road
+    """The road. Its ``profile`` is None if the file describes a cross-section like the default one of a
+    World: one lane in each direction, both of the same constant width, with shoulders of equal constant width
+    and the default markings."""
+    id: str
+    name: str
+    lane_width: float  # width of the driven lane in metres; the median if it varies
+    shoulder: float  # width in metres of the shoulder on the right; the median if it varies
+    speed_limit: float | None
+    """Speed limit in m/s, limited to 5 to 300 km/h; None if the file gives no speed limit."""
+    friction: float | None  # friction coefficient of the driven lane, up to 2; None if the file gives none
+    remarks: tuple[str, ...]  # sentences about contents of the file that were changed, replaced or left out
+
+    def world(self, base: World) -> World:
+        """Returns ``base`` with the lane width, shoulder, speed limit and friction of this road. A speed
+        limit or friction that the file does not state is taken from ``base``. If ``road.profile`` is not
+        None, it defines the lanes and shoulders, and ``base`` keeps its lane width and shoulder."""
+        return base.changed(**self.world_values)
+
+    @property
+    def world_values(self) -> dict[str, float]:
+        """The fields of a World that the file states, by name."""
+        told = {"speed_limit": self.speed_limit, "friction": self.friction}
+        if self.road.profile is None:
+            told |= {"lane_width": self.lane_width, "shoulder": self.shoulder}
+        return {name: value for name, value in told.items() if value is not None}
+
+
+def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
+    """Returns one road of an OpenDRIVE file. Its centre line is the reference line of the file.
+
+    Args:
+        path: The file.
+        road: Id of the road. None selects the longest road that has a driving lane and is not part of a
+            junction. If there is no such road, None selects the longest road with a driving lane. If no road
+            has a driving lane, None selects the longest road outside junctions or, if there is none, the
+            longest road.
+
+    Raises:
+        UsageError: The file cannot be read or is too large, there is no such road, or an element is unknown
+            or invalid; the message names the element."""
+    found: list[tuple[tuple[bool, bool, float], Element, Counter[str]]] = []
+
+    def wants(tag: str, attributes: Mapping[str, str]) -> bool:
+        return tag == "road" and road in (None, attributes.get("id"))
+
+    def take(node: Element, passed: Counter[str]) -> None:
+        is_driven = any(lane.get("type") in DRIVING for lane in node.findall("lanes/laneSection/*/lane"))
+        length = node.get("length", "0")
+        length_ = float(length) if NUMBER.fullmatch(length) else 0.0
+        rank = (is_driven, node.get("junction", "-1") == "-1", length_)
+        if not found or rank > found[0][0]:
+            found[:] = [(rank, node, passed)]
+
+    try:
+        ids, header = read_tree(Path(path), take, wants)
+        if not found:
+            told = ", ".join(ids[:12]) + (", ..." if len(ids) > 12 else "")
+            raise UsageError(f"there is no road {road} in it; there are: {told}")
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from error
+    ((_, node, passed),) = found
+    remarks, id_ = Remarks(of_one_road=True), node.get("id", "?")[:40]
+    try:
+        if road is None and len(ids) > 1:
+            which = f"the longest of {len(ids)} with a driving lane"
+            remarks.add(f"road {id_} is taken, {which}; use --road ID for another", "")
+        file = read_road(node, remarks)
+        if file is None:
+            kinds = {lane.get("type", "?") for lane in node.findall("lanes/laneSection/*/lane")} - {"none"}
+            told = ", ".join(sorted(kinds)[:6]) or "none"
+            raise UsageError(f"it has no lane of type driving (its lanes are: {told}); take another road")
+        made, values = _alone(file, remarks)
+    except UsageError as error:
+        raise UsageError(f"{path}: road {id_}: {error}") from error
+    tell_unread(node, remarks, "", is_alone=True)
+    others = unread(node) | ({f"junction {file.junction[:40]}"} if file.junction else set())
+    profile = made.profile
+    assert profile is not None
+    s = np.linspace(0.0, made.length, PLACES)
+    width, shoulder = (round(float(np.median(each)), 4) for each in (profile.width(s), profile.shoulder(s)))
+    is_usual = profile == Profile.of(1, 1, width, shoulder)
+    return ImportedRoad(
+        made.with_profile(None) if is_usual else made,
+        id_,
+        node.get("name", "")[:80],
+        width,
+        shoulder,
+        values.get("speed_limit"),
+        values.get("friction"),
+        (*remarks.sentences(), *left_out(passed, others, header)),
+    )
+
+
+def _alone(file: FileRoad, remarks: Remarks) -> tuple[Road, dict[str, float]]:
+    """Returns a road that leads in the direction in which most of its lanes are driven on the right, and what
+    it states about its speed limit and friction. Raises UsageError if no road file can hold it."""
+    if file.left_hand:
+        remarks.add("it is made for left-hand traffic, and is driven on the right here", "")
+    road, _ = RoadBuilder(replace(file, left_hand=False), remarks).build(file.whole)
+    profile = road.profile
+    assert profile is not None
+    along, against = (
+        sum(
+            each.end - each.start
+            for each in file.whole.sections
+            if any(lane * side > 0 for lane in each.driving)
+        )
+        for side in (-1, 1)
+    )
+    if not profile.along_ids or (profile.against_ids and against > 2 * along):
+        remarks.add(
+            "no lane to the right of its line is driven; the road follows the direction of its left lanes", ""
+        )
+        road = turned(road)
+        assert road.profile is not None
+        profile = road.profile
+    if not profile.along_ids:
+        raise UsageError("none of its lanes is wide enough for a car; take another road")
+    if not any(True for _ in file.node.iter("roadMark")):
+        remarks.add("it has no road marks in its file; the usual ones are painted here", "")
+        profile = _painted(profile)
+    profile = _driven(profile, road.length, remarks)
+    own = profile.right[profile.driven]
+    values, told = world_values([(road.length, own)])
+    for each in told:
+        remarks.add(each, "")
+    # what holds for the driven lane is said by the World
+    left, right = (
+        tuple(
+            replace(
+                lane,
+                speed_limit=None if lane.speed_limit == own.speed_limit else lane.speed_limit,
+                friction=None if lane.friction == own.friction else lane.friction,
+            )
+            for lane in side
+        )
+        for side in (profile.left, profile.right)
+    )
+    made = road.with_profile(replace(profile, left=left, right=right))
+    return Road.from_json(made.to_json()), values  # so that no road is written that cannot be read
+
+
+def _painted(profile: Profile) -> Profile:
+    """Returns a cross-section with the usual markings of its driving lanes."""
+    ends = {ids[-1] for ids in (profile.along_ids, profile.against_ids) if ids}
+    centre: Marking = "broken" if profile.count == (1, 1) else "solid"
+
+    def painted(lanes: Sequence[Lane], side: int) -> tuple[Lane, ...]:
+        return tuple(
+            replace(lane, marking="solid" if side * n in ends else "broken")
+            if lane.kind == "driving"
+            else lane
+            for n, lane in enumerate(lanes, 1)
+        )
+
+    left, right = painted(profile.left, 1), painted(profile.right, -1)
+    return replace(profile, left=left, right=right, centre_marking=centre)
+
+
+def _driven(profile: Profile, length: float, remarks: Remarks) -> Profile:
+    """Returns the cross-section with the lane that the car keeps to, which is wide enough everywhere."""
+    widths = {n: as_cubics(profile.right[n - 1].width) for n in (-each for each in profile.along_ids)}
+    wide = [n for n, width in widths.items() if not width.beyond(LANE_WIDTHS[0], inf)]
+    driven = wide[-1] if wide else min(widths)
+    if driven != min(widths):
+        which = f"the rightmost that is {LANE_WIDTHS[0]:g} m wide everywhere"
+        place = [*widths].index(driven) + 1
+        remarks.add(f"the car keeps to lane {place} from the centre line, {which}", "")
+    right = list(profile.right)
+    if found := widths[driven].beyond(*LANE_WIDTHS):
+        low, high = LANE_WIDTHS
+        where = f"{found[1]:.4g} m at s = {found[0]:.4g} m, outside {low:g} to {high:g} m"
+        remarks.add("the width of the driven lane is limited", "", where)
+        width = closed(limited(widths[driven].rows, length, low, high), length)
+        right[driven - 1] = replace(right[driven - 1], width=width)
+    return replace(profile, right=tuple(right), driven=driven - 1)
