@@ -12,7 +12,7 @@ from typing import Any
 import click
 
 from roadgpt import __version__, plugins, stopping
-from roadgpt.cli.option_groups import dash_advice
+from roadgpt.cli.options import dash_advice
 from roadgpt.cli.streams import OutputError, drop_output, is_coloured, report_crash, warn
 from roadgpt.errors import PartError, RoadGPTError, command_line
 from roadgpt.provenance import USER

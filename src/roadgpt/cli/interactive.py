@@ -9,7 +9,7 @@ import click
 
 from roadgpt import stopping
 from roadgpt.cli.commands import make
-from roadgpt.cli.option import ROADS
+from roadgpt.cli.options import HOW_MANY
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError
@@ -101,7 +101,7 @@ def _how_many() -> int:
     while True:
         answer = _asked(f"how many roads [{USUAL_ROADS}]> ", EXPLAINED)
         try:
-            return ROADS(answer) if answer else USUAL_ROADS
+            return HOW_MANY(answer) if answer else USUAL_ROADS
         except click.BadParameter as error:
             warn(error.message)
 

@@ -15,7 +15,7 @@ from roadgpt.brief.words import SURFACES
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.status import Status
 from roadgpt.cli import options
-from roadgpt.cli.option import Option, named, words_of
+from roadgpt.cli.options import Option, named, words_of
 from roadgpt.errors import command_line
 from roadgpt.road import World
 from roadgpt.road.world import oracle_limits

@@ -9,8 +9,7 @@ import click
 
 from roadgpt import plugins
 from roadgpt.cli import options
-from roadgpt.cli.option import PATH, Argument, named
-from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import PATH, Argument, GroupedCommand, named
 from roadgpt.cli.roads import LANES, UNREADABLE, each_road, open_page, roads_in, source_of
 from roadgpt.cli.screen import Row, Screen, row_of
 from roadgpt.errors import command_line

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roadgpt.cli import options, roads
-from roadgpt.cli.option import PATH, Argument, Option, named, whole
-from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import PATH, Argument, GroupedCommand, Option, named, whole
 from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError, UsageError, command_line, explained
 

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roadgpt.cli import options, roads
-from roadgpt.cli.option import PATH, Argument, Heading, Option, named, picture_formats
-from roadgpt.cli.option import folder as folder_of
-from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import PATH, Argument, GroupedCommand, Heading, Option, named, picture_formats
+from roadgpt.cli.options import folder as folder_of
 from roadgpt.cli.streams import warn, watched
 from roadgpt.errors import RoadGPTError, UsageError, explained
 

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.option import ROADS, Argument, Heading, Option, folder, named, whole
-from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import HOW_MANY, Argument, GroupedCommand, Heading, Option, folder, named, whole
 from roadgpt.cli.roads import UNREADABLE, each_road, made, roads_in, roads_named, source_of
 from roadgpt.cli.screen import Row, Screen, row_of, spending
 from roadgpt.cli.streams import crashes_go_to, warn
@@ -34,7 +33,7 @@ if TYPE_CHECKING:
 SEEDS = 1_000_000  # random seeds are below this number, so that they are short enough to type again
 
 RUN_OPTIONS = (
-    Option("-n --roads", "Number of roads.", ROADS, 1),
+    Option("-n --roads", "Number of roads.", HOW_MANY, 1),
     options.seed("The same seed gives the same roads. [default: random]"),
     options.out("Folder for the runs. [default: a new one]"),
     options.AGAIN,

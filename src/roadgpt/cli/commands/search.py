@@ -14,9 +14,10 @@ import click
 from roadgpt.cli import options
 from roadgpt.cli.commands.evaluate import write_report
 from roadgpt.cli.commands.make import beside, understood
-from roadgpt.cli.option import (
+from roadgpt.cli.options import (
     PATH,
     Argument,
+    GroupedCommand,
     Heading,
     Option,
     driver_guard,
@@ -26,7 +27,6 @@ from roadgpt.cli.option import (
     named,
     whole,
 )
-from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.streams import progress, resumable, watched
 from roadgpt.errors import UsageError, command_line
 

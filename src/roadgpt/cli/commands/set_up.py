@@ -19,8 +19,7 @@ import click
 
 from roadgpt import __version__, plugins
 from roadgpt.cli import options
-from roadgpt.cli.option import Option
-from roadgpt.cli.option_groups import CommandGroup
+from roadgpt.cli.options import CommandGroup, Option
 from roadgpt.cli.streams import warn
 from roadgpt.errors import PartError, RoadGPTError
 
