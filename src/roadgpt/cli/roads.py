@@ -220,19 +220,17 @@ def on_a_map(
     """Returns the road, or the route with its network, on a map that is as wide as the World's or wider, the
     map's width in metres, by how many metres it was moved, and remarks. Whole metres lose no digits of the
     file's coordinates."""
+    import numpy as np
+
     from roadgpt.brief.words import LARGEST_MAP
     from roadgpt.check.extremes import lowest
     from roadgpt.check.ribbon import extent
     from roadgpt.check.sbft import SPLINE_REACH
-    from roadgpt.network import is_route, moved_network
-    from roadgpt.road import moved
+    from roadgpt.network import network_of
 
-    laid, remarks, x, y, z = world.lay(road), list[str](), 0.0, 0.0, 0.0
-    low, high = (
-        road.network.bounds()
-        if is_route(road)
-        else extent(laid.sample(), world.profile_of(laid).edges(laid.sample().s))
-    )
+    members, remarks, x, y, z = network_of(world.lay(road), world).roads, list[str](), 0.0, 0.0, 0.0
+    spans = [extent(each.road.sample(), each.profile.edges(each.road.sample().s)) for each in members]
+    low, high = np.min([low for low, _ in spans], axis=0), np.max([high for _, high in spans], axis=0)
     wide = float(high.max()) + SPLINE_REACH if keep_place else float((high - low).max()) + 2 * ROOM
     size = max(world.site.map_size, ROUND_MAP * ceil(wide / ROUND_MAP))
     fits = (low > SPLINE_REACH).all() and (high < size - SPLINE_REACH).all()
@@ -248,16 +246,11 @@ def on_a_map(
         x, y = (float(round(each)) for each in size / 2 - (low + high) / 2)
         back = f"add ({-x:.0f}, {-y:.0f}) m for its place in the file"
         remarks.append(f"it is moved by ({x:.0f}, {y:.0f}) m into the middle of the map; {back}")
-    roads = [each.road for each in road.network.roads] if is_route(road) else [road]
-    deepest = min(lowest(each.elevation, each.length)[1] for each in roads)
+    deepest = min(lowest(each.road.elevation, each.road.length)[1] for each in members)
     if deepest < world.site.z_floor and not keep_place:
         z = float(ceil(-deepest))
         remarks.append(f"it is lifted by {z:.0f} m: its lowest place was below the ground of the map")
-    if is_route(road):
-        placed: Road = type(road).along(moved_network(road.network, x, y, z), road.legs).on_ground()
-    else:
-        placed = moved(road, x, y, z)
-    return placed, size, (x, y, z), tuple(remarks)
+    return road.moved(x, y, z), size, (x, y, z), tuple(remarks)
 
 
 def shown_roads(files: Sequence[str], choice: "Choice | None", most: int, what: str) -> list[NamedRoad]:
@@ -303,14 +296,21 @@ def named_in_errors(file: str) -> Iterator[None]:
         raise kind(f"{file}: {error}") from error
 
 
-def each_road(files: Sequence[str], screen: Screen, look: "Callable[[str], tuple[Row, Run | None]]") -> None:
-    """Calls ``look`` for every file, and prints the rows and a table of their outcomes. A file that cannot be
-    used gets a row with an error, but for a single one."""
+def each_road(
+    files: Sequence[str], screen: Screen, world: "World",
+    look: "Callable[[str, Design | Road, World], tuple[Row, Run | None]]",
+) -> None:  # fmt: skip
+    """Calls ``look`` for every file with what ``source_of`` finds in it, and prints the remarks on it, the
+    rows and a table of their outcomes. A file that cannot be used gets a row with an error, but for a single
+    one."""
     with screen:
         for file in files:
             try:
                 with named_in_errors(file):
-                    seen = look(file)
+                    blueprint, its_world, remarks = source_of(file, world)
+                    for remark in remarks:
+                        screen.say(f"{file}: {remark}")
+                    seen = look(file, blueprint, its_world)
             except PartError:
                 raise
             except UsageError as error:

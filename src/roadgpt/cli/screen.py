@@ -184,45 +184,26 @@ def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
     return table
 
 
-def row_of(run: "Run", file: str, name: str = "") -> Row:
-    """Returns the row of a Run; ``file`` is the Run's road file. Lines show ``name``, if given, instead."""
-    return Row(
-        file,
-        run.outcome,
-        run.description,
-        is_valid=run.is_valid,
-        validation_message=run.validation_message,
-        findings=tuple(finding.sentence for finding in run.findings),
-        length_m=run.length if run.road else None,
-        seconds=round(run.seconds.design, 4) + round(run.seconds.drive, 4),  # as tables of tests hold them
-        name=name,
-        spent=run.spent,
-        words=run.words,
-        seed=run.seed,
-        trace=run.trace,
-        **(_measured(run.verdict) if run.verdict else {}),
-    )
+def row_of(run: "Run | Result", file: str = "", **more: Any) -> Row:
+    """Returns the row of a Run, whose road file is ``file``, or of a stored result; ``more`` are further
+    fields."""
+    from roadgpt.run.model import Run
 
-
-def row_of_result(result: "Result", words: str, seed: int, name: str) -> Row:
-    """Returns the row of a test from its stored result."""
-    return Row(
-        "",
-        result.outcome,
-        result.description,
-        is_valid=result.outcome not in ("INVALID", "ERROR"),
-        length_m=result.length or None,
-        name=name,
-        words=words,
-        seed=seed,
-        **_measured(result),
-    )
-
-
-def _measured(found: "Verdict | Result") -> dict[str, Any]:
-    measures = {"max_oob": found.max_oob, "beyond_m": found.beyond, "margin_m": found.margin}
-    whose = {"own_share": found.own_share, "handed_to": found.handed_to}
-    return {**measures, **whose, "cause": found.cause, "at_s_m": found.at_s, "side": found.side}
+    found: Verdict | Result | None = None
+    if isinstance(run, Run):
+        found, is_valid, length = run.verdict, run.is_valid, run.length if run.road else None
+        findings = tuple(finding.sentence for finding in run.findings)
+        more |= {"validation_message": run.validation_message, "findings": findings, "spent": run.spent}
+        more |= {"words": run.words, "seed": run.seed, "trace": run.trace}
+        # as tables of tests hold them
+        more["seconds"] = round(run.seconds.design, 4) + round(run.seconds.drive, 4)
+    else:
+        found, is_valid, length = run, run.outcome not in ("INVALID", "ERROR"), run.length or None
+    if found is not None:
+        more |= {"max_oob": found.max_oob, "beyond_m": found.beyond, "margin_m": found.margin}
+        more |= {"own_share": found.own_share, "handed_to": found.handed_to}
+        more |= {"cause": found.cause, "at_s_m": found.at_s, "side": found.side}
+    return Row(file, run.outcome, run.description, is_valid, length_m=length, **more)
 
 
 def unreadable(file: str, error: Exception) -> Row:
@@ -275,6 +256,11 @@ class Screen:
         if self.verbose:
             self.say(sentence)
 
+    def spent(self, spent: "Spent") -> None:
+        """Prints what language models have cost, if they were asked."""
+        if spent.calls:
+            self.say(f"language model: {spending(spent)}")
+
     def row(self, row: Row, run: "Run | None" = None) -> None:
         """Prints the result of a finished road; the gate receives its Run, if there is one."""
         if self.gate:
@@ -298,7 +284,7 @@ class Screen:
         with self:
             for run in apart(runs):
                 name = test_name(run.index)
-                self.row(row_of(run, str(folder / name), name), run)
+                self.row(row_of(run, str(folder / name), name=name), run)
                 self.detail(f"  {run.description}")
 
     def close(self) -> None:

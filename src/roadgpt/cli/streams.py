@@ -9,7 +9,7 @@ import sys
 import tempfile
 import time
 import traceback
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 from typing import TypeVar
@@ -171,6 +171,16 @@ def watched(steps: Iterable[T], total: int, what: str, quiet: bool = False) -> I
         for done, step in enumerate(steps, 1):
             tell(done)
             yield step
+
+
+def aligned(rows: Sequence[Sequence[str]], sides: str, gap: str = "  ") -> list[str]:
+    """Returns lines with columns as wide as their longest text; ``sides`` says for each column whether its
+    texts are at the left (<) or at the right (>)."""
+    wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        gap.join(f"{text:{side}{w}}" for text, side, w in zip(row, sides, wide, strict=True)).rstrip()
+        for row in rows
+    ]
 
 
 def duration(seconds: float) -> str:

@@ -35,7 +35,6 @@ if TYPE_CHECKING:
         NetworkRoad,
         RoadEnd,
         Roundabout,
-        moved_network,
     )
     from roadgpt.network.opendrive import read_map
     from roadgpt.network.route import Passage, Route
@@ -59,7 +58,6 @@ __all__ = [
     "is_route",
     "legs_of",
     "made_from",
-    "moved_network",
     "network_of",
     "only_road",
     "read_map",
@@ -71,8 +69,7 @@ __all__ = [
 
 _LATER = {
     "growing": "build_route",
-    "network": "Arm Connection Continuation Junction LaneLink Leg Network NetworkRoad RoadEnd Roundabout "
-    "moved_network",
+    "network": "Arm Connection Continuation Junction LaneLink Leg Network NetworkRoad RoadEnd Roundabout",
     "opendrive": "read_map",
     "route": "Passage Route",
     "source": "read_road read_source",

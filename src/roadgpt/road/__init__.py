@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from roadgpt.road.design import Design, Segment, read_design
     from roadgpt.road.opendrive import ImportedRoad, read_opendrive
     from roadgpt.road.profile import Edges, Profile
-    from roadgpt.road.road import Road, Samples, moved
+    from roadgpt.road.road import Road, Samples
     from roadgpt.road.world import ORACLES, CrossSection, Geometry, Limits, Site, World
 
 __all__ = [
@@ -31,7 +31,6 @@ __all__ = [
     "World",
     "build",
     "in_short_segments",
-    "moved",
     "read_design",
     "read_opendrive",
 ]
@@ -42,7 +41,7 @@ _MODULES = {
     "design": "Design Segment read_design",
     "opendrive": "ImportedRoad read_opendrive",
     "profile": "Edges Profile",
-    "road": "Road Samples moved",
+    "road": "Road Samples",
     "world": "ORACLES CrossSection Geometry Limits Site World",
 }
 

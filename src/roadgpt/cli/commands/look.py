@@ -39,7 +39,7 @@ def show(folders: tuple[str, ...], watch: bool, as_json: bool, **rest: Any) -> N
     roadgpt show roadgpt-runs/hairpins-7
     roadgpt show CAMPAIGN --failures
     roadgpt show CAMPAIGN --watch"""
-    from roadgpt.cli.summary import json_lines, show, watch_campaign
+    from roadgpt.cli.summary import json_lines, text_lines, watch_campaign
 
     choice = options.choice_of(rest)
     if watch and choice is not None:
@@ -52,7 +52,7 @@ def show(folders: tuple[str, ...], watch: bool, as_json: bool, **rest: Any) -> N
         watch_campaign(Path(folders[0]))
         return
     for folder in folders:
-        for line in json_lines(folder, choice) if as_json else [show(folder, choice)]:
+        for line in (json_lines if as_json else text_lines)(folder, choice):
             click.echo(line)
 
 
