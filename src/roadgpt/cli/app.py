@@ -117,17 +117,15 @@ class Commands(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Returns the name of the command, the command and its arguments."""
-        name = args[0]
-        known = commands()
+        name, known, say = args[0], commands(), command_line("run", *args)
         if name in known or (name.startswith("-") and " " not in name.strip()):
             return super().resolve_command(ctx, args)
-        near = get_close_matches(name.lower(), known, 1)
-        advice = f"No such command '{name}'; there are: {', '.join(known)}. Is it a description? Say:"
         if " " in name.strip():
-            advice = "to make roads from a description, say:"
-        elif near:
+            raise click.UsageError(f"to make roads from a description, say: {say}", ctx)
+        if near := get_close_matches(name.lower(), known, 1):
             raise click.UsageError(f"No such command '{name}'. Did you mean '{near[0]}'?", ctx)
-        raise click.UsageError(f"{advice} {command_line('run', *args)}", ctx)
+        there = f"No such command '{name}'; there are: {', '.join(known)}"
+        raise click.UsageError(f"{there}. Is it a description? Say: {say}", ctx)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parses the arguments after ``roadgpt``."""
@@ -159,7 +157,10 @@ class Commands(click.Group):
             if not error.is_reader_gone:
                 warn(error)
         except click.ClickException as error:
-            _with_advice(error).show()
+            if isinstance(error, click.MissingParameter):
+                advice = getattr(error.param, "advice", "")
+                error = click.UsageError(f"{error.format_message()} {advice}".strip(), error.ctx)
+            error.show()
             status = error.exit_code
         except RoadGPTError as error:
             warn(error)
@@ -192,13 +193,6 @@ def _confirm(question: str) -> bool:
     if not (sys.stdin and sys.stdin.isatty() and sys.stderr.isatty()):
         return False
     return click.confirm(f"roadgpt: {question}", default=False, err=True)
-
-
-def _with_advice(error: click.ClickException) -> click.ClickException:
-    if not isinstance(error, click.MissingParameter):
-        return error
-    advice = getattr(error.param, "advice", "")
-    return click.UsageError(f"{error.format_message()} {advice}".strip(), error.ctx)
 
 
 @click.group(

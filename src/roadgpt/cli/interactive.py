@@ -8,11 +8,14 @@ from contextlib import suppress
 import click
 
 from roadgpt import stopping
+from roadgpt.brief import AnotherRoadError, read
+from roadgpt.brief.plan import read_plan
 from roadgpt.cli.commands import make
 from roadgpt.cli.options import HOW_MANY
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError
+from roadgpt.road import World
 
 USUAL_ROADS = 3
 ENOUGH = {"exit", "quit", "bye", "q"}
@@ -80,9 +83,6 @@ def _asked(question: str, explained: str = "") -> str:
 def _understood(words: str) -> str | None:
     """Returns the plan to build instead of the words, "" to build the words, and None if the user wants to
     say it in other words. If the reader is not sure, asks which of two readings is meant."""
-    from roadgpt.brief import AnotherRoadError, read
-    from roadgpt.brief.plan import read_plan
-
     try:
         brief = read(words, is_map_fixed=False)
     except AnotherRoadError as error:
@@ -107,8 +107,6 @@ def _how_many() -> int:
 
 
 def _change(roads: list[str]) -> None:
-    from roadgpt.road import World
-
     question = "change it? > " if len(roads) == 1 else "change one? (2: make the last turn sharper) > "
     while roads and (answer := _asked(question, CHANGES)):
         match = re.match(r"(?:road\s+)?(\d+)\s*[:,]?\s+(.*)", answer, re.IGNORECASE | re.DOTALL)

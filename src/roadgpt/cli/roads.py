@@ -15,7 +15,7 @@ import click
 from roadgpt.cli.options import WORLD, typed
 from roadgpt.cli.screen import Row, Screen, unreadable
 from roadgpt.cli.streams import warn
-from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError, explained
+from roadgpt.errors import ExportError, PartError, UsageError, explained
 from roadgpt.plural import plural
 
 if TYPE_CHECKING:
@@ -67,25 +67,25 @@ def use_each(
     """Calls ``use`` for each road that the names refer to; a name or a road that cannot be used is reported
     and skipped. Returns the exit status: 0, 1 if a format cannot hold a road, or 2 if a name or a road cannot
     be used."""
-    errors, seen = list[RoadGPTError](), set[object]()
+    status, seen = 0, set[object]()
+
+    @contextmanager
+    def reported() -> Iterator[None]:
+        nonlocal status
+        try:
+            yield
+        except PartError:
+            raise
+        except (UsageError, ExportError) as error:
+            warn(error)
+            status = max(status, FAILED if isinstance(error, ExportError) else UNREADABLE)
+
     for file in files:
-        with _reported(errors):
+        with reported():
             for each in roads_named([file], choice, takes_all, seen):
-                with _reported(errors):
+                with reported():
                     use(each)
-    return max((FAILED if isinstance(error, ExportError) else UNREADABLE for error in errors), default=0)
-
-
-@contextmanager
-def _reported(errors: list[RoadGPTError]) -> Iterator[None]:
-    """Prints an error about a road instead of raising it, and appends it to ``errors``."""
-    try:
-        yield
-    except PartError:
-        raise
-    except (UsageError, ExportError) as error:
-        warn(error)
-        errors.append(error)
+    return status
 
 
 def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[NamedRoad]:
@@ -340,6 +340,11 @@ def numbered(name: str, ending: str = "") -> Iterator[str]:
     """Yields names for a file or folder; for 'road' and '.json': road.json, road-2.json, road-3.json, ..."""
     yield name + ending
     yield from (f"{name}-{number}{ending}" for number in count(2))
+
+
+def free(stem: str | Path, ending: str = "") -> Path:
+    """Returns the first path of ``numbered`` at which there is nothing yet."""
+    return next(path for path in map(Path, numbered(str(stem), ending)) if not path.exists())
 
 
 def made(folder: Path) -> Path:

@@ -6,7 +6,6 @@ import logging
 import math
 import sys
 import time
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -140,10 +139,8 @@ def driver_and_oracle(drivers: Sequence[str], oracle: str) -> str:
 
 def outside(share: float | None, beyond: float | None) -> str:
     """Returns how far a car was outside, such as '62 % out, 1.13 m' or 'inside'; empty without a drive."""
-    if share is None:
-        return ""
     if not share:
-        return "inside"
+        return "" if share is None else "inside"
     from roadgpt.verdict import percent
 
     return f"{percent(share)} out" + ("" if beyond is None else f", {beyond:.2f} m")
@@ -171,16 +168,15 @@ def _rounded(value: Any) -> Any:
 
 def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
     """Returns for each outcome its name, number and share of roads, least margin, and how far outside."""
-    counted = Counter(row.outcome for row in rows)
-    table = []
-    ranks = [*COLOURS]
-    for outcome, count in sorted(counted.items(), key=lambda item: (ranks.index(_kind(item[0])), item[0])):
-        margins = [row.margin_m for row in rows if row.outcome == outcome and row.margin_m is not None]
-        least = metres(min(margins)) if margins else "-"
-        shares = [row.max_oob for row in rows if row.outcome == outcome and row.max_oob is not None]
-        farthest = [row.beyond_m for row in rows if row.outcome == outcome and row.beyond_m is not None]
+    table, ranks = [], [*COLOURS]
+    for outcome in sorted({row.outcome for row in rows}, key=lambda name: (ranks.index(_kind(name)), name)):
+        own = [row for row in rows if row.outcome == outcome]
+        margins = [row.margin_m for row in own if row.margin_m is not None]
+        shares = [row.max_oob for row in own if row.max_oob is not None]
+        farthest = [row.beyond_m for row in own if row.beyond_m is not None]
         most = outside(max(shares, default=None), max(farthest, default=None)) or "-"
-        table.append((outcome, count, f"{100 * count / len(rows):.0f} %", least, most))
+        share, least = f"{100 * len(own) / len(rows):.0f} %", metres(min(margins)) if margins else "-"
+        table.append((outcome, len(own), share, least, most))
     return table
 
 

@@ -275,7 +275,7 @@ def _plain(name: str) -> str:
 
 
 def _free(stem: str, ending: str) -> Path:
-    return next(path for path in map(Path, roads.numbered(_plain(stem), ending)) if not path.exists())
+    return roads.free(_plain(stem), ending)
 
 
 def _write(file: Path, source: "RoadSource", out: Path, keep_place: bool, quiet: bool) -> str:
