@@ -77,13 +77,14 @@ def headings() -> dict[str, dict[str, str]]:
     heading. Such a module should import nothing but click and ``roadgpt.cli`` at first."""
     every = {heading: {**commands} for heading, commands in HEADINGS.items()}
     for name in commands()[len(OURS) :]:
+        heading = ""
         try:
             command = plugins.find("commands", name)
+            heading = getattr(command, "heading", "")
+            line = command.short_help or command.get_short_help_str(100)
         except PartError as error:
-            every.setdefault(OTHERS, {})[name] = str(error)
-        else:
-            heading = getattr(command, "heading", "") or OTHERS
-            every.setdefault(heading, {})[name] = command.short_help or command.get_short_help_str(100)
+            line = str(error)
+        every.setdefault(heading or OTHERS, {})[name] = line
     return every
 
 
@@ -96,8 +97,8 @@ class Commands(click.Group):
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Imports the command ``name``; returns None if there is none of that name."""
-        found: click.Command | None = None
         heading = next((heading for heading, under in HEADINGS.items() if name in under), "")
+        found: click.Command | None = None
         if heading:
             module = import_module(f"roadgpt.cli.commands.{heading.lower().replace(' ', '_')}")
             found = getattr(module, f"{name}_" if iskeyword(name) else name)
@@ -165,27 +166,20 @@ class Commands(click.Group):
         except RoadGPTError as error:
             warn(error)
             status = stopping.status() or error.exit_status
-        except OSError as error:
-            status = stopping.status() or _refused(error)
         except (KeyboardInterrupt, click.Abort):
             status = stopping.status() or INTERRUPTED
         except Exception as error:  # last resort: users must not see a traceback
-            status = stopping.status()
-            if not status:  # an error in a program that is being stopped is not reported
+            status = stopping.status()  # an error in a program that is being stopped is not reported
+            if not status and isinstance(error, OSError) and error.errno in OF_FILES and error.filename:
+                name = str(error.filename)
+                shown = name if len(name) <= 200 else f"{name[:80]}...{name[-40:]}"
+                warn(f"cannot use {shown}: {error.strerror}; name another file or folder")
+                status = REFUSED
+            elif not status:
                 warn(report_crash(error))
                 status = INTERNAL
         stopping.finish()
         sys.exit(status if isinstance(status, int) else 0)
-
-
-def _refused(error: OSError) -> int:
-    if error.errno not in OF_FILES or not error.filename:
-        warn(report_crash(error))
-        return INTERNAL
-    name = str(error.filename)
-    shown = name if len(name) <= 200 else f"{name[:80]}...{name[-40:]}"
-    warn(f"cannot use {shown}: {error.strerror}; name another file or folder")
-    return REFUSED
 
 
 def _confirm(question: str) -> bool:

@@ -28,8 +28,7 @@ OF_DRIVES = named(options.SETUP, "driver", "simulator", "keep_driving", "rules")
 
 def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
     """Returns lines with the commands that repeat a Run: from its description, and from its road file."""
-    lines = []
-    request = run.request
+    lines, request = list[str](), run.request
     if run.words:
         lines.append(command_line("run", *request_words(request, run.index, run.brief)))
     if folder is not None and run.road is not None and request.setup.drives:

@@ -255,14 +255,13 @@ def on_a_map(
 
 def shown_roads(files: Sequence[str], choice: "Choice | None", most: int, what: str) -> list[NamedRoad]:
     """Returns the named roads, at most ``most``, to show them together in ``what``, such as 'a page'."""
+    shows = f"{what} shows one road or two side by side"
     if len(files) > most:
-        raise UsageError(f"{what} shows one road or two side by side; {len(files)} are given")
+        raise UsageError(f"{shows}; {len(files)} are given")
     named = [*roads_named(files, choice)]
     if len(named) > most:
-        raise UsageError(
-            f"{what} shows one road or two side by side; these are {len(named):,}: name one or two, as "
-            f"{named[0].said}, or say --worst"
-        )
+        name = f"name one or two, as {named[0].said}, or say --worst"
+        raise UsageError(f"{shows}; these are {len(named):,}: {name}")
     if len(named) < len(files):  # the same road twice, side by side
         named = [each for file in files for each in roads_named([file], choice)]
     return named

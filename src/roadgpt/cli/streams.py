@@ -52,25 +52,18 @@ def make_ready() -> None:
     """Makes both output streams accept every character; failed writes to standard output raise OutputError. A
     stream that was closed before the program began is replaced by the null device."""
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns if it cannot keep its list of fonts
-    if sys.stdin is None:
-        sys.stdin = os.fdopen(_nothing(0, os.O_RDONLY))
-    if sys.stdout is None:
-        sys.stdout = os.fdopen(_nothing(1, os.O_RDONLY), "w")  # writing fails, as to one that is closed
-    if sys.stderr is None:
-        sys.stderr = os.fdopen(_nothing(2, os.O_WRONLY), "w")
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:  # writing to standard output then fails, as to one that is closed
+            opened = os.open(os.devnull, os.O_WRONLY if name == "stderr" else os.O_RDONLY)
+            if opened != number:
+                os.dup2(opened, number)
+                os.close(opened)
+            setattr(sys, name, os.fdopen(number, "r" if name == "stdin" else "w"))
     if isinstance(sys.stderr, io.TextIOWrapper):
         sys.stderr.reconfigure(errors=LETTERS)
     if isinstance(sys.stdout, io.TextIOWrapper):
         encoding, is_terminal = sys.stdout.encoding, sys.stdout.line_buffering
         sys.stdout = _Output(sys.stdout.detach(), encoding, LETTERS, line_buffering=is_terminal)
-
-
-def _nothing(number: int, mode: int) -> int:
-    opened = os.open(os.devnull, mode)
-    if opened != number:
-        os.dup2(opened, number)
-        os.close(opened)
-    return number
 
 
 def drop_output() -> None:

@@ -107,10 +107,8 @@ def command_of(folder: Path) -> str:
     with open_record(folder) as record:
         cells, resume = record.cells(), record.to_resume()
     only, n = cells[0], cells[0].budget.tests
-    if only.in_sequence and not only.request.words:
-        return ""
     if len(cells) > 1 or not only.request.words or n is None or only.settings:
-        return resume
+        return "" if only.in_sequence and not only.request.words else resume
     words = request_words(only.request, n, only.brief)
     words += ["--goal", only.goal] if only.goal else []
     if only.generator != (WITH_GOAL if only.goal else WITHOUT_GOAL):

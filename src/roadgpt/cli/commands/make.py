@@ -489,12 +489,11 @@ def drive_again(
         check_named_drivers(drivers, {setup.driver for setup in setups_of(folder_)}, folder_)
     draw = options.drawing_of(formats, axes)
     for place in tests:
-        cell, number = place.cell, place.number or 0
-        run, result = run_again(place.folder, cell, number)
-        home = (out or place.folder / AGAIN) / cell
-        refuse_links(*([home.parent] if home.parent.name == AGAIN else []), home)
-        written = write_run(run, made(home), draw)
-        name, told = NumberedTest(cell, number), plain(run.description, 300)
+        name = NumberedTest(place.cell, place.number or 0)
+        run, result = run_again(place.folder, *name)
+        home = (out or place.folder / AGAIN) / place.cell
+        refuse_links(*[home.parent] * (home.parent.name == AGAIN), home)
+        written, told = write_run(run, made(home), draw), plain(run.description, 300)
         if worse := gate.add(place.said, run):
             told += f"  worse: {worse}"
         click.echo(f"{run.outcome:<8} {name}  {written}  {told}")

@@ -430,8 +430,7 @@ def _as_before(folder: Path, axes: "Scale") -> "Draw | None":
     if "road.json" not in names:
         return beside(("png",), axes, ())
     pictures = tuple(kind for kind in FORMATS if f"birds_eye.{kind}" in names)
-    formats: tuple[str, ...] = ()
-    if any(name.startswith(NAME) and name != "road.json" for name in names):
-        every = plugins.names("exporters")
-        formats = tuple(each for each in every if NAME + plugins.find("exporters", each).suffix in names)
+    has_formats = any(name.startswith(NAME) and name != "road.json" for name in names)
+    every = plugins.names("exporters") if has_formats else []
+    formats = tuple(each for each in every if NAME + plugins.find("exporters", each).suffix in names)
     return beside(pictures, axes, formats)
