@@ -7,8 +7,8 @@ from contextlib import suppress
 
 import click
 
+from roadgpt import brief as reading
 from roadgpt import stopping
-from roadgpt.brief import AnotherRoadError, read
 from roadgpt.brief.plan import read_plan
 from roadgpt.cli.commands import make
 from roadgpt.cli.options import HOW_MANY
@@ -84,8 +84,8 @@ def _understood(words: str) -> str | None:
     """Returns the plan to build instead of the words, "" to build the words, and None if the user wants to
     say it in other words. If the reader is not sure, asks which of two readings is meant."""
     try:
-        brief = read(words, is_map_fixed=False)
-    except AnotherRoadError as error:
+        brief = reading.read(words, is_map_fixed=False)
+    except reading.AnotherRoadError as error:
         click.echo(f"{error.offer}: {make.reading(error.brief)}")
         answer = _asked("1 to build that, or an empty line to say it in other words> ")
         return error.plan if answer == "1" else None

@@ -301,12 +301,13 @@ PATH = click.Path(path_type=Path)
 PICTURES = ("png", "svg", "pdf")  # as report.FORMATS has them, which would load matplotlib
 
 
-def listed(clean: Callable[[str], str]) -> Callable[[Any], tuple[str, ...]]:
-    """Returns the type of an option for texts separated by commas; ``clean`` converts or refuses each."""
+def listed(clean: Callable[[str], str], skips_blanks: bool = False) -> Callable[[Any], tuple[str, ...]]:
+    """Returns the type of an option for texts separated by commas; ``clean`` converts or refuses each, also
+    blank ones unless others are given and ``skips_blanks`` is true."""
 
     def names(value: str | tuple[str, ...]) -> tuple[str, ...]:
         texts = value if isinstance(value, tuple) else value.split(",")
-        given = [text.strip() for text in texts if text.strip()] or [""]
+        given = [text.strip() for text in texts if text.strip() or not skips_blanks] or [""]
         return tuple(dict.fromkeys(map(clean, given)))
 
     return names
@@ -573,9 +574,8 @@ def json_option(sentence: str = "Print one JSON object.", **more: Any) -> Option
 
 def formats_option(names: str, sentence: str, **more: Any) -> Option:
     """Returns an option for formats of road files; users separate formats by commas, or repeat the option."""
-    return Option(
-        names, sentence, listed(_road_format), metavar="FORMAT,...", multiple=True, callback=flat, **more
-    )
+    kind = listed(_road_format, skips_blanks=True)
+    return Option(names, sentence, kind, metavar="FORMAT,...", multiple=True, callback=flat, **more)
 
 
 EXPORT = formats_option(
