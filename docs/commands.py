@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from roadgpt.cli.app import app, headings
-from roadgpt.cli.option_groups import ALL
+from roadgpt.cli.options import ALL
 
 PAGE = Path(__file__).parent / "reference" / "commands.md"
 

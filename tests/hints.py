@@ -24,7 +24,7 @@ from roadgpt.campaign.selection import selection_of
 from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
 from roadgpt.cli.app import commands
-from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import GroupedCommand
 from roadgpt.errors import UsageError
 
 LINE = re.compile(rf"(?:^|: |  |`)(roadgpt (?:{'|'.join(commands())})\b[^`\n]*)", re.MULTILINE)

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 
 from roadgpt.campaign import campaign
 from roadgpt.cli import app
-from roadgpt.cli.summary import show
+from roadgpt.cli.summary import text_lines
 from roadgpt.report import Drawing
 from roadgpt.run import Setup, read_run
 
@@ -114,7 +114,7 @@ def test_the_lines_that_show_prints_make_the_same_again(
 ) -> None:
     home, lines = made
     run = folder_of(home) / "runs" / "0002"
-    said = show(run).splitlines()
+    said = [*text_lines(run)]
     (again,) = [line.split(maxsplit=1)[1] for line in said if line.strip().startswith("again ")]
     (drive,) = [line.split(maxsplit=1)[1] for line in said if line.strip().startswith("or ")]
     program, *arguments = shlex.split(again)

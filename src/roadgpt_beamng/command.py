@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from roadgpt.cli.option import Option, folder, whole
-from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import GroupedCommand, Option, folder, whole
 from roadgpt.errors import RoadGPTError
 
 if TYPE_CHECKING:

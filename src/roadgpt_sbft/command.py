@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.option import Heading, Option, measure, named, whole
-from roadgpt.cli.option_groups import CommandGroup, GroupedCommand
+from roadgpt.cli.options import CommandGroup, GroupedCommand, Heading, Option, measure, named, whole
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import crashes_go_to
 from roadgpt.errors import UsageError, explained, to_install

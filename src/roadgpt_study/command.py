@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.option import PATH, ROADS, Argument, Heading, Option, designer_guard, named, whole
-from roadgpt.cli.option_groups import CommandGroup, GroupedCommand
+from roadgpt.cli.options import PATH, Argument, CommandGroup, GroupedCommand, Heading, Option, named, whole
 from roadgpt.cli.streams import progress, resumable, warn
 from roadgpt.errors import ChatError, command_line
 from roadgpt_study.survey import command as survey
@@ -24,9 +23,9 @@ SHOWN = ("reader", "driver", "simulator", "keep_driving", "geometry")
 
 DESIGNERS = Option(
     "--designer designers", "What designs roads; repeat the option to compare designers.", str, ("planner",),
-    multiple=True, heading=Heading.DESIGN, table="run", guard=designer_guard,
+    multiple=True, heading=Heading.DESIGN, table="run", guard=options.designer_guard,
 )  # fmt: skip
-ROADS_EACH = partial(Option, "--roads -n", "Roads per description.", ROADS)
+ROADS_EACH = partial(Option, "--roads -n", "Roads per description.", options.HOW_MANY)
 THESIS = {"driver": "beamng_like", "oracle": "thesis"}  # studies drive and judge as the thesis did
 PROMPTS = Argument("prompts", "PROMPTS.jsonl", kind=PATH)
 DRIVES = Option("--drive drives", "Drive the roads as well.", bool)

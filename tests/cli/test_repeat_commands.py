@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from roadgpt.cli import app
 from roadgpt.cli.options import SETUP, world_of
 from roadgpt.cli.repeat_commands import replay_lines
-from roadgpt.cli.summary import show
+from roadgpt.cli.summary import text_lines
 from roadgpt.drive.loading import absolute_spec
 from roadgpt.road import CrossSection, Limits, Road, Site, World
 from roadgpt.run import Request, Run, Setup, prove, write_run
@@ -38,9 +38,9 @@ def parsed(line: str) -> click.Context:
 def test_show_tells_what_happened_and_how_to_make_it_again(tmp_path: Path) -> None:
     driven = prove(Road.through([[40, 100], [90, 100], [140, 100]]), 11)
     named = replace(driven, request=driven.request.model_copy(update={"words": WORDS}), rounds=2)
-    text = show(write_run(named, tmp_path))
+    text = "\n".join(text_lines(write_run(named, tmp_path)))
     assert text.startswith(f"PASS: {driven.description}")
-    assert show(tmp_path / "test.0001.json") == text
+    assert "\n".join(text_lines(tmp_path / "test.0001.json")) == text
     for said in ("2 drafts", "roadgpt drive", "--seed 11", WORDS):
         assert said in text
 
@@ -123,6 +123,6 @@ def test_a_campaign_tells_of_roads_that_cannot_be_read(
     (tmp_path / "runs" / "0002" / "run.json").write_text("{")
     (tmp_path / "runs" / "0003" / "run.json").unlink()
     (tmp_path / "test.0003.json").unlink()
-    lines = show(tmp_path).splitlines()
+    lines = [*text_lines(tmp_path)]
     assert "cannot be read" in lines[3]
     assert lines[-1] == "1 VALID, 1 unreadable; 1 of 3 still to be made"

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.option import PATH, Argument, Option, folder, measure, whole
-from roadgpt.cli.option_groups import CommandGroup
+from roadgpt.cli.options import PATH, Argument, CommandGroup, Option, folder, measure, whole
 from roadgpt.errors import RoadGPTError, UsageError
 
 if TYPE_CHECKING:

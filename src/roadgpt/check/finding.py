@@ -32,7 +32,7 @@ class Finding:
 def single_road(route: Road | None) -> Road | None:
     """Returns the road that is driven if it is a single one, which must also suit the SBFT competition; None
     for a Route, and for a map without a route."""
-    return None if route is None or is_route(route) else route
+    return None if route_of(route) is not None else route
 
 
 def route_of(route: Road | None) -> "Route | None":

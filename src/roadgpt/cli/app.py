@@ -12,7 +12,7 @@ from typing import Any
 import click
 
 from roadgpt import __version__, plugins, stopping
-from roadgpt.cli.option_groups import dash_advice
+from roadgpt.cli.options import dash_advice
 from roadgpt.cli.streams import OutputError, drop_output, is_coloured, report_crash, warn
 from roadgpt.errors import PartError, RoadGPTError, command_line
 from roadgpt.provenance import USER
@@ -77,13 +77,14 @@ def headings() -> dict[str, dict[str, str]]:
     heading. Such a module should import nothing but click and ``roadgpt.cli`` at first."""
     every = {heading: {**commands} for heading, commands in HEADINGS.items()}
     for name in commands()[len(OURS) :]:
+        heading = ""
         try:
             command = plugins.find("commands", name)
+            heading = getattr(command, "heading", "")
+            line = command.short_help or command.get_short_help_str(100)
         except PartError as error:
-            every.setdefault(OTHERS, {})[name] = str(error)
-        else:
-            heading = getattr(command, "heading", "") or OTHERS
-            every.setdefault(heading, {})[name] = command.short_help or command.get_short_help_str(100)
+            line = str(error)
+        every.setdefault(heading or OTHERS, {})[name] = line
     return every
 
 
@@ -96,8 +97,8 @@ class Commands(click.Group):
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Imports the command ``name``; returns None if there is none of that name."""
-        found: click.Command | None = None
         heading = next((heading for heading, under in HEADINGS.items() if name in under), "")
+        found: click.Command | None = None
         if heading:
             module = import_module(f"roadgpt.cli.commands.{heading.lower().replace(' ', '_')}")
             found = getattr(module, f"{name}_" if iskeyword(name) else name)
@@ -117,17 +118,15 @@ class Commands(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Returns the name of the command, the command and its arguments."""
-        name = args[0]
-        known = commands()
+        name, known, say = args[0], commands(), command_line("run", *args)
         if name in known or (name.startswith("-") and " " not in name.strip()):
             return super().resolve_command(ctx, args)
-        near = get_close_matches(name.lower(), known, 1)
-        advice = f"No such command '{name}'; there are: {', '.join(known)}. Is it a description? Say:"
         if " " in name.strip():
-            advice = "to make roads from a description, say:"
-        elif near:
+            raise click.UsageError(f"to make roads from a description, say: {say}", ctx)
+        if near := get_close_matches(name.lower(), known, 1):
             raise click.UsageError(f"No such command '{name}'. Did you mean '{near[0]}'?", ctx)
-        raise click.UsageError(f"{advice} {command_line('run', *args)}", ctx)
+        there = f"No such command '{name}'; there are: {', '.join(known)}"
+        raise click.UsageError(f"{there}. Is it a description? Say: {say}", ctx)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parses the arguments after ``roadgpt``."""
@@ -159,32 +158,28 @@ class Commands(click.Group):
             if not error.is_reader_gone:
                 warn(error)
         except click.ClickException as error:
-            _with_advice(error).show()
+            if isinstance(error, click.MissingParameter):
+                advice = getattr(error.param, "advice", "")
+                error = click.UsageError(f"{error.format_message()} {advice}".strip(), error.ctx)
+            error.show()
             status = error.exit_code
         except RoadGPTError as error:
             warn(error)
             status = stopping.status() or error.exit_status
-        except OSError as error:
-            status = stopping.status() or _refused(error)
         except (KeyboardInterrupt, click.Abort):
             status = stopping.status() or INTERRUPTED
         except Exception as error:  # last resort: users must not see a traceback
-            status = stopping.status()
-            if not status:  # an error in a program that is being stopped is not reported
+            status = stopping.status()  # an error in a program that is being stopped is not reported
+            if not status and isinstance(error, OSError) and error.errno in OF_FILES and error.filename:
+                name = str(error.filename)
+                shown = name if len(name) <= 200 else f"{name[:80]}...{name[-40:]}"
+                warn(f"cannot use {shown}: {error.strerror}; name another file or folder")
+                status = REFUSED
+            elif not status:
                 warn(report_crash(error))
                 status = INTERNAL
         stopping.finish()
         sys.exit(status if isinstance(status, int) else 0)
-
-
-def _refused(error: OSError) -> int:
-    if error.errno not in OF_FILES or not error.filename:
-        warn(report_crash(error))
-        return INTERNAL
-    name = str(error.filename)
-    shown = name if len(name) <= 200 else f"{name[:80]}...{name[-40:]}"
-    warn(f"cannot use {shown}: {error.strerror}; name another file or folder")
-    return REFUSED
 
 
 def _confirm(question: str) -> bool:
@@ -192,13 +187,6 @@ def _confirm(question: str) -> bool:
     if not (sys.stdin and sys.stdin.isatty() and sys.stderr.isatty()):
         return False
     return click.confirm(f"roadgpt: {question}", default=False, err=True)
-
-
-def _with_advice(error: click.ClickException) -> click.ClickException:
-    if not isinstance(error, click.MissingParameter):
-        return error
-    advice = getattr(error.param, "advice", "")
-    return click.UsageError(f"{error.format_message()} {advice}".strip(), error.ctx)
 
 
 @click.group(

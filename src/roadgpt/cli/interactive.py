@@ -7,12 +7,15 @@ from contextlib import suppress
 
 import click
 
+from roadgpt import brief as reading
 from roadgpt import stopping
+from roadgpt.brief.plan import read_plan
 from roadgpt.cli.commands import make
-from roadgpt.cli.option import ROADS
+from roadgpt.cli.options import HOW_MANY
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError
+from roadgpt.road import World
 
 USUAL_ROADS = 3
 ENOUGH = {"exit", "quit", "bye", "q"}
@@ -80,12 +83,9 @@ def _asked(question: str, explained: str = "") -> str:
 def _understood(words: str) -> str | None:
     """Returns the plan to build instead of the words, "" to build the words, and None if the user wants to
     say it in other words. If the reader is not sure, asks which of two readings is meant."""
-    from roadgpt.brief import AnotherRoadError, read
-    from roadgpt.brief.plan import read_plan
-
     try:
-        brief = read(words, is_map_fixed=False)
-    except AnotherRoadError as error:
+        brief = reading.read(words, is_map_fixed=False)
+    except reading.AnotherRoadError as error:
         click.echo(f"{error.offer}: {make.reading(error.brief)}")
         answer = _asked("1 to build that, or an empty line to say it in other words> ")
         return error.plan if answer == "1" else None
@@ -101,14 +101,12 @@ def _how_many() -> int:
     while True:
         answer = _asked(f"how many roads [{USUAL_ROADS}]> ", EXPLAINED)
         try:
-            return ROADS(answer) if answer else USUAL_ROADS
+            return HOW_MANY(answer) if answer else USUAL_ROADS
         except click.BadParameter as error:
             warn(error.message)
 
 
 def _change(roads: list[str]) -> None:
-    from roadgpt.road import World
-
     question = "change it? > " if len(roads) == 1 else "change one? (2: make the last turn sharper) > "
     while roads and (answer := _asked(question, CHANGES)):
         match = re.match(r"(?:road\s+)?(\d+)\s*[:,]?\s+(.*)", answer, re.IGNORECASE | re.DOTALL)

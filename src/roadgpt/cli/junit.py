@@ -11,12 +11,11 @@ cases. Source: the documentation of the common format, https://github.com/testmo
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from roadgpt.campaign.folder_record import has_tests, open_record
 from roadgpt.campaign.model import NumberedTest
-from roadgpt.cli.screen import Row, row_of_result
+from roadgpt.cli.screen import Row, row_of
 from roadgpt.errors import RoadGPTError, explained
 from roadgpt.export.markup import XmlElement, escaped
 from roadgpt.run.atomic import write_whole
@@ -51,18 +50,17 @@ def suites_of(folder: Path, worse: Mapping[str, str]) -> Iterator[Suite]:
         with open_record(place) as record:
             cells = record.cells()
             for cell in cells:
-                rows = []
+                rows = list[Row]()
                 times = dict(record.query(TIMES, (cell.name,)))
                 errors = dict(record.query(ERRORS, (cell.name,)))
                 for result in record.results(cell.name):
                     number, file = result.number, record.file(result.number)
                     test = str(NumberedTest(cell.name, number))
-                    row = row_of_result(
-                        result, cell.request.words, record.seed(result), Path(file).name or test
-                    )
-                    own = {"seconds": times.get(number, 0.0), "trace": str(errors.get(number, ""))}
-                    own |= {"file": file, "origin": result.proposal.origin if cell.name else None}
-                    rows.append(replace(row, worse=worse.get(f"{place}/{test}", ""), **own))
+                    own = {"words": cell.request.words, "seed": record.seed(result)}
+                    own |= {"seconds": times.get(number, 0.0), "trace": str(errors.get(number, ""))}
+                    own |= {"origin": result.proposal.origin if cell.name else None}
+                    own |= {"name": Path(file).name or test, "worse": worse.get(f"{place}/{test}", "")}
+                    rows.append(row_of(result, file, **own))
                 name = cell.request.words[:LONGEST] or UNKNOWN
                 of_cell = {"cell": cell.name, "generator": cell.generator, "goal": cell.goal}
                 properties = {**properties_of(cell.request), **(of_cell if cell.name else {})}

@@ -15,7 +15,7 @@ from roadgpt.brief.words import SURFACES
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.status import Status
 from roadgpt.cli import options
-from roadgpt.cli.option import Option, named, words_of
+from roadgpt.cli.options import Option, named, words_of
 from roadgpt.errors import command_line
 from roadgpt.road import World
 from roadgpt.road.world import oracle_limits
@@ -28,8 +28,7 @@ OF_DRIVES = named(options.SETUP, "driver", "simulator", "keep_driving", "rules")
 
 def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
     """Returns lines with the commands that repeat a Run: from its description, and from its road file."""
-    lines = []
-    request = run.request
+    lines, request = list[str](), run.request
     if run.words:
         lines.append(command_line("run", *request_words(request, run.index, run.brief)))
     if folder is not None and run.road is not None and request.setup.drives:
@@ -51,12 +50,9 @@ def request_words(request: Request, roads: int, brief: Brief | None) -> list[str
 
 
 def option_words(
-    setup: Setup,
-    world: World,
-    of_setup: Sequence[Option] | None = None,
-    asks: bool = True,
+    setup: Setup, world: World, of_setup: Sequence[Option] | None = None, asks: bool = True,
     also: Set[str] = frozenset(),
-) -> list[str]:
+) -> list[str]:  # fmt: skip
     """Returns the arguments for options that differ from their defaults, that configuration files or the
     environment set, or whose keys are in ``also``. ``of_setup`` are those of the command that set fields of
     the Setup, of all if it is None; ``asks`` says whether it has options for language models."""
@@ -95,7 +91,6 @@ FEWEST = 5  # passed drives; if there are fewer, it is no surprise that none fai
 FRICTIONS = {"wet": "a wet road", "snow": "snow"}
 SPEEDS = (100.0, 130.0)  # km/h
 SEARCHED = 200  # tests of a search
-GOALS = ("failures", "hardest")
 HEAD = "No road failed. What may find one that does:"
 
 
@@ -119,7 +114,7 @@ def next_steps(quiet: WithoutFailure | None) -> list[tuple[str, str]]:
     empty if too few tests passed, or if command-line options cannot express the whole request."""
     if quiet is None or quiet.passed < FEWEST or not quiet.request.words:
         return []
-    values, usual = quiet.request.world.values(), type(quiet.request.world)().values()
+    values, usual = quiet.request.world.values(), World().values()
     others = values.keys() - {flag.field for flag in options.WORLD}
     return [*_steps(quiet)] if all(values[name] == usual[name] for name in others) else []
 
@@ -141,19 +136,15 @@ def _steps(quiet: WithoutFailure) -> Iterator[tuple[str, str]]:
         if quiet.outside:
             why += f"; {quiet.outside:,} of {quiet.passed:,} passed with the car partly or mostly outside"
         yield why, _command(quiet, **oracle_limits("departure"))
-    for surface, name in FRICTIONS.items():
-        if SURFACES[surface].friction < world.site.friction:
-            yield name, _command(quiet, friction=SURFACES[surface].friction)
-            break
-    for speed in SPEEDS:
-        if speed / 3.6 > world.limits.speed_limit * 1.001:
-            yield f"a speed limit of {speed:.0f} km/h", _command(quiet, speed_limit=speed / 3.6)
-            break
-    for goal in GOALS:
-        if goal != quiet.goal and not quiet.compares:
-            why = f"search for {'failures' if goal == 'failures' else 'the hardest road'} among such roads"
-            yield why, _command(replace(quiet, goal=goal, is_search=True, tests=max(quiet.tests, SEARCHED)))
-            break
+    slippery = [(SURFACES[surface].friction, name) for surface, name in FRICTIONS.items()]
+    for friction, name in [each for each in slippery if each[0] < world.site.friction][:1]:
+        yield name, _command(quiet, friction=friction)
+    for speed in [speed for speed in SPEEDS if speed / 3.6 > world.limits.speed_limit * 1.001][:1]:
+        yield f"a speed limit of {speed:.0f} km/h", _command(quiet, speed_limit=speed / 3.6)
+    if not quiet.compares:
+        goal, what = ("hardest", "the hardest road") if quiet.goal == "failures" else ("failures", "failures")
+        search = replace(quiet, goal=goal, is_search=True, tests=max(quiet.tests, SEARCHED))
+        yield f"search for {what} among such roads", _command(search)
 
 
 def _command(quiet: WithoutFailure, **world: Any) -> str:

@@ -15,7 +15,7 @@ import click
 from roadgpt.cli.options import WORLD, typed
 from roadgpt.cli.screen import Row, Screen, unreadable
 from roadgpt.cli.streams import warn
-from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError, explained
+from roadgpt.errors import ExportError, PartError, UsageError, explained
 from roadgpt.plural import plural
 
 if TYPE_CHECKING:
@@ -67,25 +67,25 @@ def use_each(
     """Calls ``use`` for each road that the names refer to; a name or a road that cannot be used is reported
     and skipped. Returns the exit status: 0, 1 if a format cannot hold a road, or 2 if a name or a road cannot
     be used."""
-    errors, seen = list[RoadGPTError](), set[object]()
+    status, seen = 0, set[object]()
+
+    @contextmanager
+    def reported() -> Iterator[None]:
+        nonlocal status
+        try:
+            yield
+        except PartError:
+            raise
+        except (UsageError, ExportError) as error:
+            warn(error)
+            status = max(status, FAILED if isinstance(error, ExportError) else UNREADABLE)
+
     for file in files:
-        with _reported(errors):
+        with reported():
             for each in roads_named([file], choice, takes_all, seen):
-                with _reported(errors):
+                with reported():
                     use(each)
-    return max((FAILED if isinstance(error, ExportError) else UNREADABLE for error in errors), default=0)
-
-
-@contextmanager
-def _reported(errors: list[RoadGPTError]) -> Iterator[None]:
-    """Prints an error about a road instead of raising it, and appends it to ``errors``."""
-    try:
-        yield
-    except PartError:
-        raise
-    except (UsageError, ExportError) as error:
-        warn(error)
-        errors.append(error)
+    return status
 
 
 def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[NamedRoad]:
@@ -220,19 +220,17 @@ def on_a_map(
     """Returns the road, or the route with its network, on a map that is as wide as the World's or wider, the
     map's width in metres, by how many metres it was moved, and remarks. Whole metres lose no digits of the
     file's coordinates."""
+    import numpy as np
+
     from roadgpt.brief.words import LARGEST_MAP
     from roadgpt.check.extremes import lowest
     from roadgpt.check.ribbon import extent
     from roadgpt.check.sbft import SPLINE_REACH
-    from roadgpt.network import is_route, moved_network
-    from roadgpt.road import moved
+    from roadgpt.network import network_of
 
-    laid, remarks, x, y, z = world.lay(road), list[str](), 0.0, 0.0, 0.0
-    low, high = (
-        road.network.bounds()
-        if is_route(road)
-        else extent(laid.sample(), world.profile_of(laid).edges(laid.sample().s))
-    )
+    members, remarks, x, y, z = network_of(world.lay(road), world).roads, list[str](), 0.0, 0.0, 0.0
+    spans = [extent(each.road.sample(), each.profile.edges(each.road.sample().s)) for each in members]
+    low, high = np.min([low for low, _ in spans], axis=0), np.max([high for _, high in spans], axis=0)
     wide = float(high.max()) + SPLINE_REACH if keep_place else float((high - low).max()) + 2 * ROOM
     size = max(world.site.map_size, ROUND_MAP * ceil(wide / ROUND_MAP))
     fits = (low > SPLINE_REACH).all() and (high < size - SPLINE_REACH).all()
@@ -248,28 +246,22 @@ def on_a_map(
         x, y = (float(round(each)) for each in size / 2 - (low + high) / 2)
         back = f"add ({-x:.0f}, {-y:.0f}) m for its place in the file"
         remarks.append(f"it is moved by ({x:.0f}, {y:.0f}) m into the middle of the map; {back}")
-    roads = [each.road for each in road.network.roads] if is_route(road) else [road]
-    deepest = min(lowest(each.elevation, each.length)[1] for each in roads)
+    deepest = min(lowest(each.road.elevation, each.road.length)[1] for each in members)
     if deepest < world.site.z_floor and not keep_place:
         z = float(ceil(-deepest))
         remarks.append(f"it is lifted by {z:.0f} m: its lowest place was below the ground of the map")
-    if is_route(road):
-        placed: Road = type(road).along(moved_network(road.network, x, y, z), road.legs).on_ground()
-    else:
-        placed = moved(road, x, y, z)
-    return placed, size, (x, y, z), tuple(remarks)
+    return road.moved(x, y, z), size, (x, y, z), tuple(remarks)
 
 
 def shown_roads(files: Sequence[str], choice: "Choice | None", most: int, what: str) -> list[NamedRoad]:
     """Returns the named roads, at most ``most``, to show them together in ``what``, such as 'a page'."""
+    shows = f"{what} shows one road or two side by side"
     if len(files) > most:
-        raise UsageError(f"{what} shows one road or two side by side; {len(files)} are given")
+        raise UsageError(f"{shows}; {len(files)} are given")
     named = [*roads_named(files, choice)]
     if len(named) > most:
-        raise UsageError(
-            f"{what} shows one road or two side by side; these are {len(named):,}: name one or two, as "
-            f"{named[0].said}, or say --worst"
-        )
+        name = f"name one or two, as {named[0].said}, or say --worst"
+        raise UsageError(f"{shows}; these are {len(named):,}: {name}")
     if len(named) < len(files):  # the same road twice, side by side
         named = [each for file in files for each in roads_named([file], choice)]
     return named
@@ -303,14 +295,21 @@ def named_in_errors(file: str) -> Iterator[None]:
         raise kind(f"{file}: {error}") from error
 
 
-def each_road(files: Sequence[str], screen: Screen, look: "Callable[[str], tuple[Row, Run | None]]") -> None:
-    """Calls ``look`` for every file, and prints the rows and a table of their outcomes. A file that cannot be
-    used gets a row with an error, but for a single one."""
+def each_road(
+    files: Sequence[str], screen: Screen, world: "World",
+    look: "Callable[[str, Design | Road, World], tuple[Row, Run | None]]",
+) -> None:  # fmt: skip
+    """Calls ``look`` for every file with what ``source_of`` finds in it, and prints the remarks on it, the
+    rows and a table of their outcomes. A file that cannot be used gets a row with an error, but for a single
+    one."""
     with screen:
         for file in files:
             try:
                 with named_in_errors(file):
-                    seen = look(file)
+                    blueprint, its_world, remarks = source_of(file, world)
+                    for remark in remarks:
+                        screen.say(f"{file}: {remark}")
+                    seen = look(file, blueprint, its_world)
             except PartError:
                 raise
             except UsageError as error:
@@ -340,6 +339,11 @@ def numbered(name: str, ending: str = "") -> Iterator[str]:
     """Yields names for a file or folder; for 'road' and '.json': road.json, road-2.json, road-3.json, ..."""
     yield name + ending
     yield from (f"{name}-{number}{ending}" for number in count(2))
+
+
+def free(stem: str | Path, ending: str = "") -> Path:
+    """Returns the first path of ``numbered`` at which there is nothing yet."""
+    return next(path for path in map(Path, numbered(str(stem), ending)) if not path.exists())
 
 
 def made(folder: Path) -> Path:

@@ -6,7 +6,6 @@ import logging
 import math
 import sys
 import time
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -140,10 +139,8 @@ def driver_and_oracle(drivers: Sequence[str], oracle: str) -> str:
 
 def outside(share: float | None, beyond: float | None) -> str:
     """Returns how far a car was outside, such as '62 % out, 1.13 m' or 'inside'; empty without a drive."""
-    if share is None:
-        return ""
     if not share:
-        return "inside"
+        return "" if share is None else "inside"
     from roadgpt.verdict import percent
 
     return f"{percent(share)} out" + ("" if beyond is None else f", {beyond:.2f} m")
@@ -171,58 +168,38 @@ def _rounded(value: Any) -> Any:
 
 def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
     """Returns for each outcome its name, number and share of roads, least margin, and how far outside."""
-    counted = Counter(row.outcome for row in rows)
-    table = []
-    ranks = [*COLOURS]
-    for outcome, count in sorted(counted.items(), key=lambda item: (ranks.index(_kind(item[0])), item[0])):
-        margins = [row.margin_m for row in rows if row.outcome == outcome and row.margin_m is not None]
-        least = metres(min(margins)) if margins else "-"
-        shares = [row.max_oob for row in rows if row.outcome == outcome and row.max_oob is not None]
-        farthest = [row.beyond_m for row in rows if row.outcome == outcome and row.beyond_m is not None]
+    table, ranks = [], [*COLOURS]
+    for outcome in sorted({row.outcome for row in rows}, key=lambda name: (ranks.index(_kind(name)), name)):
+        own = [row for row in rows if row.outcome == outcome]
+        margins = [row.margin_m for row in own if row.margin_m is not None]
+        shares = [row.max_oob for row in own if row.max_oob is not None]
+        farthest = [row.beyond_m for row in own if row.beyond_m is not None]
         most = outside(max(shares, default=None), max(farthest, default=None)) or "-"
-        table.append((outcome, count, f"{100 * count / len(rows):.0f} %", least, most))
+        share, least = f"{100 * len(own) / len(rows):.0f} %", metres(min(margins)) if margins else "-"
+        table.append((outcome, len(own), share, least, most))
     return table
 
 
-def row_of(run: "Run", file: str, name: str = "") -> Row:
-    """Returns the row of a Run; ``file`` is the Run's road file. Lines show ``name``, if given, instead."""
-    return Row(
-        file,
-        run.outcome,
-        run.description,
-        is_valid=run.is_valid,
-        validation_message=run.validation_message,
-        findings=tuple(finding.sentence for finding in run.findings),
-        length_m=run.length if run.road else None,
-        seconds=round(run.seconds.design, 4) + round(run.seconds.drive, 4),  # as tables of tests hold them
-        name=name,
-        spent=run.spent,
-        words=run.words,
-        seed=run.seed,
-        trace=run.trace,
-        **(_measured(run.verdict) if run.verdict else {}),
-    )
+def row_of(run: "Run | Result", file: str = "", **more: Any) -> Row:
+    """Returns the row of a Run, whose road file is ``file``, or of a stored result; ``more`` are further
+    fields."""
+    from roadgpt.run.model import Run
 
-
-def row_of_result(result: "Result", words: str, seed: int, name: str) -> Row:
-    """Returns the row of a test from its stored result."""
-    return Row(
-        "",
-        result.outcome,
-        result.description,
-        is_valid=result.outcome not in ("INVALID", "ERROR"),
-        length_m=result.length or None,
-        name=name,
-        words=words,
-        seed=seed,
-        **_measured(result),
-    )
-
-
-def _measured(found: "Verdict | Result") -> dict[str, Any]:
-    measures = {"max_oob": found.max_oob, "beyond_m": found.beyond, "margin_m": found.margin}
-    whose = {"own_share": found.own_share, "handed_to": found.handed_to}
-    return {**measures, **whose, "cause": found.cause, "at_s_m": found.at_s, "side": found.side}
+    found: Verdict | Result | None = None
+    if isinstance(run, Run):
+        found, is_valid, length = run.verdict, run.is_valid, run.length if run.road else None
+        findings = tuple(finding.sentence for finding in run.findings)
+        more |= {"validation_message": run.validation_message, "findings": findings, "spent": run.spent}
+        more |= {"words": run.words, "seed": run.seed, "trace": run.trace}
+        # as tables of tests hold them
+        more["seconds"] = round(run.seconds.design, 4) + round(run.seconds.drive, 4)
+    else:
+        found, is_valid, length = run, run.outcome not in ("INVALID", "ERROR"), run.length or None
+    if found is not None:
+        more |= {"max_oob": found.max_oob, "beyond_m": found.beyond, "margin_m": found.margin}
+        more |= {"own_share": found.own_share, "handed_to": found.handed_to}
+        more |= {"cause": found.cause, "at_s_m": found.at_s, "side": found.side}
+    return Row(file, run.outcome, run.description, is_valid, length_m=length, **more)
 
 
 def unreadable(file: str, error: Exception) -> Row:
@@ -275,6 +252,11 @@ class Screen:
         if self.verbose:
             self.say(sentence)
 
+    def spent(self, spent: "Spent") -> None:
+        """Prints what language models have cost, if they were asked."""
+        if spent.calls:
+            self.say(f"language model: {spending(spent)}")
+
     def row(self, row: Row, run: "Run | None" = None) -> None:
         """Prints the result of a finished road; the gate receives its Run, if there is one."""
         if self.gate:
@@ -298,7 +280,7 @@ class Screen:
         with self:
             for run in apart(runs):
                 name = test_name(run.index)
-                self.row(row_of(run, str(folder / name), name), run)
+                self.row(row_of(run, str(folder / name), name=name), run)
                 self.detail(f"  {run.description}")
 
     def close(self) -> None:

@@ -9,10 +9,10 @@ import sys
 import tempfile
 import time
 import traceback
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, redirect_stdout
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, redirect_stdout, suppress
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import click
 
@@ -52,25 +52,18 @@ def make_ready() -> None:
     """Makes both output streams accept every character; failed writes to standard output raise OutputError. A
     stream that was closed before the program began is replaced by the null device."""
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns if it cannot keep its list of fonts
-    if sys.stdin is None:
-        sys.stdin = os.fdopen(_nothing(0, os.O_RDONLY))
-    if sys.stdout is None:
-        sys.stdout = os.fdopen(_nothing(1, os.O_RDONLY), "w")  # writing fails, as to one that is closed
-    if sys.stderr is None:
-        sys.stderr = os.fdopen(_nothing(2, os.O_WRONLY), "w")
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:  # writing to standard output then fails, as to one that is closed
+            opened = os.open(os.devnull, os.O_WRONLY if name == "stderr" else os.O_RDONLY)
+            if opened != number:
+                os.dup2(opened, number)
+                os.close(opened)
+            setattr(sys, name, os.fdopen(number, "r" if name == "stdin" else "w"))
     if isinstance(sys.stderr, io.TextIOWrapper):
         sys.stderr.reconfigure(errors=LETTERS)
     if isinstance(sys.stdout, io.TextIOWrapper):
         encoding, is_terminal = sys.stdout.encoding, sys.stdout.line_buffering
         sys.stdout = _Output(sys.stdout.detach(), encoding, LETTERS, line_buffering=is_terminal)
-
-
-def _nothing(number: int, mode: int) -> int:
-    opened = os.open(os.devnull, mode)
-    if opened != number:
-        os.dup2(opened, number)
-        os.close(opened)
-    return number
 
 
 def drop_output() -> None:
@@ -103,14 +96,13 @@ def is_coloured() -> bool:
 def apart(steps: Iterable[T]) -> Iterator[T]:
     """Yields the steps of an iterable. Text printed meanwhile, such as by a user's driver, goes to standard
     error, so that standard output holds only result rows."""
-    made = iter(steps)
+    made, ended = iter(steps), object()
     while True:
         with redirect_stdout(sys.stderr):
-            try:
-                step = next(made)
-            except StopIteration:
-                return
-        yield step
+            step = next(made, ended)
+        if step is ended:
+            return
+        yield cast(T, step)
 
 
 EVERY = 10.0  # s between two lines where there is no terminal
@@ -128,7 +120,7 @@ def progress(
     if quiet or not (has_lines or sys.stderr.isatty()):
         yield lambda *_, **__: None
     elif not sys.stderr.isatty():
-        yield _Lines(what, total or 0)
+        yield _lines(what, total or 0)
     else:
         from rich.console import Console
         from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
@@ -146,23 +138,22 @@ def progress(
             yield lambda done, **more: bar.update(task, completed=done, **more)
 
 
-class _Lines:
-    """Prints a line every ten seconds."""
+def _lines(what: str, total: int) -> Callable[..., None]:
+    """Returns a function that prints a line every ten seconds."""
+    first: list[float] = []  # the time of the first step, which includes the workers' start, and its number
+    told = time.monotonic()
 
-    def __init__(self, what: str, total: int) -> None:
-        self._what, self._total = what, total
-        self._first: tuple[float, int] | None = None
-        self._told = time.monotonic()
+    def tell(done: int, total: int = total, **_: object) -> None:
+        nonlocal told
+        now = time.monotonic()
+        if not first:
+            first[:] = now, done
+        elif now - told >= EVERY and first[1] < done < total:
+            left = (now - first[0]) / (done - first[1]) * (total - done)
+            warn(f"{done:,} of {total:,} {what}, about {duration(left)} to go")
+            told = now
 
-    def __call__(self, done: int, total: int | None = None, **_: object) -> None:
-        now, self._total = time.monotonic(), total or self._total
-        if self._first is None:
-            self._first = now, done  # the first step includes the start of the workers: others are faster
-        elif now - self._told >= EVERY and self._first[1] < done < self._total:
-            left = (now - self._first[0]) / (done - self._first[1]) * (self._total - done)
-            steps = f"{done:,} of {self._total:,} {self._what}"
-            warn(f"{steps}, about {duration(left)} to go")
-            self._told = now
+    return tell
 
 
 def watched(steps: Iterable[T], total: int, what: str, quiet: bool = False) -> Iterator[T]:
@@ -171,6 +162,16 @@ def watched(steps: Iterable[T], total: int, what: str, quiet: bool = False) -> I
         for done, step in enumerate(steps, 1):
             tell(done)
             yield step
+
+
+def aligned(rows: Sequence[Sequence[str]], sides: str, gap: str = "  ") -> list[str]:
+    """Returns lines with columns as wide as their longest text; ``sides`` says for each column whether its
+    texts are at the left (<) or at the right (>)."""
+    wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        gap.join(f"{text:{side}{w}}" for text, side, w in zip(row, sides, wide, strict=True)).rstrip()
+        for row in rows
+    ]
 
 
 def duration(seconds: float) -> str:
@@ -200,24 +201,14 @@ def report_crash(error: Exception) -> str:
     head += f"arguments: {sys.argv[1:]}\n\n"
     text = head + "".join(traceback.format_exception(error))
     what = f"{type(error).__name__}: {error}".splitlines()[0][:200]
-    try:
-        path = _write(text)
-    except OSError:
-        sys.stderr.write(text)
-        return f"an error that should not happen ({what}); please report it with the lines above"
-    return f"an error that should not happen ({what}); please report it with the file {path}"
-
-
-def _write(text: str) -> Path:
-    """Writes the text into the first folder that can be written to; returns the file."""
+    report = f"an error that should not happen ({what}); please report it with"
     for folder in (*_folder, Path(tempfile.gettempdir())):
-        try:
+        with suppress(OSError):
             with tempfile.NamedTemporaryFile(
                 "w", prefix="roadgpt-crash-", suffix=".txt", dir=folder, delete=False, encoding="utf-8",
-                errors="backslashreplace",
+                errors=LETTERS,
             ) as file:  # fmt: skip
                 file.write(text)
-        except OSError:
-            continue
-        return Path(file.name)
-    raise OSError("no folder to write to")
+            return f"{report} the file {file.name}"
+    sys.stderr.write(text)
+    return f"{report} the lines above"

@@ -5,7 +5,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import islice
+from itertools import accumulate, islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,17 +25,8 @@ from roadgpt.chat.answer import plain
 from roadgpt.check.measures import ups_and_downs
 from roadgpt.cli.repeat_commands import lines, of_status, replay_lines, to_resume
 from roadgpt.cli.roads import NamedRoad, roads_named
-from roadgpt.cli.screen import (
-    COLOURS,
-    WIDEST,
-    Row,
-    driver_and_oracle,
-    metres,
-    row_of,
-    row_of_result,
-    spending,
-)  # fmt: skip
-from roadgpt.cli.streams import apart, duration, progress, resumable
+from roadgpt.cli.screen import COLOURS, WIDEST, Row, driver_and_oracle, metres, row_of, spending
+from roadgpt.cli.streams import aligned, apart, duration, progress, resumable
 from roadgpt.errors import UsageError, command_line
 from roadgpt.road.world import oracle_in_words
 from roadgpt.run.folder import read_run, run_folder
@@ -48,7 +39,7 @@ if TYPE_CHECKING:
 COMPARED = 500  # largest number of failures, evenly spread, that are grouped (if untested): under a second
 MOST_CELLS = 40  # largest number of cells that are shown one by one
 MOST_TESTS = 40  # of a cell, one by one
-HEAD = ("cell", "done", "pass", "fail", "other", "least margin", "what")
+HEAD, SIDES = ("cell", "done", "pass", "fail", "other", "least margin", "what"), "<>>>>><"
 GAP = "  "  # between columns
 LEAST = 12  # letters of the last column, below which it is left out
 LONGEST, WIDEST_TEXT = 60, 300  # letters of a description, and of other texts, in a line of a table
@@ -76,8 +67,7 @@ def watch(folder: Path, steps: Iterator[Progress], as_json: bool, quiet: bool, g
 def _faults_of(status: Status) -> Faults | None:
     """Returns the distinct faults of a campaign; None if no test was driven. Before ``roadgpt faults``
     has tried small changes, returns groups of similar failures among at most ``COMPARED`` failures."""
-    driven = status.outcomes.get("PASS") or status.outcomes.get("FAIL")
-    return faults_in(Path(status.folder), COMPARED) if driven else None
+    return faults_in(Path(status.folder), COMPARED) if {"PASS", "FAIL"} & status.outcomes.keys() else None
 
 
 def _as_json(status: Status, gate: Gate | None = None) -> str:
@@ -100,15 +90,15 @@ def outcomes_line(outcomes: Mapping[str, int]) -> str:
 
 def _told(status: Status) -> Iterator[str]:
     """Yields a campaign's progress, distinct faults and outcomes, and what to do next."""
-    found = _faults_of(status)
+    found, cells = _faults_of(status), status.cells
     yield _headline(status)
     if found is not None and found.failures:
         yield f"  {found.headline}"
     yield f"  {outcomes_line(status.outcomes)}"
-    if other := sum(cell.handed_over for cell in status.cells):
+    if other := sum(cell.handed_over for cell in cells):
         yield f"  in {other:,} FAIL the driver had handed over: they are not its failures"
     if {"PASS", "FAIL"} & status.outcomes.keys():
-        yield f"  {driver_and_oracle([cell.driver for cell in status.cells], status.cells[0].oracle)}"
+        yield f"  {driver_and_oracle([cell.driver for cell in cells], cells[0].oracle)}"
     if found is not None and found.them:
         first = "" if found.is_tested else "how many faults these are, "
         look = command_line("faults", status.folder, *permissions(setups_of(Path(status.folder))))
@@ -117,21 +107,20 @@ def _told(status: Status) -> Iterator[str]:
         yield f"  language model: {status.tokens:,} tokens, {status.cost_usd:.4f} USD"
     if not status.is_finished and not status.is_running:
         yield f"  continue with: {to_resume(Path(status.folder))}"
-    yield from cell_lines(status.cells[:MOST_CELLS])
-    if len(status.cells) > MOST_CELLS:
-        yield f"and {len(status.cells) - MOST_CELLS:,} more cells; --json tells of all"
-    passed = status.outcomes.get("PASS", 0)
-    partly = sum(cell.partly_outside for cell in status.cells)
-    mostly = sum(cell.mostly_outside for cell in status.cells)
+    yield from cell_lines(cells[:MOST_CELLS])
+    if len(cells) > MOST_CELLS:
+        yield f"and {len(cells) - MOST_CELLS:,} more cells; --json tells of all"
+    partly = sum(cell.partly_outside for cell in cells)
+    mostly = sum(cell.mostly_outside for cell in cells)
     if partly + mostly:
-        share = max(cell.max_oob or 0.0 for cell in status.cells)
-        beyond = max(cell.beyond or 0.0 for cell in status.cells)
+        share, beyond = max(cell.max_oob or 0.0 for cell in cells), max(cell.beyond or 0.0 for cell in cells)
         yield (
-            f"of {passed:,} PASS, {partly:,} were partly and {mostly:,} mostly outside their lane, within "
-            f"the tolerance: at most {percent(share)} of the car, {beyond:.2f} m beyond the marking"
+            f"of {status.outcomes.get('PASS', 0):,} PASS, {partly:,} were partly and {mostly:,} mostly "
+            f"outside their lane, within the tolerance: at most {percent(share)} of the car, {beyond:.2f} m "
+            "beyond the marking"
         )
     yield from lines(of_status(status))
-    yield from [cell.remark for cell in status.cells[:MOST_CELLS] if cell.remark]
+    yield from [cell.remark for cell in cells[:MOST_CELLS] if cell.remark]
 
 
 def _headline(status: Status) -> str:
@@ -152,17 +141,10 @@ def cell_lines(cells: Sequence[CellStatus], width: int = 10_000) -> list[str]:
     last column counts as ``LEAST`` characters wide, so longer texts of this column extend beyond ``width``.
     """
     rows = [HEAD, *map(_columns, cells)]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    widths[-1] = LEAST
-    ends = [sum(widths[: n + 1]) + n * len(GAP) for n in range(len(HEAD))]
-    shown = sum(end <= width for end in ends)
-    return [
-        GAP.join(
-            text.rjust(wide) if name not in (HEAD[0], HEAD[-1]) else text.ljust(wide)
-            for name, text, wide in zip(HEAD[:shown], row, widths, strict=False)
-        ).rstrip()
-        for row in rows
-    ]
+    columns = [*zip(*rows, strict=True)]
+    wide = [*(max(map(len, column)) for column in columns[:-1]), LEAST]
+    shown = sum(end <= width for end in accumulate(wide, lambda end, own: end + len(GAP) + own))
+    return aligned([row[:shown] for row in rows], SIDES[:shown], GAP)
 
 
 def _columns(cell: CellStatus) -> tuple[str, ...]:
@@ -187,12 +169,10 @@ def watch_campaign(campaign: Path) -> None:
         console.print(_picture(status_of(campaign), console.width))
         return
     with Live(console=console, auto_refresh=False, screen=False) as live:
-        while True:
-            status = status_of(campaign)
+        while not (status := status_of(campaign)).is_finished:
             live.update(_picture(status, console.width), refresh=True)
-            if status.is_finished:
-                return
             time.sleep(1.0)
+        live.update(_picture(status, console.width), refresh=True)
 
 
 def _picture(status: Status, width: int) -> "RenderableType":
@@ -205,25 +185,14 @@ def _picture(status: Status, width: int) -> "RenderableType":
     workers = [
         f"{lease.worker}  test {lease.number} of {lease.cell}" for lease in status.under_way[:MOST_WORKERS]
     ]
-    lines = [outcomes_line(status.outcomes), "", *cell_lines(_chosen(status), width), "", *workers]
+    busy = {lease.cell for lease in status.under_way}  # these cells come first, then those with most failures
+    cells = sorted(
+        status.cells, key=lambda cell: (cell.name not in busy, -cell.outcomes.get("FAIL", 0), cell.name)
+    )
+    lines = [outcomes_line(status.outcomes), "", *cell_lines(cells[:MOST_WATCHED], width), "", *workers]
     table = Text("\n".join(lines), no_wrap=True, overflow="ellipsis")
     # without colours a bar does not fill its line, so that the next line would follow it
     return Group(Text(_headline(status), style="bold"), Padding(bar), table)
-
-
-def _chosen(status: Status) -> list[CellStatus]:
-    """Returns the cells to show: first those that are being worked on, then those with most failures."""
-    busy = {lease.cell for lease in status.under_way}
-    return sorted(
-        status.cells, key=lambda cell: (cell.name not in busy, -cell.outcomes.get("FAIL", 0), cell.name)
-    )[:MOST_WATCHED]
-
-
-def show(path: Path | str, choice: Choice | None = None) -> str:
-    """Returns the summary of a Run with the commands that repeat the Run, or an overview of the tests in a
-    folder, a campaign or a cell. If ``choice`` selects one road of a folder, returns the summary of this
-    road. If ``choice`` selects several roads, returns a list with one line per road."""
-    return "\n".join(_lines(path, choice))
 
 
 def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
@@ -238,7 +207,10 @@ def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
         yield row_of(named.run(), named.said).to_json()
 
 
-def _lines(path: Path | str, choice: Choice | None) -> Iterator[str]:
+def text_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
+    """Yields the summary of a Run with the commands that repeat the Run, or an overview of the tests in a
+    folder, a campaign or a cell. If ``choice`` selects one road of a folder, yields the summary of this road;
+    if it selects several, a line for each."""
     place = selection_of(str(path))
     if choice is not None or (place is not None and place.number is not None):
         named = [*roads_named([str(path)], choice)]
@@ -270,7 +242,7 @@ def _cell_lines(place: Selection) -> Iterator[str]:
     with open_record(place.folder) as record:
         for result in islice(record.results(place.cell), MOST_TESTS):
             name = place.of(NumberedTest(place.cell, result.number)).said
-            yield _line_of(row_of_result(result, cell.words, record.seed(result), name))
+            yield _line_of(row_of(result, name=name))
     if not cell.done:
         yield "no test has ended yet"
     elif cell.done > MOST_TESTS:

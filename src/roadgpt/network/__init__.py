@@ -35,7 +35,6 @@ if TYPE_CHECKING:
         NetworkRoad,
         RoadEnd,
         Roundabout,
-        moved_network,
     )
     from roadgpt.network.opendrive import ImportedRoad, read_map, read_opendrive
     from roadgpt.network.route import Passage, Route
@@ -60,7 +59,6 @@ __all__ = [
     "is_route",
     "legs_of",
     "made_from",
-    "moved_network",
     "network_of",
     "only_road",
     "read_map",
@@ -73,8 +71,7 @@ __all__ = [
 
 _LATER = {
     "growing": "build_route",
-    "network": "Arm Connection Continuation Junction LaneLink Leg Network NetworkRoad RoadEnd Roundabout "
-    "moved_network",
+    "network": "Arm Connection Continuation Junction LaneLink Leg Network NetworkRoad RoadEnd Roundabout",
     "opendrive": "ImportedRoad read_map read_opendrive",
     "route": "Passage Route",
     "source": "read_road read_source",

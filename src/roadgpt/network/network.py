@@ -31,7 +31,7 @@ from roadgpt.network.paved import (
 )
 from roadgpt.network.pose import Point
 from roadgpt.reading import strictly
-from roadgpt.road import Profile, Road, moved
+from roadgpt.road import Profile, Road
 from roadgpt.road.design import mirrored_point
 from roadgpt.road.profile import width_at
 
@@ -362,19 +362,18 @@ class Network:
         """Returns the limits of the paved area in metres, ``(2, 2)``: smallest x and y, largest x and y."""
         return np.array(self.paved.bounds, float).reshape(2, 2)
 
+    def moved(self, x: float, y: float, z: float) -> "Network":
+        """Returns the network shifted by these distances in metres along each axis. Ids and order stay."""
 
-def moved_network(network: Network, x: float, y: float, z: float) -> Network:
-    """Returns a network shifted by the given distances in metres along each axis. Ids and order stay."""
+        def to(point: Point) -> Point:
+            return point[0] + x, point[1] + y, point[2] + z
 
-    def to(point: Point) -> Point:
-        return point[0] + x, point[1] + y, point[2] + z
-
-    return replace(
-        network,
-        roads=tuple(replace(each, road=moved(each.road, x, y, z)) for each in network.roads),
-        junctions=tuple(replace(each, node=to(each.node)) for each in network.junctions),
-        roundabouts=tuple(replace(each, centre=to(each.centre)) for each in network.roundabouts),
-    )
+        return replace(
+            self,
+            roads=tuple(replace(each, road=each.road.moved(x, y, z)) for each in self.roads),
+            junctions=tuple(replace(each, node=to(each.node)) for each in self.junctions),
+            roundabouts=tuple(replace(each, centre=to(each.centre)) for each in self.roundabouts),
+        )
 
 
 def _mirrored_junction(junction: Junction) -> Junction:

@@ -273,6 +273,10 @@ class Route(Road):
         """The route with the sign of y changed, in the mirror image of its network."""
         return replace(super().mirrored, network=self.network.mirrored, legs=_mirrored_legs(self.legs))
 
+    def moved(self, x: float, y: float, z: float = 0.0) -> "Route":
+        """Returns the route through its network, shifted by the given distances along each axis."""
+        return Route.along(self.network.moved(x, y, z), self.legs).on_ground()
+
     def on_ground(self) -> Self:
         """Returns the route with shoulders that reach to the edge of the ground: the paved area of the
         network, widened by the widest shoulder of its roads."""

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from roadgpt.road.builder import build, in_short_segments
     from roadgpt.road.design import Design, Segment, read_design
     from roadgpt.road.profile import Edges, Profile
-    from roadgpt.road.road import Road, Samples, moved
+    from roadgpt.road.road import Road, Samples
     from roadgpt.road.world import ORACLES, CrossSection, Geometry, Limits, Site, World
 
 __all__ = [
@@ -29,7 +29,6 @@ __all__ = [
     "World",
     "build",
     "in_short_segments",
-    "moved",
     "read_design",
 ]
 
@@ -38,7 +37,7 @@ _MODULES = {
     "builder": "build in_short_segments",
     "design": "Design Segment read_design",
     "profile": "Edges Profile",
-    "road": "Road Samples moved",
+    "road": "Road Samples",
     "world": "ORACLES CrossSection Geometry Limits Site World",
 }
 

@@ -126,6 +126,24 @@ class Road:
         """Whether it is known where to drive; False only for a map through which no route was asked for."""
         return True
 
+    def moved(self, x: float, y: float, z: float = 0.0) -> "Road":
+        """Returns the road shifted by the given distances in metres along each axis. It must consist of
+        lines, arcs and clothoids, or be a spline through nodes, which without heights ignores ``z``."""
+        if self.nodes is not None:
+            nodes = self.nodes + np.array([x, y, z])[: self.nodes.shape[1]]
+            control = None if self.road_points is None else self.road_points + np.array([x, y])
+            return Road.through(nodes, control).with_profile(self.profile)
+        assert isinstance(self.plan, PieceCurve)
+        plan = replace(self.plan, x=self.plan.x + x, y=self.plan.y + y)
+        elevation = self.elevation
+        if z and isinstance(elevation, GradeProfile):
+            elevation = replace(elevation, z0=elevation.z0 + z)
+        elif z:
+            assert isinstance(elevation, CubicProfile)
+            rows = tuple((a + z, b, c, d) for a, b, c, d in elevation.coefficients)
+            elevation = replace(elevation, coefficients=rows)
+        return Road(plan, elevation, profile=self.profile)
+
     def at(self, s: ArrayLike, t: ArrayLike = 0.0) -> Array:
         """Returns points ``(..., 3)`` in metres at stations ``s`` and offsets ``t`` to the left, in metres.
         On a road with superelevation, offsets are measured along the surface, which is rotated about the
@@ -356,27 +374,6 @@ def _checked(points: ArrayLike) -> Array:
 
 def _has_truths(points: Sequence[Any]) -> bool:
     return any(isinstance(value, bool) for row in points if isinstance(row, (list, tuple)) for value in row)
-
-
-def moved(road: Road, x: float, y: float, z: float = 0.0) -> Road:
-    """Returns a road shifted by the given distances in metres along each axis. The road must consist of
-    lines, arcs and clothoids, or be a spline through nodes. If the nodes have no heights, ``z`` is ignored.
-    """
-    shift = np.array([x, y])
-    if road.nodes is not None:
-        nodes = road.nodes + np.array([x, y, z])[: road.nodes.shape[1]]
-        control = None if road.road_points is None else road.road_points + shift
-        return Road.through(nodes, control).with_profile(road.profile)
-    assert isinstance(road.plan, PieceCurve)
-    plan = replace(road.plan, x=road.plan.x + x, y=road.plan.y + y)
-    elevation = road.elevation
-    if z and isinstance(elevation, GradeProfile):
-        elevation = replace(elevation, z0=elevation.z0 + z)
-    elif z:
-        assert isinstance(elevation, CubicProfile)
-        rows = tuple((a + z, b, c, d) for a, b, c, d in elevation.coefficients)
-        elevation = replace(elevation, coefficients=rows)
-    return Road(plan, elevation, profile=road.profile)
 
 
 def reversed_road(road: Road) -> Road:

@@ -5,8 +5,7 @@ from pathlib import Path
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.option import PATH, Argument, Option, folder, measure, whole
-from roadgpt.cli.option_groups import CommandGroup
+from roadgpt.cli.options import PATH, Argument, CommandGroup, Option, folder, measure, whole
 from roadgpt.cli.streams import warn
 from roadgpt.errors import UsageError, command_line
 

@@ -3,21 +3,21 @@
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from roadgpt import plugins
 from roadgpt.cli import options
-from roadgpt.cli.option import PATH, Argument, named
-from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.roads import LANES, UNREADABLE, each_road, open_page, roads_in, source_of
+from roadgpt.cli.options import PATH, Argument, GroupedCommand, named
+from roadgpt.cli.roads import LANES, UNREADABLE, each_road, open_page, roads_in
 from roadgpt.cli.screen import Row, Screen, row_of
 from roadgpt.errors import command_line
 
+if TYPE_CHECKING:
+    from roadgpt.road import Design, Road, World
+
 INVALID = 1  # exit status, so that a script can ask
-
-
 CHECK_OPTIONS = (
     *named(options.SETUP, "rules"),
     *named(options.WORLD, "map_size", *LANES),
@@ -27,36 +27,34 @@ CHECK_OPTIONS = (
 
 
 @click.command(cls=GroupedCommand, params=[options.ROADS, *CHECK_OPTIONS])
-def check(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **rest: Any) -> int:
+def check(files: tuple[str, ...], rules: Any, geometry: Any, verbose: bool, **rest: Any) -> int:
     """Check roads against the rules.
 
     ROAD is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a table of
     points (.csv) or OpenDRIVE (.xodr). A folder of such files, a folder of runs and a campaign stand for all
     their roads. The exit status is 0 if all roads are valid, 1 if one is not, 2 if one cannot be read."""
+    from roadgpt.run import Setup, prove
+
     world = options.world_of(rest)
     roads = roads_in(files)
     screen = Screen(len(roads), rest["as_json"], rest["quiet"], verbose)
-    each_road(roads, screen, lambda file: _checked(screen, file, rules, geometry, world))
+    setup = Setup(rules=rules, geometry=geometry, drives=False)
+
+    def checked(file: str, blueprint: "Design | Road", world: "World") -> tuple[Row, None]:
+        begun = time.perf_counter()
+        run = prove(blueprint, world=world, setup=setup)
+        row = row_of(run, file)
+        if is_only_map := run.road is not None and not run.road.has_way:
+            screen.say(f"{file}: the map has no route, so only its roads and junctions are checked")
+        for sentence in row.findings[1:]:
+            screen.detail(f"{file}: also, {sentence}")
+        said = row.description if row.findings else f"valid by the rules '{rules}'"
+        length, seconds = None if is_only_map else row.length_m, time.perf_counter() - begun
+        return replace(row, description=said, length_m=length, seconds=seconds), None
+
+    each_road(roads, screen, world, checked)
     outcomes = {row.test_outcome for row in screen.rows}
     return UNREADABLE if "ERROR" in outcomes else INVALID if "INVALID" in outcomes else 0
-
-
-def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -> tuple[Row, None]:
-    from roadgpt.run import Setup, prove
-
-    begun = time.perf_counter()
-    blueprint, world, remarks = source_of(file, world)
-    run = prove(blueprint, world=world, setup=Setup(rules=rules, geometry=geometry, drives=False))
-    row = row_of(run, file)
-    if is_only_map := run.road is not None and not run.road.has_way:
-        remarks = (*remarks, "the map has no route, so only its roads and junctions are checked")
-    for remark in remarks:
-        screen.say(f"{file}: {remark}")
-    for sentence in row.findings[1:]:
-        screen.detail(f"{file}: also, {sentence}")
-    said = row.description if row.findings else f"valid by the rules '{rules}'"
-    length, seconds = None if is_only_map else row.length_m, time.perf_counter() - begun
-    return replace(row, description=said, length_m=length, seconds=seconds), None
 
 
 @click.command(cls=GroupedCommand, params=[Argument("folder", "DIR", kind=PATH), options.OPEN, options.JUNIT])
@@ -109,10 +107,8 @@ def command_of(folder: Path) -> str:
     with open_record(folder) as record:
         cells, resume = record.cells(), record.to_resume()
     only, n = cells[0], cells[0].budget.tests
-    if only.in_sequence and not only.request.words:
-        return ""
     if len(cells) > 1 or not only.request.words or n is None or only.settings:
-        return resume
+        return "" if only.in_sequence and not only.request.words else resume
     words = request_words(only.request, n, only.brief)
     words += ["--goal", only.goal] if only.goal else []
     if only.generator != (WITH_GOAL if only.goal else WITHOUT_GOAL):

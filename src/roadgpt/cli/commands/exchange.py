@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roadgpt.cli import options, roads
-from roadgpt.cli.option import PATH, Argument, Option, named, whole
-from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import PATH, Argument, GroupedCommand, Option, named, whole
 from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError, UsageError, command_line, explained
 
@@ -276,7 +275,7 @@ def _plain(name: str) -> str:
 
 
 def _free(stem: str, ending: str) -> Path:
-    return next(path for path in map(Path, roads.numbered(_plain(stem), ending)) if not path.exists())
+    return roads.free(_plain(stem), ending)
 
 
 def _write(file: Path, source: "RoadSource", out: Path, keep_place: bool, quiet: bool) -> str:
@@ -285,25 +284,24 @@ def _write(file: Path, source: "RoadSource", out: Path, keep_place: bool, quiet:
     from roadgpt.brief import sentence
     from roadgpt.check.describing import describe
     from roadgpt.check.measures import ups_and_downs
-    from roadgpt.network import is_route, network_of, road_from_json
+    from roadgpt.network import network_of, only_road, road_from_json
     from roadgpt.road import Road, World
 
     assert isinstance(source.blueprint, Road)
-    is_plain = not is_route(source.blueprint)
     road, size, moved_by, told = roads.on_a_map(source.blueprint, World().changed(**source.world), keep_place)
     world = {**source.world, "map_size": size}
     own = World().changed(**world)
     too_short = plugins.find("rules", "too_short")
-    found = too_short(network_of(road, own), road, None, own) if is_plain else ()
-    if not is_plain:
-        road_from_json(road.to_json())  # so that no map is written that cannot be read
+    is_only = only_road(road, own) is not None
+    found = too_short(network_of(road, own), road, None, own) if is_only else ()
+    road_from_json(road.to_json())  # so that nothing is written that cannot be read
     for remark in () if quiet else (*source.remarks, *told, *(finding.sentence for finding in found)):
         warn(f"{file}: {remark}")
     origin = {"origin": [0.0 - each for each in moved_by]} if any(moved_by) else {}
     with explained(RoadGPTError, f"cannot write {out}", "name another file with --out"):
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(json.dumps({"world": world, **origin, **road.to_json()}) + "\n", encoding="utf-8")
-    if not is_plain:
+    if not is_only:
         return ""
     heights = ups_and_downs(road.sample().z)
     return sentence(describe(road)) + (f" Up and down: {heights} m." if " " in heights else "")

@@ -1,8 +1,8 @@
 """Commands that show roads: ``roadgpt show``, ``view``, ``film`` and ``compare``."""
 
 import json
+import re
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roadgpt.cli import options, roads
-from roadgpt.cli.option import PATH, Argument, Heading, Option, named, picture_formats
-from roadgpt.cli.option import folder as folder_of
-from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import PATH, Argument, GroupedCommand, Heading, Option, named, picture_formats
+from roadgpt.cli.options import folder as folder_of
 from roadgpt.cli.streams import warn, watched
 from roadgpt.errors import RoadGPTError, UsageError, explained
 
@@ -40,7 +39,7 @@ def show(folders: tuple[str, ...], watch: bool, as_json: bool, **rest: Any) -> N
     roadgpt show roadgpt-runs/hairpins-7
     roadgpt show CAMPAIGN --failures
     roadgpt show CAMPAIGN --watch"""
-    from roadgpt.cli.summary import json_lines, show, watch_campaign
+    from roadgpt.cli.summary import json_lines, text_lines, watch_campaign
 
     choice = options.choice_of(rest)
     if watch and choice is not None:
@@ -53,14 +52,12 @@ def show(folders: tuple[str, ...], watch: bool, as_json: bool, **rest: Any) -> N
         watch_campaign(Path(folders[0]))
         return
     for folder in folders:
-        for line in json_lines(folder, choice) if as_json else [show(folder, choice)]:
+        for line in (json_lines if as_json else text_lines)(folder, choice):
             click.echo(line)
 
 
 PAGE, PLOTS = "-view.html", Path("plots")  # the end of the name of a page
 VIEW_ENDINGS = (".html", ".htm")
-
-
 VIEW_OPTIONS = (
     Argument("files...", "ROAD|RUN...", "Name a road file or the folder of a run, or two to see them side by "
              "side."),
@@ -102,7 +99,7 @@ def view(
 
         def draw_one(named: roads.NamedRoad) -> None:
             run = roads.run_of(named, world, geometry)
-            pictures = draw(run, _new_folder(place, named.stem), axes, formats)
+            pictures = draw(run, roads.made(roads.free(place / named.stem)), axes, formats)
             if not quiet:
                 click.echo("\n".join(map(str, pictures)))
 
@@ -122,15 +119,6 @@ def view(
     return None
 
 
-def _new_folder(out: Path, name: str) -> Path:
-    with explained(UsageError, f"cannot make a folder in {out}", "give another one with --out"):
-        for place in (out / own for own in roads.numbered(name)):
-            with suppress(FileExistsError):
-                place.mkdir(parents=True)
-                return place
-    raise AssertionError("some number is always free")
-
-
 LONGEST = 1_000_000  # s, largest time that --seconds accepts
 FILM, FILMS = Path("roadgpt-film.mp4"), Path("films")
 FILM_ENDINGS = (".mp4", ".m4v")
@@ -138,26 +126,23 @@ MOUNTS = {"hood": "bonnet"}  # as roadgpt.report.film calls them
 
 
 def _size(value: str) -> tuple[int, int]:
-    wide, cross, high = value.lower().partition("x")
-    if not (cross and wide.isdecimal() and high.isdecimal()):
+    if not (size := re.fullmatch(r"(\d+)x(\d+)", value, re.IGNORECASE)):
         raise click.BadParameter(f"'{value}' is no size; give width and height in pixels, such as 640x360")
-    return int(wide), int(high)
+    return int(size[1]), int(size[2])
 
 
 def _seconds(value: str) -> tuple[float, float | None]:
     """Converts 9 or 4:13 to start and length in seconds; without a length, it is to the end of the drive."""
-    first, colon, last = value.partition(":")
+    first, colon, last = value.rpartition(":")
+    give = "give 9, or 4:13 for the 4th to the 13th"
     try:
-        begin = float(first or 0) if colon else 0.0
-        end = float(last) if colon and last else None if colon else float(first)
+        begin, end = float(first or 0), None if colon and not last else float(last)
     except ValueError:
-        raise click.BadParameter(
-            f"'{value}' are no seconds; give 9, or 4:13 for the 4th to the 13th"
-        ) from None
-    if not 0 <= begin <= LONGEST or (end is not None and not 0 <= end <= LONGEST):
+        raise click.BadParameter(f"'{value}' are no seconds; {give}") from None
+    if not all(0 <= each <= LONGEST for each in (begin, end or 0)):
         raise click.BadParameter(f"'{value}' is no part of a drive; give seconds from 0 to {LONGEST:,}")
     if end is not None and end <= begin:
-        raise click.BadParameter(f"'{value}' ends before it begins; give 9, or 4:13 for the 4th to the 13th")
+        raise click.BadParameter(f"'{value}' ends before it begins; {give}")
     return begin, None if end is None else end - begin
 
 
@@ -204,8 +189,7 @@ def film(
 
     begin, length = seconds or (0.0, None)
     settings = Settings(*size, fps, begin, length)
-    choice = options.choice_of(rest)
-    world = options.world_of(rest)
+    choice, world = options.choice_of(rest), options.world_of(rest)
     if is_all or choice in ("failures", "faults"):
         for each, film in _films(files, choice, view, out):
             run = roads.run_of(each, world, geometry)
@@ -265,8 +249,6 @@ NAMES = {
     "shape": "shape from above",
     "general": "in general",
 }
-
-
 COMPARE_OPTIONS = (
     Argument("one", "A"),
     Argument("other", "B"),
@@ -304,13 +286,13 @@ def compare(
     world = options.world_of(rest)
     named = [roads.shown_roads([file], None, 1, "it")[0] for file in (one, other)]
     runs = [roads.run_of(each, world, rest["geometry"]) for each in named]
-    both = [run.road for run in runs if run.road is not None]
-    if len(both) < 2:
-        missing = one if runs[0].road is None else other
-        raise UsageError(f"there is no road in {missing}; give a run that has one")
-    for file, road in zip((one, other), both, strict=True):
+    both = []
+    for file, run in zip((one, other), runs, strict=True):
+        if run.road is None:
+            raise UsageError(f"there is no road in {file}; give a run that has one")
         with roads.named_in_errors(file):
-            refuse_without_route(road, "compared")
+            refuse_without_route(run.road, "compared")
+        both.append(run.road)
     found = compare(both[0], both[1], mirror)
     if as_json:
         click.echo(json.dumps({**asdict(found), "general": found.general, "duplicate": found.is_duplicate}))

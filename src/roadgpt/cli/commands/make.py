@@ -3,38 +3,39 @@
 import json
 import secrets
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import redirect_stdout
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from roadgpt.brief import SURE, Brief, normal, remarks, sentence
+from roadgpt.brief.plan import plan, read_plan, with_route
+from roadgpt.brief.sentence import clause_columns, road_words
+from roadgpt.chat import ChatSettings, Meter, counting
+from roadgpt.chat.answer import plain
 from roadgpt.cli import options
-from roadgpt.cli.option import ROADS, Argument, Heading, Option, folder, named, whole
-from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.roads import UNREADABLE, each_road, made, roads_in, roads_named, source_of
-from roadgpt.cli.screen import Row, Screen, row_of, spending
-from roadgpt.cli.streams import crashes_go_to, warn
+from roadgpt.cli.options import HOW_MANY, Argument, GroupedCommand, Heading, Option, folder, named, whole
+from roadgpt.cli.roads import UNREADABLE, each_road, made, roads_in, roads_named
+from roadgpt.cli.screen import Row, Screen, row_of
+from roadgpt.cli.streams import aligned, crashes_go_to, warn
 from roadgpt.errors import GivenUpError, UsageError
 
 if TYPE_CHECKING:
-    from roadgpt.brief.model import Brief
     from roadgpt.campaign import Campaign
     from roadgpt.campaign.gate import Gate
     from roadgpt.campaign.selection import Choice, Selection
-    from roadgpt.chat import ChatSettings
     from roadgpt.design.edit import Edited, EditRequest
     from roadgpt.report import Format, Scale
-    from roadgpt.road import World
+    from roadgpt.road import Design, Road, World
     from roadgpt.run.folder import Draw
-    from roadgpt.run.model import LostDrives, Request, Run
+    from roadgpt.run.model import Request, Run
 
 SEEDS = 1_000_000  # random seeds are below this number, so that they are short enough to type again
 
 RUN_OPTIONS = (
-    Option("-n --roads", "Number of roads.", ROADS, 1),
+    Option("-n --roads", "Number of roads.", HOW_MANY, 1),
     options.seed("The same seed gives the same roads. [default: random]"),
     options.out("Folder for the runs. [default: a new one]"),
     options.AGAIN,
@@ -69,11 +70,9 @@ def usual_values(words: str, roads: int, is_plan: bool = False) -> dict[str, Any
     """Returns the option values of ``roadgpt run`` for a user who gives only the number of roads and a
     description or plan (``words``). All other options have their configured or default values."""
     parent = click.get_current_context(silent=True)
-    given = ["-n", str(roads), *(["--plan"] if is_plan else []), "--", words]
+    given = ["-n", str(roads), *["--plan"] * is_plan, "--", words]
     values = run.make_context("run", given, parent).params
-    for name in ("words", "as_json", "quiet", "verbose"):
-        values.pop(name)
-    return values
+    return {name: values[name] for name in values.keys() - {"words", "as_json", "quiet", "verbose"}}
 
 
 def carry_out(
@@ -85,7 +84,6 @@ def carry_out(
     The keyword arguments are the values of the options. If ``seed`` is None, the runs in ``out``
     determine the seed; without such runs, the seed is random. An empty ``route`` means a random route."""
     from roadgpt.campaign import campaign
-    from roadgpt.chat import Meter
     from roadgpt.run import Setup, brief_of, seed_in
 
     gate = screen.gate = options.gate_of(given, out)
@@ -97,8 +95,6 @@ def carry_out(
     meter = Meter.of(chat)
     brief = brief_of(words, world, setup, meter)
     if route:
-        from roadgpt.brief.plan import with_route  # only for maps
-
         brief = brief.model_copy(update={"map": with_route(brief.map, route)})
     if seed is None and out is not None:
         seed = seed_in(out)
@@ -106,8 +102,7 @@ def carry_out(
         seed = secrets.randbelow(SEEDS)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         work = campaign(brief, roads, seed, world, setup, out, draw, meter, again)
-    screen.request = work.request
-    screen.junit = partial(_write_junit, junit, work.request) if junit else None
+    screen.request, screen.junit = work.request, _junit(junit, work.request)
     screen.say(understood(brief, work.request.world, world))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
@@ -120,41 +115,38 @@ def carry_out(
     gate.close()
 
 
-def _write_junit(path: Path, request: "Request", rows: Sequence[Row]) -> None:
+def _junit(path: Path | None, request: "Request") -> "Callable[[Sequence[Row]], None] | None":
+    """Returns a function that writes rows as JUnit XML; None without a path."""
     from roadgpt.cli.junit import LONGEST, UNKNOWN, properties_of, write_junit
 
-    write_junit(path, [(request.words[:LONGEST] or UNKNOWN, properties_of(request), rows)])
+    suite = request.words[:LONGEST] or UNKNOWN, properties_of(request)
+    return (lambda rows: write_junit(path, [(*suite, rows)])) if path else None
 
 
-def understood(brief: "Brief", world: "World", given: "World") -> str:
+UNSURE = "perhaps not understood as meant ({:.0f} % sure), so check it or say it in other words"
+
+
+def understood(brief: Brief, world: "World", given: "World") -> str:
     """Returns lines: how a description was read, a warning if that is uncertain, and ``all_remarks``."""
-    from roadgpt.brief import SURE
-
     told = f"I read this as: {reading(brief)}"
     if brief.confidence < SURE:
-        sure = f"{100 * brief.confidence:.0f} % sure"
-        told += f"; perhaps not understood as meant ({sure}), so check it or say it in other words"
+        told += f"; {UNSURE.format(100 * brief.confidence)}"
     if brief.other:
-        from roadgpt.brief.plan import read_plan
-
         other = reading(read_plan(brief.other))
         told += f"\nit could also mean: {other}\n  (for that: --plan '{brief.other}')"
     return "\n".join([told, *(f"note: {remark}" for remark in all_remarks(brief, world, given))])
 
 
-def all_remarks(brief: "Brief", world: "World", given: "World") -> tuple[str, ...]:
+def all_remarks(brief: Brief, world: "World", given: "World") -> tuple[str, ...]:
     """Returns sentences on what is not built, or not as described; ``given`` is the World of the user."""
-    from roadgpt.brief import remarks
     from roadgpt.design.room import lane_remarks, map_remark
 
     found = remarks(brief, world.site.map_size, world.site.friction)
     return tuple(filter(None, (*found, *lane_remarks(brief, world), map_remark(brief, given, world))))
 
 
-def reading(brief: "Brief") -> str:
+def reading(brief: Brief) -> str:
     """Returns a text that says how a description was read, and which words the reading does not use."""
-    from roadgpt.brief import sentence
-
     said = sentence(brief).removesuffix(".")
     told = f"{said[:1].lower()}{said[1:]}"
     if brief.unused:
@@ -163,29 +155,24 @@ def reading(brief: "Brief") -> str:
 
 
 def _watch(work: "Campaign", pictures: "tuple[Format, ...]", screen: Screen) -> None:
+    from roadgpt.cli.repeat_commands import lines, of_rows, to_resume
+
     try:
         screen.runs(work.all_runs(), work.folder)
     except (KeyboardInterrupt, GivenUpError):
-        from roadgpt.cli.repeat_commands import to_resume
-
         warn(f"continue with: {to_resume(work.folder)}")
         raise
     finally:
         screen.close()
-        if work.meter.spent.calls:
-            screen.say(f"language model: {spending(work.meter.spent)}")
+        screen.spent(work.meter.spent)
         if screen.rows:
             screen.say(f"tests and tables: {work.folder}")
             if len(screen.rows) == work.roads:
-                from roadgpt.cli.repeat_commands import lines, of_rows
-
                 for line in lines(of_rows(work.request, work.brief, work.roads, screen.rows)):
                     screen.say(line)
-            if pictures:
-                kind = pictures[0]
-                screen.say(
-                    f"pictures: {work.folder / f'overview.{kind}'} and {work.folder / 'runs'}/*/*.{kind}"
-                )
+            for kind in pictures[:1]:
+                overview = work.folder / f"overview.{kind}"
+                screen.say(f"pictures: {overview} and {work.folder / 'runs'}/*/*.{kind}")
 
 
 def beside(pictures: "tuple[Format, ...]", axes: "Scale", formats: tuple[str, ...]) -> "Draw | None":
@@ -205,8 +192,6 @@ def beside(pictures: "tuple[Format, ...]", axes: "Scale", formats: tuple[str, ..
 FEW = whole(1, 10, "the number of readings")
 LEAST = 0.01  # smallest chance of a reading that is listed
 TEMPERATURE = 1.3  # sampling temperature for the readings after the likeliest one
-
-
 READ_OPTIONS = (
     options.PLAN,
     *named(options.SETUP, "reader"),
@@ -245,19 +230,15 @@ def read(
     if as_json:
         found = [_as_data(brief, world_for(brief, world), world) for brief in briefs]
         click.echo(json.dumps(found if number > 1 else found[0], indent=2, ensure_ascii=False))
-        return
-    if number > 1:
+    elif number > 1:
         click.echo("\n".join(_list(briefs, as_table)))
-        return
-    click.echo(understood(briefs[0], world_for(briefs[0], world), world))
-    if as_table:
-        click.echo(_table(briefs[0]))
+    else:
+        click.echo(understood(briefs[0], world_for(briefs[0], world), world))
+        if as_table:
+            click.echo(_table(briefs[0]))
 
 
-def _as_data(brief: "Brief", world: "World", usual: "World") -> dict[str, object]:
-    from roadgpt.brief import SURE, sentence
-    from roadgpt.brief.plan import plan
-
+def _as_data(brief: Brief, world: "World", usual: "World") -> dict[str, object]:
     told = {"sentence": sentence(brief), "plan": plan(brief), "confidence": brief.confidence}
     told |= {"is_sure": brief.confidence >= SURE, "other": brief.other}
     map_size, friction = world.site.map_size, world.site.friction
@@ -265,9 +246,7 @@ def _as_data(brief: "Brief", world: "World", usual: "World") -> dict[str, object
     return {**told, "unused": brief.unused, "brief": brief.model_dump(exclude_defaults=True)}
 
 
-def _list(briefs: "Sequence[Brief]", as_table: bool) -> Iterator[str]:
-    from roadgpt.brief import SURE
-
+def _list(briefs: Sequence[Brief], as_table: bool) -> Iterator[str]:
     likely = [brief for place, brief in enumerate(briefs) if not place or brief.confidence >= LEAST]
     whole = max(1.0, sum(brief.confidence for brief in likely))  # each is judged on its own; one is meant
     for number, brief in enumerate(likely, 1):
@@ -280,19 +259,15 @@ def _list(briefs: "Sequence[Brief]", as_table: bool) -> Iterator[str]:
         yield "not sure of any: if none is what you mean, say it in other words"
 
 
-def _table(brief: "Brief") -> str:
+def _table(brief: Brief) -> str:
     """Returns a table of the features in driving order, then the requirements on the whole road."""
-    from roadgpt.brief.normal import normal
-    from roadgpt.brief.sentence import clause_columns, road_words
-
     said = normal(brief)
     rows = [("", "what", "how")]
     rows += [(str(number), *clause_columns(clause)) for number, clause in enumerate(said.clauses, 1)]
     wishes = road_words(said)
     if wishes or not said.clauses:
         rows.append(("", "whole road", wishes or "nothing is asked of it"))
-    wide = [max(len(row[column]) for row in rows) for column in range(2)]
-    return "\n".join(f"{row[0]:>{wide[0]}}  {row[1]:<{wide[1]}}  {row[2]}".rstrip() for row in rows)
+    return "\n".join(aligned(rows, "><<"))
 
 
 EDIT_OPTIONS = (
@@ -332,16 +307,14 @@ def edit(run: str, words: tuple[str, ...], as_json: bool, quiet: bool, **rest: A
 
 def edit_road(
     screen: Screen, road: str, words: str, world: "World", out: Path | None = None, reader: str = "model",
-    chat: "ChatSettings | None" = None, driver: tuple[str, ...] = (), drives: bool = True,
+    chat: ChatSettings | None = None, driver: tuple[str, ...] = (), drives: bool = True,
     pictures: "tuple[Format, ...]" = ("png",), is_plan: bool = False,
 ) -> Path:  # fmt: skip
     """Changes a road as requested, checks and drives it, writes and prints its run, and returns its folder.
 
     ``road`` is a run, a test of a campaign, or a file with a design; ``world`` is used only for a file.
     ``driver`` comes from ``--driver``. Nothing is driven if ``drives`` is False or the run was not driven."""
-    from roadgpt.brief import SURE
     from roadgpt.brief.change.plan import read_change_plan
-    from roadgpt.chat import Meter, counting
     from roadgpt.design.edit import edit
     from roadgpt.drive.loading import check_named_drivers, require_permission
     from roadgpt.run import prove
@@ -369,15 +342,14 @@ def edit_road(
         with counting(meter, "edit"):
             made = edit(design, request, before.world, setup.geometry, chat)
     finally:  # a language model costs money even if the change failed
-        if meter.spent.calls:
-            screen.say(f"language model: {spending(meter.spent)}")
+        screen.spent(meter.spent)
     setup = setup.model_copy(update={"designer": "planner", "reader": reader, "chat": chat, "drives": drives})
     old = prove(design, before.seed, before.world, setup.model_copy(update={"drives": False}))
     with redirect_stdout(sys.stderr):  # a user's driver may print
         run = prove(made.design, before.seed, made.world, setup)
     folder = folder_for(words, before.seed, out)
     place = write_edit(run, old, words, made.changes, road, folder, options.drawing_of(pictures))
-    row = row_of(run, str(folder / test_name(1)), test_name(1))
+    row = row_of(run, str(folder / test_name(1)), name=test_name(1))
     if screen.as_json:
         told = {"request": words, "of": road, "changes": made.changes, "unused": made.unused}
         sure = {"confidence": made.confidence, "is_sure": made.confidence >= SURE, "other": made.other}
@@ -390,13 +362,10 @@ def edit_road(
 def _print_edit(
     screen: Screen, made: "Edited", row: Row, place: Path, pictures: "tuple[Format, ...]"
 ) -> None:
-    from roadgpt.brief import SURE
-
-    for sentence in made.changes:
-        screen.say(sentence)
+    for change in made.changes:
+        screen.say(change)
     if made.confidence < SURE:
-        sure = f"{100 * made.confidence:.0f} % sure"
-        screen.say(f"perhaps not understood as meant ({sure}), so check it or say it in other words")
+        screen.say(UNSURE.format(100 * made.confidence))
         if made.other:
             screen.say(f'it could also mean: --plan "{made.other}"')
     if made.unused:
@@ -404,8 +373,7 @@ def _print_edit(
     with screen:
         screen.row(row)
     screen.say(f"changed road: {place}")
-    if pictures:
-        kind = pictures[0]
+    for kind in pictures[:1]:
         screen.say(f"pictures: {place}/*.{kind}, and of the road as it was: {place}/before/*.{kind}")
 
 
@@ -448,36 +416,6 @@ def drive(
     \b
     roadgpt drive my_road.json --friction 0.6
     roadgpt drive --again roadgpt-runs/an-uphill-road-with-3-turns-7 17"""
-    _refuse_mixture(ctx, again)
-
-    choice, pictures = options.choice_of(rest), options.pictures_of(rest)
-    gate = options.gate_of(rest, out)
-    if again:
-        drivers = [rest["driver"]] if "driver" in options.typed(ctx) else []
-        drive_again(files, choice, out, drivers, axes, pictures, gate)
-        return 0
-    from roadgpt.run import Request, Setup, check_parts
-    from roadgpt.run.editing import reject_used
-    from roadgpt.run.model import LostDrives
-
-    if out is not None:
-        reject_used(out)
-    world = options.world_of(rest)
-    setup = Setup(**rest)
-    with redirect_stdout(sys.stderr):
-        check_parts(setup, world)  # reports a missing driver before any road is read
-    asked = Request(seed=seed, world=world, setup=setup)
-    roads = roads_in(files)
-    screen = Screen(len(roads), as_json, quiet, verbose)
-    screen.request, screen.gate = asked, gate
-    screen.junit = partial(_write_junit, junit, asked) if junit else None
-    losses: LostDrives[str] = LostDrives()
-    each_road(roads, screen, lambda file: _driven(screen, file, asked, losses, out))
-    gate.close()
-    return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0
-
-
-def _refuse_mixture(ctx: click.Context, again: bool) -> None:
     for parameter in ctx.command.params:
         if parameter.name in options.typed(ctx) - BOTH and again != (parameter.name in ONLY_AGAIN):
             flag = parameter.opts[0]
@@ -487,30 +425,45 @@ def _refuse_mixture(ctx: click.Context, again: bool) -> None:
                 else f"{flag} is for tests of a campaign, which are driven with --again; leave it out for a "
                 "road from a file"
             )
+    choice, pictures = options.choice_of(rest), options.pictures_of(rest)
+    gate = options.gate_of(rest, out)
+    if again:
+        drivers = [rest["driver"]] if "driver" in options.typed(ctx) else []
+        drive_again(files, choice, out, drivers, axes, pictures, gate)
+        return 0
+    from roadgpt.run import Request, Setup, check_parts, prove, write_run
+    from roadgpt.run.editing import reject_used
+    from roadgpt.run.model import LostDrives
 
-
-def _driven(
-    screen: Screen, file: str, asked: "Request", losses: "LostDrives[str]", out: Path | None
-) -> "tuple[Row, Run]":
-    from roadgpt.run import prove, write_run
-
-    blueprint, world, remarks = source_of(file, asked.world)
-    for remark in remarks:
-        screen.say(f"{file}: {remark}")
-    with redirect_stdout(sys.stderr):  # what a user's driver prints is no row
-        is_strict = asked.setup.rules == "strict"
-        at = len(screen.rows) + 1
-        run = prove(blueprint, asked.seed, world, asked.setup, at, despite_findings=is_strict)
-    screen.detail(f"{file}: {run.description}")
-    for finding in run.findings:
-        screen.detail(f"{file}: finding: {finding.sentence}")
-    if losses.count(file, run.is_lost):
-        raise losses.given_up(
-            run.description, f"see to it and drive the roads from {losses.lost[0]} on again"
-        )
     if out is not None:
-        write_run(run, made(out))
-    return row_of(run, file), run
+        reject_used(out)
+    world = options.world_of(rest)
+    setup = Setup(**rest)
+    with redirect_stdout(sys.stderr):
+        check_parts(setup, world)  # reports a missing driver before any road is read
+    roads = roads_in(files)
+    screen = Screen(len(roads), as_json, quiet, verbose)
+    screen.request, screen.gate = Request(seed=seed, world=world, setup=setup), gate
+    screen.junit = _junit(junit, screen.request)
+    losses: LostDrives[str] = LostDrives()
+
+    def driven(file: str, blueprint: "Design | Road", world: "World") -> "tuple[Row, Run]":
+        with redirect_stdout(sys.stderr):  # what a user's driver prints is no row
+            at, is_strict = len(screen.rows) + 1, setup.rules == "strict"
+            run = prove(blueprint, seed, world, setup, at, despite_findings=is_strict)
+        screen.detail(f"{file}: {run.description}")
+        for finding in run.findings:
+            screen.detail(f"{file}: finding: {finding.sentence}")
+        if losses.count(file, run.is_lost):
+            advice = f"see to it and drive the roads from {losses.lost[0]} on again"
+            raise losses.given_up(run.description, advice)
+        if out is not None:
+            write_run(run, made(out))
+        return row_of(run, file), run
+
+    each_road(roads, screen, world, driven)
+    gate.close()
+    return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0
 
 
 AGAIN = "again"  # folder in that of the tests
@@ -527,7 +480,6 @@ def drive_again(
     those that the user gave with ``--driver``. No pictures are drawn without ``formats``."""
     from roadgpt.campaign.folder_record import is_same, run_again, setups_of
     from roadgpt.campaign.model import NumberedTest
-    from roadgpt.chat.answer import plain
     from roadgpt.drive.loading import check_named_drivers
     from roadgpt.run import write_run
     from roadgpt.run.atomic import refuse_links
@@ -537,14 +489,13 @@ def drive_again(
         check_named_drivers(drivers, {setup.driver for setup in setups_of(folder_)}, folder_)
     draw = options.drawing_of(formats, axes)
     for place in tests:
-        cell, number = place.cell, place.number or 0
-        run, result = run_again(place.folder, cell, number)
-        home = (out or place.folder / AGAIN) / cell
-        refuse_links(*([home.parent] if home.parent.name == AGAIN else []), home)
-        written = write_run(run, made(home), draw)
-        name = NumberedTest(cell, number)
-        worse = gate.add(place.said, run)
-        told = f"{plain(run.description, 300)}  worse: {worse}" if worse else plain(run.description, 300)
+        name = NumberedTest(place.cell, place.number or 0)
+        run, result = run_again(place.folder, *name)
+        home = (out or place.folder / AGAIN) / place.cell
+        refuse_links(*[home.parent] * (home.parent.name == AGAIN), home)
+        written, told = write_run(run, made(home), draw), plain(run.description, 300)
+        if worse := gate.add(place.said, run):
+            told += f"  worse: {worse}"
         click.echo(f"{run.outcome:<8} {name}  {written}  {told}")
         if not is_same(run, result):
             said = f"{result.outcome} before ({plain(result.description, 300)})"
@@ -560,7 +511,6 @@ def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":
     first."""
     from roadgpt.campaign.record import no_tests
     from roadgpt.campaign.selection import chosen, selection_of
-    from roadgpt.chat.answer import plain
 
     first = selection_of(names[0])
     if first is None:

@@ -14,21 +14,10 @@ import click
 from roadgpt.cli import options
 from roadgpt.cli.commands.evaluate import write_report
 from roadgpt.cli.commands.make import beside, understood
-from roadgpt.cli.option import (
-    PATH,
-    Argument,
-    Heading,
-    Option,
-    driver_guard,
-    drivers,
-    folder,
-    measure,
-    named,
-    whole,
-)
-from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import PATH, Argument, GroupedCommand, Heading, Option, folder, measure, named, whole
 from roadgpt.cli.streams import progress, resumable, watched
 from roadgpt.errors import UsageError, command_line
+from roadgpt.plural import plural
 
 if TYPE_CHECKING:
     from roadgpt.campaign.faults.fault import Faults
@@ -60,12 +49,12 @@ FAULT_OPTIONS = (
 class AnalysisOptions(NamedTuple):
     """Values of the options with which ``roadgpt faults`` analyses failures."""
 
-    repeat: int = REPEAT
-    minimise: bool = False
-    workers: int = 1
+    repeat: int
+    minimise: bool
+    workers: int
+    quiet: bool
+    groups: bool
     formats: tuple[str, ...] = ("png",)  # without any, no pictures are drawn
-    quiet: bool = False
-    groups: bool = False
     top: int | None = None  # failures that are written into a folder for a paper
     is_apart: bool = False  # standard output is reserved for JSON
 
@@ -157,16 +146,15 @@ def _analysed(
 def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis]") -> Iterator[str]:
     """Yields two rows for each fault: its failures, how often it fails again, why a typical test failed, and
     the small change with which the failures disappear."""
-    from roadgpt.plural import plural
     from roadgpt.run.folder import is_run
 
     wide = max([len("test"), *(len(str(its.name)) for its in looked.values())])
-    yield f"{'fault':>5} {'failures':>8} {'again':>7}  {'test':<{wide}}  why"
+    line = f"{{:>5}} {{:>8}} {{:>7}}  {{:<{wide}}}  {{}}".format
+    yield line("fault", "failures", "again", "test", "why")
     for fault in found.them:
         its = looked[fault.number]
         again = f"{its.stability.failed}/{len(its.stability.drives)}"
-        name = f"{its.name!s:<{wide}}"
-        yield f"{fault.number:>5} {len(fault.members):>8,} {again:>7}  {name}  {its.reason.sentence}"
+        yield line(fault.number, f"{len(fault.members):,}", again, str(its.name), its.reason.sentence)
         alone = "it belongs to no fault" if found.is_tested else "no small changes were tried"
         removed = f"disappears with {fault.removed_by}" if fault.remedy else f"a group; {alone}"
         yield f"{'':>{wide + 26}}{removed}"
@@ -247,8 +235,9 @@ CAMPAIGN_OPTIONS = (
     *(options.PLAN, *named(options.SETUP, "reader", "designer")),
     Option("--driver --drivers drivers", "Name of a driver, or FILE.py:CLASS; for more drivers, repeat the "
            "option or separate them by commas. If FILE.toml lists a driver file, RoadGPT runs it only if you "
-           "name it here, too.", drivers, ("lane_centring",), multiple=True, heading=Heading.DRIVE,
-           table="run", guard=driver_guard, callback=lambda _, __, given: tuple(chain.from_iterable(given))),
+           "name it here, too.", options.drivers, ("lane_centring",), multiple=True, heading=Heading.DRIVE,
+           table="run", guard=options.driver_guard,
+           callback=lambda _, __, given: tuple(chain.from_iterable(given))),
     Option("--paired", "Compare the drivers on the same roads at the end, in a report.", bool,
            heading=Heading.DRIVE),
     *named(options.SETUP, "simulator", "keep_driving"),
@@ -322,8 +311,8 @@ def work_to_the_end(
                     click.echo("\n".join([*compared(record), f"report: {page}"]), err=given["as_json"])
     if any(given[name] for name in ("faults", "minimise", "repeat", "groups")):
         here = min(given["workers"], os.cpu_count() or 1)  # the campaign's workers may be on other machines
-        look = AnalysisOptions(given["repeat"] or REPEAT, given["minimise"], here, quiet=given["quiet"])
-        analyse_failures(folder, look._replace(groups=given["groups"], is_apart=given["as_json"]))
+        asked = given["repeat"] or REPEAT, given["minimise"], here, given["quiet"], given["groups"]
+        analyse_failures(folder, AnalysisOptions(*asked, is_apart=given["as_json"]))
     given["gate"].close()
 
 
@@ -350,27 +339,18 @@ def _described(text: str, rest: dict[str, Any]) -> "Plan":
     from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL, CellBudget
     from roadgpt.campaign.plan import Plan
 
-    goal, seconds, tests = rest["goal"], rest["seconds"], rest["tests"]
     rest["reader"] = options.reader_of(rest)
-    world = options.world_of(rest)
-    chat = options.chat_of(rest, rest["reader"], rest["designer"])
+    rest["generator"] = rest["generator"] or (WITH_GOAL if rest["goal"] else WITHOUT_GOAL)
+    lists = {f"{name}s": (rest[name],) for name in ("designer", "simulator", "generator", "seed")}
+    names = ("goal", "drivers", "reader", "rules", "geometry", "keep_driving", "paired")
     return Plan(
         prompts=(text,),
-        designers=(rest["designer"],),
-        drivers=tuple(rest["drivers"]),
-        simulators=(rest["simulator"],),
-        generators=(rest["generator"] or (WITH_GOAL if goal else WITHOUT_GOAL),),
-        seeds=(rest["seed"],),
-        goal=goal,
-        budget=CellBudget(tests=tests, seconds=seconds),
-        reader=rest["reader"],
-        rules=rest["rules"],
-        geometry=rest["geometry"],
-        keep_driving=rest["keep_driving"],
+        budget=CellBudget(tests=rest["tests"], seconds=rest["seconds"]),
         drives=not rest["no_drive"],
-        paired=rest["paired"],
-        world=world,
-        chat=chat,
+        world=options.world_of(rest),
+        chat=options.chat_of(rest, rest["reader"], rest["designer"]),
+        **lists,
+        **{name: rest[name] for name in names},
     )
 
 
@@ -450,8 +430,7 @@ def _as_before(folder: Path, axes: "Scale") -> "Draw | None":
     if "road.json" not in names:
         return beside(("png",), axes, ())
     pictures = tuple(kind for kind in FORMATS if f"birds_eye.{kind}" in names)
-    formats: tuple[str, ...] = ()
-    if any(name.startswith(NAME) and name != "road.json" for name in names):
-        every = plugins.names("exporters")
-        formats = tuple(each for each in every if NAME + plugins.find("exporters", each).suffix in names)
+    has_formats = any(name.startswith(NAME) and name != "road.json" for name in names)
+    every = plugins.names("exporters") if has_formats else []
+    formats = tuple(each for each in every if NAME + plugins.find("exporters", each).suffix in names)
     return beside(pictures, axes, formats)

@@ -19,9 +19,8 @@ import click
 
 from roadgpt import __version__, plugins
 from roadgpt.cli import options
-from roadgpt.cli.option import Option
-from roadgpt.cli.option_groups import CommandGroup
-from roadgpt.cli.streams import warn
+from roadgpt.cli.options import CommandGroup, Option
+from roadgpt.cli.streams import aligned, warn
 from roadgpt.errors import PartError, RoadGPTError
 
 PLUGIN = ("shelf", "name", "origin", "about", "works")
@@ -73,19 +72,14 @@ def show(with_origin: bool, as_json: bool, **values: Any) -> None:
 
     shown = [*_of_options(), *_of_chat(values)]
     if as_json:
-        told = {
-            name: {"value": value, "origin": origin} if with_origin else value
-            for _, name, value, origin in shown
-        }
-        click.echo(json.dumps(told, indent=2))
+        told = {name: {"value": value, "origin": origin} for _, name, value, origin in shown}
+        plain = {name: value for _, name, value, _ in shown}
+        click.echo(json.dumps(told if with_origin else plain, indent=2))
         return
-    wide = max(len(name) for _, name, _, _ in shown)
-    far = max(len(_text(value)) for _, _, value, _ in shown)
-    for under in dict.fromkeys(table for table, _, _, _ in shown):
+    lines = aligned([(name, _text(value), origin) for _, name, value, origin in shown], "<<<")
+    for under in dict.fromkeys(table for table, *_ in shown):
         click.secho(f"[{under}]", bold=True)
-        for table, name, value, origin in shown:
-            if table == under:
-                click.echo(f"{name:<{wide}}  {_text(value):<{far}}  {origin}")
+        click.echo("\n".join(line for (table, *_), line in zip(shown, lines, strict=True) if table == under))
     for name in unknown_variables({option.variable for option in options.settable()}):
         warn(f"{name} is not a setting; the settings are listed above")
 
@@ -138,8 +132,6 @@ def plugins_command(as_json: bool) -> None:
 
 LIBRARIES = ("numpy", "scipy", "numba", "mujoco-core", "matplotlib", "shapely", "pydantic", "click", "rich")
 TEST_ROAD = [[40.0, 100.0], [60.0, 100.0], [80.0, 100.0]]  # m; a straight, driven in a few seconds
-
-
 CHECK = ("about", "is_fine", "sentence")
 Checked = tuple[str, bool, str]
 
@@ -174,10 +166,9 @@ def examined() -> Iterator[Checked]:
 def _tried(about: str, look: Callable[[], str]) -> Checked:
     try:
         return (about, True, look())
-    except RoadGPTError as error:
-        return (about, False, str(error))
     except Exception as error:
-        return (about, False, f"{type(error).__name__}: {error}")
+        kind = "" if isinstance(error, RoadGPTError) else f"{type(error).__name__}: "
+        return (about, False, f"{kind}{error}")
 
 
 def _library(name: str) -> str:
@@ -225,10 +216,9 @@ def doctor(ctx: click.Context, /, as_json: bool) -> None:
     if ctx.invoked_subcommand is not None:
         return
     answers = []
-    for answer in examined():
-        answers.append(answer)
+    for about, is_fine, sentence in examined():
+        answers.append((about, is_fine, sentence))
         if not as_json:
-            about, is_fine, sentence = answer
             mark = click.style("ok     ", fg="green") if is_fine else click.style("PROBLEM", fg="red")
             click.echo(f"{mark}  {about:<14} {sentence}")
     if as_json:
