@@ -96,9 +96,6 @@ class Actor(Worker):
             raise GoneError(how, is_blameless=is_off) from None
         return kind, what
 
-    def ask_to_end(self) -> None:
-        """Does nothing; Ray ends all workers in the same way."""
-
     def kill(self) -> None:
         """Ends the worker."""
         self._ray.kill(self._actor)
