@@ -5,7 +5,7 @@ test may spend, which tests the workers get, and what is stored.
 import time
 from bisect import bisect
 from collections import Counter
-from collections.abc import Callable, Generator, Hashable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -16,68 +16,13 @@ from roadgpt import plugins
 from roadgpt.campaign.model import Cell, Pool, Result
 from roadgpt.campaign.model import Generator as TestGenerator
 from roadgpt.campaign.record import Batch, Record
-from roadgpt.campaign.single_test import (
-    Allowance,
-    FinishedTest,
-    OutOfAllowance,
-    Task,
-    error_run,
-    execute,
-    result_of,
-)
+from roadgpt.campaign.single_test import Allowance, FinishedTest, OutOfAllowance, Task, error_run, execute
 from roadgpt.campaign.workers import LostWorkerError, Shared, WorkerConfig
-from roadgpt.chat import ChatSettings, Spent
+from roadgpt.chat import ChatSettings
 from roadgpt.errors import BudgetError, RoadGPTError
 from roadgpt.road import Design
 from roadgpt.run.model import MOST, LostDrives
 from roadgpt.stopping import look
-
-
-class BudgetAllocator:
-    """Divides a campaign's limits on tokens and money among the tests that run at the same time. The campaign
-    stays within the limits even if every test spends its whole allowance."""
-
-    def __init__(self, chat: ChatSettings | None, tokens: int, cost: float) -> None:
-        """Takes the limits, and the tokens and USD that were spent before."""
-        self._limits = Allowance(chat.max_tokens, chat.max_cost) if chat else Allowance()
-        self._spent = [float(tokens), cost]
-        self._given: dict[Hashable, Allowance] = {}
-
-    def share(self, parts: int = 1) -> Allowance:
-        """Divides the remaining tokens and money into ``parts`` equal parts; returns one part."""
-        tokens, cost = self._limits
-        if tokens is not None:
-            tokens -= int(self._spent[0] + sum(given.tokens or 0 for given in self._given.values()))
-            tokens = int(max(tokens, 0) / parts)
-        if cost is not None:
-            cost -= self._spent[1] + sum(given.cost or 0.0 for given in self._given.values())
-            cost = max(cost, 0.0) / parts
-        return Allowance(tokens, cost)
-
-    def give(self, key: Hashable, allowance: Allowance) -> None:
-        """Reserves an allowance for a test that is about to start; ``key`` identifies the test."""
-        self._given[key] = allowance
-
-    def back(self, key: Hashable, spent: Spent | None) -> None:
-        """Releases the allowance of a test that has ended, and counts the tokens and money it spent."""
-        self._given.pop(key, None)
-        if spent is not None:
-            self._spent[0] += spent.usage.total
-            self._spent[1] += spent.cost or 0.0
-
-    def sentence(self, to_resume: Callable[..., str]) -> str:
-        """Returns a message that says which limit was reached, and how to go on with twice this limit;
-        ``to_resume`` returns the command that continues the campaign, with further options."""
-        tokens, cost = self._limits
-        is_cost = tokens is None or (cost is not None and self.share().cost == 0)
-        limit = f"{cost:g} USD" if is_cost else f"{tokens:,} tokens"
-        more = ("--max-cost", f"{2 * (cost or 0):g}") if is_cost else ("--max-tokens", 2 * (tokens or 0))
-        so_far = f"{self._spent[0]:,.0f} tokens and {self._spent[1]:.4f} USD are spent"
-        return (
-            f"the limit of {limit} leaves no room for the next question ({so_far}); "
-            f"continue with a higher one, such as: {to_resume(*more)}"
-        )
-
 
 REMEMBERED = 2048  # latest designs that a draft must differ from, 50 MB per worker; older ones are left out
 STRIDE = 512  # designs that are dropped at a time, so that designers' caches of the others stay valid
@@ -230,7 +175,6 @@ class Progress:
 
     total: int | None  # number of tests; None if the campaign has a time limit but no limit on tests
     outcomes: Counter[str] = field(default_factory=Counter)
-    under_way: int = 0
 
     @property
     def done(self) -> int:
@@ -261,7 +205,7 @@ class Scheduler:
         self._store = store
         self._staff = staff
         self._names = store.names()
-        self._allocator = BudgetAllocator(chat, *store.spent())
+        self._tokens, self._cost = store.spent()
         self._chat = chat
         self._run_test = run_test or execute
         counts = store.query("SELECT outcome, count(*) FROM tests WHERE outcome IS NOT NULL GROUP BY outcome")
@@ -366,12 +310,24 @@ class Scheduler:
     ) -> None:
         """Queues tests, each with the given allowance; if it is None, the tests share half of the tokens and
         money that are left, and the other half is left for later tests."""
-        each = allowance or self._allocator.share(2 * max(len(tests), 1))
+        each = allowance or self._share(2 * max(len(tests), 1))
         for test in [replace(test, allowance=each) for test in tests]:
             shared: list[Shared[Any]] = [self._cells[schedule.cell.name], *schedule.earlier(test)]
             future = self.executor.submit(_run_with, self._run_test, test, *shared)
             self._out[future] = _Out(schedule, test)
-            self._allocator.give(future, each)
+
+    def _share(self, parts: int = 1) -> Allowance:
+        """Divides the tokens and money that are left into equal parts, and returns one. The campaign stays
+        within its limits even if every test that is under way spends its whole allowance."""
+        given = [out.task.allowance for out in self._out.values()]
+        tokens, cost = (self._chat.max_tokens, self._chat.max_cost) if self._chat else (None, None)
+        if tokens is not None:
+            tokens -= self._tokens + sum(each.tokens or 0 for each in given)
+            tokens = int(max(tokens, 0) / parts)
+        if cost is not None:
+            cost -= self._cost + sum(each.cost or 0.0 for each in given)
+            cost = max(cost, 0.0) / parts
+        return Allowance(tokens, cost)
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
         """Returns the results of ``function`` for all items, in order, for generators: see ``model.Pool``."""
@@ -384,11 +340,24 @@ class Scheduler:
         if self._out:
             return
         one = self._underfunded.pop(0)
-        everything = self._allocator.share()
+        everything = self._share()
         if one.task.allowance == everything:
-            self._error = BudgetError(self._allocator.sentence(self._store.to_resume))
+            self._error = self._no_room(everything)
             return
         self._hand_out(one.schedule, [one.task], everything)
+
+    def _no_room(self, left: Allowance) -> BudgetError:
+        """Returns the error that says which limit was reached, and how to go on with twice this limit."""
+        assert self._chat is not None, "only limits leave no room"
+        tokens, cost = self._chat.max_tokens, self._chat.max_cost
+        is_cost = tokens is None or (cost is not None and left.cost == 0)
+        limit = f"{cost:g} USD" if is_cost else f"{tokens:,} tokens"
+        more = ("--max-cost", f"{2 * (cost or 0):g}") if is_cost else ("--max-tokens", 2 * (tokens or 0))
+        return BudgetError(
+            f"the limit of {limit} leaves no room for the next question ({self._tokens:,.0f} tokens and "
+            f"{self._cost:.4f} USD are spent); continue with a higher one, such as: "
+            f"{self._store.to_resume(*more)}"
+        )
 
     # Taking in
 
@@ -401,12 +370,13 @@ class Scheduler:
             except CancelledError:  # the executor was shut down meanwhile
                 continue
             except LostWorkerError as lost:
-                run = error_run(out.task, out.schedule.cell, str(lost))
-                value = FinishedTest(result_of(run, out.task, {}))
+                value = FinishedTest.of(error_run(out.task, out.schedule.cell, str(lost)), out.task)
             except Exception as error:  # it would occur in every other test as well
                 self._error = self._error or error
                 continue
-            self._allocator.back(future, value.spent)
+            if value.spent is not None:
+                self._tokens += value.spent.usage.total
+                self._cost += value.spent.cost or 0.0
             if isinstance(value, OutOfAllowance):
                 self._store.spend(value.spent)
                 self._underfunded.append(out)
@@ -474,7 +444,6 @@ class Scheduler:
         self._looked = now
         self._pending = []
         self._has_news = True
-        self.progress.under_way = len(self._out)
         for schedule in [*self._schedules]:
             self._drop_if_done(schedule)
 
