@@ -48,6 +48,7 @@ from roadgpt.road import Design, Road
 from roadgpt.run import Run
 from roadgpt.run.atomic import refuse_links, to_bytes
 from roadgpt.run.model import permissions
+from roadgpt.run.store import connected
 from roadgpt.run.versions import Versions, joined, still
 from roadgpt.verdict import Verdict, judge
 
@@ -56,7 +57,6 @@ if TYPE_CHECKING:
 
 STORE = "campaign.sqlite"
 FORMAT = 1
-PATIENCE = 30.0  # s to wait for another process that locks the store
 WHICH = {
     None: ("1", ""),
     "failures": ("outcome = 'FAIL'", ""),
@@ -241,31 +241,6 @@ class Batch:
     left: int  # number of its tests that have not ended yet
 
 
-def _connected(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
-    """Returns a connection to a store's file and the number of its format; raises sqlite3.Error."""
-    try:
-        return _opened(path, mode)
-    except sqlite3.OperationalError as error:
-        log = path.with_name(f"{path.name}-wal")
-        is_whole = not log.exists() or not log.stat().st_size
-        if mode == "ro" and is_whole and error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_CANTOPEN:
-            # an interrupted campaign on a read-only disk: no process can be writing the store
-            return _opened(path, "ro&immutable=1")
-        raise
-
-
-def _opened(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
-    address = f"{path.resolve().as_uri()}?mode={mode}"
-    db = sqlite3.connect(address, timeout=PATIENCE, isolation_level=None, uri=True)
-    try:
-        version = db.execute("PRAGMA user_version").fetchone()[0]
-        db.execute("SELECT count(*) FROM meta").fetchone()
-    except sqlite3.Error:
-        db.close()
-        raise
-    return db, version
-
-
 def no_tests(folder: Path) -> UsageError:
     """Returns the error for a folder that holds neither a campaign nor runs."""
     return UsageError(
@@ -288,7 +263,6 @@ class Record:
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
         self.path = path
         self._db = db
-        self._features: set[str] = set()
         self._session = 0
 
     @property
@@ -308,7 +282,8 @@ class Record:
         if not path.is_file():
             raise no_tests(folder)
         try:
-            db, version = _connected(path, mode)
+            db = connected(path, mode, "meta")
+            ((version,),) = db.execute("PRAGMA user_version")
         except sqlite3.Error as error:
             raise UsageError(
                 f"{path} cannot be read ({error}); name another folder, or copy this to where you may write"
@@ -610,7 +585,7 @@ class Record:
         seconds that each cell has worked since."""
         now = time.time()
         left = Counter((cell, one.result.batch) for cell, one in ended)
-        names = {name for _, one in ended for name in one.result.features} - self._features
+        names = {name for _, one in ended for name in one.result.features}
         tests, details = list[tuple[Any, ...]](), list[tuple[Any, ...]]()
         for cell, one in ended:
             its, took, spent, where = one.result, one.seconds, one.spent, (cell, one.result.number)
@@ -647,7 +622,6 @@ class Record:
                 [(taken, cell) for cell, taken in seconds.items()],
             )
             db.execute("UPDATE sittings SET seen = ? WHERE rowid = ?", (now, self._session))
-        self._features |= names
 
 
 @contextmanager
@@ -756,7 +730,6 @@ class Store(Record):
         except sqlite3.Error as error:
             store.close()
             raise UsageError(f"{store.path} cannot be written ({error}); name another folder") from error
-        store._features = {*store.feature_names()}
         return store
 
     def close(self) -> None:

@@ -9,7 +9,6 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 from roadgpt import plugins
@@ -230,7 +229,13 @@ class Scheduler:
         try:
             yield from self._run()
         except BaseException:
-            self._leave()
+            self.executor.shutdown(cancel_futures=True)
+            if self._may_write:
+                with suppress(RoadGPTError):  # the caller has an error already
+                    if self._error is None:
+                        self._take()
+                self._keep()
+                self._store.end_session()
             raise
         finally:
             self.executor.shutdown(cancel_futures=True)
@@ -253,15 +258,6 @@ class Scheduler:
             raise self._error
         self._keep()
         yield self.progress
-
-    def _leave(self) -> None:
-        self.executor.shutdown(cancel_futures=True)
-        if self._may_write and self._error is None:
-            with suppress(RoadGPTError):  # the caller has an error already
-                self._take()
-        if self._may_write:
-            self._keep()
-            self._store.end_session()
 
     # Handing out
 
@@ -332,8 +328,7 @@ class Scheduler:
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
         """Returns the results of ``function`` for all items, in order, for generators: see ``model.Pool``."""
         size = max(1, -(-len(items) // (PARTS * self._staff.workers)))
-        parts = [[*items[first : first + size]] for first in range(0, len(items), size)]
-        return [one for part in self.executor.map(partial(_for_each, function), parts) for one in part]
+        return [*self.executor.map(function, items, chunksize=size)]
 
     def _retry_underfunded(self) -> None:
         """Runs the tests whose allowance was too small one after another, each with all that is left."""
@@ -468,7 +463,3 @@ class Scheduler:
 
 def _run_with(function: Callable[..., T], task: Task, *shared: Shared[Any]) -> T:
     return function(task, *(each.value for each in shared))
-
-
-def _for_each(function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-    return [function(item) for item in items]

@@ -3,7 +3,6 @@
 import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from roadgpt.campaign.model import Cell, Proposal, Result
@@ -60,11 +59,11 @@ class FinishedTest:
 
     @classmethod
     def of(
-        cls, run: Run, task: Task, features: Mapping[str, float] = MappingProxyType({}), **rest: Any
+        cls, run: Run, task: Task, features: Mapping[str, float] | None = None, /, **rest: Any
     ) -> "FinishedTest":
         """Returns the test that ended with a Run; ``rest`` has fields that the Run does not have."""
         spent = {name: getattr(run, name) for name in ("seconds", "spent", "is_lost", "driver_files")}
-        return cls(result_of(run, task, features), error=run.trace, **spent, **rest)
+        return cls(result_of(run, task, features or {}), error=run.trace, **spent, **rest)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ import sys
 import threading
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
@@ -80,24 +80,32 @@ def set_paths(paths: list[str]) -> None:
     sys.path[:] = paths
 
 
-def answer(call: bytes) -> tuple[str, bytes]:
-    """Runs a job: a pickled function, its arguments and its keyword arguments; returns how the job ended, and
-    its pickled value or error."""
+def answer(call: bytes) -> bytes:
+    """Runs a job: a pickled function, its arguments and its keyword arguments; returns its value or error for
+    ``value_in``."""
     try:
         function, args, named = unpickled(call)
-        return VALUE, pickled(function(*args, **named))
+        return pickled((VALUE, function(*args, **named)))
     except Exception as error:  # whatever it is, the parent has to hear of it
-        return ERROR, portable(error)
+        return portable(error)
 
 
 def portable(error: Exception) -> bytes:
-    """Returns a pickled error, or else a RuntimeError with its type and text if it cannot be pickled."""
+    """Returns an error for ``value_in``; if it cannot be pickled, a RuntimeError with its type and text."""
     try:
-        data = pickled(error)
+        data = pickled((ERROR, error))
         unpickled(data)
     except Exception:  # pickling may fail in any way
-        return pickled(RuntimeError(f"{type(error).__name__}: {error}"))
+        return pickled((ERROR, RuntimeError(f"{type(error).__name__}: {error}")))
     return data
+
+
+def value_in(data: bytes) -> Any:
+    """Returns the value of a job, or raises its error."""
+    kind, found = unpickled(data)
+    if kind == ERROR:
+        raise found
+    return found
 
 
 def unpickled(data: bytes) -> Any:
@@ -136,8 +144,8 @@ class Worker(ABC):
         """Prepares the worker for jobs; raises any error of ``prepare``, or GoneError."""
 
     @abstractmethod
-    def run(self, call: bytes) -> tuple[str, bytes]:
-        """Runs a job, see ``answer``, and returns how it ended; raises GoneError."""
+    def run(self, call: bytes) -> bytes:
+        """Runs a job, see ``answer``, and returns its value or error; raises GoneError."""
 
     @abstractmethod
     def kill(self) -> None:
@@ -181,8 +189,10 @@ class WorkerPool(Executor, ABC):
         chunksize: int = 1,
     ) -> Iterator[T]:
         """Yields the results of calls, in order; these calls go to free workers before the jobs that wait."""
-        jobs = [self._add(FIRST, fn, args, {}) for args in zip(*iterables, strict=False)]
-        return (job.result(timeout) for job in jobs)
+        calls = [*zip(*iterables, strict=False)]
+        parts = [calls[first : first + chunksize] for first in range(0, len(calls), chunksize)]
+        jobs = [self._add(FIRST, _for_each, (fn, part), {}) for part in parts]
+        return (one for job in jobs for one in job.result(timeout))
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Ends the workers when all jobs are done, or at once, even in the middle of a job."""
@@ -249,21 +259,20 @@ class WorkerPool(Executor, ABC):
             return
         job.worker, job.begun = worker.name, time.time()
         try:
-            kind, what = worker.run(pickled(job.call))
-            found = unpickled(what)
+            data = worker.run(pickled(job.call))
         except GoneError as ended:
             job.worker = ""
             self._dismiss(worker)
             self._give_again(job, ended)
             self._hire()
             return
-        except Exception as error:  # the call cannot be pickled, or its value not be read, for example
-            kind, found = ERROR, error
+        except Exception as error:  # the call cannot be pickled, for example
+            data = portable(error)
         job.worker, worker.is_busy = "", False
-        if kind == ERROR:
-            job.set_exception(found)
-        else:
-            job.set_result(found)
+        try:
+            job.set_result(value_in(data))
+        except Exception as error:  # that of the job, or its value cannot be read
+            job.set_exception(error)
 
     def _give_again(self, job: Job, ended: GoneError) -> None:
         """Queues the job of a worker that has ended; gives it up if too many workers ended over it."""
@@ -275,6 +284,10 @@ class WorkerPool(Executor, ABC):
         self._waiting.put(job)
         with suppress(RuntimeError):  # after a shutdown, threads still run what waits
             self._threads.submit(self._run_all)
+
+
+def _for_each(function: Callable[..., T], calls: Sequence[tuple[Any, ...]]) -> list[T]:
+    return [function(*args) for args in calls]
 
 
 class InProcess(Executor):

@@ -15,7 +15,6 @@ DIR/faults/
 For a folder of runs, the level c01/ is left out.
 """
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -197,11 +196,7 @@ def _written(run: Run, found: FailureAnalysis) -> dict[str, Any]:
         "description": run.description,
         "why": asdict(found.reason),
         "stability": found.stability.sentence,
-        # a driver that broke down has no margin, and JSON has no NaN
-        "drives": [
-            asdict(drive) | {"margin": drive.margin if math.isfinite(drive.margin) else None}
-            for drive in found.stability.drives
-        ],
+        "drives": [asdict(drive) for drive in found.stability.drives],
         "simplest": found.simplest,
     }
 
@@ -211,17 +206,12 @@ def _read(path: Path, run: Run, name: NumberedTest, times: int | None = None) ->
     drives; otherwise None."""
 
     def analysis_in(data: Any) -> FailureAnalysis | None:
-        if data["seed"] != run.seed or data["description"] != run.description:
+        if (data["seed"], data["description"]) != (run.seed, run.description):
             return None
-        if not data["drives"] or len(data["drives"]) != (times or len(data["drives"])):
+        drives = strictly(tuple[Repeated, ...], data["drives"])
+        if not drives or len(drives) != (times or len(drives)):
             return None
-        stability = Stability(tuple(_drive_of(drive) for drive in data["drives"]))
         reason = strictly(FailureReason, data["why"])
-        return FailureAnalysis(name, reason, stability, str(data.get("simplest", "")))
+        return FailureAnalysis(name, reason, Stability(drives), str(data.get("simplest", "")))
 
     return stored(path, analysis_in)
-
-
-def _drive_of(data: dict[str, Any]) -> Repeated:
-    margin = math.nan if data["margin"] is None else float(data["margin"])
-    return replace(strictly(Repeated, {**data, "margin": 0.0}), margin=margin)

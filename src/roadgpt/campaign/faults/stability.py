@@ -15,7 +15,7 @@ import numpy as np
 from roadgpt import plugins
 from roadgpt.drive import Command, View, simulate
 from roadgpt.drive.isolation import driver_of
-from roadgpt.errors import DriverError, SimulationError, SimulatorError
+from roadgpt.errors import DriverError, SimulationError
 from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.run.model import LostDrives
@@ -85,7 +85,7 @@ class Repeated:
     number: int
     disturbance: Disturbance
     failed: bool
-    margin: float  # margin to out of bounds, metres; NaN if the drive ended with an error
+    margin: float | None  # margin to out of bounds, metres; None if the drive ended with an error
     at_s: float | None
 
 
@@ -128,18 +128,11 @@ def repeated(run: Run, times: int) -> Stability:
 
 def _once(run: Run, number: int) -> Repeated:
     disturbance = disturbance_of(run.seed, number)
-    losses: LostDrives[int] = LostDrives()
-    while True:
-        try:
-            verdict = drive_disturbed(run, disturbance)
-            return Repeated(number, disturbance, not verdict.kept, verdict.margin, verdict.at_s)
-        except SimulatorError as error:
-            if losses.count(number, is_lost=True):
-                raise losses.given_up(
-                    str(error), "fix it and run the same command again, which continues"
-                ) from error
-        except (DriverError, SimulationError):
-            return Repeated(number, disturbance, True, float("nan"), None)
+    try:
+        verdict = LostDrives.outlasted(lambda: drive_disturbed(run, disturbance))
+        return Repeated(number, disturbance, not verdict.kept, verdict.margin, verdict.at_s)
+    except (DriverError, SimulationError):
+        return Repeated(number, disturbance, True, None, None)
 
 
 def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
