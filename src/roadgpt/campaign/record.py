@@ -252,6 +252,7 @@ def no_tests(folder: Path) -> UsageError:
 class Record:
     """The tables in a database: in the file of a campaign, or in memory (``FolderStore``)."""
 
+    mode = "ro"  # in which ``opened`` opens the file
     has_run = "design IS NOT NULL"
     """The SQL condition that selects the tests whose Runs the method ``run`` can return."""
 
@@ -274,15 +275,11 @@ class Record:
     def opened(cls, folder: Path) -> Self:
         """Opens the campaign in a folder; raises UsageError if there is no store, or it is damaged or of
         another version."""
-        return cls._opened(folder, "ro")
-
-    @classmethod
-    def _opened(cls, folder: Path, mode: str) -> Self:
         path = folder / STORE
         if not path.is_file():
             raise no_tests(folder)
         try:
-            db = connected(path, mode, "meta")
+            db = connected(path, cls.mode, "meta")
             ((version,),) = db.execute("PRAGMA user_version")
         except sqlite3.Error as error:
             raise UsageError(
@@ -320,13 +317,28 @@ class Record:
         raise UsageError(f"{self.path.parent} holds no result of test {number} of {cell}")
 
     def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
-        """Returns the stored Run of a test; see ``folder_record.kept_run``."""
+        """Returns the stored Run of a test; see ``folder_record.kept_run``. Without its drive, it has no
+        verdict."""
         own, result = self.cell(cell), self.result(cell, number)
-        road = self.road(own, result)
+        road, request, brief = self.road(own, result), own.request, own.brief
         if road is None:
             raise no_road(self.folder, cell, result)
         drive = self.drive(cell, number) if has_drive else None
-        return stored_run(own, result, road, drive, self.versions(own.request.setup.driver))
+        is_invalid = result.outcome == "INVALID"
+        return Run(
+            request,
+            number,
+            self.seed(result),
+            outcome=result.outcome,
+            description=result.description,
+            brief=brief,
+            design=result.design,
+            road=road,
+            findings=inspect(road, brief, request.world, request.setup.rules) if is_invalid else (),
+            drive=drive,
+            verdict=None if drive is None else _verdict_of(road, drive, own, result),
+            versions=self.versions(request.setup.driver),
+        )
 
     def versions(self, driver: str) -> Versions:
         """Returns what decided the results of a driver's tests besides the plan, see ``run.versions``."""
@@ -636,29 +648,6 @@ def refusals(folder: Path, store: Record | None = None) -> Iterator[None]:
         raise RoadGPTError(f"cannot write into {folder}: {reason}; make room there, {again}") from error
 
 
-def stored_run(
-    cell: Cell, result: Result, road: Road, drive: Drive | None, versions: Mapping[str, str]
-) -> Run:
-    """Returns the Run of a test from its stored result, the road of its design, and its stored drive. Without
-    a drive, the Run has no verdict; ``versions`` are those of the software that made the campaign."""
-    request, brief = cell.request, cell.brief
-    is_invalid = result.outcome == "INVALID"
-    return Run(
-        request,
-        result.number,
-        seed_of_driver(result.number, result.proposal),
-        outcome=result.outcome,
-        description=result.description,
-        brief=brief,
-        design=result.design,
-        road=road,
-        findings=inspect(road, brief, request.world, request.setup.rules) if is_invalid else (),
-        drive=drive,
-        verdict=None if drive is None else _verdict_of(road, drive, cell, result),
-        versions=versions,
-    )
-
-
 def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict | None:
     """Judges the stored drive, and then replaces values of the verdict by those that the campaign stored,
     because the drive's rounded positions may give others. Returns None if the test was not judged."""
@@ -685,6 +674,8 @@ class Store(Record):
     cut may undo the last transactions, each as a whole. Their tests then count as not done and are run again
     with the same results, since a batch depends only on the results of earlier batches.
     """
+
+    mode = "rw"
 
     @classmethod
     def new(
@@ -723,7 +714,7 @@ class Store(Record):
     def opened(cls, folder: Path) -> Self:
         """Opens the store in a folder for writing; raises UsageError, see ``Record.opened``."""
         refuse_links(folder / STORE)
-        store = cls._opened(folder, "rw")
+        store = super().opened(folder)
         try:
             store._db.execute("PRAGMA journal_mode = WAL")
             store._db.execute("PRAGMA synchronous = NORMAL")

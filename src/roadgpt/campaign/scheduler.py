@@ -38,7 +38,7 @@ class BatchScheduler:
     """
 
     def __init__(self, cell: Cell, store: Record) -> None:
-        self.cell = cell
+        self.cell, self.shared = cell, Shared(cell)
         self._store = store
         self.batches: list[Batch] = store.batches(cell.name)
         ((self.seconds, self.closed),) = store.query(
@@ -210,13 +210,12 @@ class Scheduler:
         counts = store.query("SELECT outcome, count(*) FROM tests WHERE outcome IS NOT NULL GROUP BY outcome")
         total = tests and tests * len(self._names)
         self.progress = Progress(total, Counter(dict(counts)))
-        self._next = 0
+        self._unopened = iter(self._names)
         self._schedules: list[BatchScheduler] = []
-        self._cells: dict[str, Shared[Cell]] = {}
         self._out: dict[Future[FinishedTest | OutOfAllowance], _Out] = {}
         self._underfunded: list[_Out] = []
         self._pending: list[tuple[str, FinishedTest]] = []
-        self._oldest = self._looked = time.monotonic()
+        self._looked = time.monotonic()  # when results were last stored
         self._lost: dict[tuple[int, int], tuple[_Out, str]] = {}  # by place of cell and number of test
         self._error: Exception | None = None
         self._may_write = True
@@ -249,7 +248,7 @@ class Scheduler:
                 break
             wait(self._out, WAIT, FIRST_COMPLETED)
             self._take()
-            if self._is_due():
+            if time.monotonic() >= self._looked + self._store.group_seconds or len(self._pending) >= GROUP:
                 self._keep()
             if self._has_news:
                 self._has_news = False
@@ -279,19 +278,16 @@ class Scheduler:
             schedule.close("its time limit was reached")
         else:
             self._hand_out(schedule, schedule.ask(self))
-        self._drop_if_done(schedule)
+        if schedule.is_done:
+            self._schedules.remove(schedule)
 
     def _open(self) -> bool:
-        while self._next < len(self._names):
-            schedule = BatchScheduler(self._store.cell(self._names[self._next]), self._store)
-            self._next += 1
-            if schedule.is_done:
-                continue
-            self._schedules.append(schedule)
-            name = schedule.cell.name
-            self._cells[name] = Shared(self._with_chat(schedule.cell))
-            self._hand_out(schedule, self._store.waiting(name))
-            return True
+        for name in self._unopened:
+            schedule = BatchScheduler(self._with_chat(self._store.cell(name)), self._store)
+            if not schedule.is_done:
+                self._schedules.append(schedule)
+                self._hand_out(schedule, self._store.waiting(name))
+                return True
         return False
 
     def _with_chat(self, cell: Cell) -> Cell:
@@ -308,7 +304,7 @@ class Scheduler:
         money that are left, and the other half is left for later tests."""
         each = allowance or self._share(2 * max(len(tests), 1))
         for test in [replace(test, allowance=each) for test in tests]:
-            shared: list[Shared[Any]] = [self._cells[schedule.cell.name], *schedule.earlier(test)]
+            shared: list[Shared[Any]] = [schedule.shared, *schedule.earlier(test)]
             future = self.executor.submit(_run_with, self._run_test, test, *shared)
             self._out[future] = _Out(schedule, test)
 
@@ -376,8 +372,6 @@ class Scheduler:
                 self._store.spend(value.spent)
                 self._underfunded.append(out)
                 continue
-            if not self._pending:
-                self._oldest = time.monotonic()
             self._pending.append((out.schedule.cell.name, value))
             self.progress.outcomes[value.result.outcome] += 1
             out.schedule.ended(out.task.batch)
@@ -416,10 +410,6 @@ class Scheduler:
         is_last = schedule.is_closed and number == schedule.asked
         return other == ((cell + 1, 1) if is_last else (cell, number + 1))
 
-    def _is_due(self) -> bool:
-        waited = time.monotonic() - (self._oldest if self._pending else self._looked)
-        return waited >= self._store.group_seconds or len(self._pending) >= GROUP
-
     def _keep(self) -> None:
         """Stores the tests that have ended: first their drives, so that every stored result has its drive."""
         now = time.monotonic()
@@ -439,8 +429,7 @@ class Scheduler:
         self._looked = now
         self._pending = []
         self._has_news = True
-        for schedule in [*self._schedules]:
-            self._drop_if_done(schedule)
+        self._schedules = [schedule for schedule in self._schedules if not schedule.is_done]
 
     def _leases(self) -> list[tuple[str, int, str, float]]:
         patience = self._staff.patience
@@ -449,16 +438,6 @@ class Scheduler:
             for future, out in self._out.items()
             if (worker := getattr(future, "worker", ""))
         ]
-
-    def _drop_if_done(self, schedule: BatchScheduler) -> None:
-        if not schedule.is_done or schedule not in self._schedules:
-            return
-        name = schedule.cell.name
-        is_pending = any(cell == name for cell, _ in self._pending)
-        if is_pending or any(out.schedule is schedule for out in self._underfunded):
-            return
-        self._schedules.remove(schedule)
-        del self._cells[name]
 
 
 def _run_with(function: Callable[..., T], task: Task, *shared: Shared[Any]) -> T:

@@ -114,27 +114,25 @@ def _to_disk(path: Path) -> None:
 
 def read_traces(path: Path, cell: str, number: int) -> Drive:
     """Reads one drive out of a file of traces."""
+    which = {"cell": cell, "number": number}
     try:
-        return drive_of(_trace_in(path, cell, number))
+        with opened(path, LARGEST, "drives of a campaign") as file:
+            archive = np.load(file, allow_pickle=False)
+            entries = [archive.zip.getinfo(f"{name}.npy") for name in ("header", f"{cell}/{number}")]
+            check_unpacked(entries, UNPACKED)
+            contents = json_of(str(archive["header"]))
+            rows = archive[f"{cell}/{number}"]
+        if contents["format"] != FORMAT or contents["columns"] != [*COLUMNS]:
+            raise ValueError("another version of roadgpt wrote it")
+        if rows.dtype != np.int32 or rows.ndim != 2 or len(rows) != len(COLUMNS) or not rows.size:
+            raise ValueError("a drive is a table of whole numbers")
+        (header,) = [each for each in contents["drives"] if which.items() <= each.items()]
+        header = {name: value for name, value in header.items() if name not in which}
+        steps = rows.cumsum(axis=1, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
+        return drive_of(Trace(header, steps))
     except UsageError:
         raise
     except Exception as error:  # zipfile, its decoders, numpy and json raise anything
         raise UsageError(
             f"{path} holds no drive of test {number} of {cell} ({error}); drive it again"
         ) from error
-
-
-def _trace_in(path: Path, cell: str, number: int) -> Trace:
-    with opened(path, LARGEST, "drives of a campaign") as file, np.load(file, allow_pickle=False) as archive:
-        entries = [archive.zip.getinfo(f"{name}.npy") for name in ("header", f"{cell}/{number}")]
-        check_unpacked(entries, UNPACKED)
-        contents = json_of(str(archive["header"]))
-        rows = archive[f"{cell}/{number}"]
-    if contents["format"] != FORMAT or contents["columns"] != [*COLUMNS]:
-        raise ValueError("another version of roadgpt wrote it")
-    if rows.dtype != np.int32 or rows.ndim != 2 or len(rows) != len(COLUMNS) or not rows.size:
-        raise ValueError("a drive is a table of whole numbers")
-    steps = rows.cumsum(axis=1, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
-    which = {"cell": cell, "number": number}
-    (header,) = [each for each in contents["drives"] if which.items() <= each.items()]
-    return Trace({name: value for name, value in header.items() if name not in which}, steps)

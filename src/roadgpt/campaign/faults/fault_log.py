@@ -97,7 +97,7 @@ def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
         if task.draw is not None and (there is None or not picture.is_file()):
             task.draw(run, found.reason, found.stability.sentence, picture)
     if there is None:
-        write_whole(path, json_text(_written(run, found)))
+        _write(path, run, found)
     return found
 
 
@@ -110,7 +110,7 @@ def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
     least = simplest(run)
     write_run(least.run, made_folder(place.parent.parent))
     found = replace(found, simplest=least.sentence)
-    write_whole(page_of(task.folder / FOLDER, found.name), json_text(_written(run, found)))
+    _write(page_of(task.folder / FOLDER, found.name), run, found)
     return found
 
 
@@ -189,8 +189,8 @@ def _decimal(value: float | None, digits: int) -> str:
     return "" if value is None else f"{value:.{digits}f}"
 
 
-def _written(run: Run, found: FailureAnalysis) -> dict[str, Any]:
-    return {
+def _write(path: Path, run: Run, found: FailureAnalysis) -> None:
+    page = {
         "test": str(found.name),
         "seed": run.seed,
         "description": run.description,
@@ -199,6 +199,7 @@ def _written(run: Run, found: FailureAnalysis) -> dict[str, Any]:
         "drives": [asdict(drive) for drive in found.stability.drives],
         "simplest": found.simplest,
     }
+    write_whole(path, json_text(page))
 
 
 def _read(path: Path, run: Run, name: NumberedTest, times: int | None = None) -> FailureAnalysis | None:

@@ -14,7 +14,7 @@ changes their curvature or grade; the road after them moves accordingly. The cha
 drive only, so it may leave the map or overlap itself.
 """
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, combinations, pairwise
 from pathlib import Path
@@ -200,10 +200,9 @@ Removed = Mapping[str, bool | None]
 """For each change, by its name: whether it makes a failure disappear; None if the change does not apply."""
 REMEDIES = (*_remedies(15, 10, 0.5, "half"), *_remedies(30, 20, 0.0, "no"))
 """All changes that are tried, the small ones of all kinds before the larger ones."""
-KINDS = frozenset(remedy.kind for remedy in REMEDIES)
 
 
-def remedies_of(run: Run, kinds: Collection[str] = KINDS) -> Removed:
+def remedies_of(run: Run) -> Removed:
     """Drives a failing Run's road with each change, and returns which changes make the failure disappear.
 
     If a small change does, the larger one of its kind is not driven and counts as removing it, too. No change
@@ -212,13 +211,12 @@ def remedies_of(run: Run, kinds: Collection[str] = KINDS) -> Removed:
     road, verdict = run.road, run.verdict
     assert road is not None
     assert verdict is not None
-    remedies = [remedy for remedy in REMEDIES if remedy.kind in kinds]
     if road.profile is not None and run.design is None:
-        return {remedy.name: None for remedy in remedies}
+        return {remedy.name: None for remedy in REMEDIES}
     place = _place(run, float(verdict.at_s or 0.0))
     found: dict[str, bool | None] = {}
     by_kind: dict[str, bool | None] = {}
-    for remedy in remedies:
+    for remedy in REMEDIES:
         if not by_kind.get(remedy.kind):
             by_kind[remedy.kind] = _removes(run, place, remedy)
         found[remedy.name] = by_kind[remedy.kind]
