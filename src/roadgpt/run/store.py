@@ -104,13 +104,14 @@ def _opened(campaign: Path, is_written: bool = False) -> Iterator[sqlite3.Connec
 def connected(path: Path, mode: str, table: str) -> sqlite3.Connection:
     """Returns a connection to a database that has a table, to read ("ro") or also to write it ("rw"), so that
     what a killed process left is undone; raises sqlite3.Error."""
-    address = f"{path.resolve().as_uri()}?mode={mode}"
-    db = sqlite3.connect(address, PATIENCE, isolation_level=None, uri=True)
+    address, db = f"{path.resolve().as_uri()}?mode={mode}", None
     try:
+        db = sqlite3.connect(address, PATIENCE, isolation_level=None, uri=True)
         db.execute(f"SELECT 1 FROM {table} LIMIT 1").fetchone()  # noqa: S608 - our own words
         return db
     except sqlite3.Error as error:
-        db.close()
+        if db is not None:
+            db.close()
         log = path.with_name(f"{path.name}-wal")
         is_whole = not log.exists() or not log.stat().st_size
         is_shut = getattr(error, "sqlite_errorcode", 0) & 0xFF == sqlite3.SQLITE_CANTOPEN
