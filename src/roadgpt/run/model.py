@@ -2,7 +2,7 @@
 counts lost drives, so that a command stops using a simulator that has lost three drives in a row.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, Literal, Self, TypeVar
 
@@ -13,7 +13,7 @@ from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
 from roadgpt.design import DesignReport
 from roadgpt.drive.loading import driver_from_file, split_spec
-from roadgpt.errors import GivenUpError, SimulatorError, UsageError
+from roadgpt.errors import GivenUpError, UsageError
 from roadgpt.road import Design, Road, World
 from roadgpt.road.world import Parts
 
@@ -184,7 +184,6 @@ def seed_of(seed: int, index: int) -> int:
 
 
 Key = TypeVar("Key")
-T = TypeVar("T")
 MOST = 3  # in a row; each may have cost minutes of waiting for the simulator to start
 
 
@@ -201,17 +200,6 @@ class LostDrives(Generic[Key]):
             return False
         self.lost.append(key)
         return len(self.lost) >= MOST
-
-    @staticmethod
-    def outlasted(drive: Callable[[], T]) -> T:
-        """Returns what ``drive`` returns, which is called again after a SimulatorError: three times in all.
-        Raises GivenUpError."""
-        for _ in range(MOST):
-            try:
-                return drive()
-            except SimulatorError as error:
-                lost = error
-        raise LostDrives.given_up(str(lost), "fix it and run the same command again, which continues")
 
     @staticmethod
     def given_up(reason: str, again: str) -> GivenUpError:

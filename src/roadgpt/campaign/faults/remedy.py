@@ -23,6 +23,7 @@ from typing import Any, NamedTuple, Self, TypeVar
 import numpy as np
 
 from roadgpt.campaign.faults.failures import AROUND, STRAIGHT, LocatedFailure, bend_at
+from roadgpt.campaign.faults.stability import outlasted
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.errors import RoadGPTError, SimulatorError, UsageError, explained
@@ -32,7 +33,6 @@ from roadgpt.reading import read_json
 from roadgpt.road import Road, World
 from roadgpt.run import Run, prove
 from roadgpt.run.atomic import json_text, refuse_links, write_whole
-from roadgpt.run.model import LostDrives
 
 STEP = 0.5  # m, between samples
 
@@ -249,7 +249,7 @@ def _removes(run: Run, place: FailurePlace, remedy: Remedy) -> bool | None:
     passed = changed.stations[place.departure + longer * is_behind] + AROUND
     road = changed.road(run.road)
     world = run.world.changed(speed_limit=run.world.limits.speed_limit * remedy.limit)
-    tried = LostDrives.outlasted(lambda: _driven(run, road, world))
+    tried = outlasted(lambda: _driven(run, road, world))
     if tried.outcome == "ERROR":  # the driver broke down, which is no way to pass a place
         return False
     if tried.verdict is None:
