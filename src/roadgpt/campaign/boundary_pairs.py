@@ -4,7 +4,7 @@ Two roads correspond if they have the same sequence of left turns, right turns a
 between two corresponding roads can be made by averaging each length, angle, radius and slope.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -47,36 +47,35 @@ class BoundaryPair:
     """
 
 
+def _differences(one: Elements, other: Elements) -> Iterator[tuple[float, int, Measure]]:
+    """Yields how much two corresponding roads differ in each property, in units of ``Measure.scale``, the
+    index of the element, and the property."""
+    for at, (a, b) in enumerate(zip(one, other, strict=True)):
+        for measure in OF_TURN if a.turn else OF_STRAIGHT:
+            yield (getattr(a, measure.field) - getattr(b, measure.field)) / measure.scale, at, measure
+
+
 def distance(one: Elements, other: Elements) -> float:
     """Returns ``BoundaryPair.distance`` of two roads; infinite if they do not correspond."""
-    if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
+    if _row(one) != _row(other):
         return np.inf
     total = 0.0
-    for a, b in zip(one, other, strict=True):
-        for measure in OF_TURN if a.turn else OF_STRAIGHT:
-            total += _weight(measure, a, b) ** 2
+    for difference, *_ in _differences(one, other):
+        total += difference**2
     return float(np.sqrt(total))
 
 
 def weightiest(kept: Elements, lost: Elements) -> str:
     """Returns the largest difference between two corresponding roads, in units of ``Measure.scale``, as text
     such as 'turn 2: radius 15.4 m, then 14.9 m'; empty if they do not differ."""
-    most, found = 0.0, ""
-    turns = straights = 0
-    for a, b in zip(kept, lost, strict=True):
-        turns, straights = turns + bool(a.turn), straights + (not a.turn)
-        what = f"turn {turns}" if a.turn else f"straight {straights}"
-        for measure in OF_TURN if a.turn else OF_STRAIGHT:
-            weight = abs(_weight(measure, a, b))
-            if weight > most:
-                then = f"{_figure(a, measure)}, then {_figure(b, measure)}"
-                most, found = weight, f"{what}: {measure.called} {then}"
-    return found
-
-
-def _weight(measure: Measure, a: Element, b: Element) -> float:
-    difference: float = getattr(a, measure.field) - getattr(b, measure.field)
-    return difference / measure.scale
+    every = _differences(kept, lost)
+    most, at, measure = max(every, key=lambda each: abs(each[0]), default=(0.0, 0, GRADE))
+    if not most:
+        return ""
+    is_turn = bool(kept[at].turn)
+    number = sum(bool(element.turn) == is_turn for element in kept[: at + 1])
+    then = f"{_figure(kept[at], measure)}, then {_figure(lost[at], measure)}"
+    return f"{'turn' if is_turn else 'straight'} {number}: {measure.called} {then}"
 
 
 def _figure(element: Element, measure: Measure) -> str:

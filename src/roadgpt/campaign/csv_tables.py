@@ -6,7 +6,6 @@ cells.csv      one row per cell: its settings, the number of tests with each out
                outside its lane in passed tests
 """
 
-import csv
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -18,7 +17,7 @@ from roadgpt.campaign.record import MEASURED, Record, reading_store
 from roadgpt.campaign.status import CellStatus, cell_statuses
 from roadgpt.reading import json_of
 from roadgpt.run import seed_of
-from roadgpt.run.atomic import write_lines
+from roadgpt.run.atomic import csv_text, write_lines, write_whole
 
 RESULTS, CELLS = "results.csv", "cells.csv"
 COLUMNS = (
@@ -48,26 +47,16 @@ def write_tables(record: Record, folder: Path) -> None:
         write_lines(folder / RESULTS, _lines(record.stream(EVERY), features))
     both = zip(record.cells(), cell_statuses(record), strict=True)
     cells = [_cell_row(record, cell, status) for cell, status in both]
-    write_lines(folder / CELLS, map(_line, [tuple(cells[0]), *(tuple(row.values()) for row in cells)]))
-
-
-class _Echo:
-    """Stands in for a file, and returns what is written to it."""
-
-    def write(self, text: str) -> str:
-        """Returns the text."""
-        return text
-
-
-_line = csv.writer(_Echo(), lineterminator="\n").writerow
+    write_whole(folder / CELLS, csv_text(cells[0], [row.values() for row in cells]))
 
 
 def _lines(rows: Iterator[tuple[Any, ...]], features: Sequence[str]) -> Iterator[str]:
-    yield _line((*COLUMNS, *features))
+    yield csv_text((*COLUMNS, *features), ())
     for cell, number, batch, origin, seed, given, *rest, found in rows:
         values = {name: float(value) for name, value in json_of(found).items()}
         named = (values.get(name) for name in features)
-        yield _line((cell, number, batch, origin, seed if given else seed_of(seed, number), *rest, *named))
+        own = seed if given else seed_of(seed, number)
+        yield csv_text((cell, number, batch, origin, own, *rest, *named), ())
 
 
 def _cell_row(record: Record, cell: Cell, status: CellStatus) -> dict[str, Any]:

@@ -7,7 +7,7 @@ work      runs the remaining tests; interruptions do not change the resulting ta
 from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from roadgpt import plugins
@@ -29,7 +29,7 @@ from roadgpt.drive.loading import require_permission
 from roadgpt.errors import UsageError, command_line
 from roadgpt.road import World
 from roadgpt.run import Draw, brief_of
-from roadgpt.run.atomic import LOCK, alone_in, is_new, refuse_links, set_aside, sweep
+from roadgpt.run.atomic import LOCK, alone_in, is_new, refuse_links, set_aside, sweep, take_away
 from roadgpt.run.folder import read_card
 from roadgpt.run.versions import Versions, versions_now
 
@@ -72,9 +72,7 @@ def _without_trace(folder: Path) -> Iterator[None]:
         yield
     except BaseException:
         if [path.name for path in folder.iterdir()] == [LOCK]:
-            with suppress(OSError):  # Windows removes no file that is open
-                (folder / LOCK).unlink()
-                folder.rmdir()
+            take_away([folder / LOCK], [folder])
         raise
 
 

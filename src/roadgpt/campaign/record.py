@@ -27,7 +27,7 @@ import sqlite3
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from pathlib import Path
@@ -48,6 +48,7 @@ from roadgpt.road import Design, Road
 from roadgpt.run import Run
 from roadgpt.run.atomic import refuse_links, to_bytes
 from roadgpt.run.model import permissions
+from roadgpt.run.store import connected
 from roadgpt.run.versions import Versions, joined, still
 from roadgpt.verdict import Verdict, judge
 
@@ -56,7 +57,6 @@ if TYPE_CHECKING:
 
 STORE = "campaign.sqlite"
 FORMAT = 1
-PATIENCE = 30.0  # s to wait for another process that locks the store
 WHICH = {
     None: ("1", ""),
     "failures": ("outcome = 'FAIL'", ""),
@@ -87,29 +87,6 @@ def design_of(text: str | None) -> Design | None:
     return None if text is None else Design.model_validate_json(text)
 
 
-def values_of_test(ended: FinishedTest, now: float, trace: int | None) -> tuple[Any, ...]:
-    """Returns the values for the columns ``MEASURED`` and ``SPENT`` of a test that has ended at ``now``.
-    ``trace`` is the number of the file that holds the test's drive."""
-    spent = ended.spent
-    return (
-        *(getattr(ended.result, name) for name in MEASURED),  # SQLite stores NaN as NULL
-        now,
-        round(ended.seconds.design, 4),
-        round(ended.seconds.drive, 4),
-        spent and spent.usage.total,
-        spent and spent.cost,
-        None if ended.trace is None else trace,
-    )
-
-
-def detail_values(ended: FinishedTest) -> tuple[Any, ...]:
-    """Returns the values for the table ``details`` when a test has ended."""
-    result = ended.result
-    features = {name: float(value) for name, value in sorted(result.features.items()) if math.isfinite(value)}
-    texts = (plain(result.description), json.dumps(features), plain(ended.error) or None)
-    return (design_text(result.design), *texts)
-
-
 def plain(text: str) -> str:
     """Returns text that UTF-8 can encode; other characters, as from a broken terminal, become escapes."""
     return to_bytes(text).decode()
@@ -128,7 +105,7 @@ def result_of_row(row: tuple[Any, ...]) -> Result:
 
 
 def _features_of(text: str) -> dict[str, float]:
-    """Reads features as ``detail_values`` wrote them; raises TypeError if there is anything else."""
+    """Reads features as ``Record.keep`` wrote them; raises TypeError if there is anything else."""
     values = json_of(text)
     if not isinstance(values, dict) or not all(
         isinstance(value, (int, float)) and math.isfinite(value) for value in values.values()
@@ -142,50 +119,6 @@ def _cells() -> TypeAdapter[Cell]:
     return TypeAdapter(Cell)
 
 
-def cell_text(cell: Cell) -> str:
-    """Returns a cell as JSON."""
-    return _cells().dump_json(cell).decode()
-
-
-def cell_of_text(text: str, file: object) -> Cell:
-    """Restores a cell from JSON text as returned by ``cell_text``."""
-    cell = _cells().validate_python(json_of(text))
-    return replace(cell, request=cell.request.came_with(file))
-
-
-TEXT = "typeof({0}) = 'text'"
-WHOLE = "(typeof({0}) = 'integer' AND {0} BETWEEN 0 AND 9223372036854775807)"
-COUNT = "(typeof({0}) = 'integer' AND {0} BETWEEN 0 AND 10000000)"
-NUMBER = "(typeof({0}) IN ('integer', 'real') AND {0} BETWEEN -1e15 AND 1e15)"
-NAME = "(typeof({0}) = 'text' AND {0} GLOB 'c[0-9]*' AND {0} NOT GLOB '*[^c0-9]*')"
-FILES = "{0} GLOB '[0-9]*.npz' AND {0} NOT GLOB '*[^0-9npz.]*'"
-FILE = f"(typeof({{0}}) = 'text' AND {FILES})"
-OUTCOME = "{0} IN ('PASS', 'FAIL', 'INVALID', 'ERROR', 'VALID')"
-SIDE = "{0} IN ('left', 'right')"
-
-TABLES: dict[str, dict[str, str]] = {
-    "meta": {"name": TEXT, "value": TEXT},
-    "cells": {"name": NAME, "cell": TEXT, "seconds": NUMBER, "closed": f"({{0}} IS NULL OR {TEXT})"},
-    "batches": dict.fromkeys(("batch", "first", "n", "left"), COUNT) | {"cell": NAME},
-    "tests": {
-        "cell": NAME + " AND {0} IN (SELECT name FROM cells)",  # noqa: S608 - our own words
-        **dict.fromkeys(("number", "batch"), COUNT),
-        **dict.fromkeys(("seed", "given"), WHOLE),
-        "outcome": f"({{0}} IS NULL OR {OUTCOME})",
-        "cause": f"({{0}} IS NULL OR {TEXT})",
-        "side": f"({{0}} IS NULL OR {SIDE})",
-        **dict.fromkeys(MEASURED[3:-1] + SPENT, f"({{0}} IS NULL OR {NUMBER})"),
-        "handed_to": f"({{0}} IS NULL OR {TEXT})",
-    },
-    "details": dict.fromkeys(("cell", "number", "origin", "design", "description", "features", "error"), ""),
-    "traces": {"trace": WHOLE, "file": FILE},
-    "leases": {"cell": NAME, "number": COUNT, "worker": TEXT, "until": NUMBER},
-    "sittings": dict.fromkeys(("begun", "seen", "workers", "is_over", "tokens", "cost"), NUMBER),
-    "features": {"name": TEXT},
-}
-"""The SQL condition that the values of each column must satisfy; empty for columns that are checked when
-they are read.
-"""
 META = ("finished", "plan", "versions")
 _checked: set[tuple[str, int]] = set()
 BUSY = {
@@ -217,31 +150,6 @@ def reading_store(path: Path) -> Iterator[None]:
         raise damaged(path, f"{type(error).__name__}: {error}") from error
 
 
-def check_store(path: Path, db: sqlite3.Connection) -> None:
-    """Checks a store's tables, once per process."""
-    key = (str(path.absolute()), path.stat().st_ino)
-    if key in _checked:
-        return
-    with reading_store(path):
-        for table, columns in TABLES.items():
-            db.execute(f"SELECT {', '.join(columns)} FROM {table} LIMIT 1").fetchone()  # noqa: S608 - our words
-            rules = {name: rule.format(name) for name, rule in columns.items() if rule}
-            if not rules:
-                continue
-            unlike = f"NOT coalesce({' AND '.join(rules.values())}, 0)"
-            if db.execute(f"SELECT 1 FROM {table} WHERE {unlike} LIMIT 1").fetchone():  # noqa: S608
-                named = (
-                    name
-                    for name, rule in rules.items()
-                    if db.execute(f"SELECT 1 FROM {table} WHERE NOT coalesce({rule}, 0) LIMIT 1").fetchone()  # noqa: S608
-                )
-                raise damaged(path, f"{table}.{next(named, '')} holds what it cannot")
-        there = {name for (name,) in db.execute("SELECT name FROM meta")}
-        if not there >= {*META} or not db.execute("SELECT 1 FROM cells").fetchone():
-            raise damaged(path, "it has no plan or no cells")
-    _checked.add(key)
-
-
 SCHEMA = """
 CREATE TABLE meta(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE cells(name TEXT PRIMARY KEY, cell TEXT NOT NULL, seconds REAL NOT NULL DEFAULT 0, closed TEXT)
@@ -265,6 +173,56 @@ CREATE INDEX waiting ON tests(cell, number) WHERE outcome IS NULL;
 """
 
 
+NAME = "{0} GLOB 'c[0-9]*' AND {0} NOT GLOB '*[^c0-9]*'"
+OF_TYPE = {
+    "TEXT": "typeof({0}) = 'text'",
+    "INTEGER": "typeof({0}) = 'integer' AND {0} >= 0",
+    "REAL": "typeof({0}) IN ('integer', 'real') AND abs({0}) <= 1e15",
+}
+"""The SQL condition that the values of the columns of each type must satisfy."""
+OF_COLUMN = {
+    **dict.fromkeys(("cells.name", "batches.cell", "leases.cell"), NAME),
+    "tests.cell": NAME + " AND {0} IN (SELECT name FROM cells)",  # noqa: S608 - our own words
+    **{f"{table}.number": "{0} <= 10000000" for table in ("tests", "leases")},
+    **{f"batches.{name}": "{0} <= 10000000" for name in ("batch", "first", "n", "left")},
+    "tests.batch": "{0} <= 10000000",
+    "tests.outcome": "{0} IN ('PASS', 'FAIL', 'INVALID', 'ERROR', 'VALID')",
+    "tests.side": "{0} IN ('left', 'right')",
+    "traces.file": "{0} GLOB '[0-9]*.npz' AND {0} NOT GLOB '*[^0-9npz.]*'",
+}
+"""The SQL condition that the values of some columns must satisfy as well."""
+CHECKED_LATER = "details"  # the table whose rows are checked when they are read
+
+
+def check_store(path: Path, db: sqlite3.Connection) -> None:
+    """Checks a store's tables, once per process."""
+    key = (str(path.absolute()), path.stat().st_ino)
+    if key in _checked:
+        return
+    with closing(sqlite3.connect(":memory:")) as ours:
+        ours.executescript(SCHEMA)
+        columns = ours.execute(
+            'SELECT tables.name, columns.name, columns.type, NOT ("notnull" OR pk) '
+            "FROM sqlite_master AS tables, pragma_table_info(tables.name) AS columns "
+            "WHERE tables.type = 'table'"
+        ).fetchall()
+    rules: dict[str, dict[str, str]] = {}
+    for table, name, kind, may_be_null in columns:
+        rule = f"{OF_TYPE[kind]} AND {OF_COLUMN.get(f'{table}.{name}', '1')}".format(name)
+        rules.setdefault(table, {})[name] = f"({f'{name} IS NULL OR ' * may_be_null}{rule})"
+    with reading_store(path):
+        for table, its in rules.items():
+            unlike = f"SELECT {', '.join(its)} FROM {table} WHERE NOT coalesce({{}}, 0) LIMIT 1"  # noqa: S608
+            every = "1" if table == CHECKED_LATER else " AND ".join(its.values())
+            if db.execute(unlike.format(every)).fetchone():
+                named = (name for name, rule in its.items() if db.execute(unlike.format(rule)).fetchone())
+                raise damaged(path, f"{table}.{next(named, '')} holds what it cannot")
+        there = {name for (name,) in db.execute("SELECT name FROM meta")}
+        if not there >= {*META} or not db.execute("SELECT 1 FROM cells").fetchone():
+            raise damaged(path, "it has no plan or no cells")
+    _checked.add(key)
+
+
 OF_A_DRIVE = (*MEASURED, *(name for name in SPENT if name not in ("tokens", "cost")))
 """The columns of ``tests`` that a test loses when it is opened again."""
 
@@ -283,31 +241,6 @@ class Batch:
     left: int  # number of its tests that have not ended yet
 
 
-def _connected(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
-    """Returns a connection to a store's file and the number of its format; raises sqlite3.Error."""
-    try:
-        return _opened(path, mode)
-    except sqlite3.OperationalError as error:
-        log = path.with_name(f"{path.name}-wal")
-        is_whole = not log.exists() or not log.stat().st_size
-        if mode == "ro" and is_whole and error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_CANTOPEN:
-            # an interrupted campaign on a read-only disk: no process can be writing the store
-            return _opened(path, "ro&immutable=1")
-        raise
-
-
-def _opened(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
-    address = f"{path.resolve().as_uri()}?mode={mode}"
-    db = sqlite3.connect(address, timeout=PATIENCE, isolation_level=None, uri=True)
-    try:
-        version = db.execute("PRAGMA user_version").fetchone()[0]
-        db.execute("SELECT count(*) FROM meta").fetchone()
-    except sqlite3.Error:
-        db.close()
-        raise
-    return db, version
-
-
 def no_tests(folder: Path) -> UsageError:
     """Returns the error for a folder that holds neither a campaign nor runs."""
     return UsageError(
@@ -319,6 +252,7 @@ def no_tests(folder: Path) -> UsageError:
 class Record:
     """The tables in a database: in the file of a campaign, or in memory (``FolderStore``)."""
 
+    mode = "ro"  # in which ``opened`` opens the file
     has_run = "design IS NOT NULL"
     """The SQL condition that selects the tests whose Runs the method ``run`` can return."""
 
@@ -330,7 +264,6 @@ class Record:
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
         self.path = path
         self._db = db
-        self._features: set[str] = set()
         self._session = 0
 
     @property
@@ -342,15 +275,12 @@ class Record:
     def opened(cls, folder: Path) -> Self:
         """Opens the campaign in a folder; raises UsageError if there is no store, or it is damaged or of
         another version."""
-        return cls._opened(folder, "ro")
-
-    @classmethod
-    def _opened(cls, folder: Path, mode: str) -> Self:
         path = folder / STORE
         if not path.is_file():
             raise no_tests(folder)
         try:
-            db, version = _connected(path, mode)
+            db = connected(path, cls.mode, "meta")
+            ((version,),) = db.execute("PRAGMA user_version")
         except sqlite3.Error as error:
             raise UsageError(
                 f"{path} cannot be read ({error}); name another folder, or copy this to where you may write"
@@ -387,13 +317,28 @@ class Record:
         raise UsageError(f"{self.path.parent} holds no result of test {number} of {cell}")
 
     def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
-        """Returns the stored Run of a test; see ``folder_record.kept_run``."""
+        """Returns the stored Run of a test; see ``folder_record.kept_run``. Without its drive, it has no
+        verdict."""
         own, result = self.cell(cell), self.result(cell, number)
-        road = self.road(own, result)
+        road, request, brief = self.road(own, result), own.request, own.brief
         if road is None:
             raise no_road(self.folder, cell, result)
         drive = self.drive(cell, number) if has_drive else None
-        return stored_run(own, result, road, drive, self.versions(own.request.setup.driver))
+        is_invalid = result.outcome == "INVALID"
+        return Run(
+            request,
+            number,
+            self.seed(result),
+            outcome=result.outcome,
+            description=result.description,
+            brief=brief,
+            design=result.design,
+            road=road,
+            findings=inspect(road, brief, request.world, request.setup.rules) if is_invalid else (),
+            drive=drive,
+            verdict=None if drive is None else _verdict_of(road, drive, own, result),
+            versions=self.versions(request.setup.driver),
+        )
 
     def versions(self, driver: str) -> Versions:
         """Returns what decided the results of a driver's tests besides the plan, see ``run.versions``."""
@@ -495,6 +440,9 @@ class Record:
         """Returns one value of the table ``meta``, by its key: ``plan``, ``versions`` or ``finished``."""
         return str(self.query("SELECT value FROM meta WHERE name = ?", (name,))[0][0])
 
+    def _set_meta(self, name: str, value: str) -> None:
+        self._change("UPDATE meta SET value = ? WHERE name = ?", value, name)
+
     def names(self) -> list[str]:
         """Returns the names of all cells, in the order of the plan."""
         return [name for (name,) in self.query("SELECT name FROM cells ORDER BY name")]
@@ -506,10 +454,10 @@ class Record:
 
     def _cell(self, name: str, text: str) -> Cell:
         with reading_store(self.path):
-            found = cell_of_text(text, self.path)
+            found = _cells().validate_python(json_of(text))
             if found.name != name:
                 raise ValueError(f"cell {name} calls itself {found.name[:20]}")
-            return found
+            return replace(found, request=found.request.came_with(self.path))
 
     def cell(self, name: str) -> Cell:
         """Returns one cell; raises UsageError if there is none of that name."""
@@ -575,20 +523,21 @@ class Record:
                     self._db.execute("ROLLBACK")
                 raise
 
+    def _change(self, sql: str, *values: Any) -> int:
+        """Runs a statement; returns the number of the row that it adds, if it adds one."""
+        with self._whole() as db:
+            return db.execute(sql, values).lastrowid or 0
+
     def begin_session(self, workers: int) -> None:
         """Begins a session, and deletes the leases of earlier sessions."""
         now = time.time()
-        with self._whole() as db:
-            db.execute("DELETE FROM leases")
-            done = db.execute(
-                "INSERT INTO sittings(begun, seen, workers) VALUES (?, ?, ?)", (now, now, workers)
-            )
-            self._session = done.lastrowid or 0
+        self._change("DELETE FROM leases")
+        sql = "INSERT INTO sittings(begun, seen, workers) VALUES (?, ?, ?)"
+        self._session = self._change(sql, now, now, workers)
 
     def end_session(self) -> None:
         """Ends the session."""
-        with self._whole() as db:
-            db.execute("UPDATE sittings SET is_over = 1 WHERE rowid = ?", (self._session,))
+        self._change("UPDATE sittings SET is_over = 1 WHERE rowid = ?", self._session)
 
     def add_batch(self, cell: str, batch: int, first: int, proposals: Sequence[Proposal]) -> None:
         """Adds a batch with all its tests."""
@@ -621,21 +570,16 @@ class Record:
 
     def close_cell(self, cell: str, why: str) -> None:
         """Records that no further batch of a cell will be requested, and the reason."""
-        with self._whole() as db:
-            db.execute("UPDATE cells SET closed = ? WHERE name = ?", (why, cell))
+        self._change("UPDATE cells SET closed = ? WHERE name = ?", why, cell)
 
     def finish(self) -> None:
         """Records that the campaign is finished."""
-        with self._whole() as db:
-            db.execute("UPDATE meta SET value = 'yes' WHERE name = 'finished'")
+        self._set_meta("finished", "yes")
 
     def spend(self, spent: Spent) -> None:
         """Adds what a language model used outside of finished tests, as in a test beyond its allowance."""
-        with self._whole() as db:
-            db.execute(
-                "UPDATE sittings SET tokens = tokens + ?, cost = cost + ? WHERE rowid = ?",
-                (spent.usage.total, spent.cost or 0.0, self._session),
-            )
+        sql = "UPDATE sittings SET tokens = tokens + ?, cost = cost + ? WHERE rowid = ?"
+        self._change(sql, spent.usage.total, spent.cost or 0.0, self._session)
 
     def next_trace(self) -> int:
         """Returns the number of the next file of drives to write."""
@@ -653,21 +597,30 @@ class Record:
         seconds that each cell has worked since."""
         now = time.time()
         left = Counter((cell, one.result.batch) for cell, one in ended)
-        names = {name for _, one in ended for name in one.result.features} - self._features
+        names = {name for _, one in ended for name in one.result.features}
+        tests, details = list[tuple[Any, ...]](), list[tuple[Any, ...]]()
+        for cell, one in ended:
+            its, took, spent, where = one.result, one.seconds, one.spent, (cell, one.result.number)
+            measured = [getattr(its, name) for name in MEASURED]  # SQLite stores NaN as NULL
+            times = now, round(took.design, 4), round(took.drive, 4)
+            paid = (spent.usage.total, spent.cost) if spent else (None, None)
+            tests.append((*measured, *times, *paid, trace[0] if trace and one.trace else None, *where))
+            known = {
+                name: float(value) for name, value in sorted(its.features.items()) if math.isfinite(value)
+            }
+            texts = plain(its.description), json.dumps(known), plain(one.error) or None
+            details.append((design_text(its.design), *texts, *where))
         with self._whole() as db:
             if trace is not None:
                 db.execute("INSERT INTO traces VALUES (?, ?)", trace)
             db.executemany(
                 f"UPDATE tests SET {_set(MEASURED + SPENT, '?')} WHERE cell = ? AND number = ?",  # noqa: S608
-                [
-                    (*values_of_test(one, now, trace and trace[0]), cell, one.result.number)
-                    for cell, one in ended
-                ],
+                tests,
             )
             db.executemany(
                 "UPDATE details SET design = ?, description = ?, features = ?, error = ? "
                 "WHERE cell = ? AND number = ?",
-                [(*detail_values(one), cell, one.result.number) for cell, one in ended],
+                details,
             )
             db.executemany(
                 "UPDATE batches SET left = left - ? WHERE cell = ? AND batch = ?",
@@ -681,7 +634,6 @@ class Record:
                 [(taken, cell) for cell, taken in seconds.items()],
             )
             db.execute("UPDATE sittings SET seen = ? WHERE rowid = ?", (now, self._session))
-        self._features |= names
 
 
 @contextmanager
@@ -694,29 +646,6 @@ def refusals(folder: Path, store: Record | None = None) -> Iterator[None]:
         reason = (error.strerror if isinstance(error, OSError) else None) or error
         again = f"then say: {store.to_resume()}" if store else "and repeat the command"
         raise RoadGPTError(f"cannot write into {folder}: {reason}; make room there, {again}") from error
-
-
-def stored_run(
-    cell: Cell, result: Result, road: Road, drive: Drive | None, versions: Mapping[str, str]
-) -> Run:
-    """Returns the Run of a test from its stored result, the road of its design, and its stored drive. Without
-    a drive, the Run has no verdict; ``versions`` are those of the software that made the campaign."""
-    request, brief = cell.request, cell.brief
-    is_invalid = result.outcome == "INVALID"
-    return Run(
-        request,
-        result.number,
-        seed_of_driver(result.number, result.proposal),
-        outcome=result.outcome,
-        description=result.description,
-        brief=brief,
-        design=result.design,
-        road=road,
-        findings=inspect(road, brief, request.world, request.setup.rules) if is_invalid else (),
-        drive=drive,
-        verdict=None if drive is None else _verdict_of(road, drive, cell, result),
-        versions=versions,
-    )
 
 
 def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict | None:
@@ -746,6 +675,8 @@ class Store(Record):
     with the same results, since a batch depends only on the results of earlier batches.
     """
 
+    mode = "rw"
+
     @classmethod
     def new(
         cls,
@@ -766,9 +697,8 @@ class Store(Record):
             db.executescript(SCHEMA)
             db.execute("BEGIN")
             db.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
-            db.executemany(
-                "INSERT INTO cells(name, cell) VALUES (?, ?)", [(c.name, cell_text(c)) for c in cells]
-            )
+            texts = [(each.name, _cells().dump_json(each).decode()) for each in cells]
+            db.executemany("INSERT INTO cells(name, cell) VALUES (?, ?)", texts)
             if spent is not None and spent.calls:
                 db.execute(
                     "INSERT INTO sittings VALUES (?, ?, 0, 1, ?, ?)",
@@ -784,14 +714,13 @@ class Store(Record):
     def opened(cls, folder: Path) -> Self:
         """Opens the store in a folder for writing; raises UsageError, see ``Record.opened``."""
         refuse_links(folder / STORE)
-        store = cls._opened(folder, "rw")
+        store = super().opened(folder)
         try:
             store._db.execute("PRAGMA journal_mode = WAL")
             store._db.execute("PRAGMA synchronous = NORMAL")
         except sqlite3.Error as error:
             store.close()
             raise UsageError(f"{store.path} cannot be written ({error}); name another folder") from error
-        store._features = {*store.feature_names()}
         return store
 
     def close(self) -> None:
@@ -808,11 +737,9 @@ class Store(Record):
             before = self.versions(driver)
             if before != (now := joined(before, one.driver_files, self.folder)):
                 every = [now if each == driver else self.versions(each) for each in self._drivers]
-                with self._whole() as db:
-                    db.execute("UPDATE meta SET value = ? WHERE name = 'versions'", (json.dumps(every),))
+                self._set_meta("versions", json.dumps(every))
         super().keep(ended, *rest)
 
     def set_plan(self, plan: str) -> None:
         """Replaces the stored plan, as JSON, by one that differs only in limits and the like."""
-        with self._whole() as db:
-            db.execute("UPDATE meta SET value = ? WHERE name = 'plan'", (plan,))
+        self._set_meta("plan", plan)

@@ -19,7 +19,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.campaign.model import PATIENCE, WITHOUT_GOAL, Cell, CellBudget, Proposal
 from roadgpt.campaign.record import SCHEMA, Record
 from roadgpt.campaign.scheduler import Scheduler
-from roadgpt.campaign.single_test import FinishedTest, Task, WorkerSetup, error_run, result_of, run_test
+from roadgpt.campaign.single_test import FinishedTest, Task, WorkerSetup, error_run, run_test
 from roadgpt.campaign.workers import LOG, InProcess, WorkerConfig
 from roadgpt.chat import ChatError, Meter, Spent
 from roadgpt.design import designer_of
@@ -66,16 +66,14 @@ class RunWriter:
         """Writes the folder of a Run, and returns its test as a FinishedTest."""
         with writing(self.folders[cell]):
             write_run_folder(run, self.folders[cell], self.draw)
-        result, text, entry = result_of(run, task, {}), test_text(run), TallyEntry.of(run)
-        rest = (run.seconds, run.spent, run.trace, run.is_lost, run.driver_files, text, entry)
-        return FinishedTest(result, None, *rest, run=None if self.meter is None else run)
+        kept = None if self.meter is None else run
+        return FinishedTest.of(run, task, test_file=test_text(run), entry=TallyEntry.of(run), run=kept)
 
 
 def finished_run(run: Run) -> FinishedTest:
     """Converts the Run of an earlier session to a FinishedTest."""
     proposal = Proposal(run.design, run.seed, "draft" if run.words or run.brief else GIVEN)
-    task = Task(run.index, run.index - 1, proposal)
-    return FinishedTest(result_of(run, task, {}), None, run.seconds, run.spent, run.trace)
+    return FinishedTest.of(run, Task(run.index, run.index - 1, proposal))
 
 
 def writing(folder: Path) -> AbstractContextManager[None]:

@@ -5,79 +5,23 @@ test may spend, which tests the workers get, and what is stored.
 import time
 from bisect import bisect
 from collections import Counter
-from collections.abc import Callable, Generator, Hashable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 from roadgpt import plugins
 from roadgpt.campaign.model import Cell, Pool, Result
 from roadgpt.campaign.model import Generator as TestGenerator
 from roadgpt.campaign.record import Batch, Record
-from roadgpt.campaign.single_test import (
-    Allowance,
-    FinishedTest,
-    OutOfAllowance,
-    Task,
-    error_run,
-    execute,
-    result_of,
-)
+from roadgpt.campaign.single_test import Allowance, FinishedTest, OutOfAllowance, Task, error_run, execute
 from roadgpt.campaign.workers import LostWorkerError, Shared, WorkerConfig
-from roadgpt.chat import ChatSettings, Spent
+from roadgpt.chat import ChatSettings
 from roadgpt.errors import BudgetError, RoadGPTError
 from roadgpt.road import Design
 from roadgpt.run.model import MOST, LostDrives
 from roadgpt.stopping import look
-
-
-class BudgetAllocator:
-    """Divides a campaign's limits on tokens and money among the tests that run at the same time. The campaign
-    stays within the limits even if every test spends its whole allowance."""
-
-    def __init__(self, chat: ChatSettings | None, tokens: int, cost: float) -> None:
-        """Takes the limits, and the tokens and USD that were spent before."""
-        self._limits = Allowance(chat.max_tokens, chat.max_cost) if chat else Allowance()
-        self._spent = [float(tokens), cost]
-        self._given: dict[Hashable, Allowance] = {}
-
-    def share(self, parts: int = 1) -> Allowance:
-        """Divides the remaining tokens and money into ``parts`` equal parts; returns one part."""
-        tokens, cost = self._limits
-        if tokens is not None:
-            tokens -= int(self._spent[0] + sum(given.tokens or 0 for given in self._given.values()))
-            tokens = int(max(tokens, 0) / parts)
-        if cost is not None:
-            cost -= self._spent[1] + sum(given.cost or 0.0 for given in self._given.values())
-            cost = max(cost, 0.0) / parts
-        return Allowance(tokens, cost)
-
-    def give(self, key: Hashable, allowance: Allowance) -> None:
-        """Reserves an allowance for a test that is about to start; ``key`` identifies the test."""
-        self._given[key] = allowance
-
-    def back(self, key: Hashable, spent: Spent | None) -> None:
-        """Releases the allowance of a test that has ended, and counts the tokens and money it spent."""
-        self._given.pop(key, None)
-        if spent is not None:
-            self._spent[0] += spent.usage.total
-            self._spent[1] += spent.cost or 0.0
-
-    def sentence(self, to_resume: Callable[..., str]) -> str:
-        """Returns a message that says which limit was reached, and how to go on with twice this limit;
-        ``to_resume`` returns the command that continues the campaign, with further options."""
-        tokens, cost = self._limits
-        is_cost = tokens is None or (cost is not None and self.share().cost == 0)
-        limit = f"{cost:g} USD" if is_cost else f"{tokens:,} tokens"
-        more = ("--max-cost", f"{2 * (cost or 0):g}") if is_cost else ("--max-tokens", 2 * (tokens or 0))
-        so_far = f"{self._spent[0]:,.0f} tokens and {self._spent[1]:.4f} USD are spent"
-        return (
-            f"the limit of {limit} leaves no room for the next question ({so_far}); "
-            f"continue with a higher one, such as: {to_resume(*more)}"
-        )
-
 
 REMEMBERED = 2048  # latest designs that a draft must differ from, 50 MB per worker; older ones are left out
 STRIDE = 512  # designs that are dropped at a time, so that designers' caches of the others stay valid
@@ -94,7 +38,7 @@ class BatchScheduler:
     """
 
     def __init__(self, cell: Cell, store: Record) -> None:
-        self.cell = cell
+        self.cell, self.shared = cell, Shared(cell)
         self._store = store
         self.batches: list[Batch] = store.batches(cell.name)
         ((self.seconds, self.closed),) = store.query(
@@ -230,7 +174,6 @@ class Progress:
 
     total: int | None  # number of tests; None if the campaign has a time limit but no limit on tests
     outcomes: Counter[str] = field(default_factory=Counter)
-    under_way: int = 0
 
     @property
     def done(self) -> int:
@@ -261,19 +204,18 @@ class Scheduler:
         self._store = store
         self._staff = staff
         self._names = store.names()
-        self._allocator = BudgetAllocator(chat, *store.spent())
+        self._tokens, self._cost = store.spent()
         self._chat = chat
         self._run_test = run_test or execute
         counts = store.query("SELECT outcome, count(*) FROM tests WHERE outcome IS NOT NULL GROUP BY outcome")
         total = tests and tests * len(self._names)
         self.progress = Progress(total, Counter(dict(counts)))
-        self._next = 0
+        self._unopened = iter(self._names)
         self._schedules: list[BatchScheduler] = []
-        self._cells: dict[str, Shared[Cell]] = {}
         self._out: dict[Future[FinishedTest | OutOfAllowance], _Out] = {}
         self._underfunded: list[_Out] = []
         self._pending: list[tuple[str, FinishedTest]] = []
-        self._oldest = self._looked = time.monotonic()
+        self._looked = time.monotonic()  # when results were last stored
         self._lost: dict[tuple[int, int], tuple[_Out, str]] = {}  # by place of cell and number of test
         self._error: Exception | None = None
         self._may_write = True
@@ -286,7 +228,13 @@ class Scheduler:
         try:
             yield from self._run()
         except BaseException:
-            self._leave()
+            self.executor.shutdown(cancel_futures=True)
+            if self._may_write:
+                with suppress(RoadGPTError):  # the caller has an error already
+                    if self._error is None:
+                        self._take()
+                self._keep()
+                self._store.end_session()
             raise
         finally:
             self.executor.shutdown(cancel_futures=True)
@@ -300,7 +248,7 @@ class Scheduler:
                 break
             wait(self._out, WAIT, FIRST_COMPLETED)
             self._take()
-            if self._is_due():
+            if time.monotonic() >= self._looked + self._store.group_seconds or len(self._pending) >= GROUP:
                 self._keep()
             if self._has_news:
                 self._has_news = False
@@ -309,15 +257,6 @@ class Scheduler:
             raise self._error
         self._keep()
         yield self.progress
-
-    def _leave(self) -> None:
-        self.executor.shutdown(cancel_futures=True)
-        if self._may_write and self._error is None:
-            with suppress(RoadGPTError):  # the caller has an error already
-                self._take()
-        if self._may_write:
-            self._keep()
-            self._store.end_session()
 
     # Handing out
 
@@ -339,19 +278,16 @@ class Scheduler:
             schedule.close("its time limit was reached")
         else:
             self._hand_out(schedule, schedule.ask(self))
-        self._drop_if_done(schedule)
+        if schedule.is_done:
+            self._schedules.remove(schedule)
 
     def _open(self) -> bool:
-        while self._next < len(self._names):
-            schedule = BatchScheduler(self._store.cell(self._names[self._next]), self._store)
-            self._next += 1
-            if schedule.is_done:
-                continue
-            self._schedules.append(schedule)
-            name = schedule.cell.name
-            self._cells[name] = Shared(self._with_chat(schedule.cell))
-            self._hand_out(schedule, self._store.waiting(name))
-            return True
+        for name in self._unopened:
+            schedule = BatchScheduler(self._with_chat(self._store.cell(name)), self._store)
+            if not schedule.is_done:
+                self._schedules.append(schedule)
+                self._hand_out(schedule, self._store.waiting(name))
+                return True
         return False
 
     def _with_chat(self, cell: Cell) -> Cell:
@@ -366,29 +302,53 @@ class Scheduler:
     ) -> None:
         """Queues tests, each with the given allowance; if it is None, the tests share half of the tokens and
         money that are left, and the other half is left for later tests."""
-        each = allowance or self._allocator.share(2 * max(len(tests), 1))
+        each = allowance or self._share(2 * max(len(tests), 1))
         for test in [replace(test, allowance=each) for test in tests]:
-            shared: list[Shared[Any]] = [self._cells[schedule.cell.name], *schedule.earlier(test)]
+            shared: list[Shared[Any]] = [schedule.shared, *schedule.earlier(test)]
             future = self.executor.submit(_run_with, self._run_test, test, *shared)
             self._out[future] = _Out(schedule, test)
-            self._allocator.give(future, each)
+
+    def _share(self, parts: int = 1) -> Allowance:
+        """Divides the tokens and money that are left into equal parts, and returns one. The campaign stays
+        within its limits even if every test that is under way spends its whole allowance."""
+        given = [out.task.allowance for out in self._out.values()]
+        tokens, cost = (self._chat.max_tokens, self._chat.max_cost) if self._chat else (None, None)
+        if tokens is not None:
+            tokens -= self._tokens + sum(each.tokens or 0 for each in given)
+            tokens = int(max(tokens, 0) / parts)
+        if cost is not None:
+            cost -= self._cost + sum(each.cost or 0.0 for each in given)
+            cost = max(cost, 0.0) / parts
+        return Allowance(tokens, cost)
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
         """Returns the results of ``function`` for all items, in order, for generators: see ``model.Pool``."""
         size = max(1, -(-len(items) // (PARTS * self._staff.workers)))
-        parts = [[*items[first : first + size]] for first in range(0, len(items), size)]
-        return [one for part in self.executor.map(partial(_for_each, function), parts) for one in part]
+        return [*self.executor.map(function, items, chunksize=size)]
 
     def _retry_underfunded(self) -> None:
         """Runs the tests whose allowance was too small one after another, each with all that is left."""
         if self._out:
             return
         one = self._underfunded.pop(0)
-        everything = self._allocator.share()
+        everything = self._share()
         if one.task.allowance == everything:
-            self._error = BudgetError(self._allocator.sentence(self._store.to_resume))
+            self._error = self._no_room(everything)
             return
         self._hand_out(one.schedule, [one.task], everything)
+
+    def _no_room(self, left: Allowance) -> BudgetError:
+        """Returns the error that says which limit was reached, and how to go on with twice this limit."""
+        assert self._chat is not None, "only limits leave no room"
+        tokens, cost = self._chat.max_tokens, self._chat.max_cost
+        is_cost = tokens is None or (cost is not None and left.cost == 0)
+        limit = f"{cost:g} USD" if is_cost else f"{tokens:,} tokens"
+        more = ("--max-cost", f"{2 * (cost or 0):g}") if is_cost else ("--max-tokens", 2 * (tokens or 0))
+        return BudgetError(
+            f"the limit of {limit} leaves no room for the next question ({self._tokens:,.0f} tokens and "
+            f"{self._cost:.4f} USD are spent); continue with a higher one, such as: "
+            f"{self._store.to_resume(*more)}"
+        )
 
     # Taking in
 
@@ -401,18 +361,17 @@ class Scheduler:
             except CancelledError:  # the executor was shut down meanwhile
                 continue
             except LostWorkerError as lost:
-                run = error_run(out.task, out.schedule.cell, str(lost))
-                value = FinishedTest(result_of(run, out.task, {}))
+                value = FinishedTest.of(error_run(out.task, out.schedule.cell, str(lost)), out.task)
             except Exception as error:  # it would occur in every other test as well
                 self._error = self._error or error
                 continue
-            self._allocator.back(future, value.spent)
+            if value.spent is not None:
+                self._tokens += value.spent.usage.total
+                self._cost += value.spent.cost or 0.0
             if isinstance(value, OutOfAllowance):
                 self._store.spend(value.spent)
                 self._underfunded.append(out)
                 continue
-            if not self._pending:
-                self._oldest = time.monotonic()
             self._pending.append((out.schedule.cell.name, value))
             self.progress.outcomes[value.result.outcome] += 1
             out.schedule.ended(out.task.batch)
@@ -451,10 +410,6 @@ class Scheduler:
         is_last = schedule.is_closed and number == schedule.asked
         return other == ((cell + 1, 1) if is_last else (cell, number + 1))
 
-    def _is_due(self) -> bool:
-        waited = time.monotonic() - (self._oldest if self._pending else self._looked)
-        return waited >= self._store.group_seconds or len(self._pending) >= GROUP
-
     def _keep(self) -> None:
         """Stores the tests that have ended: first their drives, so that every stored result has its drive."""
         now = time.monotonic()
@@ -474,9 +429,7 @@ class Scheduler:
         self._looked = now
         self._pending = []
         self._has_news = True
-        self.progress.under_way = len(self._out)
-        for schedule in [*self._schedules]:
-            self._drop_if_done(schedule)
+        self._schedules = [schedule for schedule in self._schedules if not schedule.is_done]
 
     def _leases(self) -> list[tuple[str, int, str, float]]:
         patience = self._staff.patience
@@ -486,20 +439,6 @@ class Scheduler:
             if (worker := getattr(future, "worker", ""))
         ]
 
-    def _drop_if_done(self, schedule: BatchScheduler) -> None:
-        if not schedule.is_done or schedule not in self._schedules:
-            return
-        name = schedule.cell.name
-        is_pending = any(cell == name for cell, _ in self._pending)
-        if is_pending or any(out.schedule is schedule for out in self._underfunded):
-            return
-        self._schedules.remove(schedule)
-        del self._cells[name]
-
 
 def _run_with(function: Callable[..., T], task: Task, *shared: Shared[Any]) -> T:
     return function(task, *(each.value for each in shared))
-
-
-def _for_each(function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-    return [function(item) for item in items]

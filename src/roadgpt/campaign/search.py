@@ -97,6 +97,16 @@ class SearchGenerator:
         axes = tuple(dict.fromkeys(axis for each in self._wanted.maps for axis in each))
         self._setting = VariationContext(cell.brief, cell.request.world, cell.request.setup.rules, axes)
 
+    def tell(self, results: Sequence[Result]) -> None:
+        """Learns from the results that have a design, a finite margin and features."""
+        for result in results:
+            is_judged = result.margin is not None and np.isfinite(result.margin)
+            if result.design is not None and is_judged and result.features:
+                self._learn(result)
+
+    def _learn(self, result: Result) -> None:
+        """Learns nothing, unless a search overrides this."""
+
     def _rng(self, batch: int) -> np.random.Generator:
         return np.random.default_rng([self._cell.request.seed, batch])
 
@@ -116,9 +126,3 @@ class SearchGenerator:
             rest = range(first + len(found), first + n)
             found += [Proposal(None, seed_of(seed, number), "draft") for number in rest]
         return found
-
-
-def is_usable(result: Result) -> bool:
-    """Returns whether a search can learn from a result: it has a design, a finite margin and features."""
-    is_judged = result.margin is not None and np.isfinite(result.margin)
-    return result.design is not None and is_judged and bool(result.features)

@@ -3,7 +3,7 @@
 import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.chat import ChatError, Meter, ReplyError, Spent
@@ -57,6 +57,14 @@ class FinishedTest:
     entry: "TallyEntry | None" = None  # what the tables of a folder of runs count
     run: Run | None = None  # of a folder of runs; None if a worker or an earlier session ran the test
 
+    @classmethod
+    def of(
+        cls, run: Run, task: Task, features: Mapping[str, float] | None = None, /, **rest: Any
+    ) -> "FinishedTest":
+        """Returns the test that ended with a Run; ``rest`` has fields that the Run does not have."""
+        spent = {name: getattr(run, name) for name in ("seconds", "spent", "is_lost", "driver_files")}
+        return cls(result_of(run, task, features or {}), error=run.trace, **spent, **rest)
+
 
 @dataclass(frozen=True)
 class OutOfAllowance:
@@ -96,8 +104,7 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
         sentence = str(error) if isinstance(error, RoadGPTError) else f"the test failed: {error!r}"
         run = error_run(task, cell, sentence, traceback.format_exc())
     trace = trace_of(run.drive) if run.drive is not None else None
-    result = result_of(run, task, features_in(run))
-    return FinishedTest(result, trace, run.seconds, run.spent, run.trace, run.is_lost, run.driver_files)
+    return FinishedTest.of(run, task, features_in(run), trace=trace)
 
 
 def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], meter: Meter) -> Run:

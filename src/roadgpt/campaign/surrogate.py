@@ -43,29 +43,12 @@ SPEEDING_UP, GENTLY = 5.0, 2.0  # m/s^2, of a keen and of a gentle driver
 ENTERING = 10  # samples before a place, where the speed at which a car enters a bend is taken
 WHEELBASE = 2.83  # m
 
+PLACES = ("left", "right", "first", "rush_left", "rush_right")  # where a car may leave its lane
 NAMES = (
-    *(f"left_{window}" for window in WINDOWS),
-    *(f"right_{window}" for window in WINDOWS),
-    "mean",
-    "root_mean_square",
-    "change",
-    "switches",
-    "run_up",
-    "grade_there",
-    "crest_there",
-    "crest",
-    "fall",
-    "length",
-    "steering",
-    "steering_to_left",
-    "steering_to_right",
-    "steering_to_first",
-    "steering_to_rush_left",
-    "steering_to_rush_right",
-    "first",
-    "rush_left",
-    "rush_right",
-)
+    *(f"{side}_{window}" for side in ("left", "right") for window in WINDOWS),
+    "mean", "root_mean_square", "change", "switches", "run_up", "grade_there", "crest_there", "crest", "fall",
+    "length", "steering", *(f"steering_to_{place}" for place in PLACES), "first", "rush_left", "rush_right",
+)  # fmt: skip
 STEERING = tuple(NAMES.index(name) for name in NAMES if name.startswith("steering"))
 """Indices of the features that estimate STD_SA up to different places. The place where the car leaves
 its lane decides to which of these features STD_SA is nearly proportional.

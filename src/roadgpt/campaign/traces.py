@@ -44,39 +44,28 @@ class Trace(NamedTuple):
 
     header: dict[str, Any]
     """Driver, simulator, seed, how the drive ended, the dimensions of the car, and handovers, if any."""
-    columns: dict[str, Whole]
+    rows: Whole  # the columns in their order, ``(columns, n)``
 
 
 def trace_of(drive: Drive) -> Trace:
     """Returns a Drive as a Trace, in which every value is rounded to a multiple of its column's step."""
-    header = {
-        "driver": drive.driver,
-        "simulator": drive.simulator,
-        "seed": drive.seed,
-        "ended": drive.ended,
-        "car": drive.car._asdict(),
-        **({"handovers": drive.handovers} if drive.handovers else {}),
-    }
-    return Trace(header, {name: _whole(drive[name], STEPS[name]) for name in COLUMNS})
+    header: dict[str, Any] = {name: getattr(drive, name) for name in ("driver", "simulator", "seed", "ended")}
+    header |= {"car": drive.car._asdict()} | ({"handovers": drive.handovers} if drive.handovers else {})
+    limit, values = np.iinfo(np.int32).max, np.stack([drive[name] for name in COLUMNS])
+    finite = np.nan_to_num(values, posinf=np.inf, neginf=-np.inf)
+    steps = np.clip(np.round(finite / [[STEPS[name]] for name in COLUMNS]), -limit, limit)
+    return Trace(header, np.where(np.isnan(values), NOT_A_NUMBER, steps).astype(np.int32))
 
 
 def drive_of(trace: Trace) -> Drive:
     """Returns the Drive of a Trace; its values differ by at most half a step from those of the original."""
     header = dict(trace.header)
     header["handovers"] = strictly(tuple[Handover, ...], header.get("handovers", ()))
-    columns = Columns({name: _number(trace.columns[name], STEPS[name]) for name in COLUMNS})
-    return Drive(columns=columns, **{**header, "car": Box(**header["car"])})
-
-
-def _whole(values: NDArray[np.float64], step: float) -> Whole:
-    limit = np.iinfo(np.int32).max
-    steps = np.clip(np.round(np.nan_to_num(values, posinf=np.inf, neginf=-np.inf) / step), -limit, limit)
-    return np.where(np.isnan(values), NOT_A_NUMBER, steps).astype(np.int32)
-
-
-def _number(steps: Whole, step: float) -> NDArray[np.float64]:
     # divided by the inverse, so that 0.02 s is 0.02 s and not its neighbour
-    return np.where(steps == NOT_A_NUMBER, np.nan, steps / round(1 / step))
+    values = trace.rows / [[round(1 / STEPS[name])] for name in COLUMNS]
+    values[trace.rows == NOT_A_NUMBER] = np.nan
+    columns = Columns(dict(zip(COLUMNS, values, strict=True)))
+    return Drive(columns=columns, **{**header, "car": Box(**header["car"])})
 
 
 def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Trace]]) -> str:
@@ -92,9 +81,9 @@ def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Tra
     with zipfile.ZipFile(data, "w") as archive:
         _add(archive, "header", np.array(json.dumps(header)))
         for cell, test, trace in drives:
-            rows = np.stack([trace.columns[name] for name in COLUMNS])
+            start = np.zeros((len(COLUMNS), 2), np.int32)
             # these int32 may overflow; the sums then overflow back, so that even the largest values are exact
-            _add(archive, f"{cell}/{test}", np.diff(rows, 2, prepend=np.zeros((len(rows), 2), np.int32)))
+            _add(archive, f"{cell}/{test}", np.diff(trace.rows, 2, prepend=start))
     name = f"{number:07d}{SUFFIX}"
     path = folder / TRACES / name
     path.parent.mkdir(exist_ok=True)
@@ -125,33 +114,25 @@ def _to_disk(path: Path) -> None:
 
 def read_traces(path: Path, cell: str, number: int) -> Drive:
     """Reads one drive out of a file of traces."""
+    which = {"cell": cell, "number": number}
     try:
-        return drive_of(_trace_in(path, cell, number))
+        with opened(path, LARGEST, "drives of a campaign") as file:
+            archive = np.load(file, allow_pickle=False)
+            entries = [archive.zip.getinfo(f"{name}.npy") for name in ("header", f"{cell}/{number}")]
+            check_unpacked(entries, UNPACKED)
+            contents = json_of(str(archive["header"]))
+            rows = archive[f"{cell}/{number}"]
+        if contents["format"] != FORMAT or contents["columns"] != [*COLUMNS]:
+            raise ValueError("another version of roadgpt wrote it")
+        if rows.dtype != np.int32 or rows.ndim != 2 or len(rows) != len(COLUMNS) or not rows.size:
+            raise ValueError("a drive is a table of whole numbers")
+        (header,) = [each for each in contents["drives"] if which.items() <= each.items()]
+        header = {name: value for name, value in header.items() if name not in which}
+        steps = rows.cumsum(axis=1, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
+        return drive_of(Trace(header, steps))
     except UsageError:
         raise
     except Exception as error:  # zipfile, its decoders, numpy and json raise anything
         raise UsageError(
             f"{path} holds no drive of test {number} of {cell} ({error}); drive it again"
         ) from error
-
-
-def _trace_in(path: Path, cell: str, number: int) -> Trace:
-    with opened(path, LARGEST, "drives of a campaign") as file, np.load(file, allow_pickle=False) as archive:
-        entries = [archive.zip.getinfo(f"{name}.npy") for name in ("header", f"{cell}/{number}")]
-        check_unpacked(entries, UNPACKED)
-        contents = json_of(str(archive["header"]))
-        rows = archive[f"{cell}/{number}"]
-    if contents["format"] != FORMAT or contents["columns"] != [*COLUMNS]:
-        raise ValueError("another version of roadgpt wrote it")
-    if rows.dtype != np.int32 or rows.ndim != 2 or len(rows) != len(COLUMNS) or not rows.size:
-        raise ValueError("a drive is a table of whole numbers")
-    steps = rows.cumsum(axis=1, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
-    return Trace(_header_of(contents, cell, number), dict(zip(COLUMNS, steps, strict=True)))
-
-
-def _header_of(contents: Any, cell: str, number: int) -> dict[str, Any]:
-    (header,) = [
-        dict(each) for each in contents["drives"] if (each["cell"], each["number"]) == (cell, number)
-    ]
-    del header["cell"], header["number"]
-    return header

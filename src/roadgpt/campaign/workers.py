@@ -16,14 +16,14 @@ import sys
 import threading
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import CancelledError, Executor, Future
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from heapq import heappop, heappush
 from itertools import count
 from pathlib import Path
+from queue import Empty, PriorityQueue
 from typing import Any, Generic, TypeVar
 
 from roadgpt.drive.isolation.process import GoneError, pickled, serve
@@ -80,24 +80,32 @@ def set_paths(paths: list[str]) -> None:
     sys.path[:] = paths
 
 
-def answer(call: bytes) -> tuple[str, bytes]:
-    """Runs a job: a pickled function, its arguments and its keyword arguments; returns how the job ended, and
-    its pickled value or error."""
+def answer(call: bytes) -> bytes:
+    """Runs a job: a pickled function, its arguments and its keyword arguments; returns its value or error for
+    ``value_in``."""
     try:
         function, args, named = unpickled(call)
-        return VALUE, pickled(function(*args, **named))
+        return pickled((VALUE, function(*args, **named)))
     except Exception as error:  # whatever it is, the parent has to hear of it
-        return ERROR, portable(error)
+        return portable(error)
 
 
 def portable(error: Exception) -> bytes:
-    """Returns a pickled error, or else a RuntimeError with its type and text if it cannot be pickled."""
+    """Returns an error for ``value_in``; if it cannot be pickled, a RuntimeError with its type and text."""
     try:
-        data = pickled(error)
+        data = pickled((ERROR, error))
         unpickled(data)
     except Exception:  # pickling may fail in any way
-        return pickled(RuntimeError(f"{type(error).__name__}: {error}"))
+        return pickled((ERROR, RuntimeError(f"{type(error).__name__}: {error}")))
     return data
+
+
+def value_in(data: bytes) -> Any:
+    """Returns the value of a job, or raises its error."""
+    kind, found = unpickled(data)
+    if kind == ERROR:
+        raise found
+    return found
 
 
 def unpickled(data: bytes) -> Any:
@@ -129,19 +137,15 @@ class Worker(ABC):
 
     def __init__(self, name: str) -> None:
         self.name = name  # shown to people
-        self.is_ready = self.is_idle = False
+        self.is_ready = self.is_busy = False
 
     @abstractmethod
     def begin(self, prepare: Callable[[], object]) -> None:
         """Prepares the worker for jobs; raises any error of ``prepare``, or GoneError."""
 
     @abstractmethod
-    def run(self, call: bytes) -> tuple[str, bytes]:
-        """Runs a job, see ``answer``, and returns how it ended; raises GoneError."""
-
-    @abstractmethod
-    def ask_to_end(self) -> None:
-        """Asks a busy worker to end; does not wait."""
+    def run(self, call: bytes) -> bytes:
+        """Runs a job, see ``answer``, and returns its value or error; raises GoneError."""
 
     @abstractmethod
     def kill(self) -> None:
@@ -153,23 +157,21 @@ class Worker(ABC):
 
 
 class WorkerPool(Executor, ABC):
-    """The jobs and workers of an executor; a subclass defines how a worker is started."""
+    """The jobs and workers of an executor; a subclass defines how a worker is started. Each thread of a
+    ThreadPoolExecutor has a worker of its own."""
 
     printed: object = "the log"  # where people find what workers printed
 
     def __init__(self, staff: WorkerConfig) -> None:
-        """Starts the workers."""
+        """Takes the settings; the workers start with the first jobs."""
         self._staff = staff
-        self._changed = threading.Condition()  # held by whoever uses what follows
-        self._waiting: list[Job] = []
+        self._waiting: PriorityQueue[Job] = PriorityQueue()
         self._workers: list[Worker] = []
-        self._is_over = False
         self._broken: Exception | None = None
         self._in_vain = 0  # workers that ended before they were ready, since one last became ready
         self._jobs, self._started = count(1), count(1)
-        self._threads = [threading.Thread(target=self._serve, daemon=True) for _ in range(staff.workers)]
-        for thread in self._threads:
-            thread.start()
+        self._own = threading.local()  # its ``worker`` is that of this thread
+        self._threads = ThreadPoolExecutor(staff.workers, initializer=self._hire)
 
     @abstractmethod
     def _start(self, name: str) -> Worker:
@@ -187,130 +189,105 @@ class WorkerPool(Executor, ABC):
         chunksize: int = 1,
     ) -> Iterator[T]:
         """Yields the results of calls, in order; these calls go to free workers before the jobs that wait."""
-        jobs = [self._add(FIRST, fn, args, {}) for args in zip(*iterables, strict=False)]
-        return (job.result(timeout) for job in jobs)
+        calls = [*zip(*iterables, strict=False)]
+        parts = [calls[first : first + chunksize] for first in range(0, len(calls), chunksize)]
+        jobs = [self._add(FIRST, _for_each, (fn, part), {}) for part in parts]
+        return (one for job in jobs for one in job.result(timeout))
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Ends the workers when all jobs are done, or at once, even in the middle of a job."""
-        if cancel_futures:
-            self._stop(CancelledError())
-            busy = [worker for worker in [*self._workers] if not worker.is_idle]
-            for worker in busy:
-                worker.ask_to_end()
-            for worker in busy:
-                worker.kill()
-        with self._changed:
-            self._is_over = True
-            self._changed.notify_all()
-        for thread in self._threads if wait else ():
-            thread.join()
+        with ThreadPoolExecutor(self._staff.workers) as at_once:
+            if cancel_futures:
+                self._broken = self._broken or CancelledError()
+                at_once.map(lambda each: each.kill(), [each for each in self._workers if each.is_busy])
+            self._threads.shutdown(wait)
+            if wait:
+                at_once.map(self._dismiss, [*self._workers])
 
     def _add(self, urgency: int, function: Any, args: tuple[Any, ...], named: dict[str, Any]) -> Job:
-        if self._broken is not None or self._is_over:
-            raise self._broken or RuntimeError("this executor was shut down")
+        if self._broken is not None:
+            raise self._broken
         job = Job((function, args, named), urgency, next(self._jobs))
-        self._queue(job)
+        self._waiting.put(job)
+        self._threads.submit(self._run_all)
         return job
 
-    def _queue(self, job: Job) -> None:
-        with self._changed:
-            if self._broken is None:
-                heappush(self._waiting, job)
-                self._changed.notify()
-                return
-        job.set_exception(self._broken)
-
-    def _stop(self, why: Exception) -> None:
-        """Lets all jobs that no worker is running end with an error, and takes no further ones."""
-        with self._changed:
-            self._broken = self._broken or why
-            self._is_over = True
-            waiting, self._waiting = self._waiting, []
-            self._changed.notify_all()
-        for job in waiting:
-            if job.running() or job.set_running_or_notify_cancel():
-                job.set_exception(self._broken)
-
-    def _serve(self) -> None:
-        """Hires one worker after another and gives each its jobs, until all is done; runs in a thread."""
-        while (worker := self._hired()) is not None:
-            while self._run_next(worker):
-                pass
-            self._dismiss(worker)
-
-    def _hired(self) -> Worker | None:
-        while not self._is_over or self._waiting:
+    def _hire(self) -> None:
+        """Starts the worker of this thread, again if it ends before it is ready."""
+        self._own.worker = None
+        while self._broken is None:
             worker = None
             try:
                 worker = self._start(f"worker {next(self._started)}")
-                with self._changed:
-                    self._workers.append(worker)
+                self._workers.append(worker)
+                worker.is_busy = True
                 if self._broken is not None:  # the executor was stopped meanwhile
                     worker.kill()
                 worker.begin(self._staff.prepare)
-                worker.is_ready, self._in_vain = True, 0
-                return worker
+                worker.is_ready, worker.is_busy, self._in_vain = True, False, 0
+                self._own.worker = worker
+                return
             except GoneError as ended:
                 self._in_vain += 1
                 if self._in_vain >= MOST_DEATHS:
                     sentence = f"workers end before they begin (the last one {ended})"
-                    self._stop(RoadGPTError(f"{sentence}; {self.printed} has what they printed"))
+                    error = RoadGPTError(f"{sentence}; {self.printed} has what they printed")
+                    self._broken = self._broken or error
             except Exception as error:  # whatever it is, those who wait for jobs have to hear of it
-                self._stop(error)
+                self._broken = self._broken or error
             if worker is not None:
                 self._dismiss(worker)
-        return None
 
     def _dismiss(self, worker: Worker) -> None:
         worker.close()
-        with self._changed:
-            self._workers.remove(worker)
+        self._workers.remove(worker)
 
-    def _run_next(self, worker: Worker) -> bool:
-        """Waits for a job and lets the worker run it; returns False if it got none, or ended over it."""
-        job = self._next(worker)
-        if job is None:
-            return False
+    def _run_all(self) -> None:
+        """Runs the jobs that wait, the most urgent first, also one that another thread has not begun yet."""
+        with suppress(Empty):
+            while True:
+                job = self._waiting.get_nowait()
+                if job.running() or job.set_running_or_notify_cancel():
+                    self._run(job)
+
+    def _run(self, job: Job) -> None:
+        worker: Worker | None = self._own.worker
+        if worker is not None:
+            worker.is_busy = True  # before the look: who stops the executor kills the busy ones
+        if worker is None or self._broken is not None:
+            job.set_exception(self._broken or CancelledError())
+            return
         job.worker, job.begun = worker.name, time.time()
         try:
-            kind, what = worker.run(pickled(job.call))
+            data = worker.run(pickled(job.call))
         except GoneError as ended:
             job.worker = ""
+            self._dismiss(worker)
             self._give_again(job, ended)
-            return False
+            self._hire()
+            return
         except Exception as error:  # the call cannot be pickled, for example
-            kind, what = ERROR, portable(error)
-        job.worker = ""
+            data = portable(error)
+        job.worker, worker.is_busy = "", False
         try:
-            found = unpickled(what)
-        except Exception as error:  # an error whose class cannot be unpickled, for example
-            kind, found = ERROR, RuntimeError(f"an answer cannot be read: {error}")
-        if kind == ERROR:
-            job.set_exception(found)
-        else:
-            job.set_result(found)
-        return True
-
-    def _next(self, worker: Worker) -> Job | None:
-        with self._changed:
-            worker.is_idle = True
-            while True:
-                self._changed.wait_for(lambda: self._waiting or self._is_over)
-                if not self._waiting:
-                    return None
-                job = heappop(self._waiting)
-                if job.running() or job.set_running_or_notify_cancel():
-                    worker.is_idle = False
-                    return job
+            job.set_result(value_in(data))
+        except Exception as error:  # that of the job, or its value cannot be read
+            job.set_exception(error)
 
     def _give_again(self, job: Job, ended: GoneError) -> None:
         """Queues the job of a worker that has ended; gives it up if too many workers ended over it."""
         job.deaths += not ended.is_blameless
-        if job.deaths < MOST_DEATHS or self._broken is not None:
-            self._queue(job)
-        else:
+        if job.deaths >= MOST_DEATHS and self._broken is None:
             workers = f"{MOST_DEATHS} workers ended over it (the last one {ended})"
             job.set_exception(LostWorkerError(f"given up: {workers}"))
+            return
+        self._waiting.put(job)
+        with suppress(RuntimeError):  # after a shutdown, threads still run what waits
+            self._threads.submit(self._run_all)
+
+
+def _for_each(function: Callable[..., T], calls: Sequence[tuple[Any, ...]]) -> list[T]:
+    return [function(*args) for args in calls]
 
 
 class InProcess(Executor):

@@ -172,7 +172,7 @@ def to_bytes(text: str) -> bytes:
     return text.encode("utf-8", LETTERS)
 
 
-def csv_text(head: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+def csv_text(head: Iterable[Any], rows: Iterable[Iterable[Any]]) -> str:
     """Returns a table as CSV with a line of column names; None gives an empty field."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows([head, *rows])

@@ -245,8 +245,27 @@ def _read_as(folder: Path, place: Path) -> Run:
     card = _loaded(folder / "run.json")
     if not isinstance(card, dict) or card.get("format") != FORMAT:
         raise UsageError(f"{place} was written by another version of roadgpt; make the road again")
+
+    def value(name: str) -> Any:
+        return _loaded(folder / name) if (folder / name).is_file() else None
+
     try:
-        return _read(folder, card, place)
+        brief, design, road, verdict = (value(f"{n}.json") for n in ("brief", "design", "road", "verdict"))
+        trace = folder / "error.txt"
+        return Run(
+            **vars(strictly(_Card, card)),
+            request=Request.model_validate(card["request"]).came_with(place / "run.json"),
+            brief=None if brief is None else Brief.model_validate(brief),
+            design=None if design is None else read_design(design)[0],
+            road=None if road is None else road_from_json(road),
+            drive=Drive.load(folder / "drive.npz") if (folder / "drive.npz").is_file() else None,
+            verdict=None if verdict is None else Verdict.from_json(verdict),
+            designing=DesignReport.model_validate(card["designing"]) if "designing" in card else None,
+            spent=Spent.model_validate(card["spent"]) if "spent" in card else None,
+            source=_change(value(EDIT_CARD)),
+            trace=read_text(trace, LARGEST, "a file of a run") if trace.is_file() else "",
+            seconds=strictly(Seconds, value("seconds.json") or {}),
+        )
     except (KeyError, TypeError, ValueError, ValidationError) as error:
         raise UsageError(f"the run in {place} cannot be read ({error!r}); make the road again") from error
 
@@ -273,35 +292,6 @@ def _folder_of(path: Path) -> Path:
     raise UsageError(f"there is no run in {path}; give a folder like DIR/runs/0001")
 
 
-def _read(folder: Path, card: dict[str, Any], place: Path) -> Run:
-    def value(name: str) -> Any:
-        return _loaded(folder / name) if (folder / name).is_file() else None
-
-    data = strictly(_Card, card)
-    brief, design, road, verdict = (value(f"{n}.json") for n in ("brief", "design", "road", "verdict"))
-    trace = folder / "error.txt"
-    return Run(
-        request=Request.model_validate(card["request"]).came_with(place / "run.json"),
-        index=data.index,
-        seed=data.seed,
-        outcome=data.outcome,
-        description=data.description,
-        brief=None if brief is None else Brief.model_validate(brief),
-        design=None if design is None else read_design(design)[0],
-        road=None if road is None else road_from_json(road),
-        findings=data.findings,
-        drive=Drive.load(folder / "drive.npz") if (folder / "drive.npz").is_file() else None,
-        verdict=None if verdict is None else Verdict.from_json(verdict),
-        rounds=data.rounds,
-        designing=DesignReport.model_validate(card["designing"]) if "designing" in card else None,
-        spent=Spent.model_validate(card["spent"]) if "spent" in card else None,
-        versions=data.versions,
-        source=_change(value(EDIT_CARD)),
-        trace=read_text(trace, LARGEST, "a file of a run") if trace.is_file() else "",
-        seconds=strictly(Seconds, value("seconds.json") or {}),
-    )
-
-
 def _change(card: Any) -> str:
     words = card.get("request") if isinstance(card, dict) else None
     return words if isinstance(words, str) else ""
@@ -309,7 +299,7 @@ def _change(card: Any) -> str:
 
 @dataclass(frozen=True)
 class _Card:
-    """The content of ``run.json`` without the request and the reports, which have models of their own."""
+    """Fields of a Run in ``run.json``; its request and its reports have models of their own."""
 
     __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(extra="ignore", allow_inf_nan=False)
 

@@ -87,7 +87,8 @@ def _opened(campaign: Path, is_written: bool = False) -> Iterator[sqlite3.Connec
     try:
         if is_written and not path.exists():
             _make(campaign)
-        with closing(_connected(path)) as db:
+        is_free = os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)
+        with closing(connected(path, "rw" if is_free else "ro", "runs")) as db:
             yield db
     except sqlite3.Error as error:
         if not is_written:
@@ -100,10 +101,21 @@ def _opened(campaign: Path, is_written: bool = False) -> Iterator[sqlite3.Connec
         ) from error
 
 
-def _connected(path: Path) -> sqlite3.Connection:
-    """Returns a connection that may write, so that what a killed process left is undone; on a disk where
-    nothing can be written, one that only reads."""
-    is_free = os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)
-    how = "mode=rw" if is_free else "mode=ro&immutable=1"
-    address = f"{path.resolve().as_uri()}?{how}"
-    return sqlite3.connect(address, PATIENCE, isolation_level=None, uri=True)
+def connected(path: Path, mode: str, table: str) -> sqlite3.Connection:
+    """Returns a connection to a database that has a table, to read ("ro") or also to write it ("rw"), so that
+    what a killed process left is undone; raises sqlite3.Error."""
+    address, db = f"{path.resolve().as_uri()}?mode={mode}", None
+    try:
+        db = sqlite3.connect(address, PATIENCE, isolation_level=None, uri=True)
+        db.execute(f"SELECT 1 FROM {table} LIMIT 1").fetchone()  # noqa: S608 - our own words
+        return db
+    except sqlite3.Error as error:
+        if db is not None:
+            db.close()
+        log = path.with_name(f"{path.name}-wal")
+        is_whole = not log.exists() or not log.stat().st_size
+        is_shut = getattr(error, "sqlite_errorcode", 0) & 0xFF == sqlite3.SQLITE_CANTOPEN
+        if mode == "ro" and is_whole and is_shut:
+            # an interrupted campaign on a read-only disk: no process can be writing the file
+            return connected(path, "ro&immutable=1", table)
+        raise

@@ -81,12 +81,8 @@ class Tally:
 
     def write(self, folder: Path) -> None:
         """Writes the two tables that change with each road: generation_stats.csv and oob_stats.csv."""
-        for name, row in zip(TABLES, (self._generation(), self._departures()), strict=True):
-            write_whole(folder / name, csv_text(row, [row.values()]))
-
-    def _generation(self) -> dict[str, object]:
         generated = self.outcomes.total()
-        return {
+        generation: dict[str, object] = {
             "test_generated": generated,
             "test_valid": self.valid,
             "test_invalid": generated - self.valid,
@@ -97,15 +93,15 @@ class Tally:
             "real_time_execution": round(self.driving, 4),
             "simulated_time_execution": round(self.simulated, 4),
         }
-
-    def _departures(self) -> dict[str, object]:
-        return {
+        departures: dict[str, object] = {
             "total_oob": self.sides.total(),
             "left_oob": self.sides["left"],
             "right_oob": self.sides["right"],
             "avg_sparseness": f"{self.spread.mean if self.spread else math.nan:.3f}",
             "stdev_sparseness": f"{self.spread.deviation if self.spread else math.nan:3.0f}",
         }
+        for name, row in zip(TABLES, (generation, departures), strict=True):
+            write_whole(folder / name, csv_text(row, [row.values()]))
 
 
 def write_description(request: Request, roads: int, folder: Path) -> None:

@@ -14,15 +14,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from roadgpt.campaign.single_test import WorkerSetup
-from roadgpt.campaign.workers import (
-    ERROR,
-    Worker,
-    WorkerConfig,
-    WorkerPool,
-    set_paths,
-    shorten,
-    unpickled,
-)
+from roadgpt.campaign.workers import Worker, WorkerConfig, WorkerPool, set_paths, shorten, value_in
 from roadgpt.drive.isolation.process import Child, pickled
 from roadgpt.errors import RoadGPTError
 from roadgpt.run.atomic import refuse_links
@@ -48,24 +40,22 @@ class Process(Child, Worker):
         """Prepares the process for jobs."""
         paths: tuple[object, ...] = (set_paths, ([*sys.path],), {})
         for call in (paths, (prepare, (), {})):
-            kind, what = self.ask(max(self._staff.patience, START), pickled(call))
-            if kind == ERROR:
-                raise unpickled(what)
+            value_in(self.ask(max(self._staff.patience, START), pickled(call)))
 
-    def run(self, call: bytes) -> tuple[str, bytes]:
-        """Runs a job, and returns how it ended."""
+    def run(self, call: bytes) -> bytes:
+        """Runs a job, and returns its value or error."""
         try:
-            kind, what = self.ask(self._staff.patience, call)
+            data: bytes = self.ask(self._staff.patience, call)
         finally:
             shorten(self._staff.log)
-        return kind, what
+        return data
 
 
 class Processes(WorkerPool):
     """Workers that are processes of this machine."""
 
     def __init__(self, staff: WorkerConfig) -> None:
-        """Starts the workers."""
+        """Takes the settings; the workers start with the first jobs."""
         self.printed = staff.log
         super().__init__(staff)
 

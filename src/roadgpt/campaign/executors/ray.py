@@ -15,7 +15,6 @@ from typing import Any
 
 from roadgpt import __version__
 from roadgpt.campaign.workers import (
-    ERROR,
     VALUE,
     Worker,
     WorkerConfig,
@@ -23,6 +22,7 @@ from roadgpt.campaign.workers import (
     answer,
     portable,
     unpickled,
+    value_in,
 )
 from roadgpt.drive.isolation.process import GoneError, pickled
 from roadgpt.errors import RoadGPTError, UsageError, to_install
@@ -71,21 +71,17 @@ class Actor(Worker):
                 raise RoadGPTError(
                     f"Ray found no free core for a worker in {PATIENCE:g} s; see ray status, or ask later"
                 )
-        kind, what = self._got(begun)
-        found = unpickled(what)
-        if kind == ERROR:
-            raise found
-        self._node, where = found
+        self._node, where = value_in(self._got(begun))
         self.name += f" ({where})"
 
-    def run(self, call: bytes) -> tuple[str, bytes]:
-        """Runs a job, and returns how it ended."""
+    def run(self, call: bytes) -> bytes:
+        """Runs a job, and returns its value or error."""
         return self._got(self._actor.work.remote(call), self._patience)
 
-    def _got(self, promised: Any, patience: float | None = None) -> tuple[str, bytes]:
+    def _got(self, promised: Any, patience: float | None = None) -> bytes:
         errors = self._ray.exceptions
         try:
-            kind, what = self._ray.get(promised, timeout=patience)
+            data: bytes = self._ray.get(promised, timeout=patience)
         except errors.GetTimeoutError:
             raise GoneError(f"took longer than {patience:g} s", is_late=True) from None
         except errors.RayError as error:
@@ -94,10 +90,7 @@ class Actor(Worker):
             how = f"ended: {reason}" if reason else "ended"
             is_off = bool(self._node) and self._node not in alive
             raise GoneError(how, is_blameless=is_off) from None
-        return kind, what
-
-    def ask_to_end(self) -> None:
-        """Does nothing; Ray ends all workers in the same way."""
+        return data
 
     def kill(self) -> None:
         """Ends the worker."""
@@ -142,9 +135,9 @@ def _knock(address: str) -> None:
 class RayActor:
     """A worker's end of the connection; it runs in a process of its own."""
 
-    def begin(self, version: str, prepare: bytes) -> tuple[str, bytes]:
-        """Prepares the worker. Returns VALUE and, pickled, the id of the Ray node and a text with host name
-        and process id; or ERROR and the pickled error."""
+    def begin(self, version: str, prepare: bytes) -> bytes:
+        """Prepares the worker. Returns the id of the Ray node and a text with host name and process id, or an
+        error, for ``value_in``."""
         import ray
 
         os.environ.setdefault("MPLBACKEND", "Agg")
@@ -157,9 +150,9 @@ class RayActor:
                 )
             unpickled(prepare)()
         except Exception as error:  # whatever it is, the campaign has to hear of it
-            return ERROR, portable(error)
-        return VALUE, pickled((ray.get_runtime_context().get_node_id(), f"{here}, {os.getpid()}"))
+            return portable(error)
+        return pickled((VALUE, (ray.get_runtime_context().get_node_id(), f"{here}, {os.getpid()}")))
 
-    def work(self, call: bytes) -> tuple[str, bytes]:
-        """Runs a job; returns how it ended, and its pickled value or error."""
+    def work(self, call: bytes) -> bytes:
+        """Runs a job; returns its value or error for ``value_in``."""
         return answer(call)

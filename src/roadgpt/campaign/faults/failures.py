@@ -268,7 +268,7 @@ def between(some: Sequence[Surroundings], others: Sequence[Surroundings]) -> Arr
 def _stacked(them: Sequence[Surroundings]) -> Array:
     """Returns an array ``(3, n, stations)``: the bends and the grades, both 0 beyond the ends of a road, and
     1 where there is no road."""
-    bends, grades = np.stack([each.bends for each in them]), np.stack([each.grades for each in them])
+    bends, grades = (np.stack([getattr(each, name) for each in them]) for name in ("bends", "grades"))
     return np.stack([np.nan_to_num(bends), np.nan_to_num(grades), np.isnan(bends)])
 
 
@@ -344,14 +344,9 @@ def failures_of(folder: Path, most: int | None = None, cell: str = "") -> tuple[
             "ORDER BY cell, number",
             (cell, cell),
         )
-        some = [NumberedTest(*names[at]) for at in _spread(len(names), most)]
+        count = len(names) if most is None else min(most, len(names))
+        some = [NumberedTest(*names[int(at)]) for at in np.linspace(0, len(names) - 1, count)]
         return [*_located(record, some)], len(names)
-
-
-def _spread(count: int, most: int | None) -> Sequence[int]:
-    if most is None or count <= most:
-        return range(count)
-    return [int(at) for at in np.linspace(0, count - 1, most)]
 
 
 def _located(record: Record, some: Sequence[NumberedTest]) -> Iterator[LocatedFailure]:
@@ -371,7 +366,7 @@ def _located(record: Record, some: Sequence[NumberedTest]) -> Iterator[LocatedFa
                     continue
                 if road is None:
                     continue
-                world, station = cell.request.world, its.at_s or 0.0
+                station = its.at_s or 0.0
                 whose = f"{system} {its.handed_to or ''}"
                 around = surroundings(road, world, station, f"{its.cause} {its.side} {whose}")
                 manner = manner_of(road, world, station, its.cause, its.side)

@@ -157,7 +157,8 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
     """
     known, failures = failures_of(folder, None if has_remedies(folder) else most, cell)
     groups = _grouped(known)
-    tested = _tested(folder, known)
+    stored = {each.name: stored_remedies(folder, each) for each in known}
+    tested: Tested = {name: removed for name, removed in stored.items() if removed is not None}
     to_test = [each for group in groups for each in group.tested_first if each.name not in tested]
     joined: list[Fault] = []
     to_come = min(len(known) - len(tested), len(to_test) + CHECKED)
@@ -196,13 +197,6 @@ def _order(fault: Fault) -> tuple[bool, int, NumberedTest]:
 
 Tested = Mapping[NumberedTest, Removed]
 """For each driven failure, by its name: which small changes make the failure disappear."""
-
-
-def _tested(folder: Path, known: Sequence[LocatedFailure]) -> Tested:
-    if not has_remedies(folder):
-        return {}
-    stored = {each.name: stored_remedies(folder, each) for each in known}
-    return {name: removed for name, removed in stored.items() if removed is not None}
 
 
 def _checks(fault: Fault, groups: Sequence[Fault], tested: Tested) -> tuple[list[LocatedFailure], int]:

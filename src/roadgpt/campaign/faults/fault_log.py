@@ -15,7 +15,6 @@ DIR/faults/
 For a folder of runs, the level c01/ is left out.
 """
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -98,7 +97,7 @@ def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
         if task.draw is not None and (there is None or not picture.is_file()):
             task.draw(run, found.reason, found.stability.sentence, picture)
     if there is None:
-        write_whole(path, json_text(_written(run, found)))
+        _write(path, run, found)
     return found
 
 
@@ -111,7 +110,7 @@ def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
     least = simplest(run)
     write_run(least.run, made_folder(place.parent.parent))
     found = replace(found, simplest=least.sentence)
-    write_whole(page_of(task.folder / FOLDER, found.name), json_text(_written(run, found)))
+    _write(page_of(task.folder / FOLDER, found.name), run, found)
     return found
 
 
@@ -190,20 +189,17 @@ def _decimal(value: float | None, digits: int) -> str:
     return "" if value is None else f"{value:.{digits}f}"
 
 
-def _written(run: Run, found: FailureAnalysis) -> dict[str, Any]:
-    return {
+def _write(path: Path, run: Run, found: FailureAnalysis) -> None:
+    page = {
         "test": str(found.name),
         "seed": run.seed,
         "description": run.description,
         "why": asdict(found.reason),
         "stability": found.stability.sentence,
-        # a driver that broke down has no margin, and JSON has no NaN
-        "drives": [
-            asdict(drive) | {"margin": drive.margin if math.isfinite(drive.margin) else None}
-            for drive in found.stability.drives
-        ],
+        "drives": [asdict(drive) for drive in found.stability.drives],
         "simplest": found.simplest,
     }
+    write_whole(path, json_text(page))
 
 
 def _read(path: Path, run: Run, name: NumberedTest, times: int | None = None) -> FailureAnalysis | None:
@@ -211,17 +207,12 @@ def _read(path: Path, run: Run, name: NumberedTest, times: int | None = None) ->
     drives; otherwise None."""
 
     def analysis_in(data: Any) -> FailureAnalysis | None:
-        if data["seed"] != run.seed or data["description"] != run.description:
+        if (data["seed"], data["description"]) != (run.seed, run.description):
             return None
-        if not data["drives"] or len(data["drives"]) != (times or len(data["drives"])):
+        drives = strictly(tuple[Repeated, ...], data["drives"])
+        if not drives or len(drives) != (times or len(drives)):
             return None
-        stability = Stability(tuple(_drive_of(drive) for drive in data["drives"]))
         reason = strictly(FailureReason, data["why"])
-        return FailureAnalysis(name, reason, stability, str(data.get("simplest", "")))
+        return FailureAnalysis(name, reason, Stability(drives), str(data.get("simplest", "")))
 
     return stored(path, analysis_in)
-
-
-def _drive_of(data: dict[str, Any]) -> Repeated:
-    margin = math.nan if data["margin"] is None else float(data["margin"])
-    return replace(strictly(Repeated, {**data, "margin": 0.0}), margin=margin)

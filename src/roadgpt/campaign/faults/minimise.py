@@ -157,11 +157,6 @@ def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None
     return design.model_copy(update={"segments": left}) if left else None
 
 
-def _dropping(design: Design) -> list[Simplification]:
-    # the last segment first: what comes after the departure matters least
-    return [(index, lambda segment: None) for index in reversed(range(len(design.segments)))]
-
-
 def _straight(segment: Segment) -> Segment:
     return Segment(
         distance=segment.distance,
@@ -191,7 +186,8 @@ def _rounding(field: str, unit: float) -> Callable[[Design], list[Simplification
 
 
 SIMPLIFIERS: tuple[Callable[[Design], list[Simplification]], ...] = (
-    _dropping,
+    # the last segment first: what comes after the departure matters least
+    lambda design: [(index, lambda segment: None) for index in reversed(range(len(design.segments)))],
     _changing("incline", lambda segment: segment.model_copy(update={"incline": 0.0})),
     _changing("turn_degrees", _straight),
     *(_rounding(field, unit) for field, unit in ROUNDED),

@@ -14,7 +14,7 @@ changes their curvature or grade; the road after them moves accordingly. The cha
 drive only, so it may leave the map or overlap itself.
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, combinations, pairwise
 from pathlib import Path
@@ -23,16 +23,16 @@ from typing import Any, NamedTuple, Self, TypeVar
 import numpy as np
 
 from roadgpt.campaign.faults.failures import AROUND, STRAIGHT, LocatedFailure, bend_at
+from roadgpt.campaign.faults.stability import outlasted
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
-from roadgpt.errors import RoadGPTError, UsageError, explained
+from roadgpt.errors import RoadGPTError, SimulatorError, UsageError, explained
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.reading import read_json
 from roadgpt.road import Road, World
 from roadgpt.run import Run, prove
 from roadgpt.run.atomic import json_text, refuse_links, write_whole
-from roadgpt.run.model import LostDrives
 
 STEP = 0.5  # m, between samples
 
@@ -148,6 +148,7 @@ class FailurePlace(NamedTuple):
 
 
 T = TypeVar("T")
+Change = Callable[[FailurePlace], Alignment | None]  # None if the change does not apply
 
 
 @dataclass(frozen=True)
@@ -156,7 +157,7 @@ class Remedy:
 
     name: str  # kind and size, such as 'wider 15'
     sentence: str  # the change as text for users, which completes 'it disappears with ...'
-    change: Callable[[FailurePlace], Alignment | None]  # None if the change does not apply
+    change: Change
     limit: float = 1.0  # factor of the speed limit
 
     @property
@@ -165,52 +166,43 @@ class Remedy:
         return self.name.split()[0]
 
 
-def _remedies(percent: int, metres: int, flatter: float, grades: str) -> Iterator[Remedy]:
-    """Yields a change of each kind: radii and speed limits by some percent, metres of straight or of averaged
-    curvature, and grades times ``flatter``, which the name of the remedy calls ``grades``."""
-    more, less, bigger = 1 + percent / 100, 1 - percent / 100, f"a {percent} % larger radius of the bend"
+def _remedies(percent: int, metres: int, flatter: float, grades: str) -> tuple[Remedy, ...]:
+    """Returns a change of each kind: radii and speed limits by some percent, metres of straight or of
+    averaged curvature, and grades times ``flatter``, which the name of the remedy calls ``grades``."""
+    more, less, larger = 1 + percent / 100, 1 - percent / 100, f"a {percent} % larger radius of the bend"
+    straight = f"{metres} m of straight between the bend and the one before"
     slopes = "half as steep" if flatter else "without slopes"
-    for name, sentence, change in (
-        (f"wider {percent}", bigger, lambda its: its.bend and its.alignment.widened(its.bend, more)),
-        (
-            f"shorter {percent}",
-            f"a bend that turns {percent} % less",
-            lambda its: its.bend and its.alignment.shortened(its.bend, less),
-        ),
-        (
-            f"eased {metres}",
-            f"curvature that changes over {metres} m more",
-            lambda its: its.bend and its.alignment.eased(its.bend, metres),
-        ),
-        (
-            f"apart {metres}",
-            f"{metres} m of straight between the bend and the one before",
-            lambda its: its.bend and its.before and its.alignment.with_straight(its.bend, metres),
-        ),
-        (
-            f"before {percent}",
-            f"{bigger} before",
-            lambda its: its.before and its.alignment.widened(its.before, more),
-        ),
-        (
-            f"after {percent}",
-            f"{bigger} after",
-            lambda its: its.after and its.alignment.widened(its.after, more),
-        ),
-        (f"flatter {grades}", f"a road {slopes}", lambda its: its.alignment.levelled(flatter)),
-        (f"slower {percent}", f"a speed limit {percent} % lower", lambda its: its.alignment),
-    ):
-        yield Remedy(name, sentence, change, less if name.startswith("slower") else 1.0)
+
+    def of_bend(change: Callable[[Alignment, Bend], Alignment], which: str = "bend") -> Change:
+        return lambda its: None if (bend := getattr(its, which)) is None else change(its.alignment, bend)
+
+    def widened(alignment: Alignment, bend: Bend) -> Alignment:
+        return alignment.widened(bend, more)
+
+    def apart(its: FailurePlace) -> Alignment | None:
+        return its.before and its.bend and its.alignment.with_straight(its.bend, metres)
+
+    shorter = of_bend(lambda alignment, bend: alignment.shortened(bend, less))
+    eased = of_bend(lambda alignment, bend: alignment.eased(bend, metres))
+    return (
+        Remedy(f"wider {percent}", larger, of_bend(widened)),
+        Remedy(f"shorter {percent}", f"a bend that turns {percent} % less", shorter),
+        Remedy(f"eased {metres}", f"curvature that changes over {metres} m more", eased),
+        Remedy(f"apart {metres}", straight, apart),
+        Remedy(f"before {percent}", f"{larger} before", of_bend(widened, "before")),
+        Remedy(f"after {percent}", f"{larger} after", of_bend(widened, "after")),
+        Remedy(f"flatter {grades}", f"a road {slopes}", lambda its: its.alignment.levelled(flatter)),
+        Remedy(f"slower {percent}", f"a speed limit {percent} % lower", lambda its: its.alignment, less),
+    )
 
 
 Removed = Mapping[str, bool | None]
 """For each change, by its name: whether it makes a failure disappear; None if the change does not apply."""
 REMEDIES = (*_remedies(15, 10, 0.5, "half"), *_remedies(30, 20, 0.0, "no"))
 """All changes that are tried, the small ones of all kinds before the larger ones."""
-KINDS = frozenset(remedy.kind for remedy in REMEDIES)
 
 
-def remedies_of(run: Run, kinds: Collection[str] = KINDS) -> Removed:
+def remedies_of(run: Run) -> Removed:
     """Drives a failing Run's road with each change, and returns which changes make the failure disappear.
 
     If a small change does, the larger one of its kind is not driven and counts as removing it, too. No change
@@ -219,13 +211,12 @@ def remedies_of(run: Run, kinds: Collection[str] = KINDS) -> Removed:
     road, verdict = run.road, run.verdict
     assert road is not None
     assert verdict is not None
-    remedies = [remedy for remedy in REMEDIES if remedy.kind in kinds]
     if road.profile is not None and run.design is None:
-        return {remedy.name: None for remedy in remedies}
+        return {remedy.name: None for remedy in REMEDIES}
     place = _place(run, float(verdict.at_s or 0.0))
     found: dict[str, bool | None] = {}
     by_kind: dict[str, bool | None] = {}
-    for remedy in remedies:
+    for remedy in REMEDIES:
         if not by_kind.get(remedy.kind):
             by_kind[remedy.kind] = _removes(run, place, remedy)
         found[remedy.name] = by_kind[remedy.kind]
@@ -258,7 +249,7 @@ def _removes(run: Run, place: FailurePlace, remedy: Remedy) -> bool | None:
     passed = changed.stations[place.departure + longer * is_behind] + AROUND
     road = changed.road(run.road)
     world = run.world.changed(speed_limit=run.world.limits.speed_limit * remedy.limit)
-    tried = _driven(run, road, world)
+    tried = outlasted(lambda: _driven(run, road, world))
     if tried.outcome == "ERROR":  # the driver broke down, which is no way to pass a place
         return False
     if tried.verdict is None:
@@ -267,14 +258,10 @@ def _removes(run: Run, place: FailurePlace, remedy: Remedy) -> bool | None:
 
 
 def _driven(run: Run, road: Road, world: World) -> Run:
-    """Drives a changed road; drives again where the simulator itself failed."""
-    losses: LostDrives[int] = LostDrives()
-    while True:
-        tried = prove(road, run.seed, world, run.request.setup, run.index, despite_findings=True)
-        if losses.count(run.index, tried.is_lost):
-            raise losses.given_up(tried.description, "fix it and run the same command again, which continues")
-        if not tried.is_lost:
-            return tried
+    tried = prove(road, run.seed, world, run.request.setup, run.index, despite_findings=True)
+    if tried.is_lost:
+        raise SimulatorError(tried.description)
+    return tried
 
 
 def try_remedies(folder: Path, failure: LocatedFailure) -> None:

@@ -6,9 +6,10 @@ attributed to chance.
 """
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from inspect import signature
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import DriverError, SimulationError, SimulatorError
 from roadgpt.road import Road, World
 from roadgpt.run import Run
+from roadgpt.run.model import MOST as LOST_IN_A_ROW
 from roadgpt.run.model import LostDrives
 from roadgpt.verdict import Verdict, judge
 
@@ -85,7 +87,7 @@ class Repeated:
     number: int
     disturbance: Disturbance
     failed: bool
-    margin: float  # margin to out of bounds, metres; NaN if the drive ended with an error
+    margin: float | None  # margin to out of bounds, metres; None if the drive ended with an error
     at_s: float | None
 
 
@@ -119,6 +121,20 @@ class Stability:
         return f"fails in {share} drives with friction, start and sensors slightly disturbed"
 
 
+T = TypeVar("T")
+
+
+def outlasted(drive: Callable[[], T]) -> T:
+    """Returns what ``drive`` returns; after a SimulatorError it is called again, three times in all. Raises
+    GivenUpError."""
+    for _ in range(LOST_IN_A_ROW):
+        try:
+            return drive()
+        except SimulatorError as error:
+            lost = error
+    raise LostDrives.given_up(str(lost), "fix it and run the same command again, which continues")
+
+
 def repeated(run: Run, times: int) -> Stability:
     """Drives the road of a valid Run ``times`` times, each time with a disturbance derived from the Run's
     seed and its number. A DriverError or a SimulationError counts as a failure; after a SimulatorError, the
@@ -128,18 +144,11 @@ def repeated(run: Run, times: int) -> Stability:
 
 def _once(run: Run, number: int) -> Repeated:
     disturbance = disturbance_of(run.seed, number)
-    losses: LostDrives[int] = LostDrives()
-    while True:
-        try:
-            verdict = drive_disturbed(run, disturbance)
-            return Repeated(number, disturbance, not verdict.kept, verdict.margin, verdict.at_s)
-        except SimulatorError as error:
-            if losses.count(number, is_lost=True):
-                raise losses.given_up(
-                    str(error), "fix it and run the same command again, which continues"
-                ) from error
-        except (DriverError, SimulationError):
-            return Repeated(number, disturbance, True, float("nan"), None)
+    try:
+        verdict = outlasted(lambda: drive_disturbed(run, disturbance))
+        return Repeated(number, disturbance, not verdict.kept, verdict.margin, verdict.at_s)
+    except (DriverError, SimulationError):
+        return Repeated(number, disturbance, True, None, None)
 
 
 def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:

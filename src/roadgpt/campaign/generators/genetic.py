@@ -5,12 +5,10 @@ winners of small tournaments. The generator has no feature map and no surrogate,
 ``quality_diversity``.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from roadgpt.campaign.model import Cell, Goal, Pool, Proposal, Result
-from roadgpt.campaign.search import SearchGenerator, is_usable
+from roadgpt.campaign.search import SearchGenerator
 from roadgpt.campaign.variation import VariationTask
 from roadgpt.road import Design
 
@@ -35,14 +33,11 @@ class Genetic(SearchGenerator):
         tasks = [self._task(rng) for _ in range(n)]
         return self._proposals(first, n, self._candidates(tasks, pool))
 
-    def tell(self, results: Sequence[Result]) -> None:
-        """Adds results to the population, and keeps only the fittest."""
-        for result in results:
-            if is_usable(result):
-                assert result.margin is not None
-                assert result.plain_design is not None
-                self._fittest.append((result.margin, result.number, result.plain_design))
-        self._fittest = sorted(self._fittest, key=lambda one: one[:2])[:POPULATION]
+    def _learn(self, result: Result) -> None:
+        assert result.margin is not None
+        assert result.plain_design is not None
+        found = [*self._fittest, (result.margin, result.number, result.plain_design)]
+        self._fittest = sorted(found, key=lambda one: one[:2])[:POPULATION]
 
     def _task(self, rng: np.random.Generator) -> VariationTask:
         seed = (int(rng.integers(2**53)),)

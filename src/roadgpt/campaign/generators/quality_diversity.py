@@ -19,7 +19,7 @@ from roadgpt.campaign.archive import Archive, is_far, select, spread_out, stacke
 from roadgpt.campaign.behaviour import DRIVEN
 from roadgpt.campaign.boundary_pairs import paired
 from roadgpt.campaign.model import GOALS, Cell, Goal, Pool, Proposal, Result
-from roadgpt.campaign.search import SearchGenerator, is_usable
+from roadgpt.campaign.search import SearchGenerator
 from roadgpt.campaign.surrogate import (
     FEWEST,
     FEWEST_FAILURES,
@@ -76,14 +76,12 @@ class QualityDiversity(SearchGenerator):
         self._roads: dict[int, Elements] = {}
         self._elites: list[int] = []
 
-    def tell(self, results: Sequence[Result]) -> None:
-        """Adds results to the maps; everything else is computed in ``ask``."""
-        for result in results:
-            if is_usable(result):
-                assert result.margin is not None
-                self._results[result.number] = result
-                for each in self._maps:
-                    each.add(result.number, result.features, -result.margin, result.failed)
+    def _learn(self, result: Result) -> None:
+        """Adds a result to the maps; everything else is computed in ``ask``."""
+        assert result.margin is not None
+        self._results[result.number] = result
+        for each in self._maps:
+            each.add(result.number, result.features, -result.margin, result.failed)
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
         """Proposes the candidates that are most valuable for the goal."""

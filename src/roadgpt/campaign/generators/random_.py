@@ -4,9 +4,7 @@ It is the baseline for searches: its roads satisfy the Brief too, but the genera
 results.
 """
 
-from collections.abc import Sequence
-
-from roadgpt.campaign.model import Pool, Proposal, Result
+from roadgpt.campaign.model import Pool, Proposal
 from roadgpt.campaign.search import SearchGenerator
 from roadgpt.campaign.variation import VariationTask
 
@@ -19,6 +17,3 @@ class Random(SearchGenerator):
         seeds = self._rng(batch).integers(2**53, size=n)
         tasks = [VariationTask("draft", (), "draft", (int(seed),), self._setting) for seed in seeds]
         return self._proposals(first, n, self._candidates(tasks, pool))
-
-    def tell(self, results: Sequence[Result]) -> None:
-        """Ignores the results."""
