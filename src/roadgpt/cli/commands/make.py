@@ -14,7 +14,7 @@ import click
 from roadgpt.cli import options
 from roadgpt.cli.option import ROADS, Argument, Heading, Option, folder, named, whole
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.roads import UNREADABLE, each_road, made, roads_in, roads_named, source_of
+from roadgpt.cli.roads import UNREADABLE, each_road, made, refuse_file, roads_in, roads_named, source_of
 from roadgpt.cli.screen import Row, Screen, row_of, spending
 from roadgpt.cli.streams import crashes_go_to, warn
 from roadgpt.errors import GivenUpError, UsageError
@@ -62,7 +62,8 @@ def run(words: tuple[str, ...], as_json: bool, quiet: bool, verbose: bool, **res
       3  nothing could be designed
       4  a language model could not be used, or its token or cost limit was hit
       6  the results do not meet --fail-on or --baseline; see --help-all"""
-    carry_out(Screen(rest["roads"], as_json, quiet, verbose), " ".join(words), **rest)
+    refuse_file(text := " ".join(words), "drives", "drive")
+    carry_out(Screen(rest["roads"], as_json, quiet, verbose), text, **rest)
 
 
 def usual_values(words: str, roads: int, is_plan: bool = False) -> dict[str, Any]:
