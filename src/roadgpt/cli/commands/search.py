@@ -302,7 +302,7 @@ def campaign(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **
     plan.check()
     plugins.find("executors", given["executor"])
     if out is None:
-        out = new_folder(Path(text).stem if text.endswith(".toml") else text or plan.on, plan.seeds[0])
+        out = new_folder(Path(text).stem if text.endswith(".toml") else text or given["on"], plan.seeds[0])
     given["gate"] = options.gate_of(given, out)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         was_there = begin(plan, out, given.pop("again"), roads)
@@ -454,6 +454,7 @@ def _given(plan: "Plan", told: Set[str], quiet: bool) -> "tuple[Plan, list[bytes
     settings = {"roads": named, "differ": [name for name in OF_FILE if name not in common]}
     budget = plan.budget.model_copy(update={"tests": plan.budget.tests or len(named)})
     changed = {"generators": (GIVEN,), "settings": settings, "budget": budget, "left_out": left_out}
+    changed["on"] = str(home.absolute())
     return plan.model_copy(update=changed | {"world": plan.world.changed(**common)}), contents
 
 
