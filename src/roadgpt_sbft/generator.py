@@ -77,7 +77,9 @@ class RoadSearch:
         proposal = self._waiting.popleft()
         self._number += 1
         given = proposal.design
-        design = draft_road(self._brief, self._world, seed=proposal.seed) if given is None else given
+        design = (
+            given if isinstance(given, Design) else draft_road(self._brief, self._world, seed=proposal.seed)
+        )
         road = self._world.lay(build(design))
         blank = Result(self._number, self._batch, replace(proposal, design=design), "ERROR", "", design)
         self._asked = road, blank

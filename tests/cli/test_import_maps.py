@@ -94,6 +94,8 @@ def test_random_routes_are_written_and_driven(town: Path, tmp_path: Path) -> Non
     ("options", "said"),
     [
         (("--route", "1,99"), "there is no road 99 on the map; there are: 1, 2"),
+        (("--route", ""), "--route needs the ids of roads, with commas between them"),
+        (("--route", "1,,4"), "--route needs the ids of roads, with commas between them"),
         (("--route", "1", "--random-routes", "2"), "ask for different routes; give one of them"),
         (("--from", "3,4"), "a route needs both ends; give --from X,Y and --to X,Y"),
         (("--from", "3,x", "--to", "3,4"), "'3,x' is no point; give x and y in metres"),

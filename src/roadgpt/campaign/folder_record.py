@@ -126,9 +126,10 @@ class FolderRecord(FolderStore):
         """Returns the result of one test; raises UsageError if its Run cannot be read."""
         return finished_run(self.run(cell, number)).result
 
-    def road(self, cell: Cell, result: Result) -> Road | None:
-        """Returns the road of a test that has ended; None if the test has no road."""
-        return self.run(cell.name, result.number).road
+    def road(self, cell: Cell, result: Result) -> tuple[Road, Request] | None:
+        """Returns the road of a test that has ended, and its request; None if the test has no road."""
+        run = self.run(cell.name, result.number)
+        return None if run.road is None else (run.road, run.request)
 
     def seed(self, result: Result) -> int:
         """Returns the driver's seed in a test."""
@@ -167,7 +168,8 @@ def run_again(folder: Path, cell: str, number: int) -> tuple[Run, Result]:
         result, kept = record.result(cell, number), record.run(cell, number, has_drive=False)
     if kept.road is None:
         raise no_road(folder, cell, result)
-    run = prove(kept.road, kept.seed, kept.world, kept.request.setup, number, kept.brief)
+    despite = result.outcome != "INVALID"  # then it was driven, whatever the rules find
+    run = prove(kept.road, kept.seed, kept.world, kept.request.setup, number, kept.brief, despite)
     return replace(run, request=kept.request, design=kept.design), result
 
 

@@ -129,12 +129,12 @@ class Gate:
 def _results(folder: Path) -> Iterator[tuple[NumberedTest, _Result]]:
     with open_record(folder) as record:
         for cell in record.cells():
-            settings = _settings(cell.request)
             for its in record.results(cell.name):
                 with suppress(RoadGPTError):  # no road can be built from the design
-                    if road := record.road(cell, its):
+                    if found := record.road(cell, its):
+                        road, request = found
                         name = NumberedTest(cell.name, its.number)
-                        yield name, _Result(its.outcome, its.margin, settings, _outline(road))
+                        yield name, _Result(its.outcome, its.margin, _settings(request), _outline(road))
 
 
 def _outline(road: Road) -> Array:

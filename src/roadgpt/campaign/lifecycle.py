@@ -4,8 +4,9 @@ begin     makes a folder with a store; the store holds the plan, its cells and t
 work      runs the remaining tests; interruptions do not change the resulting tables
 """
 
+import shutil
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +15,8 @@ from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.csv_tables import CELLS, RESULTS, write_tables
 from roadgpt.campaign.folder_record import has_tests, is_store, open_record
+from roadgpt.campaign.given import FOLDER as ROADS
+from roadgpt.campaign.given import changes, content_of, given_roads, write_roads
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE, Record, Store, no_tests, refusals
 from roadgpt.campaign.run_folder import campaign
@@ -41,9 +44,10 @@ USER_NAMES = {
 """The names under which users know fields of a Plan."""
 
 
-def begin(plan: Plan, folder: Path, again: bool = False) -> bool:
-    """Makes a campaign's folder, and reads its descriptions into Briefs; returns True if the folder already
-    held the same campaign. With ``again``, the results in the folder are set aside first.
+def begin(plan: Plan, folder: Path, again: bool = False, roads: Sequence[bytes] = ()) -> bool:
+    """Makes a campaign's folder, and reads its descriptions into Briefs, or keeps the files of the ``roads``
+    that the plan is given; returns True if the folder already held the same campaign. With ``again``, the
+    results in the folder are set aside first.
     """
     plan.check()
     _admit(plan)
@@ -62,6 +66,9 @@ def begin(plan: Plan, folder: Path, again: bool = False) -> bool:
         _refuse_ignored(plan, *(world_for(brief, plan.world) for brief in briefs.values()))
         for name in plan.generators:  # a wrong setting raises an error now
             plugins.find("generators", name)(next(cell for cell in cells if cell.generator == name))
+        if roads:
+            with refusals(folder):
+                write_roads(folder, given_roads(plan.settings), roads)
         Store.new(folder, plan.model_dump_json(), cells, versions, spent).close()
         return False
 
@@ -71,7 +78,8 @@ def _without_trace(folder: Path) -> Iterator[None]:
     try:
         yield
     except BaseException:
-        if [path.name for path in folder.iterdir()] == [LOCK]:
+        if {path.name for path in folder.iterdir()} <= {LOCK, ROADS}:
+            shutil.rmtree(folder / ROADS, ignore_errors=True)
             take_away([folder / LOCK], [folder])
         raise
 
@@ -103,7 +111,10 @@ def _same(plan: Plan, folder: Path, versions: dict[str, Versions]) -> None:
     with Store.opened(folder) as store:
         there = store.plan()
         kept = there.essence()
-        other = [USER_NAMES.get(name, name) for name, value in plan.essence() if getattr(kept, name) != value]
+        now = {road.name: road.source for road in given_roads(plan.settings)}
+        values = [each for each in plan.essence() if not (now and each[0] == "settings")]
+        other = [USER_NAMES.get(name, name) for name, value in values if getattr(kept, name) != value]
+        other += changes(given_roads(kept.settings), now)
         if not other:  # the plan may now set a friction that came from the descriptions before
             cells = store.cells()
             briefs = {cell.request.words: cell.brief for cell in cells if cell.brief is not None}
@@ -142,7 +153,7 @@ def work(
     if again:
         with Record.opened(folder) as record:
             plan = record.plan()
-        begin(plan, folder, again)
+        begin(plan, folder, again, [content_of(road, folder) for road in given_roads(plan.settings)])
     with alone_in(folder), Store.opened(folder) as store:
         plan = store.plan()
         if chat is not None:

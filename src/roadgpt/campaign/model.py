@@ -17,6 +17,7 @@ GOALS: tuple[Goal, ...] = get_args(Goal)
 
 WITHOUT_GOAL, WITH_GOAL = "words", "quality_diversity"
 """The generators that are used if none is named: for plans without a goal, and for plans with a goal."""
+GIVEN = "given"  # the generator of roads that are there, and the origin of such roads in folders of runs
 PATIENCE = 900.0  # s for one test; every drive ends by itself before that
 MOST_TESTS = 10_000_000  # of one cell; numbers of tests have seven digits
 
@@ -54,14 +55,26 @@ class CellBudget(Frozen):
 UNLIMITED = CellBudget()
 
 
+class GivenRoad(Frozen):
+    """A road that a campaign is given; its file lies in the campaign's folder, see ``campaign.given``."""
+
+    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+    """SHA-256 of the file, in hexadecimal digits."""
+    file: Annotated[str, Field(pattern="^[0-9]+[.]json$")]
+    name: str
+    """What the road was called where it was found, such as 'route-1.json'."""
+    source: str
+    """The ``reading.digest`` of what it was read from; ``ABSENT`` for a test of another campaign."""
+
+
 @dataclass(frozen=True)
 class Proposal:
     """A test that a generator proposes."""
 
-    design: Design | None
-    """The road's design. None: a worker drafts the road from the cell's Brief, with ``seed`` and the
-    number of the test. The drafted road differs from at least the latest 1500 designs (from all designs if
-    ``Cell.in_sequence``) in the batches whose results the generator has received.
+    design: Design | GivenRoad | None
+    """The road's design, or a road that was given. None: a worker drafts the road from the cell's Brief, with
+    ``seed`` and the number of the test. The drafted road differs from at least the latest 1500 designs (from
+    all designs if ``Cell.in_sequence``) in the batches whose results the generator has received.
     """
     seed: int
     """Seed of the driver. If ``design`` is None, one seed for both draft and driver is derived from this seed
@@ -83,8 +96,8 @@ class Result:
     outcome: Outcome
     description: str
     """One sentence that describes the outcome."""
-    design: Design | None = None
-    """The design of the road; None if no road could be designed."""
+    design: Design | GivenRoad | None = None
+    """The design of the road, or the road that was given; None if no road could be designed."""
     length: float = 0.0
     """Length of the road seen from above, metres; 0 if there is no road."""
     margin: float | None = None
@@ -108,8 +121,8 @@ class Result:
 
     @property
     def plain_design(self) -> Design | None:
-        """The design; None if there is none, or if it has junctions."""
-        return self.design if self.design is not None and self.design.is_plain else None
+        """The design; None if there is none, or if it has junctions, and for a given road."""
+        return self.design if isinstance(self.design, Design) and self.design.is_plain else None
 
     @property
     def failed(self) -> bool:

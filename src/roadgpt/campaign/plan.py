@@ -71,11 +71,17 @@ class Plan(Frozen):
     chat: ChatSettings | None = None
     patience: Annotated[float, Field(gt=0, allow_inf_nan=False)] = PATIENCE
     """Longest time for one test, seconds; a test that takes longer is treated as hanging."""
+    on: str = ""
+    """Where the roads in ``settings`` were found; empty if roads are designed."""
+    left_out: Mapping[str, str] = Field(default_factory=dict)
+    """Why a file there is not tested, by its name."""
 
     def essence(self) -> "Plan":
         """Returns the Plan without the settings that may change when the campaign is resumed."""
         chat = self.chat and self.chat.essence()
-        return self.model_copy(update={"chat": chat, "patience": PATIENCE, "paired": False})
+        return self.model_copy(
+            update={"chat": chat, "patience": PATIENCE, "paired": False, "on": "", "left_out": {}}
+        )
 
     def came_with(self, file: object) -> "Plan":
         """Returns the Plan read from a file that another person may have written: RoadGPT asks before it runs
@@ -179,6 +185,8 @@ class Plan(Frozen):
 
 LARGEST = 4_000_000  # bytes of a file
 FOLDERS = ("record", "replay")  # keys of [chat] that name a folder
+OF_DESIGN = {"prompts", "designers", "generators", "goal", "reader", "chat", "settings"}
+"""Keys that mean nothing for roads that are there."""
 
 
 def _listed(value: Any) -> Any:
@@ -245,16 +253,19 @@ class PlanTable(_Strict):
     keep_driving: bool = False
     drive: bool = True
     paired: bool = False
+    on: Words | None = None
     world: WorldTable = WorldTable()
     chat: dict[str, Any] = {}
     settings: dict[str, Any] = {}
 
 
 class PlanFile(BaseModel):
-    """The content of a plan file: the plan, and the settings of the language models."""
+    """The content of a plan file: the plan, the settings of the language models, and the keys of its
+    world."""
 
     plan: Plan
     chat: dict[str, Any]
+    world: frozenset[str]
 
 
 def read_plan(path: Path) -> PlanFile:
@@ -276,7 +287,13 @@ def read_plan(path: Path) -> PlanFile:
         raise UsageError(f"{path}: {_sentence(error, within)}") from error
     folder = path.parent.absolute()
     chat = {name: str(folder / value) if name in FOLDERS else value for name, value in table.chat.items()}
-    return PlanFile(plan=_plan(table, folder).came_with(path), chat=chat)
+    if table.on and (wrong := sorted(OF_DESIGN & table.model_fields_set)):
+        raise UsageError(
+            f"{path}: '{wrong[0]}' is for roads that are designed, and 'on' names roads that are "
+            "there; leave one of them out"
+        )
+    told = frozenset(name.removesuffix("_kmh") for name in table.world.model_fields_set)
+    return PlanFile(plan=_plan(table, folder).came_with(path), chat=chat, world=told)
 
 
 def _plan(table: PlanTable, folder: Path) -> Plan:
@@ -286,6 +303,7 @@ def _plan(table: PlanTable, folder: Path) -> Plan:
     read = {
         "prompts": table.prompts or ("",),
         "drivers": tuple(absolute_spec(driver, folder) for driver in table.drivers),
+        "on": str(folder / table.on) if table.on else "",
         "generators": table.generators or (WITH_GOAL if table.goal else WITHOUT_GOAL,),
         "budget": CellBudget(tests=table.tests, seconds=table.seconds),
         "reader": f"{reader}:{folder / weights}" if colon else reader,

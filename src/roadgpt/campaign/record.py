@@ -36,7 +36,8 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from pydantic import TypeAdapter
 
-from roadgpt.campaign.model import Cell, NumberedTest, Proposal, Result
+from roadgpt.campaign.given import content_of, source_of
+from roadgpt.campaign.model import Cell, GivenRoad, NumberedTest, Proposal, Result
 from roadgpt.campaign.single_test import OF_VERDICT, FinishedTest, Task, seed_of_driver
 from roadgpt.chat import Spent
 from roadgpt.check import inspect
@@ -45,7 +46,7 @@ from roadgpt.errors import RoadGPTError, UsageError, command_line
 from roadgpt.network import made_from
 from roadgpt.reading import json_of
 from roadgpt.road import Design, Road
-from roadgpt.run import Run
+from roadgpt.run import Request, Run
 from roadgpt.run.atomic import refuse_links, to_bytes
 from roadgpt.run.model import permissions
 from roadgpt.run.store import connected
@@ -73,18 +74,21 @@ RESULT = ", ".join(("tests.number, batch, seed, given", *MEASURED, "origin, desi
 """The columns of a result in the joined tables ``tests`` and ``details``."""
 
 
-def design_text(design: Design | None) -> str | None:
-    """Returns a design as JSON; ``design_of`` restores the same design."""
+def design_text(design: Design | GivenRoad | None) -> str | None:
+    """Returns a design, or a reference to a given road, as JSON; ``design_of`` restores the same."""
     if design is None:
         return None
+    if isinstance(design, GivenRoad):
+        return design.model_dump_json()
     unused = {name for name, value in design if value == () or value is False}
     unused |= {"starting_point", "theta"} if design.is_map else set()
     return design.model_dump_json(exclude_none=True, exclude=unused)
 
 
-def design_of(text: str | None) -> Design | None:
+def design_of(text: str | None) -> Design | GivenRoad | None:
     """Restores a design from JSON text as returned by ``design_text``."""
-    return None if text is None else Design.model_validate_json(text)
+    kind = GivenRoad if text is not None and text.startswith('{"sha256"') else Design
+    return None if text is None else kind.model_validate_json(text)
 
 
 def plain(text: str) -> str:
@@ -320,23 +324,26 @@ class Record:
         """Returns the stored Run of a test; see ``folder_record.kept_run``. Without its drive, it has no
         verdict."""
         own, result = self.cell(cell), self.result(cell, number)
-        road, request, brief = self.road(own, result), own.request, own.brief
-        if road is None:
+        made, request = self._blueprint(own, result)
+        if made is None:
             raise no_road(self.folder, cell, result)
+        road = made_from(made, request.world, request.setup.geometry)
         drive = self.drive(cell, number) if has_drive else None
-        is_invalid = result.outcome == "INVALID"
+        is_given = isinstance(result.design, GivenRoad)
+        has_findings = result.outcome == "INVALID" or is_given
         return Run(
             request,
             number,
             self.seed(result),
             outcome=result.outcome,
             description=result.description,
-            brief=brief,
-            design=result.design,
+            brief=own.brief,
+            design=made if isinstance(made, Design) else None,
             road=road,
-            findings=inspect(road, brief, request.world, request.setup.rules) if is_invalid else (),
+            findings=inspect(road, own.brief, request.world, request.setup.rules) if has_findings else (),
             drive=drive,
             verdict=None if drive is None else _verdict_of(road, drive, own, result),
+            source=result.proposal.origin if is_given else "",
             versions=self.versions(request.setup.driver),
         )
 
@@ -365,11 +372,17 @@ class Record:
         )
         return read_traces(self.folder / TRACES / str(rows[0][0]), cell, number) if rows else None
 
-    def road(self, cell: Cell, result: Result) -> Road | None:
-        """Returns the road of a test that has ended; None if the test has no road."""
-        if result.design is None:
-            return None
-        return made_from(result.design, cell.request.world, cell.request.setup.geometry)
+    def road(self, cell: Cell, result: Result) -> tuple[Road, Request] | None:
+        """Returns the road of a test that has ended, and the request with its World; None without a road."""
+        made, request = self._blueprint(cell, result)
+        return None if made is None else (made_from(made, request.world, request.setup.geometry), request)
+
+    def _blueprint(self, cell: Cell, result: Result) -> tuple[Design | Road | None, Request]:
+        if not isinstance(result.design, GivenRoad):
+            return result.design, cell.request
+        source = source_of(result.design, content_of(result.design, self.folder))
+        world = cell.request.world.changed(**source.world)
+        return source.blueprint, cell.request.model_copy(update={"world": world})
 
     def seed(self, result: Result) -> int:
         """Returns the driver's seed in a test."""

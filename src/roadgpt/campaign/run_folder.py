@@ -16,7 +16,7 @@ from typing import Any, Self
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.model import PATIENCE, WITHOUT_GOAL, Cell, CellBudget, Proposal
+from roadgpt.campaign.model import GIVEN, PATIENCE, WITHOUT_GOAL, Cell, CellBudget, Proposal
 from roadgpt.campaign.record import SCHEMA, Record
 from roadgpt.campaign.scheduler import Scheduler
 from roadgpt.campaign.single_test import FinishedTest, Task, WorkerSetup, error_run, run_test
@@ -46,8 +46,6 @@ from roadgpt.run.folder import (
 )
 from roadgpt.run.tables import DESCRIPTION, TABLES, Tally, TallyEntry, write_description
 from roadgpt.run.versions import Versions, joined, still, versions_now
-
-GIVEN = "given"  # origin of roads that were not made from a description
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple, TypeVar
 
 from roadgpt import plugins
-from roadgpt.campaign.model import Cell, Pool, Result
+from roadgpt.campaign.given import content_of
+from roadgpt.campaign.model import Cell, GivenRoad, Pool, Result
 from roadgpt.campaign.model import Generator as TestGenerator
 from roadgpt.campaign.record import Batch, Record
 from roadgpt.campaign.single_test import Allowance, FinishedTest, OutOfAllowance, Task, error_run, execute
@@ -303,7 +304,7 @@ class Scheduler:
         """Queues tests, each with the given allowance; if it is None, the tests share half of the tokens and
         money that are left, and the other half is left for later tests."""
         each = allowance or self._share(2 * max(len(tests), 1))
-        for test in [replace(test, allowance=each) for test in tests]:
+        for test in [replace(test, allowance=each, road=self._file_of(test)) for test in tests]:
             shared: list[Shared[Any]] = [schedule.shared, *schedule.earlier(test)]
             future = self.executor.submit(_run_with, self._run_test, test, *shared)
             self._out[future] = _Out(schedule, test)
@@ -320,6 +321,10 @@ class Scheduler:
             cost -= self._cost + sum(each.cost or 0.0 for each in given)
             cost = max(cost, 0.0) / parts
         return Allowance(tokens, cost)
+
+    def _file_of(self, test: Task) -> bytes:
+        road = test.proposal.design
+        return content_of(road, self._store.folder) if isinstance(road, GivenRoad) else b""
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
         """Returns the results of ``function`` for all items, in order, for generators: see ``model.Pool``."""

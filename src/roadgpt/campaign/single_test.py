@@ -5,9 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from roadgpt.campaign.model import Cell, Proposal, Result
+from roadgpt.campaign.given import source_of
+from roadgpt.campaign.model import Cell, GivenRoad, Proposal, Result
 from roadgpt.chat import ChatError, Meter, ReplyError, Spent
 from roadgpt.errors import BudgetError, DesignError, PartError, RoadGPTError, UsageError
+from roadgpt.network.source import RoadSource
+from roadgpt.plural import plural
 from roadgpt.provenance import NameOrigins, join, known
 from roadgpt.road import Design
 from roadgpt.run import Run, Seconds, Setup, check_parts, perform, prove, seed_of
@@ -40,6 +43,7 @@ class Task:
     batch: int
     proposal: Proposal
     allowance: Allowance = BOUNDLESS
+    road: bytes = b""  # the file of a road that was given
 
 
 @dataclass(frozen=True)
@@ -113,6 +117,8 @@ def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], me
     before, request, proposal = meter.spent, cell.request, task.proposal
     world, setup = request.world, request.setup
     try:
+        if isinstance(proposal.design, GivenRoad):
+            return _run_of_given(source_of(proposal.design, task.road), task, cell)
         if proposal.design is not None:
             return prove(proposal.design, proposal.seed, world, setup, task.number, cell.brief)
         assert cell.brief is not None, "only a cell with words lets its tests be drafted"
@@ -123,11 +129,24 @@ def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], me
         return replace(error_run(task, cell, str(error)), spent=spent if spent.calls else None)
 
 
+def _run_of_given(source: RoadSource, task: Task, cell: Cell) -> Run:
+    """Returns the Run of a road that was given. As roads of real maps break many rules, it is driven despite
+    them, and the description names them."""
+    world, setup = cell.request.world.changed(**source.world), cell.request.setup
+    despite, seed = setup.drives and setup.rules == "strict", task.proposal.seed
+    run = prove(source.blueprint, seed, world, setup, task.number, despite_findings=despite)
+    if run.drive is None or not run.findings:
+        return run
+    found, first = plural(len(run.findings), "finding"), run.findings[0].sentence
+    return replace(run, description=f"{run.description}; driven despite {found} of the rules: {first}")
+
+
 def error_run(task: Task, cell: Cell, sentence: str, trace: str = "") -> Run:
     """Returns the Run of a test that ended without a road or a drive; ``sentence`` states the reason."""
     number, proposal = task.number, task.proposal
     seed = seed_of_driver(number, proposal)
-    return Run(cell.request, number, seed, "ERROR", sentence, design=proposal.design, trace=trace)
+    design = proposal.design if isinstance(proposal.design, Design) else None
+    return Run(cell.request, number, seed, "ERROR", sentence, design=design, trace=trace)
 
 
 def seed_of_driver(number: int, proposal: Proposal) -> int:
@@ -140,7 +159,7 @@ def features_in(run: Run) -> dict[str, float]:
     from roadgpt.campaign.behaviour import behaviour_of
     from roadgpt.run.execution import PER_POINT, features_of, records_of
 
-    if not run.is_valid or run.road is None:
+    if run.road is None or (run.findings and run.drive is None):
         return {}
     records = records_of(run.road, run.drive, run.world) if run.drive is not None else []
     return features_of(run.road.centreline(PER_POINT), records) | behaviour_of(run.road, run.brief)
@@ -155,7 +174,7 @@ def result_of(run: Run, task: Task, features: Mapping[str, float]) -> Result:
         proposal=task.proposal,
         outcome=run.outcome,
         description=run.description,
-        design=run.design,
+        design=given if isinstance(given := task.proposal.design, GivenRoad) else run.design,
         length=run.length,
         features=features,
         **measured,

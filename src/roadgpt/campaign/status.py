@@ -47,7 +47,7 @@ class CellStatus:
     oracle: str = ""  # name of the test oracle: see ``roadgpt.road.ORACLES``
     handed_over: int = 0
     """Number of failed tests that are no failures of the driver: see ``Verdict.handed_to``."""
-    friction: float = 1.0  # friction coefficient of the road
+    friction: float | None = 1.0  # friction coefficient of the roads; None if it differs from road to road
 
     @property
     def done(self) -> int:
@@ -150,7 +150,7 @@ def cell_statuses(record: Record) -> tuple[CellStatus, ...]:
             closed=closed[cell.name],
             oracle=cell.request.world.limits.oracle,
             handed_over=others.get(cell.name, 0),
-            friction=cell.request.world.site.friction,
+            friction=(cell.request.world.site.friction, None)["friction" in cell.settings.get("differ", ())],
             **dict(zip(measured, passed.get(cell.name, NOTHING), strict=True)),
         )
         for cell in record.cells()

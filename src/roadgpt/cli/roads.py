@@ -1,8 +1,9 @@
 """Finds and reads the roads that a user names: files, runs, folders of runs, campaigns and tests."""
 
 import os
+import re
 import webbrowser
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import count
@@ -15,7 +16,7 @@ import click
 from roadgpt.cli.options import WORLD, typed
 from roadgpt.cli.screen import Row, Screen, unreadable
 from roadgpt.cli.streams import warn
-from roadgpt.errors import ExportError, PartError, UsageError, explained
+from roadgpt.errors import ExportError, PartError, UsageError, command_line, explained
 from roadgpt.plural import plural
 
 if TYPE_CHECKING:
@@ -163,7 +164,7 @@ def roads_in(files: Sequence[str]) -> list[str]:
             done = sum(cell.done for cell in status_of(place.folder).cells if place.cell in ("", cell.name))
             others = [plural(done - len(found), "test")] * (done > len(found))
         elif path.is_dir() and not (path / "road.json").is_file():
-            for each in sorted(path.iterdir()):
+            for each in sorted(path.iterdir(), key=_in_order):
                 if (each / "road.json").is_file() or each.suffix.lower() in ENDINGS:
                     found += [str(each)] * (not each.name.endswith(BESIDE_A_ROAD))
                 else:
@@ -175,12 +176,21 @@ def roads_in(files: Sequence[str]) -> list[str]:
     return roads
 
 
-def source_of(file: str, world: "World") -> tuple["Design | Road", "World", tuple[str, ...]]:
+def _in_order(path: Path) -> list[str | int]:
+    """The parts of a name, so that route-2.json comes before route-10.json."""
+    parts = re.split(r"([0-9]+)", path.name)
+    return [int(part) if at % 2 else part for at, part in enumerate(parts)]
+
+
+def source_of(
+    file: str, world: "World", told: Set[str] | None = None
+) -> tuple["Design | Road", "World", tuple[str, ...]]:
     """Returns the design or the road in a file, its World, and remarks on what is taken from where. ``file``
     may be the folder of a run, or a test such as CAMPAIGN/c01/17.
 
-    What the file states goes before ``world``, that of the options, except for options that were typed. If
-    the file defines lanes, a remark names the lane options that have no effect."""
+    What the file states goes before ``world``, that of the options, except for options that were typed, or
+    the fields that ``told`` names. If the file defines lanes, a remark names the lane options that have no
+    effect."""
     from roadgpt.campaign.selection import selection_of
     from roadgpt.network.source import OF_FILE, RoadSource, read_source
     from roadgpt.road import Road, World
@@ -196,7 +206,8 @@ def source_of(file: str, world: "World") -> tuple["Design | Road", "World", tupl
         source = read_source(file)
     blueprint, remarks, stated, *_ = source
     context = click.get_current_context(silent=True)
-    told, values, usual = typed(context) if context else set(), world.values(), World().values()
+    told = (typed(context) if context else set()) if told is None else told
+    values, usual = world.values(), World().values()
     given = [each for each in WORLD if each.field in told or values.get(each.field) != usual.get(each.field)]
     own = [each.flag for each in given if each.field in LANES] if getattr(blueprint, "profile", None) else []
     for each in given:
@@ -279,6 +290,16 @@ def run_of(named: NamedRoad, world: "World", geometry: "Geometry", quiet: bool =
     with named_in_errors(named.said):
         run = prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))
     return replace(run, source=Path(named.said).name)
+
+
+def refuse_file(words: str, does: str, *command: str) -> None:
+    """Raises UsageError for the name of a road file in place of a description; a command ``does`` what is
+    meant."""
+    if len(words.split()) == 1 and words.lower().endswith(ENDINGS):
+        raise UsageError(
+            f"{words} is the name of a file, not a description; roadgpt import reads maps, and this {does} "
+            f"the road in a file: {command_line(*command, words)}"
+        )
 
 
 @contextmanager

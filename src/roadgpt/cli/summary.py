@@ -16,7 +16,7 @@ from roadgpt.campaign.csv_tables import RESULTS
 from roadgpt.campaign.faults.fault import Faults, faults_in
 from roadgpt.campaign.folder_record import is_store, open_record, setups_of
 from roadgpt.campaign.gate import Gate
-from roadgpt.campaign.model import NumberedTest
+from roadgpt.campaign.model import GIVEN, NumberedTest
 from roadgpt.campaign.scheduler import Progress
 from roadgpt.campaign.selection import Choice, Selection, selection_of
 from roadgpt.campaign.status import CellStatus, Status, status_of
@@ -151,7 +151,7 @@ def _columns(cell: CellStatus) -> tuple[str, ...]:
     """Returns one cell's row in the table of cells, in the order of ``HEAD``."""
     passed, failed = cell.outcomes.get("PASS", 0), cell.outcomes.get("FAIL", 0)
     margin = "-" if cell.least_margin is None else metres(cell.least_margin)
-    words = plain(cell.words, LONGEST) or "any road"
+    words = plain(cell.words, LONGEST) or ("roads that were given" if cell.generator == GIVEN else "any road")
     what = f"{words} ({plain(cell.driver, WIDEST_TEXT)}, {cell.generator}, seed {cell.seed})"
     why = f"; {plain(cell.closed, WIDEST_TEXT)}" if cell.closed else ""
     counts = (cell.done, passed, failed, cell.done - passed - failed)

@@ -91,7 +91,7 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
     tests = [(_name(data) or path.stem, data)]
     if isinstance(data, list) and any(map(_is_test, data)):
         tests = [(_name(each) or str(number), each) for number, each in enumerate(data, 1)]
-    found = [_source(name, each, world, path) for name, each in tests if wanted in (None, name)]
+    found = [source_in(name, each, world, path) for name, each in tests if wanted in (None, name)]
     if not found:
         raise UsageError(f"{path}: there is no road {wanted} in it")
     return found
@@ -121,11 +121,14 @@ def _name(test: Any) -> str:
     return next((str(each) for each in found if isinstance(each, (str, int)) and str(each)), "")
 
 
-def _source(name: str, data: Any, world: Mapping[str, Any], path: Path) -> RoadSource | UsageError:
+def source_in(name: str, data: Any, world: Mapping[str, Any], path: Path) -> RoadSource | UsageError:
+    """Returns what the data of a road file hold, or the error if they hold no road; ``world`` is what is
+    stated where they state none, and ``path`` that of the file."""
     is_ours = isinstance(data, dict) and ("world" in data or points_in(data) is None)
     try:
         if isinstance(data, dict) and "world" in data:
             world = _checked(data["world"])
+            data = {key: value for key, value in data.items() if key != "world"}
         is_table = path.suffix.lower() in SUFFIXES
         read = _through(*points_of_table(data)) if is_table else _blueprint_in(data)
     except UsageError as error:

@@ -122,6 +122,7 @@ def _summary(record: Record, first: Request, status: Status, cells: Sequence[Cel
         farthest = _least(record, "FAIL") if first.setup.keep_driving else None
         out += near_and_far(_least(record, "PASS"), farthest)
     out += [sentence for each in cells if (sentence := each.remark)]
+    out += [f"Left out: {each}." for each in record.plan().left_out.values()]
     wrong = counts.get("INVALID", 0) + counts.get("ERROR", 0)
     out.append(f"Of all tests {share_of(wrong, status.done)} were invalid or ended in an error.")
     if status.seconds:
@@ -197,7 +198,7 @@ def _about(of: CellStatus, names: Mapping[str, str]) -> dict[str, str]:
         "driver": names[of.driver],
         "oracle": of.oracle,
         "seed": str(of.seed),
-        "friction": f"{of.friction:g}",
+        "friction": "of each road" if of.friction is None else f"{of.friction:g}",
     }
 
 

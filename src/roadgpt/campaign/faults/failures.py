@@ -354,19 +354,19 @@ def _located(record: Record, some: Sequence[NumberedTest]) -> Iterator[LocatedFa
     cells = {cell.name: cell for cell in record.cells()}
     for name, tests in groupby(some, key=lambda each: each.cell):
         cell, every = cells[name], [each.number for each in tests]
-        world, setup = cell.request.world, cell.request.setup
-        system = f"{setup.driver} {setup.simulator} {setup.keep_driving} {world.model_dump_json()}"
+        asked, setup = cell.request.world, cell.request.setup
+        system = f"{setup.driver} {setup.simulator} {setup.keep_driving} {asked.model_dump_json()}"
         for start in range(0, len(every), AT_ONCE):
             numbers = every[start : start + AT_ONCE]
             where = f"tests.number IN ({', '.join('?' * len(numbers))})"
             for its in record.results(name, where, numbers):
                 try:
-                    road = record.road(cell, its)
+                    found = record.road(cell, its)
                 except RoadGPTError:  # the version that made the road could build it; this one cannot
                     continue
-                if road is None:
+                if found is None:
                     continue
-                station = its.at_s or 0.0
+                road, world, station = found[0], found[1].world, its.at_s or 0.0
                 whose = f"{system} {its.handed_to or ''}"
                 around = surroundings(road, world, station, f"{its.cause} {its.side} {whose}")
                 manner = manner_of(road, world, station, its.cause, its.side)

@@ -107,6 +107,8 @@ def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
     if found.simplest and is_run(place):
         return found
     run = kept_run(task.folder, *found.name)
+    if run.plain_design is None:
+        return found
     least = simplest(run)
     write_run(least.run, made_folder(place.parent.parent))
     found = replace(found, simplest=least.sentence)

@@ -201,6 +201,8 @@ def _routes(
     lanes = lanes_of(found.network)
     if route is not None:
         names = [name.strip() for name in route.split(",")]
+        if not all(names):
+            raise UsageError("--route needs the ids of roads, with commas between them, such as 12,7,3")
         if unknown := [name for name in names if name not in found.roads]:
             there = ", ".join([*found.roads][:12]) + (", ..." if len(found.roads) > 12 else "")
             raise UsageError(f"there is no road {unknown[0]} on the map; there are: {there}")

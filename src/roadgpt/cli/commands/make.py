@@ -17,7 +17,7 @@ from roadgpt.chat import ChatSettings, Meter, counting
 from roadgpt.chat.answer import plain
 from roadgpt.cli import options
 from roadgpt.cli.options import HOW_MANY, Argument, GroupedCommand, Heading, Option, folder, named, whole
-from roadgpt.cli.roads import UNREADABLE, each_road, made, roads_in, roads_named
+from roadgpt.cli.roads import UNREADABLE, each_road, made, refuse_file, roads_in, roads_named
 from roadgpt.cli.screen import Row, Screen, row_of
 from roadgpt.cli.streams import aligned, crashes_go_to, warn
 from roadgpt.errors import GivenUpError, UsageError
@@ -63,7 +63,8 @@ def run(words: tuple[str, ...], as_json: bool, quiet: bool, verbose: bool, **res
       3  nothing could be designed
       4  a language model could not be used, or its token or cost limit was hit
       6  the results do not meet --fail-on or --baseline; see --help-all"""
-    carry_out(Screen(rest["roads"], as_json, quiet, verbose), " ".join(words), **rest)
+    refuse_file(text := " ".join(words), "drives", "drive")
+    carry_out(Screen(rest["roads"], as_json, quiet, verbose), text, **rest)
 
 
 def usual_values(words: str, roads: int, is_plan: bool = False) -> dict[str, Any]:

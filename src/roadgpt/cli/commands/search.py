@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from contextlib import redirect_stdout
 from functools import partial
 from itertools import chain
@@ -14,9 +14,20 @@ import click
 from roadgpt.cli import options
 from roadgpt.cli.commands.evaluate import write_report
 from roadgpt.cli.commands.make import beside, understood
-from roadgpt.cli.options import PATH, Argument, GroupedCommand, Heading, Option, folder, measure, named, whole
-from roadgpt.cli.streams import progress, resumable, watched
-from roadgpt.errors import UsageError, command_line
+from roadgpt.cli.options import (
+    PATH,
+    Argument,
+    GroupedCommand,
+    Heading,
+    Option,
+    folder,
+    measure,
+    named,
+    whole,
+)
+from roadgpt.cli.roads import MOST_TOLD, named_in_errors, refuse_file, roads_in, source_of
+from roadgpt.cli.streams import progress, resumable, warn, watched
+from roadgpt.errors import PartError, UsageError, command_line
 from roadgpt.plural import plural
 
 if TYPE_CHECKING:
@@ -68,7 +79,7 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     """Finds and prints the distinct faults of a folder of runs or a campaign, with an analysis of each."""
     from roadgpt.campaign.faults.fault import faults_in
     from roadgpt.campaign.faults.fault_log import FAILURES, instructive, write_tables, write_top
-    from roadgpt.campaign.faults.remedy import FOLDER
+    from roadgpt.campaign.faults.remedy import FOLDER, stored_remedies
     from roadgpt.campaign.folder_record import open_record, setups_of
     from roadgpt.cli.repeat_commands import typed_words
     from roadgpt.run.model import permissions
@@ -90,6 +101,16 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
         tops = _analysed(place, [(at, (name,)) for at, (_, name) in enumerate(top)], look)
     table = write_tables(found, looked, place)
     look.say("\n".join(_summary(place, found, looked)))
+    every = [each for fault in (*found.them, *found.alone) for each in fault.members]
+    tried = [removed for each in every if (removed := stored_remedies(place, each)) is not None]
+    if fixed := sum({*removed.values()} == {None} for removed in tried):
+        look.say(
+            f"no small change could be tried on {fixed:,} of {len(tried):,} failures: their roads have lanes "
+            "of their own and no design, as routes through a map do"
+        )
+    if look.minimise and (left := sum(not its.simplest for its in looked.values())):
+        what = plural(left, "failure")
+        look.say(f"no simplest road of {what}: only a design without junctions can be simplified")
     look.say(f"tables: {table} and {table.with_name(FAILURES)}")
     if look.formats:
         cells = sorted({fault.typical[0].name.cell for fault in found.them})
@@ -220,8 +241,10 @@ BESIDE_A_FILE = {
 # fmt: off
 CAMPAIGN_OPTIONS = (
     Argument("words...", "DESCRIPTION|FILE.toml",
-             'Say what roads: roadgpt campaign "a winding road" --goal failures -n 200'),
-    Option("-n --tests", "Number of tests.", TESTS),
+             'Say what roads: roadgpt campaign "a winding road" --goal failures -n 200', required=False),
+    Option("--on", "Test the roads of this folder instead: road files, such as the routes that 'roadgpt "
+           "import' writes, runs, or a campaign.", metavar="FOLDER"),
+    Option("-n --tests", "Number of tests. [default with --on: that of the roads]", TESTS),
     Option("--goal", "What to search for: failures, coverage (roads as diverse as possible), hardest (least "
            "margin), boundary (just between PASS and FAIL). [default: no search]",
            click.Choice(["failures", "coverage", "hardest", "boundary"])),
@@ -255,10 +278,12 @@ def campaign(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **
     """Search for roads that a driver fails on, or make thousands of roads.
 
     Give a description, or a FILE.toml that lists prompts, designers, drivers, simulators and seeds; each
-    combination is then a cell with tests of its own. A campaign can be resumed after Ctrl-C, a crash or a
-    power cut. The table of results depends neither on interruptions nor on the number of workers.
+    combination is then a cell with tests of its own. With --on, the roads of a folder are tested instead. A
+    campaign can be resumed after Ctrl-C, a crash or a power cut. The table of results depends neither on
+    interruptions nor on the number of workers.
 
     \b
+    roadgpt campaign --on routes --drivers lane_centring,pure_pursuit --paired
     roadgpt campaign "an uphill road with 3 turns" --goal failures -n 200 -j 2 --seed 7
     roadgpt campaign study.toml -j 16 --out study
     roadgpt show study --watch"""
@@ -267,15 +292,19 @@ def campaign(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **
     from roadgpt.run.atomic import to_bytes
     from roadgpt.run.folder import new_folder
 
+    if not words and given["on"] is None:
+        raise click.MissingParameter(ctx=ctx, param=ctx.command.params[0])
     text = to_bytes(" ".join(words)).decode()  # what a broken terminal put into it becomes an escape
-    plan = _filed(ctx, Path(text), given) if text.endswith(".toml") else _described(text, given)
+    refuse_file(text, "tests", "campaign", "--on")
+    plan, told = _filed(ctx, Path(text), given) if text.endswith(".toml") else _described(ctx, text, given)
+    plan, roads = _given(plan, told, given["quiet"]) if plan.on else (plan, ())
     plan.check()
     plugins.find("executors", given["executor"])
     if out is None:
-        out = new_folder(Path(text).stem if text.endswith(".toml") else text, plan.seeds[0])
+        out = new_folder(Path(text).stem if text.endswith(".toml") else text or given["on"], plan.seeds[0])
     given["gate"] = options.gate_of(given, out)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
-        was_there = begin(plan, out, given.pop("again"))
+        was_there = begin(plan, out, given.pop("again"), roads)
     if not given["quiet"] and not given["as_json"]:
         _tell(out, plan, was_there)
     work_to_the_end(out, given)
@@ -316,8 +345,8 @@ def work_to_the_end(
     given["gate"].close()
 
 
-def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
-    """Returns the plan in a file."""
+def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "tuple[Plan, Set[str]]":
+    """Returns the plan in a file, and the fields of the World that it sets."""
     from roadgpt.campaign.plan import read_plan
     from roadgpt.chat.config import Layer, configured
     from roadgpt.drive.loading import check_named_drivers
@@ -330,21 +359,35 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
     written = read_plan(path)
     check_named_drivers(rest["drivers"] if "drivers" in typed else (), {*written.plan.drivers}, path)
     if not written.plan.asks_a_model:
-        return written.plan
+        return written.plan, written.world
     chat = configured(options.chat_values(rest), Layer(str(path), tables={"chat": written.chat}))
-    return written.plan.model_copy(update={"chat": chat})
+    return written.plan.model_copy(update={"chat": chat}), written.world
 
 
-def _described(text: str, rest: dict[str, Any]) -> "Plan":
+OF_DESIGN = {"words", "goal", "generator", "is_plan", "reader", "designer"}
+
+
+def _described(ctx: click.Context, text: str, rest: dict[str, Any]) -> "tuple[Plan, Set[str]]":
+    """Returns the plan of a description or of given roads, and the fields of the World that were typed."""
     from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL, CellBudget
     from roadgpt.campaign.plan import Plan
 
+    told = options.typed(ctx)
+    wrong = OF_DESIGN | {flag.field for flag in options.CHAT} if rest["on"] else set()
+    for parameter in ctx.command.params:
+        if parameter.name in wrong & told:
+            what = parameter.opts[0] if isinstance(parameter, Option) else "a description"
+            raise UsageError(
+                f"--on tests roads that are there, and {what} is for roads that are designed; leave one of "
+                "them out"
+            )
     rest["reader"] = options.reader_of(rest)
     rest["generator"] = rest["generator"] or (WITH_GOAL if rest["goal"] else WITHOUT_GOAL)
     lists = {f"{name}s": (rest[name],) for name in ("designer", "simulator", "generator", "seed")}
     names = ("goal", "drivers", "reader", "rules", "geometry", "keep_driving", "paired")
-    return Plan(
+    plan = Plan(
         prompts=(text,),
+        on=rest["on"] or "",
         budget=CellBudget(tests=rest["tests"], seconds=rest["seconds"]),
         drives=not rest["no_drive"],
         world=options.world_of(rest),
@@ -352,6 +395,57 @@ def _described(text: str, rest: dict[str, Any]) -> "Plan":
         **lists,
         **{name: rest[name] for name in names},
     )
+    return plan, told
+
+
+def _given(plan: "Plan", told: Set[str], quiet: bool) -> "tuple[Plan, list[bytes]]":
+    """Returns the plan with the roads that were found where it says, and the files that keep them; says which
+    files there are left out, and why. ``told`` are the fields of the World that precede those of files."""
+    from roadgpt.campaign.given import kept_road
+    from roadgpt.campaign.model import GIVEN
+    from roadgpt.network import has_no_route, made_from
+    from roadgpt.network.source import OF_FILE
+    from roadgpt.reading import digest
+
+    home = Path(plan.on) if Path(plan.on).is_dir() else Path(plan.on).parent
+    named, contents, left_out = list[dict[str, Any]](), list[bytes](), dict[str, str]()
+    worlds, remarks = list[dict[str, Any]](), dict[str, list[str]]()
+    for said in roads_in([plan.on]):
+        name = os.path.relpath(said, home)
+        try:
+            with named_in_errors(said):
+                blueprint, world, more = source_of(said, plan.world, told)
+                if has_no_route(made_from(blueprint, world, plan.geometry)):
+                    how = command_line("import", said if said.endswith(".xodr") else "MAP.xodr")
+                    raise UsageError(
+                        f"{said} is a map without a route, on which nothing can be driven; to make routes: "
+                        f"{how} --random-routes 20 --out FOLDER"
+                    )
+        except PartError:
+            raise
+        except UsageError as error:
+            if said == plan.on:
+                raise
+            left_out[name] = str(error)
+            warn(f"left out: {error}")
+            continue
+        worlds.append({field: world.values()[field] for field in OF_FILE})
+        data = blueprint.to_json() | {"world": worlds[-1]}
+        road, content = kept_road(len(named) + 1, name, digest(Path(said)), data)
+        named.append(road.model_dump())
+        contents.append(content)
+        for remark in more:
+            remarks.setdefault(remark, []).append(name)
+    if not named:
+        raise UsageError(f"none of the {len(left_out):,} road files in {plan.on} can be tested")
+    for remark, names in () if quiet else remarks.items():
+        warn(f"{', '.join(names[:MOST_TOLD])}{', ...' * (len(names) > MOST_TOLD)}: {remark}")
+    common = {name: worlds[0][name] for name in OF_FILE if len({each[name] for each in worlds}) == 1}
+    settings = {"roads": named, "differ": [name for name in OF_FILE if name not in common]}
+    budget = plan.budget.model_copy(update={"tests": plan.budget.tests or len(named)})
+    changed = {"generators": (GIVEN,), "settings": settings, "budget": budget, "left_out": left_out}
+    changed["on"] = str(home.absolute())
+    return plan.model_copy(update=changed | {"world": plan.world.changed(**common)}), contents
 
 
 def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
@@ -368,6 +462,13 @@ def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
             continue
         for said in world_remarks(brief, plan.world, world):
             click.echo(f"note: {words}: {said}")
+    if plan.on:
+        count, tests = len(plan.settings["roads"]), plan.budget.tests or 0
+        told = f"{plural(count, 'road')} of {plan.on}, kept in {out / 'roads'}"
+        told += f"; {plural(len(plan.left_out), 'file')} left out" * bool(plan.left_out)
+        told += f"; the first {tests:,} are tested" * (tests < count)
+        told += f"; {tests:,} tests, so roads are driven again with other seeds" * (tests > count)
+        click.echo(told)
     if len(cells) > 1:
         what = "the same roads for each driver" if plan.paired else "each with tests of its own"
         click.echo(f"{len(cells):,} cells, {what}")
@@ -400,13 +501,20 @@ def resume(folder: Path, driver: tuple[str, ...], base_url: str | None, axes: "S
 
     \b
     roadgpt resume roadgpt-runs/an-uphill-road-with-3-turns-7 -j 2"""
-    from roadgpt.campaign.folder_record import open_record
+    from roadgpt.campaign.folder_record import has_tests, is_store, open_record
+    from roadgpt.campaign.given import changes, given_roads
     from roadgpt.chat.config import trust_server
     from roadgpt.drive.loading import check_named_drivers
+    from roadgpt.reading import digest
 
     rest["gate"] = options.gate_of(rest, folder)
     with open_record(folder) as record:
         cells = record.cells()
+        plan = record.plan() if is_store(folder) else None
+    if plan is not None and plan.on and not has_tests(Path(plan.on)):
+        roads = given_roads(plan.settings)
+        for change in changes(roads, {road.name: digest(Path(plan.on, road.name)) for road in roads}):
+            warn(f"{plan.on}: {change} since the campaign began, which goes on with what it kept of it")
     chat = next((cell.request.setup.chat for cell in cells if cell.request.setup.chat), None)
     check_named_drivers(driver, {cell.request.setup.driver for cell in cells}, folder)
     if base_url is not None:
