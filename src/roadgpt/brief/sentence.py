@@ -113,6 +113,8 @@ def _wishes(brief: Brief) -> list[str]:
         CENTRES[brief.centre] if brief.centre else "",
         "traffic on the left" if brief.left_hand else "",
         f"on a map of {brief.map_size:g} metres" if brief.map_size else "",
+        f"coming from the {brief.comes_from}" if brief.comes_from else "",
+        f"designed for {brief.speed:g} km/h" if brief.speed else "",
         *(surface.said for name, surface in SURFACES.items() if name in brief.beside),
     ]
     return [wish for wish in out if wish]
