@@ -49,8 +49,10 @@ def _route_sentence(brief: Brief) -> str:
         parts += [junction_text(junction), _stretch(stretch)]
     way = ", then ".join(part for part in parts if part)
     length = f"{brief.length} metres in all" if brief.length else ""
-    whole = _wishes(brief.model_copy(update={"junctions": (), "stretches": (), "length": None}))
-    text = "; ".join([way, *whole, *([length] if length else [])])
+    others = "other roads" if any(stretch.speed for stretch in brief.stretches) else "roads"
+    speed = f"its {others} designed for {brief.speed:g} km/h" if brief.speed else ""
+    apart = {"junctions": (), "stretches": (), "length": None, "speed": None}
+    text = "; ".join(filter(None, [way, *_wishes(brief.model_copy(update=apart)), speed, length]))
     return text[0].upper() + text[1:] + "."
 
 

@@ -7,7 +7,7 @@ from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
 from roadgpt.design.road_search import sufficient_map
 from roadgpt.road import World
-from roadgpt.road.world import KMH
+from roadgpt.road.world import KMH, Limits
 
 
 def world_for(brief: Brief | None, world: World) -> World:
@@ -56,9 +56,9 @@ def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
 
 
 def speed_remark(brief: Brief, found: World) -> str:
-    """Returns a sentence on the speed limit, which is not set by the design speed that a plan gives."""
+    """Returns a sentence on the usual speed limit, which a design speed does not change."""
     speeds = sorted({road.speed for road in brief.roads if road.speed is not None})
-    if not speeds or "speed_limit" in found.limits.model_fields_set:
+    if not speeds or found.limits.speed_limit != Limits().speed_limit:
         return ""
     said = " and ".join(f"{speed:g}" for speed in speeds)
     limit = f"{KMH * found.limits.speed_limit:g} km/h"
