@@ -9,7 +9,7 @@ import pytest
 from network.ruled import findings
 from paper_roads import road_of, straight, turn
 from roadgpt.brief import read
-from roadgpt.brief.design_speed import TABLE, limits_at
+from roadgpt.brief.design_speed import SIGHT, limits_at
 from roadgpt.brief.model import Brief, exactly
 from roadgpt.design import draft
 from roadgpt.design.room import speed_remark, world_for
@@ -55,7 +55,7 @@ def test_the_limits_are_those_of_the_printed_tables(kmh: int) -> None:
     assert -1 < limits.crest / 100 - crest < 0.05  # printed ones are rounded up
     assert -1 < limits.sag / 100 - sag < 0.05
     stopping = 0.278 * kmh * 2.5 + 0.039 * kmh**2 / 3.4  # 2.5 s, then 3.4 m/s2
-    assert TABLE[kmh][1] == sight
+    assert SIGHT[kmh // 10 - 2] == sight
     assert -0.5 < sight - stopping < 5
 
 

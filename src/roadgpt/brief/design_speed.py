@@ -8,7 +8,6 @@ two rows get values between them. The guide sets no limits for straights; those 
 or more between two curves to the same side, and 20 V at most, for V in km/h.
 """
 
-from bisect import bisect_left
 from functools import cache
 from math import radians
 from typing import NamedTuple
@@ -16,21 +15,10 @@ from typing import NamedTuple
 from roadgpt.brief.words import KINDS
 
 SLOWEST, FASTEST = 20.0, 130.0  # km/h
-TABLE = {
-    20: (0.35, 20),
-    30: (0.28, 35),
-    40: (0.23, 50),
-    50: (0.19, 65),
-    60: (0.17, 85),
-    70: (0.15, 105),
-    80: (0.14, 130),
-    90: (0.13, 160),
-    100: (0.12, 185),
-    110: (0.11, 220),
-    120: (0.09, 250),
-    130: (0.08, 285),
-}
-"""Side friction and stopping sight distance in metres, for each design speed in km/h."""
+EVERY = 10.0  # km/h, from one value of the table to the next
+FRICTION = (0.35, 0.28, 0.23, 0.19, 0.17, 0.15, 0.14, 0.13, 0.12, 0.11, 0.09, 0.08)
+SIGHT = (20, 35, 50, 65, 85, 105, 130, 160, 185, 220, 250, 285)
+"""Side friction, and stopping sight distance in metres, for the design speeds from ``SLOWEST`` on."""
 SUPERELEVATION = 0.06
 TRANSITION = 2.0  # s
 BETWEEN_SAME_SIDE = 6.0  # m of straight for each km/h, between two turns to the same side
@@ -62,13 +50,9 @@ class SpeedLimits(NamedTuple):
 @cache
 def limits_at(kmh: float) -> SpeedLimits:
     """Returns what a design speed, from ``SLOWEST`` to ``FASTEST`` km/h, requires."""
-    speeds = [*TABLE]
-    high = max(bisect_left(speeds, kmh), 1)
-    share = (kmh - speeds[high - 1]) / (speeds[high] - speeds[high - 1])
-    friction, sight = (
-        one + share * (other - one)
-        for one, other in zip(TABLE[speeds[high - 1]], TABLE[speeds[high]], strict=True)
-    )
+    row = min(int((kmh - SLOWEST) / EVERY), len(SIGHT) - 2)
+    share = (kmh - SLOWEST) / EVERY - row
+    friction, sight = (column[row] + share * (column[row + 1] - column[row]) for column in (FRICTION, SIGHT))
     return SpeedLimits(
         kmh,
         radius=kmh**2 / (127 * (SUPERELEVATION + friction)),

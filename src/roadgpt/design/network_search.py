@@ -30,6 +30,7 @@ from roadgpt.brief.junction_check import check_junction
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, Way, side_of
 from roadgpt.brief.map_fit import EDGE, LEADS
 from roadgpt.brief.model import Brief, Clause, mirrored
+from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.words import LARGEST_MAP, ROAD_LENGTH_SLACK, heading_from
 from roadgpt.check.matching import length_range
 from roadgpt.check.measures import measured_map
@@ -411,6 +412,9 @@ class NetworkSearch(_Search):
             wanted = brief.model_copy(update={"turns": exactly(0) if is_straight else at_least(1)})
         if n in self.has_wide_bends and brief.turns is None and wanted.turns not in (None, exactly(0)):
             wanted = wanted.model_copy(update={"sharpness": "sweeping"})
+        kinds = {place.kind for place in self.brief.junctions[max(n - 1, 0) : n + 1]}
+        if brief.speed is not None and kinds & {*RAMPS, *LANE_KINDS} and not _asks_for_slopes(brief):
+            wanted = wanted.model_copy(update={"slope": "flat"})  # its level ends are passed at full speed
         search = DraftSearch(wanted, self.world, self.others, self.rng)
         for _ in range(STRETCHES):
             found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
@@ -486,6 +490,13 @@ class NetworkSearch(_Search):
         }
         what = advice.get(why, "leave something out")
         return f"no draft of this route was accepted: {why}; {what}"
+
+
+def _asks_for_slopes(brief: Brief) -> bool:
+    clauses = (*brief.clauses, *brief.both_ends)
+    names = ("slope", "incline", "climb", "steepest", "hills")
+    said = any(getattr(each, name, None) for each in (brief, *clauses) for name in names)
+    return said or any(clause.kind in BUMPS for clause in clauses)
 
 
 def _without_ramps(asked: Brief, n: int, places: Sequence[PlaceDesign]) -> Brief:
