@@ -784,7 +784,7 @@ def _asked_gap(
             neighbours.append(before.required_grade)
         if number == len(wishes) - 1 and after:
             neighbours.append(after.required_grade)
-        if windows.floor:  # a turn of open grade leads on to another slope
+        if windows.floor and (wish.length or OPEN).hi == inf:  # a turn of open grade leads to another slope
             neighbours = [Range(0, 0) if other is None else other for other in neighbours]
         changes = [_change(grade, other, task) for other in neighbours if windows.part(grade, other)]
         least = max(LEAD, sum(changes) + 8.0 if changes else 0.0, _room_of_climb(wish))
