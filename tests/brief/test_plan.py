@@ -1,5 +1,7 @@
 """The one-line language of a Brief, its normal form, and the sentence in which it says itself."""
 
+from typing import get_args
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -8,15 +10,18 @@ from roadgpt.brief.model import Brief, Clause, at_least, exactly
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.sentence import sentence
+from roadgpt.brief.words import Compass
 from roadgpt.errors import BriefError
 from strategies import amounts, briefs, maybe
 from tables import rows
 
 shaped = st.builds(
-    lambda brief, degrees, radius: brief.model_copy(update={"degrees": degrees, "radius": radius}),
+    lambda brief, **more: brief.model_copy(update=more),
     briefs(),
-    maybe(amounts(20, 170)),
-    maybe(amounts(12, 90)),
+    degrees=maybe(amounts(20, 170)),
+    radius=maybe(amounts(12, 90)),
+    speed=maybe(st.floats(20, 130).map(lambda kmh: round(kmh, 1)), 6),
+    comes_from=maybe(st.sampled_from(get_args(Compass)), 6),
 )
 
 
@@ -72,7 +77,7 @@ def test_a_figure_for_every_turn_is_never_lost(line: str, kept: str) -> None:
 
 
 @settings(deadline=None)
-@given(briefs())
+@given(shaped)
 def test_everything_has_a_sentence(brief: Brief) -> None:
     said = sentence(brief)
     assert said.endswith(".")

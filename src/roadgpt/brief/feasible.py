@@ -3,13 +3,15 @@ change.
 """
 
 from collections.abc import Iterator
-from math import inf
+from itertools import pairwise
+from math import inf, radians
 
 from roadgpt.brief.amount import meets
+from roadgpt.brief.design_speed import SpeedLimits, limits_at
 from roadgpt.brief.map_fit import ROAD_WIDTH, check_room, least_length
 from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, Slope, exactly, span
 from roadgpt.brief.normal import BUMPS, SINGLE, STRAIGHT, clauses_turn, normal, total, turns_of
-from roadgpt.brief.outline import slopes_of_bump
+from roadgpt.brief.outline import outline, slopes_of_bump
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.sentence import clause_text, road_words
 from roadgpt.brief.words import (
@@ -77,7 +79,7 @@ def check(
         faults = _faults(brief, min_radius, min(100 * max_grade, STEEPEST))
     if fault := next(faults, ""):
         raise BriefError(fault)
-    for stretch in brief.stretches:
+    for stretch in brief.roads if brief.junctions else ():
         check(stretch, None, min_radius, max_grade, road_width)
     if map_size is not None and not is_network:
         check_room(normal(brief), map_size, min_radius, road_width)
@@ -110,6 +112,8 @@ def _faults(brief: Brief, min_radius: float, steepest: float) -> Iterator[str]:
         yield from look(brief)
     yield from _slopes(brief, steepest)
     yield from _length(brief, min_radius, steepest)
+    if brief.speed is not None:
+        yield from _design_speed(brief, limits_at(brief.speed))
 
 
 def _lanes(brief: Brief) -> Iterator[str]:
@@ -326,6 +330,42 @@ def _length(brief: Brief, min_radius: float, steepest: float) -> Iterator[str]:
         metres = min(longest, LONGEST_ROAD)
         if height > metres * grade / 100:
             yield f"{min(most, LONGEST_ROAD):g} m of road cannot {way} {height:g} m; ask for a longer road"
+
+
+def _design_speed(brief: Brief, limits: SpeedLimits) -> Iterator[str]:
+    """Checks the turns against the least radius of a design speed, and lengths against its vertical curves,
+    which lie half on either side of the place where two slopes meet.
+    """
+    found, fast = outline(brief.model_copy(update={"speed": None})), f"a road for {limits.kmh:g} km/h"
+    features = [group.feature for group in found.groups for _ in range(max(group.lo, 1))]
+    ends = [end for end in (found.starts, found.ends) if end is not None]
+    for each in (*features, *ends, found.each_turn):
+        most, longest = (each.radius or Range()).hi, (each.length or Range()).hi
+        if most < limits.radius:
+            yield (
+                f"{fast} has turns of {limits.radius:.0f} m radius or more, but a {each.name} of {most:g} m"
+                " or less is asked for; leave out one of the two"
+            )
+        angle = each.degrees.lo if each.degrees and each.kind == "turn" else 0.0
+        least = limits.radius * radians(angle)
+        if least > longest:
+            yield (
+                f"a {each.name} of {angle:g} degrees is {least:.0f} m long or longer on {fast}; change its"
+                " length, or the speed"
+            )
+    halves = [0.0]
+    for one, other in pairwise(each.grade for each in features):
+        change = max(one.lo - other.hi, other.lo - one.hi, 0.0) if one and other else 0.0
+        halves.append(limits.vertical_radius * change / 200)
+    needed = [before + after for before, after in pairwise([*halves, 0.0])]
+    rooms = [("road", found.length or Range()), *((each.name, each.length or Range()) for each in features)]
+    needed = [sum(needed), *needed]
+    for (name, room), metres in zip(rooms, needed, strict=False):
+        if metres > room.hi:
+            yield (
+                f"the vertical curves of {fast} need {metres:.0f} m of a {name} that is {room.hi:.0f} m long"
+                " at most; ask for longer or gentler slopes, or for a lower speed"
+            )
 
 
 def _noun(clause: Clause) -> str:

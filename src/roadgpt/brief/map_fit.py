@@ -14,6 +14,7 @@ m, grades up to 4, 4.5, 4.5 and 6 percent.
 
 from math import ceil, floor, inf, pi, prod, radians, sin, sqrt
 
+from roadgpt.brief.design_speed import limits_at
 from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.normal import STRAIGHT, normal, total, turns_of
 from roadgpt.brief.refusal import NoRoomError
@@ -113,11 +114,13 @@ def _too_long(what: str, metres: float, brief: Brief, map_size: float, road_widt
 
 def least_length(brief: Brief, min_radius: float) -> float:
     """Returns a lower bound, in metres, on the length of a road with the clauses and turns of a Brief, whose
-    turns have a radius of ``min_radius`` metres or more.
+    turns have a radius of ``min_radius`` metres or more, and the radius that the design speed needs.
     """
-    metres = sum(_way(clause, min_radius) for clause in brief.clauses)
+    limits = limits_at(brief.speed) if brief.speed else None
+    least = max(min_radius, limits.radius) if limits else min_radius
+    metres = sum(_way(clause, least) for clause in brief.clauses)
     extra = span(brief.turns).lo - span(total(brief.clauses)).lo
-    return metres + max(extra, 0) * WAY_OF_A_TURN
+    return metres + max(extra, 0) * max(WAY_OF_A_TURN, limits.shortest_turn if limits else 0.0)
 
 
 def metres_of(brief: Brief, min_radius: float) -> float:

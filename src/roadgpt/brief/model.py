@@ -10,9 +10,10 @@ from pydantic import AfterValidator, Field, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exactly, figure, span
 from roadgpt.brief.beside import BESIDE, friction_of
+from roadgpt.brief.design_speed import FASTEST, SLOWEST
 from roadgpt.brief.junctions import JunctionClause, MapClause, Side
 from roadgpt.brief.ranges import Range, nearest
-from roadgpt.brief.words import LARGEST_MAP, MOST_LANES, SMALLEST_MAP, Kind, Sharpness, Size, Slope
+from roadgpt.brief.words import LARGEST_MAP, MOST_LANES, SMALLEST_MAP, Compass, Kind, Sharpness, Size, Slope
 
 __all__ = [
     "OTHER_SIDE",
@@ -37,6 +38,8 @@ __all__ = [
 
 OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
 SIDE = re.compile("left(?!_hand)|right")
+OTHER_POLE = {"north": "south", "south": "north"}
+UPSIDE_DOWN = re.compile("north|south")
 CentreLine = Literal["solid", "broken", "double", "none"]
 OF_THE_WORDS = ("words", "beside", "unused", "confidence", "other", "map_size")
 """The fields of a Brief that require nothing of the shape of a road."""
@@ -154,6 +157,12 @@ class Brief(Frozen):
     map: MapClause | None = None
     """The map of roads that is required instead of one road. A plan then gives no other requirements than
     ``length``, ``left_hand``, ``map_size`` and ``beside``."""
+    comes_from: Compass | None = None
+    """The direction from which one comes at the start; the map has north at the top. Not for maps of roads.
+    """
+    speed: Annotated[float, Field(ge=SLOWEST, le=FASTEST)] | None = None
+    """The design speed in km/h: see ``brief.design_speed``. That of a route holds for its roads without one.
+    """
     other: str = ""
     """The plan of the second likeliest reading, if the reader is not sure of this Brief; otherwise empty."""
 
@@ -173,6 +182,10 @@ class Brief(Frozen):
             raise ValueError("traffic drives on one side on the whole route; write left_hand after ||")
         if any(stretch.map_size for stretch in self.stretches):
             raise ValueError("a route lies on one map; write map_size= after ||")
+        if any(stretch.comes_from for stretch in self.stretches):
+            raise ValueError("a route comes from one direction at its start; write from= after ||")
+        if self.map is not None and (self.comes_from or self.speed):
+            raise ValueError("from= and speed= are for roads and routes; leave them out of a map of roads")
         return self
 
     @property
@@ -214,7 +227,10 @@ class Brief(Frozen):
         turns are given.
         """
         if self.stretches:
-            return self.stretches
+            own = ({"speed": road.speed or self.speed} for road in self.stretches)
+            return tuple(
+                road.model_copy(update=speed) for road, speed in zip(self.stretches, own, strict=True)
+            )
         needs_turn = not self.clauses and self.turns is None
         return (self.model_copy(update={"turns": at_least(1)}) if needs_turn else self,)
 
@@ -225,8 +241,9 @@ class Brief(Frozen):
 
     @property
     def has_free_shape(self) -> bool:
-        """Whether nothing is required of the road but lanes, markings, or that it is a motorway."""
-        return self._requires_only((*OF_THE_WORDS, "lanes", "against", "divided", "centre", "motorway"))
+        """Whether nothing is required of the road but lanes, markings, a speed, or that it is a motorway."""
+        free = ("lanes", "against", "divided", "centre", "motorway", "speed")
+        return self._requires_only((*OF_THE_WORDS, *free))
 
     @property
     def is_straight_of_any_length(self) -> bool:
@@ -247,15 +264,17 @@ class Brief(Frozen):
 
 
 def mirrored(brief: Brief) -> Brief:
-    """Returns the same requirements with left and right exchanged, and with traffic on the other side. A
-    route with traffic on the left meets a Brief exactly if its mirror image meets the mirrored Brief.
+    """Returns the same requirements with left and right, and north and south, exchanged, and with traffic on
+    the other side. A route with traffic on the left meets a Brief exactly if its mirror image, at a line from
+    west to east, meets the mirrored Brief.
 
     The numbers of exits stay, because exits are counted in the direction in which traffic drives around a
     roundabout. ``map`` also stays as it is.
     """
     names = {"clauses", "starts", "ends", "left", "right", "junctions", "stretches"}
     other = {**brief.model_dump(exclude=names), **_with_other_sides(brief.model_dump(include=names))}
-    return Brief.model_validate({**other, "left_hand": not brief.left_hand})
+    start = brief.comes_from and UPSIDE_DOWN.sub(lambda way: OTHER_POLE[way[0]], brief.comes_from)
+    return Brief.model_validate({**other, "left_hand": not brief.left_hand, "comes_from": start})
 
 
 def _with_other_sides(value: Any) -> Any:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, Literal, TypeVar
 
+from roadgpt.brief.design_speed import SpeedLimits, limits_at
 from roadgpt.brief.map_fit import has_low_grades, has_wide_turns
 from roadgpt.brief.model import Amount, Brief, Clause, Kind, Side, Slope, span
 from roadgpt.brief.normal import (
@@ -36,6 +37,7 @@ from roadgpt.brief.words import (
     SLOPES,
     STEEPEST,
     Quantity,
+    heading_from,
 )
 
 SMALLEST_TURN = 12.0  # degrees; a bend of less than 10 is not measured as a turn
@@ -44,8 +46,9 @@ LARGEST_TURN = 270.0  # degrees, if only a lower bound was given
 USUALLY_WIDEST = 300.0  # metres: a wider bend is not a turn, unless such turns are asked for
 ROOMY = 150.0  # metres: a map of this side holds a sweeping turn of 60 m radius with its straights
 EASIER = 0.75  # the usual grades of a word are kept if the least of them is at most this share of a limit
-WIDER, WIDER_THAN_MOST = 1.5, 1.1
-"""Ratios to the least and to the greatest radius that is asked for; a wider bend is not a turn."""
+WIDER, WIDER_THAN_MOST, WIDER_OF_SPEED = 1.5, 1.1, 1.8
+"""Ratios to the least and to the greatest radius that is asked for, and to the least one of a design speed; a
+wider bend is not a turn."""
 USUALLY_STEEPEST = 12.0  # percent, of a part whose height is given and whose length and grade are open
 BUMP_SLOPES: Mapping[Kind, tuple[Slope, Slope]] = {"crest": ("up", "down"), "dip": ("down", "up")}
 STRAIGHT_ON = Clause(kind="straight")
@@ -148,6 +151,10 @@ class Outline:
     alike: bool = False
     """Whether turns of one name must be equal, and straights equally long; see ``Brief.alike``."""
     hard: bool = False
+    speed: SpeedLimits | None = None
+    """What the design speed requires; its least radius is also that of ``each_turn``."""
+    heading: float | None = None
+    """The heading at the start, in degrees counter-clockwise from east; only of roads that have a place."""
 
     @property
     def widest(self) -> float:
@@ -156,7 +163,8 @@ class Outline:
         features = (self.each_turn, *(group.feature for group in self.groups), *ends)
         radii = [feature.radius for feature in features if feature.radius]
         most = [WIDER_THAN_MOST * radius.hi for radius in radii if radius.hi < inf]
-        return max([USUALLY_WIDEST, *most, *(WIDER * radius.lo for radius in radii)])
+        fast = [WIDER_OF_SPEED * self.speed.radius] if self.speed else []
+        return max([USUALLY_WIDEST, *most, *fast, *(WIDER * radius.lo for radius in radii)])
 
     @property
     def names_all_turns(self) -> bool:
@@ -202,9 +210,15 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
         ends=_last(brief.ends, roomy) if brief.ends else None,
         alike=brief.alike,
         hard=brief.hard,
+        heading=heading_from(brief.comes_from) if brief.comes_from else None,
     )
     found = _with_both_ends(found)
-    return _as_motorway(found, brief, map_size) if brief.motorway else found
+    found = _as_motorway(found, brief, map_size) if brief.motorway else found
+    if brief.speed is None:
+        return found
+    limits = limits_at(brief.speed)
+    wide = overlap(found.each_turn.radius, Range(limits.radius))
+    return replace(found, speed=limits, each_turn=replace(found.each_turn, radius=wide))
 
 
 def _with_both_ends(found: Outline) -> Outline:

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple, TypeVar, get_args
 from pydantic import ValidationError
 
 from roadgpt.brief.amount import amount_text, figure, read_amount
+from roadgpt.brief.design_speed import FASTEST, SLOWEST
 from roadgpt.brief.junctions import (
     LONGEST_ROUTE,
     MAP,
@@ -37,7 +38,7 @@ from roadgpt.brief.junctions import (
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Frozen, exactly, span
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.refusal import refused
-from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, Kind, Sharpness, Size, Slope
+from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, Compass, Kind, Sharpness, Size, Slope
 from roadgpt.errors import BriefError
 
 KINDS = frozenset(get_args(Kind))
@@ -61,8 +62,16 @@ ROAD_KEYS = {
     "against": "against",
     **KEYS,
 }
-OF_WHOLE = ("length", "left_hand", "map_size", "beside")
-"""The fields of a Brief that can be asked of a whole route or map."""
+OF_WHOLE = {
+    "length": "len",
+    "left_hand": "left_hand",
+    "map_size": "map_size",
+    "beside": "beside",
+    "comes_from": "from",
+    "speed": "speed",
+}
+"""The fields of a Brief that can be asked of a whole route, with their names in plans; a map has no last two.
+"""
 PLACES = ("starts", "ends")
 INNER = "(starts|ends|beside)"
 ALIKE = "alike"
@@ -110,13 +119,27 @@ def _centre(text: str) -> str:
 
 
 def _size_of_map(text: str) -> float | None:
-    size = read_amount(text)
-    if not size.exact or not SMALLEST_MAP <= (size.lo or 0) <= LARGEST_MAP:
+    return _one_number(text, "map has one size", SMALLEST_MAP, LARGEST_MAP, "m", "map_size=500")
+
+
+def _speed(text: str) -> float | None:
+    return _one_number(text, "road has one design speed", SLOWEST, FASTEST, "km/h", "speed=80")
+
+
+def _one_number(text: str, what: str, least: float, most: float, unit: str, example: str) -> float | None:
+    number = read_amount(text)
+    if not number.exact or not least <= (number.lo or 0) <= most:
         raise BriefError(
-            f"a map has one size of {SMALLEST_MAP:g} to {LARGEST_MAP:g} m, not {text[:40]}; write for "
-            "example map_size=500"
+            f"a {what} of {least:g} to {most:g} {unit}, not {text[:40]}; write for example {example}"
         )
-    return size.lo
+    return number.lo
+
+
+def _compass(text: str) -> str:
+    if text not in get_args(Compass):
+        known = ", ".join(get_args(Compass))
+        raise BriefError(f"one cannot come from '{text[:40]}' in a plan; there are {known}")
+    return text
 
 
 def read_ways(text: str) -> tuple[Way, ...]:
@@ -147,7 +170,12 @@ ROAD = _Language(
         ONE_WAY: ("against", NO_LANE),
     },
     ROAD_KEYS,
-    {"centre": ("centre", _centre), "map_size": ("map_size", _size_of_map)},
+    {
+        "centre": ("centre", _centre),
+        "map_size": ("map_size", _size_of_map),
+        "from": ("comes_from", _compass),
+        "speed": ("speed", _speed),
+    },
 )
 JUNCTION = _Language(
     {
@@ -218,7 +246,9 @@ def _wishes(brief: Brief) -> list[str]:
     wishes += [f"{name}({_clause(clause)})" for name in PLACES if (clause := getattr(brief, name))]
     wishes += [f"beside({', '.join(brief.beside)})"] if brief.beside else []
     wishes += [f"centre={brief.centre}"] if brief.centre is not None else []
-    return wishes + ([f"map_size={brief.map_size:g}"] if brief.map_size is not None else [])
+    wishes += [f"map_size={brief.map_size:g}"] if brief.map_size is not None else []
+    wishes += [f"from={brief.comes_from}"] if brief.comes_from is not None else []
+    return wishes + ([f"speed={figure(brief.speed)}"] if brief.speed is not None else [])
 
 
 def _clause(clause: Clause) -> str:
@@ -329,7 +359,7 @@ def _read_whole(text: str) -> dict[str, object]:
         asked = asked.model_copy(update={"alike": False, "beside": (*asked.beside, ALIKE)})
     fields = {name: getattr(asked, name) for name in OF_WHOLE}
     if asked != Brief.model_validate(fields):
-        *names, last = ("len" if name == "length" else name for name in OF_WHOLE)
+        *names, last = OF_WHOLE.values()
         known = f"{', '.join(names)} and {last}"
         raise BriefError(
             f"after {WHOLE}, only {known} can be asked; what holds for one road stands with it, after |"

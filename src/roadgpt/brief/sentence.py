@@ -49,8 +49,10 @@ def _route_sentence(brief: Brief) -> str:
         parts += [junction_text(junction), _stretch(stretch)]
     way = ", then ".join(part for part in parts if part)
     length = f"{brief.length} metres in all" if brief.length else ""
-    whole = _wishes(brief.model_copy(update={"junctions": (), "stretches": (), "length": None}))
-    text = "; ".join([way, *whole, *([length] if length else [])])
+    others = "other roads" if any(stretch.speed for stretch in brief.stretches) else "roads"
+    speed = f"its {others} designed for {brief.speed:g} km/h" if brief.speed else ""
+    apart = {"junctions": (), "stretches": (), "length": None, "speed": None}
+    text = "; ".join(filter(None, [way, *_wishes(brief.model_copy(update=apart)), speed, length]))
     return text[0].upper() + text[1:] + "."
 
 
@@ -113,6 +115,8 @@ def _wishes(brief: Brief) -> list[str]:
         CENTRES[brief.centre] if brief.centre else "",
         "traffic on the left" if brief.left_hand else "",
         f"on a map of {brief.map_size:g} metres" if brief.map_size else "",
+        f"coming from the {brief.comes_from}" if brief.comes_from else "",
+        f"designed for {brief.speed:g} km/h" if brief.speed else "",
         *(surface.said for name, surface in SURFACES.items() if name in brief.beside),
     ]
     return [wish for wish in out if wish]

@@ -14,7 +14,7 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 from roadgpt.brief.ranges import Range
 
@@ -39,6 +39,12 @@ Kind = Literal[
 
 
 MOST_LANES = 4  # in one direction
+Compass = Literal["west", "southwest", "south", "southeast", "east", "northeast", "north", "northwest"]
+
+
+def heading_from(compass: Compass) -> float:
+    """Returns the heading of a car that comes from there, in degrees counter-clockwise from east."""
+    return 45.0 * get_args(Compass).index(compass)
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ from math import inf, isfinite
 from operator import itemgetter
 from typing import NamedTuple
 
+from roadgpt.brief.design_speed import SpeedLimits
 from roadgpt.brief.junctions import (
     LANE_KINDS,
     NAMES,
@@ -39,6 +40,7 @@ from roadgpt.brief.outline import Feature, Group, Outline, both
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.sentence import TAKES
 from roadgpt.brief.words import COUNTS, FEATURE, NO_TURN, ROAD, WHOLE_SLOPES
+from roadgpt.check.extremes import tightest, vertical_bends
 from roadgpt.check.measures import (
     LEVEL,
     GradeChange,
@@ -50,13 +52,14 @@ from roadgpt.check.measures import (
     Measures,
 )
 from roadgpt.plural import plural
-from roadgpt.road import Profile
+from roadgpt.road import Profile, Road
 
 ANGLES = 6.0  # degrees by which the angles of like turns may differ
 RATIO = 1.2  # of the largest radius or length of like parts to the smallest
 METRES = 5.0  # by which the lengths of like straights may differ in any case
 OPEN_TURN = Feature("turn", "turn")
 SLACK = 0.15  # ratio, allowed deviation from the radius of an island that is given as one number
+ROUNDING_OF_CURVATURE = 1e-6
 ROUNDING = 0.5  # m, allowed deviation from a range of outer diameters
 SHARE = 0.1  # ratio by which a distance between junctions may differ from the requested distance
 NEVER_USUAL = ("lights", "stop")
@@ -341,6 +344,23 @@ def complaints(found: Measures, asked: Outline) -> list[Complaint]:
             text = f"asked for {row.asked.format(span)}, has {row.measured.format(value)}"
             out.append(Complaint(text, on_heights=row.on_heights))
     return out + list(_ends(found, asked))
+
+
+def speed_complaints(road: Road, speed: SpeedLimits) -> Iterator[Complaint]:
+    """Yields a complaint about the tightest place, the sharpest crest and the sharpest sag of a road, if the
+    design speed requires a larger radius."""
+    s, bend = tightest(road)
+    begin, end, changes = vertical_bends(road)
+    worst = int(changes.argmin()), int(changes.argmax())
+    middles = [float(begin[at] + end[at]) / 2 for at in worst]
+    for what, at, curvature, least in (
+        ("radius", s, abs(bend), speed.radius),
+        ("vertical radius of a crest", middles[0], -float(changes[worst[0]]), speed.crest),
+        ("vertical radius of a sag", middles[1], float(changes[worst[1]]), speed.sag),
+    ):
+        if curvature * least > 1 + ROUNDING_OF_CURVATURE:
+            asked = f"asked for a {what} of {least:.0f} m or more for {speed.kmh:g} km/h"
+            yield Complaint(f"{asked}, has {1 / curvature:.0f} m", at, on_heights=what != "radius")
 
 
 def _counts(found: Measures, asked: Outline) -> Iterator[Complaint]:

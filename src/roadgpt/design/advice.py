@@ -53,6 +53,12 @@ def advice(
         return f"{wishes} not fit into a road of {outline.length} m; ask for a longer road or for fewer turns"
     if reason == "like an earlier road":
         return "every further road is like an earlier one; ask for fewer roads or leave more open"
+    if reason == TOO_ABRUPT and outline.speed:
+        return (
+            f"the slopes that were asked for change too fast for {outline.speed.kmh:g} km/h: crests and dips "
+            f"need radii of {outline.speed.vertical_radius:.0f} m or more; ask for gentler or longer slopes, "
+            "or for a lower speed"
+        )
     if reason == TOO_ABRUPT:
         return too_fast(world, None)
     return f"no road could keep every wish ({reason}); leave one of them open or use a larger --map-size"

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roadgpt.brief.design_speed import BETWEEN_SAME_SIDE
 from roadgpt.brief.element import Element
 from roadgpt.brief.map_fit import longest_straight
 from roadgpt.brief.model import OTHER_SIDE, Side
@@ -221,6 +222,7 @@ def _free_side(
 
 UNDER_LIMIT = 0.4  # percentage points kept off the steepest grade allowed
 MARGIN = 0.5  # percentage points kept off the ends of a required range of grades
+HILL_GRADE = 2.5  # percent, of hills at a design speed: in haste they are as gentle as that
 CLEARLY = 0.6  # percentage points between two straights of different grades that go the same way
 MARGIN_SHARE = 0.2  # of the width of the range: no more is kept off
 
@@ -234,10 +236,15 @@ class Windows:
             limit = min(limit, outline.steepest.hi - min(UNDER_LIMIT, 0.2 * outline.steepest.hi))
         self.limit = Range(-limit, limit)
         """The grades that are allowed anywhere."""
+        self.floor = outline.speed.vertical_radius if outline.speed else 0.0
+        """The least vertical radius in metres at the design speed; 0 if none is asked for."""
         self.comfort = world.limits.speed_limit**2 / COMFORT
         """The vertical radius in metres that is comfortable at the speed limit."""
-        self.least = world.limits.speed_limit**2 / MOST
-        """The least vertical radius in metres that the rule ``too_abrupt`` allows at the speed limit."""
+        self.least = max(world.limits.speed_limit**2 / MOST, self.floor)
+        """The least vertical radius in metres that the rule ``too_abrupt`` allows at the speed limit, or
+        ``floor`` if that is more."""
+        self.hill = self.floor * 2 * HILL_GRADE / 100
+        """The length in metres of a climb or a fall between two vertical curves of the design speed."""
         self.base: Range | None = None
         """The grades of features without a requirement of their own; None if they are free."""
         self.way = {"up": "uphill", "down": "downhill"}.get(outline.grade or "", "flat")
@@ -324,6 +331,7 @@ NEAR_BOUND = 1.06  # greatest ratio of its radius to the bound
 WIDEST = 115.0  # m, of a radius that nobody asked for
 LONGEST_TURN = 170.0  # m along the curve
 SEEN_ARC = 6.5  # m: a shorter arc is not measured with its own radius, which is averaged over some 9 m
+OF_LENGTH = 0.25  # of the required length of a turn, for each clothoid that a design speed needs, at most
 SHORTEST_TURN = 11.0  # m along the arc, where no radius was asked for: less looks like a kink
 TRANSITIONS = (0.12, 0.34)  # of the arc, for each clothoid
 TRANSITION_LIMITS = (3.0, 16.0)  # m, of tight turns
@@ -503,7 +511,8 @@ def drawn_turn(turn: Feature, angle: float, longest: float, task: DraftTask) -> 
     """Chooses the radius and the transitions of one turn at random, within the ranges of ``narrowed_turns``.
     On a hard road, the radius is near the smallest one allowed. ``angle``, the change of heading in degrees,
     may be changed within its range so that the turn is no longer than ``longest`` metres."""
-    rng, hard = task.rng, task.outline.hard
+    rng, hard, speed = task.rng, task.outline.hard, task.outline.speed
+    least_transition = speed.transition if speed else 0.0
     asked, radii = turn.degrees or ANY_TURN, turn.radius or Range(0)
     least, most, is_tight = radii.lo, radii.hi, radii.hi < inf
     if hard:
@@ -512,7 +521,7 @@ def drawn_turn(turn: Feature, angle: float, longest: float, task: DraftTask) -> 
         low, high = turn.length.lo, min(turn.length.hi, max(LONGEST_TURN, 1.2 * turn.length.lo))
         low = low if low > 0 else 0.5 * high
         length = low + (0.35 + 0.3 * rng.random()) * (high - low)
-        transition = 0.1 * length
+        transition = max(0.1 * length, min(least_transition, OF_LENGTH * length))
         radius = min(max((length - transition) / radians(angle), least), most)
         angle = min(max(degrees((length - transition) / radius), asked.lo), asked.hi)
         return turn_element(angle, hand_of(turn), radius, transition, turn.grade, turn.climb)
@@ -526,16 +535,17 @@ def drawn_turn(turn: Feature, angle: float, longest: float, task: DraftTask) -> 
         if rng.random() < 0.7:
             angle = max(asked.lo, min(angle, degrees(longest / radius)))
         radius = max(least, min(radius, longest / radians(angle)))
-    transition = _transition(is_tight, angle, radius, rng)
+    transition = _transition(is_tight, angle, radius, least_transition, rng)
     return turn_element(angle, hand_of(turn), radius, transition, turn.grade, turn.climb)
 
 
-def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Generator) -> float:
+def _transition(is_tight: bool, angle: float, radius: float, least: float, rng: np.random.Generator) -> float:
     arc = radius * radians(angle)
     share = TRANSITIONS[0] + (TRANSITIONS[1] - TRANSITIONS[0]) * rng.random()
     transition = min(
         max(share * arc, TRANSITION_LIMITS[0]), max(TRANSITION_LIMITS[1], radius / RADII_OF_TRANSITION)
     )
+    transition = max(transition, least)
     if is_tight:
         transition = min(transition, max(arc - SEEN_ARC, 1.0))
     return min(transition, MOST_TRANSITION * arc / segments_of_turn(angle))
@@ -563,7 +573,8 @@ def inside(least: float) -> float:
 
 def free_straight(least: float, mean: float, task: DraftTask) -> float:
     """Returns a random length, in metres, of a straight without requirements: ``least`` plus a random part,
-    which is about ``mean`` metres on average without haste."""
+    which is about ``mean`` metres on average without haste, or 1 m for each km/h of the design speed."""
+    mean = max(mean, task.outline.speed.kmh) if task.outline.speed else mean
     return least + min(float(task.rng.exponential(mean)), 3 * mean) * (1 - 0.95 * task.haste)
 
 
@@ -645,6 +656,7 @@ STEP_ASIDE = 14.0  # m with the grade of a turn before a required straight, as n
 OPEN = Range(LEAST_STRAIGHT, inf)  # m, of a required straight without a required length
 ALONE = (60.0, 240.0)  # m, of a road without turns and without a required length
 HILL = 42.0  # m of one climb or fall of a hilly road
+OVER_HILL = 1.25  # ratio of such a length to the length that is cut into hills later
 CLIMBS_AT = 12.0  # percent at most, where a road must be long enough for its climb
 MODERATE = 5.0  # percent, of a straight whose height is given and whose length is open
 EASE = 0.85  # of that grade, on average
@@ -668,7 +680,7 @@ def composed(order: TurnSequence, task: DraftTask) -> list[Element] | None:
         if after:
             elements.append(after)
     if outline.hills:
-        elements = _with_hills(elements, outline.hills, task.rng)
+        elements = _with_hills(elements, outline.hills, max(HILL, OVER_HILL * task.windows.hill), task.rng)
     length = asked_length(outline, task.windows)
     whole = _with_length(elements, length, task) if length else elements
     if whole is None or (order.turns and any(group.feature.kind == "turn" for group in outline.groups)):
@@ -738,9 +750,11 @@ def gap_between(
         mean = LONELY_MEAN if outline.turns.hi == 1 else LEAD_MEAN
         return [Element(free_straight(LEAD, mean, task) + _approach(after, task))]
     changes = windows.part(before.required_grade, after.required_grade)
-    least = CHANGE if changes else 0.0
+    curve = windows.floor * windows.between(before.required_grade, after.required_grade) / 100
+    least = max(CHANGE, curve) if changes else 0.0
     if before.turn * after.turn > 0:
-        least = max(least, SEPARATE)
+        usual = BETWEEN_SAME_SIDE * outline.speed.kmh * (1 - task.haste) if outline.speed else 0.0
+        least = max(least, SEPARATE, usual)
     elif not changes and rng.random() < DIRECT:
         length = HARDLY * rng.random()
         return [Element(length)] if length > FEWEST_METRES else []
@@ -770,6 +784,8 @@ def _asked_gap(
             neighbours.append(before.required_grade)
         if number == len(wishes) - 1 and after:
             neighbours.append(after.required_grade)
+        if windows.floor and (wish.length or OPEN).hi == inf:  # a turn of open grade leads to another slope
+            neighbours = [Range(0, 0) if other is None else other for other in neighbours]
         changes = [_change(grade, other, task) for other in neighbours if windows.part(grade, other)]
         least = max(LEAD, sum(changes) + 8.0 if changes else 0.0, _room_of_climb(wish))
         if number and not windows.part(grades[number - 1], grade):
@@ -780,6 +796,9 @@ def _asked_gap(
             beside = (before if number == 0 else None, after if number == len(wishes) - 1 else None)
             length = max(length - sum(map(_looks_straight, beside)) / 2, min(least, length))
         asked = wish.length or OPEN
+        if windows.floor and asked.hi == inf:
+            curves = sum(windows.between(grade, other) for other in neighbours) * windows.floor / 200
+            asked = Range(max(asked.lo, curves))
         out.append(Element(length, required_length=asked, required_grade=grade, required_climb=wish.climb))
     if after and windows.part(grades[-1], after.required_grade):
         out.append(Element(STEP_ASIDE, required_grade=after.required_grade))
@@ -807,18 +826,21 @@ def _ledge(before: Range | None, after: Range | None, windows: Windows) -> Eleme
 def _change(grade: Range | None, other: Range | None, task: DraftTask) -> float:
     """Returns the length in metres of straight to reserve for a change of grade at its end. Without haste, a
     comfortable parabola between the two grades has room, unless it needs more than 100 m."""
-    comfortable = task.windows.comfort * task.windows.between(grade, other) / 100
-    return max(CHANGE * (1 - 0.3 * task.haste), min(comfortable, LONGEST_CHANGE) * (1 - task.haste))
+    change = task.windows.between(grade, other) / 100
+    comfortable = min(task.windows.comfort * change, LONGEST_CHANGE) * (1 - task.haste)
+    return max(CHANGE * (1 - 0.3 * task.haste), comfortable, task.windows.floor * change)
 
 
-def _with_hills(elements: list[Element], hills: Range, rng: np.random.Generator) -> list[Element]:
+def _with_hills(
+    elements: list[Element], hills: Range, hill: float, rng: np.random.Generator
+) -> list[Element]:
     stretches = int(hills.lo) + 1
-    room = sum(max(int(element.length / HILL), 1) for element in elements if element.length > 0.7 * HILL)
+    room = sum(max(int(element.length / hill), 1) for element in elements if element.length > 0.7 * hill)
     free = [i for i, element in enumerate(elements) if element.is_elastic]
     out = list(elements)
     for _ in range(max(stretches - room, 0) if free else 0):
         i = free[rng.integers(len(free))]
-        out[i] = out[i]._replace(straight=out[i].length + HILL)
+        out[i] = out[i]._replace(straight=out[i].length + hill)
     return out
 
 

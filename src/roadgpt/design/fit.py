@@ -213,7 +213,7 @@ def graded(
     if metres not in climb:
         metres = min(max(metres, climb.lo), climb.hi)
         start = climbing(start, np.array(lengths), slopes.bounds, metres)
-    road, pace = build(design), Pace.of(design, world)
+    road, pace = build(design), Pace.of(design, world, outline.speed)
     points, stations = road.centreline(), road.sample().s
     short = {i for e in elements if not e.is_turn and e.length < SHORTEST_SLOPE for i in e.members}
     kept: Design | None = None

@@ -30,7 +30,16 @@ from roadgpt.design.compose import (
     may_repeat_last_turn,
     narrowed_turns,
 )
-from roadgpt.design.layout import COARSENESS, SPARE, MapPose, PlacedPlan, PlanLine, meets, walk
+from roadgpt.design.layout import (
+    COARSENESS,
+    SPARE,
+    MapPose,
+    PlacedPlan,
+    PlanLine,
+    drawn_headings,
+    meets,
+    walk,
+)
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.nearness import Complex
 from roadgpt.road.road import CONTROL_SPACING, MOST_CONTROL_POINTS
@@ -134,7 +143,7 @@ class _Growth:
     def _start(self) -> tuple[complex, complex]:
         border = self.world.section.road_width / 2 + EDGE + 1.0
         x, y = border + self.rng.random(2) * (self.world.site.map_size - 2 * border)
-        heading = np.exp(1j * np.radians(self.rng.integers(3600) / 10))
+        heading = np.exp(1j * np.radians(drawn_headings(self.rng, self.outline.heading)[0]))
         return complex(round(x, 2), round(y, 2)), complex(heading)
 
     def _turn(self, at: int, so_far: float) -> tuple[Feature, Sequence[Feature]] | None:

@@ -151,7 +151,7 @@ def drawn_heights(
     is_hilly = bool(outline.hills and outline.hills.lo > required_hills(plan))
     if is_hilly:
         assert outline.hills is not None
-        drawn = _hilly(plan, outline.hills, rng)
+        drawn = _hilly(plan, outline.hills, max(HILL, windows.hill), rng)
     else:
         grades = _grades(plan, outline, windows, rng)
         drawn = [[one._replace(incline=grade)] for one, grade in zip(plan, grades, strict=True)]
@@ -267,14 +267,16 @@ def _steady_grades(
     return [way * _between(STEADY_SHARE, rng) for _ in plan]
 
 
-def _hilly(plan: Sequence[Element], hills: Range, rng: np.random.Generator) -> list[list[Element]]:
+def _hilly(
+    plan: Sequence[Element], hills: Range, hill: float, rng: np.random.Generator
+) -> list[list[Element]]:
     """Returns elements that alternately climb and fall; required grades stay. Long straights are cut into
     several. An element too short for a hill continues the one before."""
     out: list[list[Element]] = []
     sign, wanted, so_far = float(rng.choice((-1, 1))), 0, 0.0
     most = hills.hi if hills.hi < inf else hills.lo + 2
     whole = sum(element.length for element in plan)
-    hill = max(HILL, SPREAD * whole / (most + 1)) if whole > LONG else HILL
+    hill = max(hill, SPREAD * whole / (most + 1)) if whole > LONG else hill
     for element in plan:
         asked = element.required_grade
         parts = 1 if element.turn or asked else max(1, int(element.length / hill))

@@ -88,6 +88,12 @@ def with_roads_continued(brief: Brief) -> Brief:
     for n in (*one_road, *reversed(one_road)):
         if roads[n].motorway or roads[n + 1].motorway:
             roads[n : n + 2] = [road.model_copy(update={"motorway": True}) for road in roads[n : n + 2]]
+        if speed := roads[n].speed or roads[n + 1].speed:
+            own = (road.speed or speed for road in roads[n : n + 2])
+            roads[n : n + 2] = [
+                road.model_copy(update={"speed": each})
+                for road, each in zip(roads[n : n + 2], own, strict=True)
+            ]
     for n, place in enumerate(brief.junctions):
         if is_one_road(place) and _leaves_open(roads[n + 1], LANES) and not roads[n].clauses:
             roads[n + 1] = roads[n + 1].model_copy(update={"slope": roads[n].slope})

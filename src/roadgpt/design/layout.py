@@ -26,6 +26,7 @@ COARSENESS = 0.6  # m by which coarse points may overestimate a distance
 SPARE = 0.7  # m between two carriageways, where there is no room for the shoulders
 DIAGONALS = np.array([45.0, 135.0, 225.0, 315.0])  # degrees: headings at which a straight has most room
 HEADINGS = 72  # number of headings that are tried if the first one does not fit on the map
+TENTHS_OFF = 150  # of a degree by which a start may miss the heading that is required
 MOST_POINTS = 700  # of a line with twice as many or more, only the convex hull is looked at
 LEAST_EDGE = 0.1  # m between ribbon and border of a moved road, for rounding and the bulge between samples
 BEYOND = 1.05  # m by which SBFT's spline may run on behind either end
@@ -109,19 +110,33 @@ def neighbours(apart: float) -> float:
     return max(NEIGHBOURS, OF_WIDE * apart)
 
 
-def place(line: PlanLine, world: World, rng: np.random.Generator, reach: float = 0.0) -> MapPose | None:
+def drawn_headings(rng: np.random.Generator, heading: float | None) -> Array:
+    """Returns the headings of a start to try, in degrees: all round or, if a heading is required, near it."""
+    if heading is None:
+        return rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
+    return heading + rng.integers(-TENTHS_OFF, TENTHS_OFF + 1, HEADINGS) / 10
+
+
+def place(
+    line: PlanLine,
+    world: World,
+    rng: np.random.Generator,
+    reach: float = 0.0,
+    heading: float | None = None,
+) -> MapPose | None:
     """Returns a random start and heading at which the road lies on the map; None if none was found. ``reach``
-    is the distance in metres from the line to the edge of the widest road, if wider than usual."""
+    is the distance in metres from the line to the edge of the widest road, if wider than usual. ``heading``
+    is the heading of the start in degrees, if one is required; it may be missed by 15 degrees."""
     half = max(world.section.road_width / 2, reach)
     room = world.site.map_size - 2 * half - 2 * EDGE
-    turns = rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
+    turns = drawn_headings(rng, heading)
     z = outermost(line.z)
     chosen = first_that_fits(z, turns[:1], room)
     if chosen is None:
         rng.shuffle(turns)
         chosen = first_that_fits(line.z[::2] if z is line.z else z, turns, room - 0.2)
-    if chosen is None and not line.z.imag.any():
-        chosen = first_that_fits(line.z, rng.permutation(DIAGONALS), room)
+    if chosen is None and not line.z.imag.any() and (heading is None or heading in DIAGONALS):
+        chosen = first_that_fits(line.z, rng.permutation(DIAGONALS if heading is None else [heading]), room)
     if chosen is None:
         return None
     theta, left, low, width, height = chosen

@@ -25,11 +25,13 @@ import numpy as np
 
 from roadgpt import check
 from roadgpt.brief.amount import Amount, at_least, between, exactly, span
+from roadgpt.brief.design_speed import limits_at
 from roadgpt.brief.junction_check import check_junction
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, Way, side_of
-from roadgpt.brief.map_fit import EDGE
+from roadgpt.brief.map_fit import EDGE, LEADS
 from roadgpt.brief.model import Brief, Clause, mirrored
-from roadgpt.brief.words import LARGEST_MAP, ROAD_LENGTH_SLACK
+from roadgpt.brief.normal import BUMPS
+from roadgpt.brief.words import LARGEST_MAP, ROAD_LENGTH_SLACK, heading_from
 from roadgpt.check.matching import length_range
 from roadgpt.check.measures import measured_map
 from roadgpt.design.advice import larger_map, main_reason
@@ -118,6 +120,7 @@ BETWEEN_RAMPS = 40.0  # m, more than the roads beside it, of a road that begins 
 ROOM = 360.0  # m of roads without requirements on the usual map, all together
 MOST = 130.0  # m, greatest length of one such road
 TURNING = 45.0  # m more for such a road with a turn
+TURNS_OF_FAST = 2.0  # times the shortest turn of a design speed more, for a road with one and such a turn
 PARTS = 250.0  # m, side of the usual map
 ROOM_TO_TURN = 20.0  # m of a road of required length that must remain beyond the lane of a ramp
 TOO_LARGE, OVERLAPS, UNDRAFTED = "too large", "its roads would overlap", "one of its roads cannot be drafted"
@@ -391,12 +394,13 @@ class NetworkSearch(_Search):
         have in metres; None if it is open."""
         wanted, shortest = brief, self._shortest(n, haste)
         if length is not None:
-            is_straight = brief.motorway and not brief.clauses and brief.turns is None
+            is_short = brief.speed is not None and length < limits_at(brief.speed).shortest_turn + LEADS
+            is_straight = (brief.motorway or is_short) and not brief.clauses and brief.turns is None
             turns = exactly(0) if is_straight else brief.turns
             long = between(0.97 * length, 1.03 * length)
             wanted = brief.model_copy(update={"length": long, "turns": turns})
         elif brief.has_free_shape:
-            wanted = self._open(haste, shortest, is_straight=brief.motorway)
+            wanted = self._open(haste, shortest, brief.motorway, brief.speed)
         elif brief.length is None and not brief.clauses and brief.turns is None:
             free = self._open(haste, shortest, is_straight=True)
             needs_room = brief.hills is not None or brief.climb is not None
@@ -408,6 +412,9 @@ class NetworkSearch(_Search):
             wanted = brief.model_copy(update={"turns": exactly(0) if is_straight else at_least(1)})
         if n in self.has_wide_bends and brief.turns is None and wanted.turns not in (None, exactly(0)):
             wanted = wanted.model_copy(update={"sharpness": "sweeping"})
+        kinds = {place.kind for place in self.brief.junctions[max(n - 1, 0) : n + 1]}
+        if brief.speed is not None and kinds & {*RAMPS, *LANE_KINDS} and not _asks_for_slopes(brief):
+            wanted = wanted.model_copy(update={"slope": "flat"})  # its level ends are passed at full speed
         search = DraftSearch(wanted, self.world, self.others, self.rng)
         for _ in range(STRETCHES):
             found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
@@ -429,17 +436,21 @@ class NetworkSearch(_Search):
             found.append(segments)
         return found
 
-    def _open(self, haste: float, shortest: float, is_straight: bool = False) -> Brief:
+    def _open(
+        self, haste: float, shortest: float, is_straight: bool = False, speed: float | None = None
+    ) -> Brief:
         count = len(self.brief.roads)
         most = min(MOST, ROOM * self.world.site.map_size / PARTS / count)
         most = max(most, shortest)
         high = shortest + 5 + (most - shortest) * (1 - haste) * float(self.rng.random())
         if is_straight or self.rng.random() > CURVED * (1 - haste):
-            return Brief(turns=exactly(0), length=between(shortest * (1 - 0.3 * haste), high))
-        return Brief(turns=exactly(1), degrees=between(18, 70), length=between(shortest, high + TURNING))
+            return Brief(turns=exactly(0), length=between(shortest * (1 - 0.3 * haste), high), speed=speed)
+        more = TURNING if speed is None else max(TURNING, TURNS_OF_FAST * limits_at(speed).shortest_turn)
+        length = between(shortest, high + more)
+        return Brief(turns=exactly(1), degrees=between(18, 70), length=length, speed=speed)
 
     def _place(self, drafts: Sequence[RoadDraft], junctions: Sequence[PlaceDesign]) -> MapPose | None:
-        if any(map(ends_route, junctions)) and not self.brief.roads[-1].is_open:
+        if any(map(ends_route, junctions)) and not self.brief.stretches[-1].is_open:
             self.failed["it turns back, so it cannot go on on another road"] += 1
             return None
         lines = [drafted.line for _, drafted in drafts]
@@ -450,7 +461,8 @@ class NetworkSearch(_Search):
             return None
         z, reach = sketch
         line = PlanLine(np.arange(len(z), dtype=float), z)
-        pose = place(line, self.world, self.rng, reach)
+        start = self.brief.comes_from and heading_from(self.brief.comes_from)
+        pose = place(line, self.world, self.rng, reach, start)
         if pose is None:
             self.failed[TOO_LARGE] += 1
             self.boxes.append(smallest_box(line))
@@ -478,6 +490,13 @@ class NetworkSearch(_Search):
         }
         what = advice.get(why, "leave something out")
         return f"no draft of this route was accepted: {why}; {what}"
+
+
+def _asks_for_slopes(brief: Brief) -> bool:
+    clauses = (*brief.clauses, *brief.both_ends)
+    names = ("slope", "incline", "climb", "steepest", "hills")
+    said = any(getattr(each, name, None) for each in (brief, *clauses) for name in names)
+    return said or any(clause.kind in BUMPS for clause in clauses)
 
 
 def _without_ramps(asked: Brief, n: int, places: Sequence[PlaceDesign]) -> Brief:

@@ -8,16 +8,18 @@ draft, so that a later draft can meet requirements that leave little room."""
 from collections import Counter
 from collections.abc import Iterator
 from functools import lru_cache, partial
+from math import ceil
 
 import numpy as np
 
 from roadgpt import check
 from roadgpt.brief.element import Element
-from roadgpt.brief.map_fit import check_room, metres_of
+from roadgpt.brief.map_fit import COMFORT, ROUND_MAP, check_room, metres_of
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.refusal import NoRoomError
+from roadgpt.brief.words import LARGEST_MAP
 from roadgpt.check.rules.too_abrupt import asks_for_bumps
 from roadgpt.design.compose import DraftTask, TurnSequence, Windows, composed, drawn_sequence, is_long
 from roadgpt.design.elements import design_at
@@ -80,7 +82,10 @@ def sufficient_map(brief: Brief, world: World) -> float | None:
     if failed and main_reason(failed.failed) not in FOR_ROOM:
         return None
     likely = roomier(world, failed.boxes) if failed else LIKELY * metres_of(brief, least)
-    return larger_map(brief, world, failed_trial, likely)
+    found = larger_map(brief, world, failed_trial, likely)
+    if found is None or brief.speed is None:
+        return found
+    return min(ceil(COMFORT * found / ROUND_MAP) * ROUND_MAP, LARGEST_MAP)  # for its usual straights
 
 
 class DraftSearch:
@@ -195,8 +200,8 @@ class DraftSearch:
 
     def _speed_that_would_do(self) -> float | None:
         """Returns a lower speed limit in km/h at which the required slopes are possible; None if there is
-        none, or if only a few drafts failed because of their slopes."""
-        if self.failed_on_heights < FAILED_ON_HEIGHTS:
+        none, if a design speed is required, or if only a few drafts failed because of their slopes."""
+        if self.failed_on_heights < FAILED_ON_HEIGHTS or self.outline.speed:
             return None
         limits = [kmh for kmh in SLOWER if kmh / 3.6 < self.world.limits.speed_limit]
         worlds = {kmh: self.world.changed(speed_limit=kmh / 3.6) for kmh in limits}
@@ -208,7 +213,7 @@ class DraftSearch:
             self.failed["longer than was asked for"] += 1
             return None
         line = walk(elements)
-        where = place(line, self.world, self.rng)
+        where = place(line, self.world, self.rng, heading=self.outline.heading)
         if where is None:
             self.failed["too large"] += 1
             self.boxes.append(smallest_box(line))
@@ -241,7 +246,7 @@ class DraftSearch:
 
     def with_heights(self, drafted: PlacedPlan) -> tuple[Segment, ...] | None:
         """Returns the segments of a plan with slopes that meet all requirements; None if none were found."""
-        pace = Pace.along(drafted.elements, self.world)
+        pace = Pace.along(drafted.elements, self.world, self.outline.speed)
         has_heights = asks_for_heights(drafted.elements)
         # shorter parabolas leave more of a straight at the grade and the length that were said
         first = 1 if any(map(_has_exact_slope, drafted.elements)) else 0

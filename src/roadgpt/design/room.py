@@ -7,6 +7,7 @@ from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
 from roadgpt.design.road_search import sufficient_map
 from roadgpt.road import World
+from roadgpt.road.world import KMH, Limits
 
 
 def world_for(brief: Brief | None, world: World) -> World:
@@ -34,7 +35,7 @@ def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
     """Returns sentences that say how a Brief affects a World: its friction, its lanes and its map. ``usual``
     is the World that was given, and ``found`` the one that ``world_for`` returned."""
     surface = surface_remark(brief.beside, found.site.friction)
-    said = (surface, *lane_remarks(brief, found), map_remark(brief, usual, found))
+    said = (surface, *lane_remarks(brief, found), speed_remark(brief, found), map_remark(brief, usual, found))
     return tuple(remark for remark in said if remark)
 
 
@@ -52,6 +53,16 @@ def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
         )
     if centre is not None and found.section.centre_line != centre:
         yield f"the words ask for a {centre} centre line, but another one is set and used"
+
+
+def speed_remark(brief: Brief, found: World) -> str:
+    """Returns a sentence on the usual speed limit, which a design speed does not change."""
+    speeds = sorted({road.speed for road in brief.roads if road.speed is not None})
+    if not speeds or found.limits.speed_limit != Limits().speed_limit:
+        return ""
+    said = " and ".join(f"{speed:g}" for speed in speeds)
+    limit = f"{KMH * found.limits.speed_limit:g} km/h"
+    return f"designed for {said} km/h, but driven at {limit} at most; --speed-limit gives another limit"
 
 
 def map_remark(brief: Brief, usual: World, found: World) -> str:

@@ -17,6 +17,7 @@ from math import floor
 
 import numpy as np
 
+from roadgpt.brief.design_speed import SpeedLimits
 from roadgpt.brief.element import Element
 from roadgpt.brief.ranges import Range
 from roadgpt.check.rules.too_abrupt import MOST
@@ -40,23 +41,27 @@ TENTH = 10.0  # per metre and per percent: radii and inclines are written to the
 class Pace:
     """The vertical radii that the expected speeds along a plan require."""
 
-    def __init__(self, knots: Array, bends: Array, length: float, world: World) -> None:
+    def __init__(
+        self, knots: Array, bends: Array, length: float, world: World, speed: SpeedLimits | None = None
+    ) -> None:
         """Stores a plan: its length in metres, and the curvatures ``bends`` in 1/m at the stations ``knots``
-        in metres, ``(n,)``, which are linear in between and 0 after the last."""
+        in metres, ``(n,)``, which are linear in between and 0 after the last. ``speed`` is what the design
+        speed requires."""
         self._plan = knots, bends, length
         self._world = world
+        self._floor = speed.vertical_radius if speed else 0.0
 
     @classmethod
-    def along(cls, elements: Sequence[Element], world: World) -> "Pace":
+    def along(cls, elements: Sequence[Element], world: World, speed: SpeedLimits | None = None) -> "Pace":
         """Returns the Pace of a draft."""
-        return cls(*bends_of(elements), world)
+        return cls(*bends_of(elements), world, speed)
 
     @classmethod
-    def of(cls, design: Design, world: World) -> "Pace":
+    def of(cls, design: Design, world: World, speed: SpeedLimits | None = None) -> "Pace":
         """Returns the Pace of the road that is built from a design."""
         road = build(design)
         s = road.sample().s
-        return cls(s, road.sample().curvature, road.length, world)
+        return cls(s, road.sample().curvature, road.length, world, speed)
 
     @cached_property
     def _squares(self) -> tuple[float, Array]:
@@ -72,8 +77,9 @@ class Pace:
 
     def least(self, s: float, is_bump: bool = False) -> float:
         """Returns the least vertical radius in metres that the rule allows at station ``s`` in metres. If
-        ``is_bump``, a vertical acceleration of up to 1 g is allowed, as for a requested crest or dip."""
-        return self._square(s) / (GRAVITY if is_bump else MOST)
+        ``is_bump``, a vertical acceleration of up to 1 g is allowed, as for a requested crest or dip. It is
+        never less than the design speed requires."""
+        return max(self._square(s) / (GRAVITY if is_bump else MOST), self._floor)
 
     def eased(self, s: float, ease: float, is_bump: bool = False) -> float:
         """Returns the vertical radius to design at station ``s``, in metres: ``ease`` (0 to 1) times the

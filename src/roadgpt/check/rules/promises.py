@@ -13,9 +13,16 @@ import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
-from roadgpt.brief.words import ROAD
+from roadgpt.brief.words import ROAD, heading_from
 from roadgpt.check.finding import Finding, route_of, single_road
-from roadgpt.check.matching import complaints, lane_complaints, length_range, map_complaints, place_complaints
+from roadgpt.check.matching import (
+    complaints,
+    lane_complaints,
+    length_range,
+    map_complaints,
+    place_complaints,
+    speed_complaints,
+)
 from roadgpt.check.measures import (
     MeasuredJunction,
     MeasuredLanes,
@@ -32,6 +39,7 @@ if TYPE_CHECKING:
     from roadgpt.network import Route
 
 RULE = "promises"
+COMPASS_SLACK = 22.5  # degrees: half of the angle between two of the eight points
 
 
 def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
@@ -39,19 +47,31 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
     if brief is None:
         return ()
     size = world.site.map_size
+    start = tuple(_of_start(route, brief))
     if (road := single_road(route)) is not None:
         asked = outline(brief, size)
         told = complaints(measure(road.centreline(), asked.widest), asked)
+        told += speed_complaints(road, asked.speed) if asked.speed else ()
         at = (None if each.s is None else road.at(min(each.s, road.length))[:2].tolist() for each in told)
-        return tuple(
-            Finding(RULE, each.sentence, each.s, *(place or ())) for each, place in zip(told, at, strict=True)
-        )
+        pairs = zip(told, at, strict=True)
+        return (*start, *(Finding(RULE, each.sentence, each.s, *(place or ())) for each, place in pairs))
     if brief.map is None:
-        return tuple(_of_route(route_of(route), brief, size))
+        return (*start, *_of_route(route_of(route), brief, size))
     passed = [] if (driven := route_of(route)) is None else measured_junctions(driven)
     goes = [each.sides[each.exit - 1] for each in passed]
     wrong = map_complaints(measured_map(network), brief.map, brief.length, goes)
     return tuple(Finding(RULE, each.sentence, None, *(each.place or ())) for each in wrong)
+
+
+def _of_start(route: Road | None, brief: Brief) -> Iterator[Finding]:
+    if brief.comes_from is None or route is None:
+        return
+    wanted, heading = heading_from(brief.comes_from), float(np.degrees(route.heading(0.0))) % 360
+    if abs((heading - wanted + 180) % 360 - 180) > COMPASS_SLACK:
+        text = (
+            f"asked to come from the {brief.comes_from}, a heading of {wanted:g} degrees, has {heading:.0f}"
+        )
+        yield Finding(RULE, text, 0.0, *route.at(0.0)[:2].tolist())
 
 
 def _of_route(route: "Route | None", brief: Brief, map_size: float) -> Iterator[Finding]:
@@ -114,10 +134,12 @@ def _of_stretch(
 
     assert road.profile is not None
     wanted = outline(asked.as_stretch, map_size)
-    found = measure(without_level_ends(road, is_level).centreline(), wanted.widest)
+    unended = without_level_ends(road, is_level)
+    found = measure(unended.centreline(), wanted.widest)
     heights = road.at(np.array([0.0, road.length]))[:, 2]
     found = replace(found, climb=float(heights[1] - heights[0]), length=found.length + more)
-    for each in (*lane_complaints(road.profile, asked), *complaints(found, wanted)):
+    fast = speed_complaints(unended, wanted.speed) if wanted.speed else ()
+    for each in (*lane_complaints(road.profile, asked), *complaints(found, wanted), *fast):
         s = start if each.s is None else start + each.s
         x, y = road.at(min(s - start, road.length))[:2].tolist()
         yield Finding(RULE, f"on the road from s = {start:.0f} m: {each.sentence}", s, x, y)

@@ -140,10 +140,10 @@ def understood(brief: Brief, world: "World", given: "World") -> str:
 
 def all_remarks(brief: Brief, world: "World", given: "World") -> tuple[str, ...]:
     """Returns sentences on what is not built, or not as described; ``given`` is the World of the user."""
-    from roadgpt.design.room import lane_remarks, map_remark
+    from roadgpt.design.room import lane_remarks, map_remark, speed_remark
 
-    found = remarks(brief, world.site.map_size, world.site.friction)
-    return tuple(filter(None, (*found, *lane_remarks(brief, world), map_remark(brief, given, world))))
+    found = (*remarks(brief, world.site.map_size, world.site.friction), *lane_remarks(brief, world))
+    return tuple(filter(None, (*found, speed_remark(brief, world), map_remark(brief, given, world))))
 
 
 def reading(brief: Brief) -> str:
