@@ -12,7 +12,7 @@ from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exa
 from roadgpt.brief.beside import BESIDE, friction_of
 from roadgpt.brief.junctions import JunctionClause, MapClause, Side
 from roadgpt.brief.ranges import Range, nearest
-from roadgpt.brief.words import LARGEST_MAP, MOST_LANES, SMALLEST_MAP, Kind, Sharpness, Size, Slope
+from roadgpt.brief.words import LARGEST_MAP, MOST_LANES, SMALLEST_MAP, Bump, Kind, Sharpness, Size, Slope
 
 __all__ = [
     "OTHER_SIDE",
@@ -73,6 +73,9 @@ class Clause(Frozen):
     size: Size | None = None
     """The size of a straight if the description gives a word instead of a number: "a long straight"."""
     slope: Slope | None = None
+    bump: Bump | None = None
+    """A crest or a dip inside each turn. ``incline`` is then the grade of both its slopes, ``climb`` its
+    height or depth, and there is no ``slope``."""
     incline: Amount | None = None
     """The grade in percent, always positive; ``slope`` says whether it is up or down."""
     climb: Amount | None = None
