@@ -83,7 +83,7 @@ def is_as_asked(line: str, wanted: list[str], seed: int, folder: Path) -> bool |
         road = roadgpt.build_route(design, world) if brief.junctions else roadgpt.build(design)
     except RoadGPTError as error:
         return str(error)
-    (file,) = save(road, folder, ["opendrive"], world)
+    file = save(road, folder, ["opendrive"], world)[-1]
     found = [what for _, _, what in bumps(file)]
     if brief.junctions:  # beside the road are others, which are level
         found = [what for what in found if what]
@@ -128,6 +128,6 @@ def test_an_edit_keeps_the_crest_or_says_that_it_is_gone(change: str, keeps: boo
     brief = PlanReader().read(line)
     design = roadgpt.draft(brief, world, seed=2)
     edited = edit(design, read_change_plan(change), world)
-    (file,) = save(roadgpt.build(edited.design), tmp_path, ["opendrive"], world)
+    file = save(roadgpt.build(edited.design), tmp_path, ["opendrive"], world)[-1]
     assert (bumps(file)[1][2] == "crest") is keeps
     assert any("the crest in it is gone" in told for told in edited.changes) is not keeps
