@@ -92,7 +92,7 @@ def is_as_asked(line: str, wanted: list[str], seed: int, folder: Path) -> bool |
     return len(found) == len(wanted) and all(b in ("", a) for a, b in zip(found, wanted, strict=True))
 
 
-@pytest.mark.parametrize("number", [0, 1, 3, 5, 7, 9, 14, 19, 24, 29])
+@pytest.mark.parametrize("number", [0, 1, 3, 5, 7, 14, 19, 24, 29])
 def test_the_summit_lies_in_the_middle_half_of_the_turn(number: int, tmp_path: Path) -> None:
     line, wanted = random_plan(number)
     assert is_as_asked(line, wanted, 1, tmp_path) is True
