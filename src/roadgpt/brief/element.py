@@ -1,7 +1,7 @@
 """The numerical description of the turns and straights that a road is made of."""
 
 from math import inf, radians
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from roadgpt.brief.ranges import Range
 
@@ -33,11 +33,25 @@ class Element(NamedTuple):
     """Allowed range of the mean grade, in percent; None if the description asks for no grade here."""
     required_climb: Range | None = None
     """Allowed range of the height of the end above the start, in metres; None if none is asked for here."""
+    half: Literal["", "both", "first", "second"] = ""
+    """For a turn with a crest or a dip in its middle, "both": the requirements are then those of its first
+    half, and its second half has the opposite ones. "first" and "second" are one half of such a turn, which
+    has a clothoid at its outer end only."""
+
+    @property
+    def halves(self) -> "tuple[Element, ...]":
+        """The two halves of a turn with a crest or a dip in its middle; the element itself otherwise."""
+        if self.half != "both":
+            return (self,)
+        first = self._replace(turn=self.turn / 2, half="first")
+        grade, climb = (span and span.negative for span in (self.required_grade, self.required_climb))
+        return first, first._replace(half="second", required_grade=grade, required_climb=climb)
 
     @property
     def length(self) -> float:
         """Length in metres along the plan view of the road."""
-        return self.radius * radians(abs(self.turn)) + self.transition if self.turn else self.straight
+        ends = 0.5 if self.half in ("first", "second") else 1.0
+        return self.radius * radians(abs(self.turn)) + ends * self.transition if self.turn else self.straight
 
     @property
     def is_elastic(self) -> bool:

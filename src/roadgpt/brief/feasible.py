@@ -24,6 +24,7 @@ from roadgpt.brief.words import (
     LENGTH_SLACK,
     LONGEST_ROAD,
     MOST_LANES,
+    OVER,
     PART_CLIMB_SLACK,
     PERCENT_SLACK,
     ROAD_LENGTH_SLACK,
@@ -104,6 +105,7 @@ def _faults(brief: Brief, min_radius: float, steepest: float) -> Iterator[str]:
     yield from _lanes(brief)
     yield from _counts(brief)
     yield from _limits_of_every_turn(brief)
+    yield from _bumps(brief)
     brief = normal(brief)
     each = Clause(kind="turn", sharpness=brief.sharpness, degrees=brief.degrees, radius=brief.radius)
     for clause in (*brief.clauses, *brief.both_ends, each):
@@ -142,6 +144,17 @@ def _counts(brief: Brief) -> Iterator[str]:
             yield f"a clause cannot ask for 0 {_noun(clause)}s; leave it out"
 
 
+def _bumps(brief: Brief) -> Iterator[str]:
+    """Checks that each crest or dip inside a turn lies in a single turn that has no other slope."""
+    for clause in (*brief.clauses, *brief.both_ends):
+        if clause.bump and clause.kind not in SINGLE:
+            singles = "only a turn, a hairpin, a switchback or a U-turn"
+            yield f"{singles} can lead {OVER[clause.bump]}; name one in the place of '{_noun(clause)}'"
+        if clause.bump and clause.slope:
+            slope, over = SLOPES[clause.slope].names[0], OVER[clause.bump]
+            yield f"a turn {over} goes up and down, so it is not {slope}; leave out one of the two"
+
+
 def _limits_of_every_turn(brief: Brief) -> Iterator[str]:
     """Checks that no turn has a figure beyond a limit that holds for all turns."""
     for name in ("radius", "degrees"):
@@ -176,6 +189,11 @@ def _shape(clause: Clause, min_radius: float, steepest: float) -> Iterator[str]:
     if (clause.climb is not None and (clause.climb.lo or 0) < 0) or span(clause.climb).hi <= 0:
         yield f"a {noun} cannot rise or fall by {clause.climb} m; ask for more than 0 m, up or down"
     yield from _incline(clause.slope, clause.incline, steepest)
+    if clause.bump and (metres := _arc(clause).hi) * (1 + LENGTH_SLACK) < 2 * LEAST_STRAIGHT:
+        yield (
+            f"a {noun} of {metres:.0f} m is too short for a {clause.bump}; ask for a wider one, or for "
+            f"{2 * LEAST_STRAIGHT:g} m or more"
+        )
     if not _is_radius_possible(clause) or not _is_climb_possible(clause, steepest):
         yield f"no road can have {clause_text(clause)}; leave out one of the words or numbers"
 
@@ -188,12 +206,24 @@ def _is_radius_possible(clause: Clause) -> bool:
     return not (_exclude(radius, usual) or _exclude(radius, own) or _exclude(own, limits))
 
 
+def _arc(clause: Clause) -> Range:
+    """Returns the range of the lengths, in metres, that a turn of this clause can have."""
+    degrees = span(clause.degrees) if clause.degrees else KINDS[clause.kind].degrees or Range()
+    sharp = SHARPNESS[clause.sharpness].radius if clause.sharpness else None
+    radius = span(clause.radius) if clause.radius else overlap(KINDS[clause.kind].radius, sharp) or Range()
+    low, high = radians(max(degrees.lo, 0.0)), radians(min(degrees.hi, LARGEST_ANGLE))
+    arc = Range(low * max(radius.lo, 0.0), high * radius.hi)
+    return overlap(arc, span(clause.length)) or arc
+
+
 def _is_climb_possible(clause: Clause, steepest: float) -> bool:
     """Returns whether the height of a clause in normal form goes with its slope, length and grade."""
     if clause.climb is None:
         return True
     slope = slopes_of_bump(clause)[0] if clause.kind in BUMPS else clause
     length, grade, height = span(slope.length), span(clause.incline), span(clause.climb)
+    if clause.bump:
+        length = Range(*(metres / 2 for metres in (_arc(clause).lo, _arc(clause).hi)))
     longest, least = length.hi * (1 + LENGTH_SLACK), height.lo * (1 - PART_CLIMB_SLACK)
     shortest, most = length.lo * (1 - LENGTH_SLACK), height.hi * (1 + PART_CLIMB_SLACK)
     is_too_steep = shortest > -inf and shortest * (grade.lo - PERCENT_SLACK) / 100 > most
@@ -300,7 +330,12 @@ def _slopes(brief: Brief, most: float) -> Iterator[str]:
     for clause in (*brief.clauses, *brief.both_ends):
         own = clause.slope
         up_and_down = (slope in RISING and own in FALLING) or (slope in FALLING and own in RISING)
-        if clause.kind in BUMPS or up_and_down or (slope in LEVEL and own in (*RISING, *FALLING)):
+        if (
+            clause.bump
+            or clause.kind in BUMPS
+            or up_and_down
+            or (slope in LEVEL and own in (*RISING, *FALLING))
+        ):
             yield (
                 f"the whole road is {SLOPES[slope].names[0]}, and not {clause_text(clause)}; say the slope of"
                 " each part instead"

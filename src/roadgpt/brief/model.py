@@ -13,7 +13,17 @@ from roadgpt.brief.beside import BESIDE, friction_of
 from roadgpt.brief.design_speed import FASTEST, SLOWEST
 from roadgpt.brief.junctions import JunctionClause, MapClause, Side
 from roadgpt.brief.ranges import Range, nearest
-from roadgpt.brief.words import LARGEST_MAP, MOST_LANES, SMALLEST_MAP, Compass, Kind, Sharpness, Size, Slope
+from roadgpt.brief.words import (
+    LARGEST_MAP,
+    MOST_LANES,
+    SMALLEST_MAP,
+    Bump,
+    Compass,
+    Kind,
+    Sharpness,
+    Size,
+    Slope,
+)
 
 __all__ = [
     "OTHER_SIDE",
@@ -76,6 +86,9 @@ class Clause(Frozen):
     size: Size | None = None
     """The size of a straight if the description gives a word instead of a number: "a long straight"."""
     slope: Slope | None = None
+    bump: Bump | None = None
+    """A crest or a dip inside each turn. ``incline`` is then the grade of both its slopes, ``climb`` its
+    height or depth, and there is no ``slope``."""
     incline: Amount | None = None
     """The grade in percent, always positive; ``slope`` says whether it is up or down."""
     climb: Amount | None = None

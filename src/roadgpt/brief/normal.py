@@ -170,7 +170,7 @@ def _plain(clause: Clause) -> Clause:
     figures = {name: getattr(clause, name) for name in ("count", "climb", "length", "incline")}
     if kind in BUMPS:
         return Clause(kind=kind, **figures)
-    slope = _slope(clause.slope, bool(clause.incline or clause.climb))
+    slope = _slope(clause.slope, clause.bump is None and bool(clause.incline or clause.climb))
     if kind == "straight":
         return Clause(kind=kind, slope=slope, size=None if clause.length else clause.size, **figures)
     own = KINDS[kind]
@@ -281,7 +281,8 @@ def _with_clause_as_turns(brief: Brief) -> Brief:
     if len(brief.clauses) != 1 or brief.turns:
         return brief
     only = brief.clauses[0]
-    if only.kind != "turn" or only.count.exact or only.side or only.slope or only.length:
+    is_apart = only.side or only.slope or only.length or only.bump
+    if only.kind != "turn" or only.count.exact or is_apart:
         return brief
     shape = {"sharpness": only.sharpness, "degrees": only.degrees, "radius": only.radius}
     alternating = brief.alternating or only.alternating
@@ -318,7 +319,7 @@ def _shaped(brief: Brief, clause: Clause) -> Clause:
 def _with_one_slope(brief: Brief) -> Brief:
     said = {(clause.slope, clause.incline) for clause in brief.clauses}
     # the grade of a part with a height need not be the usual one of the word
-    is_apart = any(clause.kind in BUMPS or clause.climb for clause in brief.clauses)
+    is_apart = any(clause.kind in BUMPS or clause.bump or clause.climb for clause in brief.clauses)
     if brief.slope or brief.hills or brief.both_ends or len(said) != 1 or is_apart:
         return brief
     slope, incline = said.pop()

@@ -31,11 +31,13 @@ from roadgpt.brief.words import (
     LEAST_STRAIGHT,
     MOTORWAY_GRADE,
     MOTORWAY_RADIUS,
+    OVER,
     ROAD,
     SHARPNESS,
     SIZES,
     SLOPES,
     STEEPEST,
+    Bump,
     Quantity,
     heading_from,
 )
@@ -75,6 +77,17 @@ class Feature:
     grade: Range | None = None
     climb: Range | None = None
     """How many metres the feature rises from its start to its end; negative if it falls."""
+    bump: Bump | None = None
+    """What lies in the middle half of a turn; ``grade`` and ``climb`` are then those of its first slope."""
+
+    @property
+    def slopes(self) -> "tuple[Feature, Feature]":
+        """The requirements for the two slopes of ``bump``, each of which is measured like a straight."""
+        first = Feature(
+            "straight", "straight", length=Range(LEAST_STRAIGHT), grade=self.grade, climb=self.climb
+        )
+        grade, climb = (span and span.negative for span in (self.grade, self.climb))
+        return first, replace(first, grade=grade, climb=climb)
 
     def limits(self, *more: str) -> str:
         """Returns the requirements as text, such as ': to the left, 25 to 120 degrees'; empty if there are
@@ -85,6 +98,7 @@ class Feature:
             del spans["degrees"]
         said = [f"to the {self.side}"] if self.side else []
         said += [FEATURE[name].asked.format(span) for name, span in spans.items() if span]
+        said += [OVER[self.bump]] if self.bump else []
         said += more
         return ": " + ", ".join(said) if said else ""
 
@@ -95,7 +109,7 @@ def both(one: Feature, other: Feature) -> Feature:
     """
     name = other.name if one.name == one.kind else one.name
     ranges: dict[str, Any] = {name: overlap(getattr(one, name), getattr(other, name)) for name in FEATURE}
-    return replace(one, name=name, side=one.side or other.side, **ranges)
+    return replace(one, name=name, side=one.side or other.side, bump=one.bump or other.bump, **ranges)
 
 
 @dataclass(frozen=True, slots=True)
@@ -300,9 +314,12 @@ def _turn(clause: Clause, roomy: bool, angle_is_free: bool = False) -> Feature:
     if clause.radius:
         radius = _near(clause.radius, FEATURE["radius"])
     length = _near(clause.length, FEATURE["length"])
-    name = meaning.names[0]
-    grade = _grade(clause.slope, clause.incline)
-    return _climbing(Feature("turn", name, clause.side, degrees, radius, length, grade), clause)
+    turn = Feature("turn", meaning.names[0], clause.side, degrees, radius, length)
+    if clause.bump:
+        slope = _straight(slopes_of_bump(clause)[0])
+        length = sum_of(slope.length, slope.length)
+        return replace(turn, length=length, grade=slope.grade, climb=slope.climb, bump=clause.bump)
+    return _climbing(replace(turn, grade=_grade(clause.slope, clause.incline)), clause)
 
 
 def _straight(clause: Clause) -> Feature:
@@ -330,9 +347,10 @@ def climb_of_each(clause: Clause) -> Amount | None:
 
 
 def slopes_of_bump(clause: Clause) -> list[Clause]:
-    """Returns the two slopes of a crest or a dip: each has the whole height, and half of the length."""
-    length = clause.length and clause.length.times(0.5)
-    return [clause.model_copy(update={"slope": way, "length": length}) for way in BUMP_SLOPES[clause.kind]]
+    """Returns the two slopes of a crest or a dip, which may lie in a turn: each has the whole height, and
+    half of the length."""
+    length, ways = clause.length and clause.length.times(0.5), BUMP_SLOPES[clause.bump or clause.kind]
+    return [clause.model_copy(update={"slope": way, "length": length}) for way in ways]
 
 
 def without_joints(clauses: tuple[Clause, ...]) -> list[Clause]:

@@ -38,7 +38,7 @@ from roadgpt.brief.junctions import (
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Frozen, exactly, span
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.refusal import refused
-from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, Compass, Kind, Sharpness, Size, Slope
+from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, Bump, Compass, Kind, Sharpness, Size, Slope
 from roadgpt.errors import BriefError
 
 KINDS = frozenset(get_args(Kind))
@@ -157,7 +157,7 @@ def read_ways(text: str) -> tuple[Way, ...]:
 
 
 CLAUSE = _Language(
-    _words(side=Side, sharpness=Sharpness, size=Size, slope=Slope, flags=("alternating",)),
+    _words(side=Side, sharpness=Sharpness, size=Size, slope=Slope, bump=Bump, flags=("alternating",)),
     {**KEYS, "climb": "climb"},
 )
 ROAD = _Language(
@@ -434,15 +434,16 @@ def _with_side_of_climb(fields: dict[str, object]) -> dict[str, object]:
     climb = fields.get("climb")
     if not isinstance(climb, Amount):
         return fields
+    bump = fields["kind"] if fields["kind"] in BUMPS else fields.get("bump")
     falls = span(climb).hi <= 0 and climb != exactly(0)
     is_torn = span(climb).lo < 0 < span(climb).hi and climb.lo is not None
-    if is_torn or (falls and (fields["kind"] in BUMPS or str(fields.get("slope", "down")).endswith("up"))):
+    if is_torn or (falls and (bump or str(fields.get("slope", "down")).endswith("up"))):
         raise BriefError(
-            f"'climb={amount_text(climb)}' contradicts '{fields.get('slope', fields['kind'])}'; leave out the"
-            " minus, and say up or down"
+            f"'climb={amount_text(climb)}' contradicts '{fields.get('slope', bump or fields['kind'])}'; leave"
+            f" out the minus{'' if bump else ', and say up or down'}"
         )
     climb = climb.times(-1) if falls else climb
-    way = {} if fields["kind"] in BUMPS else {"slope": fields.get("slope", "down" if falls else "up")}
+    way = {} if bump else {"slope": fields.get("slope", "down" if falls else "up")}
     return {**fields, **way, "climb": climb}
 
 

@@ -15,7 +15,7 @@ from roadgpt.brief.junctions import (
 )
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import BUMPS, STRAIGHT, normal
-from roadgpt.brief.words import FEATURE, KINDS, ROAD, SLOPES, SURFACES
+from roadgpt.brief.words import FEATURE, KINDS, OVER, ROAD, SLOPES, SURFACES
 
 CENTRES: dict[CentreLine, str] = {
     "solid": "a solid centre line",
@@ -234,9 +234,19 @@ def _tails(clause: Clause) -> list[str]:
         tails.append(f"with {_counted(clause.count, 'turn')}")
     if clause.alternating and clause.side:
         tails.append(f"starting to the {clause.side}")
-    if clause.climb:
+    if clause.bump:
+        tails.append(_bump(clause))
+    elif clause.climb:
         tails.append(_height(clause))
     return tails
+
+
+def _bump(clause: Clause) -> str:
+    """Returns what lies inside each turn, such as 'over a crest 2 metres high with slopes of 5 percent'."""
+    assert clause.bump is not None
+    high = f"{clause.climb} metres {'high' if clause.bump == 'crest' else 'deep'}" if clause.climb else ""
+    slopes = f"with slopes of {FEATURE['grade'].said.format(clause.incline)}" if clause.incline else ""
+    return _joined("" if clause.count == exactly(1) else "each", OVER[clause.bump], high, slopes)
 
 
 def _exact_metres(amount: Amount | None) -> str:

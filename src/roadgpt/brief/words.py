@@ -21,6 +21,7 @@ from roadgpt.brief.ranges import Range
 Sharpness = Literal["gentle", "sweeping", "sharp"]
 Size = Literal["long", "short"]
 Slope = Literal["up", "down", "flat", "nearly_flat", "gently_up", "gently_down", "steeply_up", "steeply_down"]
+Bump = Literal["crest", "dip"]
 Kind = Literal[
     "straight",
     "crest",  # a straight that climbs, then falls
@@ -128,6 +129,9 @@ SLOPES: Mapping[Slope, Meaning] = {
     "steeply_up": Meaning(("steeply uphill", "a steep climb"), grade=Range(8, 15)),
     "steeply_down": Meaning(("steeply downhill", "a steep descent"), grade=Range(-15, -8)),
 }
+
+OVER: Mapping[Bump, str] = {"crest": "over a crest", "dip": "through a dip"}
+"""The phrase for a crest or a dip inside a turn."""
 
 LEAST_GRADE = 1.0  # percent: a road that climbs or falls less is level
 FIGURE_WINS = 0.6

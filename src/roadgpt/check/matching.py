@@ -39,7 +39,7 @@ from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, JunctionClause, span
 from roadgpt.brief.outline import Feature, Group, Outline, both
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.sentence import TAKES
-from roadgpt.brief.words import COUNTS, FEATURE, NO_TURN, ROAD, WHOLE_SLOPES
+from roadgpt.brief.words import COUNTS, FEATURE, NO_TURN, OVER, ROAD, WHOLE_SLOPES
 from roadgpt.check.extremes import tightest, vertical_bends
 from roadgpt.check.measures import (
     LEVEL,
@@ -97,9 +97,13 @@ def fits(stretch: MeasuredFeature, feature: Feature) -> bool:
 
 
 def _wrong(stretch: MeasuredFeature, feature: Feature) -> list[str]:
-    return [
-        name for name in FEATURE if (asked := getattr(feature, name)) and getattr(stretch, name) not in asked
+    own = {name: asked for name in FEATURE if (asked := getattr(feature, name))}
+    of_slopes = ("grade", "climb") if feature.bump else ()
+    wrong = [
+        name for name, asked in own.items() if name not in of_slopes and getattr(stretch, name) not in asked
     ]
+    has_slopes = len(stretch.slopes) == 2 and all(map(fits, stretch.slopes, feature.slopes))
+    return wrong if has_slopes or not feature.bump else [*wrong, "bump"]
 
 
 def _is_rounded_off(stretch: MeasuredFeature, asked: Range | None) -> bool:
@@ -119,6 +123,12 @@ def turn_complaints(
     if side and turn.side != side:
         out.append(Complaint(f"turn {number} goes {turn.side}, asked for {side}", turn.start))
     for name in _wrong(turn, feature):
+        if name == "bump" and feature.bump:
+            has = " and ".join(f"{slope.length:.0f} m at {slope.grade:.1f} %" for slope in turn.slopes)
+            wanted = f"{OVER[feature.bump]} in its middle half{feature.slopes[0].limits()}"
+            text = f"turn {number} does not lead {wanted}; its slopes: {has or 'none'}"
+            out.append(Complaint(text, turn.start, on_heights=True))
+            continue
         row = FEATURE[name]
         measured, asked = row.measured.format(getattr(turn, name)), getattr(feature, name)
         text = f"turn {number} {measured}, asked for {asked}{row.unit}"

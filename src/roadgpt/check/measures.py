@@ -81,6 +81,9 @@ class MeasuredFeature:
     take up the ends of a short slope."""
     pieces: tuple["MeasuredFeature", ...] = ()
     """The pieces of a straight, each with one class of grade (up, flat or down); empty for a turn."""
+    slopes: tuple["MeasuredFeature", ...] = ()
+    """The parts of a turn before and behind its highest place, or its lowest one, if that lies in its middle
+    half and one part climbs and the other falls; else empty."""
 
     @property
     def length(self) -> float:
@@ -304,8 +307,20 @@ def _features(line: CentreLine, bends: Sequence[_Bend]) -> tuple[MeasuredFeature
             out.append(_straight(line, a, b))
         if bend:
             side: Literal["left", "right"] = "left" if bend.sign > 0 else "right"
-            out.append(_feature(line, "turn", bend.first, bend.last, side, bend.degrees))
+            turn = _feature(line, "turn", bend.first, bend.last, side, bend.degrees)
+            out.append(replace(turn, slopes=_slopes_of_turn(line, bend.first, bend.last)))
     return tuple(out)
+
+
+def _slopes_of_turn(line: CentreLine, first: int, last: int) -> tuple[MeasuredFeature, ...]:
+    heights, quarter = line.z[first : last + 1], (last - first) / 4
+    for at in (int(heights.argmax()), int(heights.argmin())):
+        if quarter <= at <= last - first - quarter:
+            ends = (first, first + at), (first + at, last)
+            slopes = tuple(_feature(line, "straight", a, b) for a, b in ends if b > a)
+            if {way(slope.grade) for slope in slopes} == {"up", "down"}:
+                return slopes
+    return ()
 
 
 def _feature(

@@ -63,7 +63,7 @@ FIELDS: Mapping[Criterion, tuple[str, ...]] = {
 }
 """The fields of an Outline that set requirements for the whole road or for every turn, by criterion."""
 FEATURE_FIELDS: Mapping[Criterion, tuple[str, ...]] = {
-    "incline": ("grade",),
+    "incline": ("grade", "bump"),
     "order": ("side",),
     "extent": ("degrees", "radius", "length"),
 }

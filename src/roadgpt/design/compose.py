@@ -517,14 +517,18 @@ def drawn_turn(turn: Feature, angle: float, longest: float, task: DraftTask) -> 
     least, most, is_tight = radii.lo, radii.hi, radii.hi < inf
     if hard:
         most = max(min(most, least * TIGHTER), least)
-    if turn.length:
+    if turn.length and not (turn.bump and turn.length.hi == inf):
         low, high = turn.length.lo, min(turn.length.hi, max(LONGEST_TURN, 1.2 * turn.length.lo))
         low = low if low > 0 else 0.5 * high
         length = low + (0.35 + 0.3 * rng.random()) * (high - low)
         transition = max(0.1 * length, min(least_transition, OF_LENGTH * length))
         radius = min(max((length - transition) / radians(angle), least), most)
         angle = min(max(degrees((length - transition) / radius), asked.lo), asked.hi)
-        return turn_element(angle, hand_of(turn), radius, transition, turn.grade, turn.climb)
+        return turn_element(angle, hand_of(turn), radius, transition, turn.grade, turn.climb, bool(turn.bump))
+    if turn.length:
+        shortest = inside(turn.length.lo)
+        angle = max(angle, min(degrees(shortest / most), asked.hi))
+        least = min(max(least, shortest / radians(angle)), most)
     if not is_tight and not hard:
         least = max(least, SHORTEST_TURN * (1 - task.haste) / radians(angle))
     wide = max(min(most, WIDEST if most == inf else most), min(least * 1.4, most))
@@ -536,7 +540,7 @@ def drawn_turn(turn: Feature, angle: float, longest: float, task: DraftTask) -> 
             angle = max(asked.lo, min(angle, degrees(longest / radius)))
         radius = max(least, min(radius, longest / radians(angle)))
     transition = _transition(is_tight, angle, radius, least_transition, rng)
-    return turn_element(angle, hand_of(turn), radius, transition, turn.grade, turn.climb)
+    return turn_element(angle, hand_of(turn), radius, transition, turn.grade, turn.climb, bool(turn.bump))
 
 
 def _transition(is_tight: bool, angle: float, radius: float, least: float, rng: np.random.Generator) -> float:
@@ -738,6 +742,7 @@ def gap_between(
     """Returns the straights between two turns, or between a turn and an end of the road, where ``before`` or
     ``after`` is None. ``wishes`` are required here, in order. If ``is_leg``, both turns are hairpins."""
     outline, windows, rng = task.outline, task.windows, task.rng
+    before, after = before and before.halves[-1], after and after.halves[0]
     if is_leg and not wishes and task.haste < CRAMPED:
         return [Element(free_straight(LEG, LEG_MEAN, task))]
     if wishes:

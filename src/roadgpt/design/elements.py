@@ -40,11 +40,13 @@ def turn_element(
     transition: float,
     required_grade: Range | None = None,
     required_climb: Range | None = None,
+    has_bump: bool = False,
 ) -> Element:
     """Returns a turn with numbers rounded to the precision of design files. The angle is in degrees and
     positive; ``hand`` is 1 for a left turn, -1 for a right turn. The transition at each end is shortened to
-    at most 0.55 of the arc length of one segment, so that it fits."""
-    parts = segments_of_turn(angle)
+    at most 0.55 of the arc length of one segment, so that it fits. With ``has_bump``, a crest or a dip lies
+    in its middle."""
+    parts = 2 * segments_of_turn(angle / 2) if has_bump else segments_of_turn(angle)
     share = round(angle / parts * TENTH) / TENTH
     radius = ceil(radius * HUNDREDTH) / HUNDREDTH
     most = MOST_TRANSITION * radius * radians(share)
@@ -55,6 +57,7 @@ def turn_element(
         transition=transition,
         required_grade=required_grade,
         required_climb=required_climb,
+        half="both" if has_bump else "",
     )
 
 
@@ -88,7 +91,7 @@ def cut(element: Element) -> list[Segment]:
     arc = element.radius * radians(abs(share))
     out = []
     for part in range(parts):
-        ends = (part == 0) + (part == parts - 1)
+        ends = (part == 0 and element.half != "second") + (part == parts - 1 and element.half != "first")
         # outer parts a hair long, inner ones a hair short: so every part can keep the radius
         exact = (arc + ends * element.transition / 2) * MILLIMETRE
         out.append(
@@ -111,11 +114,13 @@ def straight(length: float, incline: float) -> Segment:
 
 
 def turn_segments(
-    degrees: float, hand: int, radius: float, transition: float, incline: float
+    degrees: float, hand: int, radius: float, transition: float, *inclines: float
 ) -> tuple[Segment, ...]:
-    """Returns the segments into which a turn with these values is cut."""
-    turn = turn_element(degrees, hand, radius, transition)
-    return tuple(cut(turn._replace(incline=round(incline * TENTH) / TENTH)))
+    """Returns the segments into which a turn with these values is cut. With two inclines, each half of the
+    turn has its own."""
+    turn = turn_element(degrees, hand, radius, transition, has_bump=len(inclines) > 1)
+    halves = zip(turn.halves, (round(incline * TENTH) / TENTH for incline in inclines), strict=True)
+    return tuple(segment for half, grade in halves for segment in cut(half._replace(incline=grade)))
 
 
 def rounded(values: Array) -> Array:

@@ -14,7 +14,7 @@ from math import ceil, copysign, inf
 import numpy as np
 
 from roadgpt.brief.element import Element
-from roadgpt.brief.outline import Outline
+from roadgpt.brief.outline import USUALLY_WIDEST, Outline
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import STEEPEST
 from roadgpt.check.matching import Complaint, complaints
@@ -95,7 +95,8 @@ def _grades_of_climbs(plan: Sequence[Element], pace: Pace, ease: float, bumps: b
     for _ in range(FEW_ROUNDS if any(element.has_fixed_length for element in plan) else ROUNDS):
         lost = [0.0] * len(plan)
         for at, ((one, other), radius) in enumerate(zip(pairwise(grades), radii, strict=True)):
-            if one * other < 0 and all(plan[i].required_climb for i in (at, at + 1)):
+            are_asked = all(plan[i].required_climb for i in (at, at + 1))
+            if (one * other < 0 and are_asked) or (not are_asked and (plan[at].half or plan[at + 1].half)):
                 change = abs(one - other) / 100
                 room = 2 * MOST_OF_SLOPE * min(plan[at].length, plan[at + 1].length)  # half on each side
                 cut = min(radius * change, room) * change / 8
@@ -110,7 +111,8 @@ def _grade_of_climb(element: Element, lost: float) -> float:
     if element.required_climb is None:
         return 0.0
     metres = _height(element.required_climb)
-    return 100 * (metres + (lost if metres > 0 else -lost)) / element.length
+    unseen = element.transition * min(element.radius / USUALLY_WIDEST, 1.0) if element.half else 0.0
+    return 100 * (metres + (lost if metres > 0 else -lost)) / (element.length - unseen)
 
 
 def _height(asked: Range) -> float:
@@ -475,7 +477,7 @@ def _pieces(
 ) -> Iterator[tuple[range, list[MeasuredFeature], list[list[int]]]]:
     """Yields the straights between two turns, as they are measured and as the draft has them: runs of the
     same direction of slope. They are left out if they do not correspond, or if no length is fixed."""
-    if len(found.turns) != sum(bool(element.turn) for element in elements):
+    if len(found.turns) != sum(bool(e.turn) and e.half != "second" for e in elements):
         return
     for row, gap in zip(_rows(elements), found.gaps, strict=True):
         pieces = [piece for straight in gap for piece in straight.pieces]
@@ -502,7 +504,8 @@ def _corrected(elements: Sequence[Element], ends: Array, found: Measures, limit:
 
 def _rows(elements: Sequence[Element]) -> list[range]:
     marks = [-1, *(i for i, element in enumerate(elements) if element.turn), len(elements)]
-    return [range(a + 1, b) for a, b in pairwise(marks)]
+    rows = [range(a + 1, b) for a, b in pairwise(marks)]
+    return [row for row in rows if row.start == 0 or elements[row.start - 1].half != "first"]
 
 
 def _with_measured_grade(element: Element, seen: MeasuredFeature, limit: Range) -> Element:

@@ -127,11 +127,14 @@ class RoadElement:
         return self.with_segments(_scaled(segment, more, wider) for segment in self.segments)
 
     def rewritten(self, degrees: float, radius: float) -> "RoadElement":
-        """Returns a turn with a new angle and radius; its side and mean incline stay the same."""
+        """Returns a turn with a new angle and radius; its side and its mean incline, or the inclines on both
+        sides of a crest or a dip in its middle, stay the same."""
         transition = next((segment.transition for segment in self.segments if segment.transition), None)
         transition = transition or TRANSITION_SHARE * radius * radians(degrees)
         hand = 1 if self.side == "left" else -1
-        return self.with_segments(turn_segments(degrees, hand, radius, transition, self.incline))
+        has_bump = self.seen is not None and self.seen.slopes
+        inclines = [self.segments[end].incline for end in (0, -1)] if has_bump else [self.incline]
+        return self.with_segments(turn_segments(degrees, hand, radius, transition, *inclines))
 
 
 RoadElements = tuple[RoadElement, ...]

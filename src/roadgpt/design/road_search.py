@@ -246,16 +246,17 @@ class DraftSearch:
 
     def with_heights(self, drafted: PlacedPlan) -> tuple[Segment, ...] | None:
         """Returns the segments of a plan with slopes that meet all requirements; None if none were found."""
+        elements = [half for element in drafted.elements for half in element.halves]
         pace = Pace.along(drafted.elements, self.world, self.outline.speed)
-        has_heights = asks_for_heights(drafted.elements)
+        has_heights = asks_for_heights(elements)
         # shorter parabolas leave more of a straight at the grade and the length that were said
         first = 1 if any(map(_has_exact_slope, drafted.elements)) else 0
-        roomy = partial(has_room_for_heights, drafted.elements, self.windows.limit, pace, bumps=False)
+        roomy = partial(has_room_for_heights, elements, self.windows.limit, pace, bumps=False)
         eases = [ease for ease in EASES[first:-1] if roomy(ease=ease)]
         tries = [(ease, False) for ease in (*eases, EASES[-1], EASES[-1])]
         tries += [(ease, True) for ease in EASES_OF_BUMPS] if self.bumps else []
         for ease, bumps in tries:
-            sloped = drawn_heights(drafted.elements, self.outline, self.windows, self.rng, pace, ease, bumps)
+            sloped = drawn_heights(elements, self.outline, self.windows, self.rng, pace, ease, bumps)
             # what is not required may be comfortable after all, unless it takes away a height
             for share in dict.fromkeys((ease if has_heights else 1.0, ease)):
                 segments, broken = corrected_draft(

@@ -33,31 +33,35 @@ def asks_for_bumps(brief: Brief | None) -> bool:
     """Returns whether the description asks for a crest, a dip or a hump anywhere."""
     if brief is None:
         return False
-    return any(clause.kind in BUMPS for clause in (*brief.clauses, brief.starts, brief.ends) if clause)
+    return any(clause.bump or clause.kind in BUMPS for clause in (*brief.clauses, *brief.both_ends))
 
 
 def bumps_asked(road: Road, brief: Brief | None) -> list[tuple[float, float]]:
     """Returns the start and end stations, in metres, of the parts of a road where a crest, a dip or a hump is
     requested.
 
-    A part reaches from one turn to the next, or to an end of the road, and 30 m into the turns beside it. If
-    the description does not fix the number of turns before a crest, dip or hump, all parts are returned."""
+    A part reaches from one turn to the next, or to an end of the road, and 30 m into the turns beside it;
+    where the crest lies in a turn, from 30 m before to 30 m behind the turn. If the description does not fix
+    the number of turns before a crest, dip or hump, all such parts are returned."""
     if brief is None or not asks_for_bumps(brief):
         return []
     found = measure(road.centreline())
     begins = [0.0, *(turn.end - CURVE for turn in found.turns)]
     ends = [*(turn.start + CURVE for turn in found.turns), road.length]
-    gaps = list(zip(begins, ends, strict=True))
-    wanted: set[int] = set()
-    if brief.starts and brief.starts.kind in BUMPS:
-        wanted.add(0)
-    if brief.ends and brief.ends.kind in BUMPS:
-        wanted.add(len(gaps) - 1)
+    parts = list(zip(begins, ends, strict=True))
+    for number, turn in enumerate(found.turns):  # each between the two parts beside it
+        parts.insert(2 * number + 1, (turn.start - CURVE, turn.end + CURVE))
+    gaps, turns, wanted = range(0, len(parts), 2), range(1, len(parts), 2), set[int]()
+    for end, at in ((brief.starts, 0), (brief.ends, -1)):
+        if end and (end.bump or end.kind in BUMPS):
+            wanted |= {*(turns if end.bump else gaps)[at:][:1]}
     for index, clause in enumerate(brief.clauses):
-        if clause.kind in BUMPS:
-            number = _turns_before(brief, index)
-            wanted |= set(range(len(gaps))) if number is None else {min(number, len(gaps) - 1)}
-    return [gaps[number] for number in sorted(wanted)]
+        before, behind = _turns_before(brief, index), _turns_before(brief, index + 1)
+        if clause.bump:
+            wanted |= {*turns[before:behind]}
+        elif clause.kind in BUMPS:
+            wanted |= {*(gaps if before is None else gaps[min(before, len(gaps) - 1) :][:1])}
+    return [parts[number] for number in sorted(wanted)]
 
 
 def _turns_before(brief: Brief, index: int) -> int | None:

@@ -163,6 +163,8 @@ def _other(element: RoadElement, now: RoadElement, name: str, seen: MeasuredFeat
             said.append(f"length {was.length:.0f} -> {seen.length:.0f} m")
     if abs(element.incline - now.incline) >= 0.05:
         said.append(_other_grades(element, now, was, seen))
+    if was and seen and was.slopes and not seen.slopes:
+        said.append(f"the {'crest' if was.slopes[0].grade > 0 else 'dip'} in it is gone")
     if not (was and seen) and abs(element.length - now.length) >= 0.05:
         said.append(f"length {element.length:.0f} -> {now.length:.0f} m")
     if said:
