@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
 from itertools import accumulate, islice, pairwise
 from math import inf, sqrt
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -40,6 +40,7 @@ from roadgpt.design.junction_draft import (
     drawn_change,
     drawn_junction,
     drawn_ramp,
+    drawn_turn_length,
     lanes_of_roads,
     main_roads,
     with_roads_continued,
@@ -69,8 +70,8 @@ from roadgpt.design.unbuilt import check_lanes_across
 from roadgpt.design.variety import Shapes
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.network import build_route
-from roadgpt.network.building import BESIDE, length_at_ramp, length_beside
-from roadgpt.network.growing import length_inside
+from roadgpt.network.building import BESIDE, length_at_ramp, length_beside, length_of_turn_lanes
+from roadgpt.network.growing import BEFORE_TURN_LANES, length_inside
 from roadgpt.network.stretch import level_ends, profiles_between, refuse_other_lanes
 from roadgpt.plural import plural
 from roadgpt.road import Design, Profile, Segment, World
@@ -294,8 +295,11 @@ class NetworkSearch(_Search):
                 why = "such an island is too small for so many arms" if is_small else "it has no such ways on"
                 self.failed[f"{why} at a {clause.name}"] += 1
                 return None
-            lanes = None if self._has_usual_lanes else self.lanes[number + 1]
-            found.append(drawn.model_copy(update={"lanes": lanes}))
+            update: dict[str, Any] = {"lanes": None if self._has_usual_lanes else self.lanes[number + 1]}
+            if clause.turn_lanes:
+                before = self.brief.roads[number]
+                update["turn_length"] = drawn_turn_length(clause, before, self.usual.width)
+            found.append(drawn.model_copy(update=update))
         return found
 
     def _with_ring_lanes(self, number: int) -> JunctionClause:
@@ -346,16 +350,19 @@ class NetworkSearch(_Search):
         if free and rest is not None:
             free = [n for n, brief in enumerate(briefs) if n in free or brief.is_straight_of_any_length]
         free = free or [n for n, brief in enumerate(briefs) if brief.length is None]
+        wide = [length_of_turn_lanes(place, self.usual.width) for place in junctions]
+        lasts = [each and each + BEFORE_TURN_LANES for each in (*wide, 0.0)]
         found: dict[int, RoadDraft] = {}
         for n in sorted(range(len(briefs)), key=lambda n: (n in free, n)):
             share = None
             if rest is not None and n in free:
                 left = rest - sum(drafted.line.s[-1] for _, drafted in found.values())
-                share = left / sum(each not in found for each in free)
-                if share < SHORTEST:
+                others = [each for each in free if each not in found]
+                share = lasts[n] + (left - sum(lasts[each] for each in others)) / len(others)
+                if share < max(SHORTEST, lasts[n]):
                     self.failed[NO_LENGTH] += 1
                     return None
-            draft = self._stretch(_without_ramps(briefs[n], n, junctions), n, haste, share)
+            draft = self._stretch(_without_ramps(briefs[n], n, junctions), n, haste, share, lasts[n])
             if draft is None:
                 self.failed[UNDRAFTED] += 1
                 return None
@@ -385,11 +392,14 @@ class NetworkSearch(_Search):
         )
         return float(self.rng.uniform(0.7 * low + 0.3 * high, 0.3 * low + 0.7 * high)) - inside
 
-    def _stretch(self, brief: Brief, n: int, haste: float, length: float | None) -> RoadDraft | None:
+    def _stretch(
+        self, brief: Brief, n: int, haste: float, length: float | None, last: float
+    ) -> RoadDraft | None:
         """Returns a draft of road number ``n`` between junctions; None if no draft was accepted. If a ramp
         joins or leaves the road, turns that are not required are sweeping. ``length`` is what the road should
-        have in metres; None if it is open."""
-        wanted, shortest = brief, self._shortest(n, haste)
+        have in metres; None if it is open. The ``last`` metres, for turn lanes, are straight if they can be.
+        """
+        wanted, shortest = brief, max(self._shortest(n, haste), last)
         if length is not None:
             is_straight = brief.motorway and not brief.clauses and brief.turns is None
             turns = exactly(0) if is_straight else brief.turns
@@ -409,6 +419,15 @@ class NetworkSearch(_Search):
         if n in self.has_wide_bends and brief.turns is None and wanted.turns not in (None, exactly(0)):
             wanted = wanted.model_copy(update={"sharpness": "sweeping"})
         search = DraftSearch(wanted, self.world, self.others, self.rng)
+        if last and wanted.ends is None and wanted.turns != exactly(0):
+            ends = Clause(kind="straight", length=at_least(last))
+            straight = DraftSearch(
+                wanted.model_copy(update={"ends": ends}), self.world, self.others, self.rng
+            )
+            for _ in range(STRETCHES):
+                found = straight.stretch(haste, plain=span(wanted.length).lo < LONG)
+                if found is not None:
+                    return straight, found
         for _ in range(STRETCHES):
             found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
             if found is not None:

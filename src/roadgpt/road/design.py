@@ -336,6 +336,10 @@ class JunctionDesign(FrozenFields):
     """Number of lanes around the central island of a roundabout."""
     crosswalk: StrictBool = False
     """Whether each arm has a crosswalk."""
+    turn_lanes: Annotated[tuple[Side, ...], Field(max_length=2)] = ()
+    """The sides for which the road of arrival has one more lane, which leads to this side only."""
+    turn_length: LaneLength = 25.0
+    """Length in metres of the turn lanes, without the taper in which they begin."""
     lanes: LanesDesign | None = None
     """The lanes of the road on which the route goes on; None for the lanes of the road of arrival."""
     arms: Annotated[tuple[ArmDesign, ...], Field(max_length=MOST_ARMS)] = ()
@@ -351,9 +355,9 @@ class JunctionDesign(FrozenFields):
         """Returns the junction with left and right exchanged. The number of an exit stays, because the
         mirrored exits are counted the other way round."""
         take = self.take if isinstance(self.take, int) else OTHER_DIRECTION[self.take]
-        return self.model_copy(
-            update={"take": take, "arms": tuple(arm.mirrored() for arm in reversed(self.arms))}
-        )
+        arms = tuple(arm.mirrored() for arm in reversed(self.arms))
+        turn_lanes = tuple(OTHER_DIRECTION[side] for side in self.turn_lanes)
+        return self.model_copy(update={"take": take, "arms": arms, "turn_lanes": turn_lanes})
 
     def arm_taken(self, left_hand: bool) -> ArmDesign | None:
         """Returns the arm that the route takes; None if the route turns back at a roundabout. Raises
@@ -537,6 +541,8 @@ class Design(FrozenFields):
             for name, usual in (("ring_lanes", 1), ("crosswalk", False), ("taper", RAMP_TAPER)):
                 if row.get(name) == usual:
                     del row[name]
+            if not row.get("turn_lanes"):
+                row = {name: value for name, value in row.items() if not name.startswith("turn_")}
             if junction.lanes is not None:
                 row["lanes"] = _written_lanes(junction.lanes)
             given = junction.arms if isinstance(junction, JunctionDesign) else ()
@@ -791,6 +797,14 @@ def _check_arms(made: JunctionDesign) -> None:
         raise UsageError(
             f"a {made.kind} has {wanted} arms besides the road of arrival, and {len(angles)} are given"
         )
+    sides = [side_of(angle) for angle in angles]
+    if made.turn_lanes and made.kind not in ("t_junction", "crossroads"):
+        raise UsageError(f"a {made.kind} has no turn lanes; leave turn_lanes out")
+    for side in made.turn_lanes:
+        if side not in sides or made.turn_lanes.count(side) > 1:
+            raise UsageError(
+                f"turn_lanes names {side}, and no arm leads {side}, or it stands there twice; leave it out"
+            )
     around = [-180.0, *angles, 180.0]
     for a, b in pairwise(around):
         if b - a < ASTERN:

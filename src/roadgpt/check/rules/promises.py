@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.brief.junctions import LANE_KINDS
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
 from roadgpt.brief.words import ROAD
@@ -58,7 +59,8 @@ def _of_route(route: "Route | None", brief: Brief, map_size: float) -> Iterator[
     """Yields a Finding for each requirement that a route does not meet. If the number of junctions and lane
     changes is wrong, nothing else is compared. On a small map, whose side is ``map_size`` metres, "motorway"
     and "sweeping" require less."""
-    found = [] if route is None else measured_places(route)
+    wide = set() if route is None else _with_turn_lanes(route, brief)
+    found = [] if route is None else measured_places(route, wide)
     if len(found) != len(brief.junctions):
         places = f"{len(brief.junctions)} junctions and places where lanes change"
         yield Finding(RULE, f"asked for {places}, passes {len(found)}")
@@ -68,7 +70,7 @@ def _of_route(route: "Route | None", brief: Brief, map_size: float) -> Iterator[
             x, y = route.at(place.s)[:2].tolist()
             for text in place_complaints(place, asked):
                 yield Finding(RULE, f"junction {number} at s = {place.s:.0f} m: {text}", place.s, x, y)
-        roads = _stretches(route)
+        roads = _stretches(route, wide)
         moved = [0.0, *map(_moved, found, brief.roads[1:]), 0.0]
         for n, ((start, road), stretch) in enumerate(zip(roads, brief.roads, strict=False)):
             if not stretch.is_open:
@@ -89,15 +91,25 @@ def _moved(place: MeasuredJunction | MeasuredLanes, behind: Brief) -> float:
     return place.behind
 
 
-def _stretches(route: "Route") -> list[tuple[float, Road]]:
-    """Returns the roads of a route outside junctions as pairs (station of the start in metres, road)."""
+def _with_turn_lanes(route: "Route", brief: Brief) -> set[int]:
+    """Returns the ids of the roads on which the route arrives where turn lanes are required."""
+    passed = zip(
+        route.passages, (each for each in brief.junctions if each.kind not in LANE_KINDS), strict=False
+    )
+    return {passage.arrival.road for passage, asked in passed if asked.turn_lanes}
+
+
+def _stretches(route: "Route", wide: set[int]) -> list[tuple[float, Road]]:
+    """Returns the roads of a route outside junctions as pairs (station of the start in metres, road); those
+    in ``wide``, given by their ids, are parts of the roads before them."""
     from roadgpt.network.stretch import joined_roads  # not for single roads
 
     found: list[tuple[float, list[NetworkRoad]]] = []
     for start, member in route.roads:
         last = found[-1][1][-1] if found else None
         is_continued = RoadEnd(member.id, "start") in route.network.continued_at
-        if last is not None and is_continued and is_beside_ramp(route.network, last, member):
+        is_part = last is not None and (member.id in wide or is_beside_ramp(route.network, last, member))
+        if is_continued and is_part:
             found[-1][1].append(member)
         else:
             found.append((start, [member]))
