@@ -23,7 +23,7 @@ The direction of an arm of a junction is the direction of the straight line from
 direction."""
 
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import islice, pairwise
 from typing import TYPE_CHECKING, Literal, NamedTuple
@@ -386,7 +386,7 @@ class MeasuredJunction:
     only_in: tuple[Way, ...]
     """The sides of one-way arms that lead to the junction; the arm of arrival is left out."""
     only_out: tuple[Way, ...]  # the sides of one-way arms that lead away from the junction
-    turn_lanes: tuple[tuple[Way, float], ...]
+    turn_lanes: tuple[tuple[Way | None, float], ...]
     """The lanes that begin on the road of arrival and lead to one side only: the side, and the length in
     metres, up to the junction, in which the lane has more than 0.9 of its full width."""
 
@@ -429,19 +429,16 @@ class MeasuredLanes:
     before ``s``."""
 
 
-def measured_places(route: "Route", wide: Collection[int]) -> list[MeasuredJunction | MeasuredLanes]:
-    """Returns what a route passes, in driving order: junctions, and places where lanes change, but for those
-    where a road in ``wide`` begins, which are the ids of roads with turn lanes."""
-    found: list[MeasuredJunction | MeasuredLanes] = [*measured_junctions(route), *_lane_places(route, wide)]
+def measured_places(route: "Route") -> list[MeasuredJunction | MeasuredLanes]:
+    """Returns what a route passes, in driving order: junctions, and places where lanes change."""
+    found: list[MeasuredJunction | MeasuredLanes] = [*measured_junctions(route), *_lane_places(route)]
     return sorted(found, key=lambda each: each.s)
 
 
-def _lane_places(route: "Route", wide: Collection[int]) -> Iterator[MeasuredLanes]:
+def _lane_places(route: "Route") -> Iterator[MeasuredLanes]:
     network = route.network
     for (_, one), (start, two) in pairwise(route.roads):
         if RoadEnd(one.id, "end") not in network.continued_at or is_beside_ramp(network, one, two):
-            continue
-        if two.id in wide:
             continue
         before, after = one.profile.count[0], two.profile.count[0]
         lanes = [leg.lane for leg in route.legs if leg.road == two.id]
@@ -521,7 +518,7 @@ def _measured(network: Network, passage: "Passage", directions: Sequence[float])
         ramp is not None and (ramp.way.incoming, ramp.way.outgoing) == (passage.arrival, passage.departure),
         tuple(arm.control for arm in passage.entered.arms if network.lanes_into(arm.end)),
         *_one_way_sides(network, passage, ways),
-        _turn_lanes(network, passage, ways),
+        tuple(_turn_lanes(network, passage, ways)),
     )
 
 
@@ -544,24 +541,19 @@ def _one_way_sides(
 
 def _turn_lanes(
     network: Network, passage: "Passage", ways: tuple[float, ...]
-) -> tuple[tuple[Way, float], ...]:
+) -> Iterator[tuple[Way | None, float]]:
     sides = dict(zip(passage.arms[1:], map(side_of, ways), strict=True))
-    member, found = network.road(passage.arrival.road), list[tuple[Way, float]]()
+    member, own = network.road(passage.arrival.road), passage.arrival
     away = np.linspace(0.0, member.road.length, math.ceil(member.road.length / LANE_STEP) + 1)
-    s = away if passage.arrival.contact == "start" else member.road.length - away
-    ways_on = [each for each in passage.entered.connections if each.incoming == passage.arrival]
-    for lane in network.lanes_into(passage.arrival):
+    ways_on = [each for each in passage.entered.connections if each.incoming == own]
+    for lane in network.lanes_into(own):
         width = member.profile.lanes[lane].width
-        led = {
-            sides[each.outgoing]
-            for each in ways_on
-            if each.outgoing in sides and lane in [link.incoming for link in each.lanes]
-        }
+        led = {sides.get(each.outgoing) for each in ways_on if lane in [way[0] for way in each.lanes]}
         if isinstance(width, CubicProfile) and len(led) == 1:
+            s = away if own.contact == "start" else member.road.length - away
             full = width.height(s) > FULL * width.extremes()[1]
             if full[0] and not full[-1]:
-                found.append((led.pop(), float(away[np.argmin(full)])))
-    return tuple(found)
+                yield led.pop(), float(away[np.argmin(full)])
 
 
 def directions_of(network: Network, arms: Sequence[RoadEnd]) -> list[float]:

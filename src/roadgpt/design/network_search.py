@@ -418,20 +418,16 @@ class NetworkSearch(_Search):
             wanted = brief.model_copy(update={"turns": exactly(0) if is_straight else at_least(1)})
         if n in self.has_wide_bends and brief.turns is None and wanted.turns not in (None, exactly(0)):
             wanted = wanted.model_copy(update={"sharpness": "sweeping"})
-        search = DraftSearch(wanted, self.world, self.others, self.rng)
+        tried = [wanted]
         if last and wanted.ends is None and wanted.turns != exactly(0):
             ends = Clause(kind="straight", length=at_least(last))
-            straight = DraftSearch(
-                wanted.model_copy(update={"ends": ends}), self.world, self.others, self.rng
-            )
+            tried.insert(0, wanted.model_copy(update={"ends": ends}))
+        for each in tried:
+            search = DraftSearch(each, self.world, self.others, self.rng)
             for _ in range(STRETCHES):
-                found = straight.stretch(haste, plain=span(wanted.length).lo < LONG)
+                found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
                 if found is not None:
-                    return straight, found
-        for _ in range(STRETCHES):
-            found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
-            if found is not None:
-                return search, found
+                    return search, found
         return None
 
     def _segments(self, drafts: Sequence[RoadDraft]) -> list[tuple[Segment, ...]] | None:

@@ -89,12 +89,10 @@ class Builder:
         self.roads[number] = NetworkRoad(number, road, junction)
         return number
 
-    def stub(self, end: RoadEnd, direction: float, turn_lanes: Sequence[Side] = ()) -> "Stub":
-        """Returns the end of a road that leads out of a junction in a direction, given in radians; its lanes
-        into the junction include the ``turn_lanes``."""
+    def stub(self, end: RoadEnd, direction: float) -> "Stub":
+        """Returns the end of a road that leads out of a junction in a direction, given in radians."""
         member = self.roads[end.road]
-        station = member.road.length if end.contact == "end" else 0.0
-        return Stub(end, direction, member.profile, station, tuple(turn_lanes))
+        return Stub(end, direction, member.profile, member.road.length if end.contact == "end" else 0.0)
 
     def join(
         self,

@@ -6,7 +6,7 @@ between the nodes are built first, and then the junctions."""
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import cast
 
@@ -177,8 +177,8 @@ class _RouteGrowth:
         profiles = [before, *profiles_of_arms(junction, before, self.profiles[number])]
         distances = contact_distances(junction, directions, profiles)
         node = end.ahead(distances[0]).point
-        arrival = RoadEnd(self.passed[-1], "end")
-        stubs = [self.builder.stub(arrival, directions[0], junction.turn_lanes)]
+        arrival = self.builder.stub(RoadEnd(self.passed[-1], "end"), directions[0])
+        stubs = [replace(arrival, turn_lanes=junction.turn_lanes)]
         for n, (arm, direction) in enumerate(zip(arms, directions[1:], strict=True)):
             start = NetworkPose(node, direction).ahead(distances[n + 1])
             if n == taken:

@@ -78,6 +78,8 @@ MEDIAN = 2.0  # m, width of a median
 TAPER = 60.0  # m, length of the taper of a lane that ends or begins
 LEAST_WIDTH = 1.5  # m; where a lane is narrower than this, no car can drive in it
 
+USUAL = {"ring_lanes": 1, "crosswalk": False, "taper": RAMP_TAPER, "turn_lanes": (), "turn_length": 25.0}
+"""Fields of a junction or a ramp that are written only if they differ from these values."""
 RARE = {"divided": False, "edge": "solid"}
 """Fields of a LanesDesign that are written only if they differ from these values."""
 After = Annotated[int, Field(ge=1, le=MAX_SEGMENTS)]
@@ -538,11 +540,9 @@ class Design(FrozenFields):
         out |= _written_segments(self.segments)
         for number, junction in enumerate(self.junctions, 1):
             row = _written_fields(junction, exclude={"arms", "lanes"})
-            for name, usual in (("ring_lanes", 1), ("crosswalk", False), ("taper", RAMP_TAPER)):
+            for name, usual in USUAL.items():
                 if row.get(name) == usual:
                     del row[name]
-            if not row.get("turn_lanes"):
-                row = {name: value for name, value in row.items() if not name.startswith("turn_")}
             if junction.lanes is not None:
                 row["lanes"] = _written_lanes(junction.lanes)
             given = junction.arms if isinstance(junction, JunctionDesign) else ()
@@ -797,14 +797,12 @@ def _check_arms(made: JunctionDesign) -> None:
         raise UsageError(
             f"a {made.kind} has {wanted} arms besides the road of arrival, and {len(angles)} are given"
         )
-    sides = [side_of(angle) for angle in angles]
-    if made.turn_lanes and made.kind not in ("t_junction", "crossroads"):
-        raise UsageError(f"a {made.kind} has no turn lanes; leave turn_lanes out")
-    for side in made.turn_lanes:
-        if side not in sides or made.turn_lanes.count(side) > 1:
-            raise UsageError(
-                f"turn_lanes names {side}, and no arm leads {side}, or it stands there twice; leave it out"
-            )
+    own = [side_of(angle) for angle in angles if made.kind in ("t_junction", "crossroads")]
+    if not {*made.turn_lanes} <= {*own} or len({*made.turn_lanes}) < len(made.turn_lanes):
+        raise UsageError(
+            "turn_lanes are sides to which an arm of a T-junction or of crossroads leads, each once; leave "
+            "out the others"
+        )
     around = [-180.0, *angles, 180.0]
     for a, b in pairwise(around):
         if b - a < ASTERN:

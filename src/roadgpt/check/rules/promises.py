@@ -5,7 +5,7 @@ The requirements are compared with what is measured on the finished geometry: se
 road between junctions is measured and compared with its own requirements in the same way as a single road.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -59,8 +59,9 @@ def _of_route(route: "Route | None", brief: Brief, map_size: float) -> Iterator[
     """Yields a Finding for each requirement that a route does not meet. If the number of junctions and lane
     changes is wrong, nothing else is compared. On a small map, whose side is ``map_size`` metres, "motorway"
     and "sweeping" require less."""
-    wide = set() if route is None else _with_turn_lanes(route, brief)
-    found = [] if route is None else measured_places(route, wide)
+    wide = [] if route is None else _starts_of_turn_lanes(route, brief)
+    passed = [] if route is None else measured_places(route)
+    found = [each for each in passed if isinstance(each, MeasuredJunction) or each.s not in wide]
     if len(found) != len(brief.junctions):
         places = f"{len(brief.junctions)} junctions and places where lanes change"
         yield Finding(RULE, f"asked for {places}, passes {len(found)}")
@@ -91,24 +92,24 @@ def _moved(place: MeasuredJunction | MeasuredLanes, behind: Brief) -> float:
     return place.behind
 
 
-def _with_turn_lanes(route: "Route", brief: Brief) -> set[int]:
-    """Returns the ids of the roads on which the route arrives where turn lanes are required."""
-    passed = zip(
-        route.passages, (each for each in brief.junctions if each.kind not in LANE_KINDS), strict=False
-    )
-    return {passage.arrival.road for passage, asked in passed if asked.turn_lanes}
+def _starts_of_turn_lanes(route: "Route", brief: Brief) -> list[float]:
+    """Returns the stations in metres at which those roads begin that end at required turn lanes."""
+    asked = (each for each in brief.junctions if each.kind not in LANE_KINDS)
+    pairs = zip(route.passages, asked, strict=False)
+    wide = {passage.arrival.road for passage, clause in pairs if clause.turn_lanes}
+    return [start for start, member in route.roads if member.id in wide]
 
 
-def _stretches(route: "Route", wide: set[int]) -> list[tuple[float, Road]]:
-    """Returns the roads of a route outside junctions as pairs (station of the start in metres, road); those
-    in ``wide``, given by their ids, are parts of the roads before them."""
+def _stretches(route: "Route", wide: Sequence[float]) -> list[tuple[float, Road]]:
+    """Returns the roads of a route outside junctions as pairs (station of the start in metres, road). Those
+    that begin at a station in ``wide`` are parts of the road before."""
     from roadgpt.network.stretch import joined_roads  # not for single roads
 
     found: list[tuple[float, list[NetworkRoad]]] = []
     for start, member in route.roads:
         last = found[-1][1][-1] if found else None
         is_continued = RoadEnd(member.id, "start") in route.network.continued_at
-        is_part = last is not None and (member.id in wide or is_beside_ramp(route.network, last, member))
+        is_part = last is not None and (start in wide or is_beside_ramp(route.network, last, member))
         if is_continued and is_part:
             found[-1][1].append(member)
         else:
