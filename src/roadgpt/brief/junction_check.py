@@ -117,10 +117,8 @@ def _faults_of_turn_lanes(junction: JunctionClause) -> Iterator[str]:
     ways = {*(junction.ways or POSSIBLE.get(kind, ()))} - {*junction.only_in}
     if kind not in ("t_junction", "crossroads"):
         yield f"turn lanes are built at T-junctions and crossroads, not at a {junction.name}; leave them out"
-    elif not sides:
-        yield "turn_len= is the length of a turn lane; say of which, as in turn_lane=left"
-    elif len(sides) < len(junction.turn_lanes) or not sides <= {"left", "right"}:
-        yield "a turn lane leads to the left or to the right, once; write for example turn_lane=left+right"
+    elif not sides or len(sides) < len(junction.turn_lanes) or "straight" in sides:
+        yield "turn lanes are turn_lane=left, right or left+right, and turn_len= is their length; change it"
     elif lost := sorted(sides - ways):
         yield f"no road leads to the {lost[0]} there, so leave the turn lane to the {lost[0]} out"
     elif sides == ways or (kind == "t_junction" and len(sides) + len(junction.only_in) > 1):

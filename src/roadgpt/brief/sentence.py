@@ -314,16 +314,11 @@ def junction_text(junction: JunctionClause) -> str:
         "at every arm" if junction.all_way else "",
         "with stop signs for the others" if junction.others_stop else "",
         "with a crosswalk" if junction.crosswalk else "",
-        _turn_lanes(junction),
+        " and ".join(f"with a {side}-turn lane" for side in junction.turn_lanes),
+        f"of {junction.turn_length} metres" if junction.turn_length else "",
         _way_on(junction),
     ]
     return " ".join(filter(None, parts))
-
-
-def _turn_lanes(junction: JunctionClause) -> str:
-    lanes = " and ".join(f"a {side}-turn lane" for side in junction.turn_lanes)
-    length = f" of {junction.turn_length} metres" if junction.turn_length else ""
-    return f"with {lanes}{length}" if lanes else ""
 
 
 def _way_on(junction: JunctionClause) -> str:

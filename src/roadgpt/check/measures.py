@@ -349,6 +349,9 @@ def _local_grades(line: CentreLine, first: int, last: int) -> Array:
     return np.asarray(100 * (line.z[after] - line.z[before]) / (line.s[after] - line.s[before]))
 
 
+TurnLane = tuple[Way | None, float]
+
+
 class MeasuredRamp(NamedTuple):
     """The ramp of a merge or exit."""
 
@@ -386,7 +389,7 @@ class MeasuredJunction:
     only_in: tuple[Way, ...]
     """The sides of one-way arms that lead to the junction; the arm of arrival is left out."""
     only_out: tuple[Way, ...]  # the sides of one-way arms that lead away from the junction
-    turn_lanes: tuple[tuple[Way | None, float], ...]
+    turn_lanes: tuple[TurnLane, ...]
     """The lanes that begin on the road of arrival and lead to one side only: the side, and the length in
     metres, up to the junction, in which the lane has more than 0.9 of its full width."""
 
@@ -539,9 +542,7 @@ def _one_way_sides(
     return tuple(into), tuple(out)
 
 
-def _turn_lanes(
-    network: Network, passage: "Passage", ways: tuple[float, ...]
-) -> Iterator[tuple[Way | None, float]]:
+def _turn_lanes(network: Network, passage: "Passage", ways: Sequence[float]) -> Iterator[TurnLane]:
     sides = dict(zip(passage.arms[1:], map(side_of, ways), strict=True))
     member, own = network.road(passage.arrival.road), passage.arrival
     away = np.linspace(0.0, member.road.length, math.ceil(member.road.length / LANE_STEP) + 1)

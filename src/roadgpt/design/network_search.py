@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
 from itertools import accumulate, islice, pairwise
 from math import inf, sqrt
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -295,11 +295,11 @@ class NetworkSearch(_Search):
                 why = "such an island is too small for so many arms" if is_small else "it has no such ways on"
                 self.failed[f"{why} at a {clause.name}"] += 1
                 return None
-            update: dict[str, Any] = {"lanes": None if self._has_usual_lanes else self.lanes[number + 1]}
             if clause.turn_lanes:
-                before = self.brief.roads[number]
-                update["turn_length"] = drawn_turn_length(clause, before, self.usual.width)
-            found.append(drawn.model_copy(update=update))
+                length = drawn_turn_length(clause, self.brief.roads[number], self.usual.width)
+                drawn = drawn.model_copy(update={"turn_length": length})
+            lanes = None if self._has_usual_lanes else self.lanes[number + 1]
+            found.append(drawn.model_copy(update={"lanes": lanes}))
         return found
 
     def _with_ring_lanes(self, number: int) -> JunctionClause:

@@ -30,10 +30,7 @@ A merge or an exit is a ramp that joins or leaves a main road, with an additiona
 
 The reference lines of the main road and of the ramp meet at the node. Behind a merge, the main road has an
 additional lane that ends in a taper; before an exit, it has one that begins in a taper. Traffic drives on the
-right. A ramp on the left joins the innermost lanes, beside the median.
-
-A turn lane is one more lane on the last part of the road of arrival, from which one can only turn to its
-side; the other lanes lead to the other arms."""
+right. A ramp on the left joins the innermost lanes, beside the median."""
 
 import cmath
 import math
@@ -764,9 +761,7 @@ class RampBuilder:
         self.builder.junctions.append(made)
 
 
-TURN_TAPER = 8.0
-"""Metres of taper for each metre of the width of a turn lane: AASHTO, A Policy on Geometric Design of
-Highways and Streets, 2018, section 9.7, for low speeds (15 for high ones)."""
+TURN_TAPER = 8.0  # m of taper for each metre of a turn lane's width: AASHTO 2018, section 9.7, low speeds
 
 
 def length_of_turn_lanes(place: PlaceDesign, width: float) -> float:
@@ -783,7 +778,8 @@ def with_turn_lanes(profile: Profile, junction: JunctionDesign) -> Profile:
     moves the oncoming lanes to the left, so that the others lead on as before."""
     if not junction.turn_lanes:
         return profile
-    found, width = _constant(profile, FAR), _width(profile)
+    found = _constant(profile, FAR)
+    width = _width(found)
     lane = CubicProfile.smooth([(0.0, 0.0), (TURN_TAPER * width, width)])
     for side in junction.turn_lanes:
         found = _with_lane(found, lane, side == "left")

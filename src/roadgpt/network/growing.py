@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import cast
 
-from roadgpt.brief.junctions import Control, PlainKind, Side, side_of
+from roadgpt.brief.junctions import Control, PlainKind, side_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import wrapped
@@ -152,15 +152,14 @@ class _RouteGrowth:
         start = whole.length - length
         if start < BEFORE_TURN_LANES or edges_at(profile, start) != edges_at(profile, FAR):
             raise UsageError(
-                f"its turn lanes and their taper take {length:.0f} m of the road before it, which is "
+                f"its turn lanes need {BEFORE_TURN_LANES + length:.0f} m of the road before it, which is "
                 f"{whole.length:.0f} m long or changes its lanes there; make that road longer"
             )
         first, last = parts_of(whole, start)
-        self.builder.roads[arrival] = NetworkRoad(arrival, first)
+        self.builder.roads[arrival] = NetworkRoad(arrival, first.with_profile(profile))
         wide = self.builder.add(last.with_profile(with_turn_lanes(profile, junction)))
-        side: Side = "left" if "left" in junction.turn_lanes else "right"
-        gain = LanesChangeDesign(after=1, kind="lane_gain", side=side)
-        lanes = continued_lanes(gain, profile, self.builder.roads[wide].profile)
+        inside = int("left" in junction.turn_lanes)
+        lanes = (*((n, n - inside) for n in profile.along_ids), *((n, n) for n in profile.against_ids))
         self.builder.continuations.append(
             Continuation(RoadEnd(arrival, "end"), RoadEnd(wide, "start"), lanes)
         )

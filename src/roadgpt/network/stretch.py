@@ -183,8 +183,7 @@ def turned(road: Road) -> Road:
 
 
 def parts_of(road: Road, s: float) -> tuple[Road, Road]:
-    """Returns the parts of a road of lines, arcs and clothoids before and behind a station in metres, with
-    the cross-section of the whole."""
+    """Returns the parts of a road before and behind a station in metres, without cross-sections."""
     plan, heights = road.plan, road.elevation
     assert isinstance(plan, PieceCurve)
     assert isinstance(heights, GradeProfile)
@@ -200,10 +199,7 @@ def parts_of(road: Road, s: float) -> tuple[Road, Road]:
     high = [(0.0, grade), *((at - s, each) for at, each in heights.knots if at > s)]
     first = PieceCurve(plan.x, plan.y, plan.heading0, joined(before))
     second = PieceCurve(*first.end, joined(behind))
-    return (
-        Road(first, GradeProfile.of(heights.z0, low), profile=road.profile),
-        Road(second, GradeProfile.of(height, high), profile=road.profile),
-    )
+    return Road(first, GradeProfile.of(heights.z0, low)), Road(second, GradeProfile.of(height, high))
 
 
 def joined_plans(roads: Sequence[Road]) -> PieceCurve:

@@ -799,10 +799,7 @@ def _check_arms(made: JunctionDesign) -> None:
         )
     own = [side_of(angle) for angle in angles if made.kind in ("t_junction", "crossroads")]
     if not {*made.turn_lanes} <= {*own} or len({*made.turn_lanes}) < len(made.turn_lanes):
-        raise UsageError(
-            "turn_lanes are sides to which an arm of a T-junction or of crossroads leads, each once; leave "
-            "out the others"
-        )
+        raise UsageError("turn_lanes are sides with an arm of a T-junction or of crossroads, each named once")
     around = [-180.0, *angles, 180.0]
     for a, b in pairwise(around):
         if b - a < ASTERN:
