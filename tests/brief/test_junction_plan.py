@@ -40,6 +40,8 @@ JUNCTIONS = st.builds(
     all_way=st.booleans(),
     others_stop=st.booleans(),
     crosswalk=st.booleans(),
+    turn_lanes=WAYS,
+    turn_length=st.none() | AMOUNTS,
 )
 ROADS = st.sampled_from(
     [

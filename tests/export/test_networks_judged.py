@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from exported import program, python_with
-from network.random_designs import random_design, random_lanes_design
+from network.random_designs import random_design, random_lanes_design, random_turn_lanes_design
 from network.random_maps import map_route
 from outside_judge import networks_referee
 from roadgpt.export import save
@@ -97,6 +97,10 @@ def saved(folder: Path, format_: str = "opendrive") -> dict[str, Network]:
     routes += [(f"lanes{seed}", drawn(seed, random_lanes_design)[1]) for seed in LANES]
     routes += [(f"left{seed}", drawn(seed, left_hand=True)[1]) for seed in LEFT]
     routes += [(f"left_lanes{seed}", drawn(seed, random_lanes_design, left_hand=True)[1]) for seed in LEFT]
+    routes += [
+        (f"turn_lanes{seed}", drawn(seed, random_turn_lanes_design, left_hand=seed in LEFT)[1])
+        for seed in (0, 1, 40)
+    ]
     for name, route in routes:
         written = save(route, folder, [format_], World(), name)
         (file,) = (path for path in written if path.suffix == ".xodr")

@@ -17,6 +17,8 @@ def in_mirror(data: dict[str, Any]) -> dict[str, Any]:
             for field in ("take", "side"):
                 if field in part:
                     part[field] = OTHER.get(part[field], part[field])
+            if "turn_lanes" in part:
+                part["turn_lanes"] = [OTHER[side] for side in part["turn_lanes"]]
             if part["kind"].startswith("lane_") and "side" not in part:
                 part["side"] = "left"  # without one, it is the right
             for arm in part.get("arms", ()):

@@ -146,3 +146,31 @@ def _side(lanes: dict[str, Any]) -> dict[str, str]:
     """The side of a ramp of a road with these lanes: of half of the one-way roads the left."""
     is_left = not lanes["backward"] and round(1e6 * lanes["width"]) % 2
     return {"side": "left"} if is_left else {}
+
+
+def random_turn_lanes_design(seed: int) -> dict[str, Any]:
+    """Returns a design with two or three T-junctions or crossroads, some of which have turn lanes."""
+    rng = np.random.default_rng(20_000 + seed)
+    data: dict[str, Any] = {
+        "starting_point": [float(rng.uniform(0, 250)), float(rng.uniform(0, 250)), float(rng.uniform(-5, 5))],
+        "theta": float(rng.uniform(-180, 180)),
+        "lanes": {**_lanes(rng), "backward": int(rng.integers(0, 4))},
+    }
+    count = int(rng.integers(2, 4))
+    for number in range(1, count + 2):
+        data[f"road_segment{2 * number - 1}"] = _segment(rng)
+        data[f"road_segment{2 * number}"] = {**_segment(rng), "distance": float(rng.uniform(75, 110))}
+        if number <= count:
+            angles = [[-90.0, 0.0, 90.0], [0.0, 90.0], [-90.0, 0.0]][int(rng.integers(3))]
+            sides = [["left"], ["right"], ["left", "right"]][int(rng.integers(3))]
+            data[f"junction{number}"] = {
+                "after": 2 * number,
+                "kind": "crossroads" if len(angles) == 3 else "t_junction",
+                "take": int(rng.integers(1, len(angles) + 1)),
+                "control": str(rng.choice(CONTROLS)),
+                "kerb": float(rng.uniform(6, 12)),
+                "arms": [{"angle": angle + float(rng.uniform(-12, 12))} for angle in angles],
+                "turn_lanes": [side for side in sides if {"left": 90.0, "right": -90.0}[side] in angles],
+                "turn_length": float(rng.uniform(15, 35)),
+            }
+    return data

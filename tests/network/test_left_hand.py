@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from shapely.affinity import scale
 
 from network.mirrored import in_mirror
-from network.random_designs import random_design, random_lanes_design
+from network.random_designs import random_design, random_lanes_design, random_turn_lanes_design
 from network.random_maps import random_map
 from roadgpt import check
 from roadgpt.brief.model import mirrored
@@ -32,7 +32,7 @@ ROUNDED = 0.01  # m^2
 CUSP = 0.15  # m, by which the tip of a thin island between two roads moves if corners are rounded to 0.1 mm
 settled = settings(max_examples=3, deadline=None)
 seeds = st.integers(0, 10_000)
-DRAWINGS = pytest.mark.parametrize("draw", [random_design, random_lanes_design])
+DRAWINGS = pytest.mark.parametrize("draw", [random_design, random_lanes_design, random_turn_lanes_design])
 Drawing = Callable[[int], dict[str, Any]]
 
 

@@ -60,6 +60,9 @@ TURNS: dict[JunctionKind, Range] = {
     "star": Range(30, 140),
 }
 """The range of the angle by which a route can turn left or right at a junction, in degrees."""
+TURN_LENGTHS = Range(15, 300)
+"""The lengths in metres in which a turn lane can have more than 0.9 of its width: at least two waiting cars
+(AASHTO, A Policy on Geometric Design of Highways and Streets, 2018, section 9.7)."""
 FORK_GAPS = (87.0, 153.0)  # degrees between neighbouring arms of a fork for which an angle is required
 
 
@@ -100,11 +103,31 @@ def _faults_of_junction(junction: JunctionClause) -> Iterator[str]:
     if junction.size is not None and not _is_as_wide(junction, SIZES[junction.size]):
         size = SIZES[junction.size]
         yield f"a {junction.size} {name} is {size} m across; leave out its size, or the number"
+    if junction.turn_lanes or junction.turn_length:
+        yield from _faults_of_turn_lanes(junction)
     is_possible = _is_ring_possible(junction, arms) and _are_signs_possible(junction)
     is_possible = is_possible and _are_ways_possible(junction) and _are_one_way_arms_possible(junction)
     if not (is_possible and _has_only_its_fields(junction) and _are_angles_possible(junction)):
         asked = junction_plan(junction)
         yield f"no {name} can be built as '{asked}' asks; leave some of it out"
+
+
+def _faults_of_turn_lanes(junction: JunctionClause) -> Iterator[str]:
+    sides, kind = {*junction.turn_lanes}, junction.kind
+    ways = {*(junction.ways or POSSIBLE.get(kind, ()))} - {*junction.only_in}
+    if kind not in ("t_junction", "crossroads"):
+        yield f"turn lanes are built at T-junctions and crossroads, not at a {junction.name}; leave them out"
+    elif not sides or len(sides) < len(junction.turn_lanes) or "straight" in sides:
+        yield "turn lanes are turn_lane=left, right or left+right, and turn_len= is their length; change it"
+    elif lost := sorted(sides - ways):
+        yield f"no road leads to the {lost[0]} there, so leave the turn lane to the {lost[0]} out"
+    elif sides == ways or (kind == "t_junction" and len(sides) + len(junction.only_in) > 1):
+        yield (
+            f"the other lanes would lead nowhere at a {junction.name} with turn lanes to the"
+            f" {' and '.join(junction.turn_lanes)}; ask for fewer turn lanes or for more ways on"
+        )
+    if not meets(junction.turn_length, TURN_LENGTHS):
+        yield f"a turn lane is {TURN_LENGTHS} m long, not {junction.turn_length} m; change it"
 
 
 def _has_only_its_fields(junction: JunctionClause) -> bool:

@@ -112,8 +112,13 @@ class JunctionClause(Frozen):
     others_stop: bool = False
     """Whether the roads that give way to the route have stop signs."""
     crosswalk: bool = False
+    turn_lanes: tuple[Way, ...] = ()
+    """The sides, left or right, for which the road of arrival has an additional lane that only turns there.
+    """
+    turn_length: Amount | None = None
+    """The length in metres in which a turn lane has more than 0.9 of its full width."""
 
-    @field_validator("ways", "only_in", "only_out")
+    @field_validator("ways", "only_in", "only_out", "turn_lanes")
     @classmethod
     def _sorted(cls, ways: tuple[Way, ...]) -> tuple[Way, ...]:
         return tuple(sorted(ways, key=get_args(Way).index))

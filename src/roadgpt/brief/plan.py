@@ -197,11 +197,13 @@ JUNCTION = _Language(
         "lanes": "lanes",
         "len": "length",
         "taper": "taper",
+        "turn_len": "turn_length",
     },
     {
         "ways": ("ways", _sides),
         "in": ("only_in", _sides),
         "out": ("only_out", _sides),
+        "turn_lane": ("turn_lanes", _sides),
         "d": ("radius", lambda text: read_amount(text).times(0.5)),
     },
     "junction",

@@ -328,6 +328,8 @@ def junction_text(junction: JunctionClause) -> str:
         "at every arm" if junction.all_way else "",
         "with stop signs for the others" if junction.others_stop else "",
         "with a crosswalk" if junction.crosswalk else "",
+        " and ".join(f"with a {side}-turn lane" for side in junction.turn_lanes),
+        f"of {junction.turn_length} metres" if junction.turn_length else "",
         _way_on(junction),
     ]
     return " ".join(filter(None, parts))

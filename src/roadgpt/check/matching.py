@@ -21,6 +21,7 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from roadgpt.brief.design_speed import SpeedLimits
+from roadgpt.brief.junction_check import TURN_LENGTHS
 from roadgpt.brief.junctions import (
     LANE_KINDS,
     NAMES,
@@ -489,6 +490,7 @@ def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Itera
         yield f"asked for roads {asked.angle} degrees apart, the least angle is {min(found.gaps):.0f} degrees"
     yield from _sizes(found, asked)
     yield from _of_ramp(found, asked)
+    yield from _of_turn_lanes(found, asked)
     if asked.all_way and set(found.all_controls) != {asked.control}:
         yield f"asked for {asked.control} at every arm, has {', '.join(found.all_controls)}"
     give_way = {*found.all_controls} - {"priority"}
@@ -504,6 +506,16 @@ def _of_ramp(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
     for name, length, own in (("lane", asked.length, lane), ("taper", asked.taper, taper)):
         if length is not None and own is not None and own not in length_range(length):
             yield f"asked for a {name} of {length} m, has {own:.0f} m"
+
+
+def _of_turn_lanes(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
+    allowed = TURN_LENGTHS if asked.turn_length is None else length_range(asked.turn_length)
+    for side in asked.turn_lanes:
+        length = max((own for way, own in found.turn_lanes if way == side), default=None)
+        if length is None:
+            yield f"asked for a lane that leads to the {side} only, has none"
+        elif length not in allowed:
+            yield f"asked for a {side}-turn lane of {allowed} m, has {length:.0f} m"
 
 
 def takes(found: MeasuredJunction, asked: JunctionClause) -> bool:

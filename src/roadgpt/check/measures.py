@@ -364,6 +364,9 @@ def _local_grades(line: CentreLine, first: int, last: int) -> Array:
     return np.asarray(100 * (line.z[after] - line.z[before]) / (line.s[after] - line.s[before]))
 
 
+TurnLane = tuple[Way | None, float]
+
+
 class MeasuredRamp(NamedTuple):
     """The ramp of a merge or exit."""
 
@@ -401,6 +404,9 @@ class MeasuredJunction:
     only_in: tuple[Way, ...]
     """The sides of one-way arms that lead to the junction; the arm of arrival is left out."""
     only_out: tuple[Way, ...]  # the sides of one-way arms that lead away from the junction
+    turn_lanes: tuple[TurnLane, ...]
+    """The lanes that begin on the road of arrival and lead to one side only: the side, and the length in
+    metres, up to the junction, in which the lane has more than 0.9 of its full width."""
 
     @property
     def arms(self) -> int:
@@ -530,6 +536,7 @@ def _measured(network: Network, passage: "Passage", directions: Sequence[float])
         ramp is not None and (ramp.way.incoming, ramp.way.outgoing) == (passage.arrival, passage.departure),
         tuple(arm.control for arm in passage.entered.arms if network.lanes_into(arm.end)),
         *_one_way_sides(network, passage, ways),
+        tuple(_turn_lanes(network, passage, ways)),
     )
 
 
@@ -548,6 +555,21 @@ def _one_way_sides(
         elif not network.lanes_into(end):
             out.append(side_of(turn))
     return tuple(into), tuple(out)
+
+
+def _turn_lanes(network: Network, passage: "Passage", ways: Sequence[float]) -> Iterator[TurnLane]:
+    sides = dict(zip(passage.arms[1:], map(side_of, ways), strict=True))
+    member, own = network.road(passage.arrival.road), passage.arrival
+    away = np.linspace(0.0, member.road.length, math.ceil(member.road.length / LANE_STEP) + 1)
+    ways_on = [each for each in passage.entered.connections if each.incoming == own]
+    for lane in network.lanes_into(own):
+        width = member.profile.lanes[lane].width
+        led = {sides.get(each.outgoing) for each in ways_on if lane in [way[0] for way in each.lanes]}
+        if isinstance(width, CubicProfile) and len(led) == 1:
+            s = away if own.contact == "start" else member.road.length - away
+            full = width.height(s) > FULL * width.extremes()[1]
+            if full[0] and not full[-1]:
+                yield led.pop(), float(away[np.argmin(full)])
 
 
 def directions_of(network: Network, arms: Sequence[RoadEnd]) -> list[float]:

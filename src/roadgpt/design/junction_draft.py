@@ -16,6 +16,7 @@ from roadgpt.brief.junction_check import (
     LEAST_BESIDE_RAMP,
     LEAST_LANE,
     MOST_ARMS_OF_MINI,
+    TURN_LENGTHS,
     WIDE_IN_TAPER,
 )
 from roadgpt.brief.junctions import (
@@ -34,9 +35,9 @@ from roadgpt.brief.junctions import (
 from roadgpt.brief.model import Brief
 from roadgpt.brief.ranges import Range, nearest, overlap
 from roadgpt.brief.words import MOST_LANES, ROAD
-from roadgpt.network.building import BETWEEN, MOUTH, USUALLY_FED, ring_width, smallest_radius
+from roadgpt.network.building import BETWEEN, MOUTH, TURN_TAPER, USUALLY_FED, ring_width, smallest_radius
 from roadgpt.network.building import MOST_LANES as MOST_RING_LANES
-from roadgpt.network.growing import controls_of
+from roadgpt.network.growing import BEFORE_TURN_LANES, controls_of
 from roadgpt.road.design import (
     ACCELERATION,
     ASTERN,
@@ -60,6 +61,7 @@ MOST_IN_TAPER = 0.6  # greatest share of the required length of a road that a ta
 LEAST_BESIDE = 20.0  # m, least length of an acceleration or deceleration lane, if none is required
 SHORT_ROAD = 30.0  # m, least length of a road before or behind a ramp
 SHORTEST_PART = 12.0  # m, least length of a road before or behind a place where lanes change
+TURN_LENGTH = 30.0  # m, length of a turn lane that is wider than 0.9 of its width, if none is required
 SLACK = 1.0  # m by which a length exceeds the least one that is required
 CHANGE = (40.0, 80.0)  # m, length of a road in whose middle the car changes lanes, if none is required
 WITHIN = 0.97  # share of the greatest length allowed that is taken if no least length is required
@@ -131,6 +133,18 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
         taper=round(taper, 1),
         side="left" if asked.side == "left" else None,
     )
+
+
+def drawn_turn_length(asked: JunctionClause, road: Brief, width: float) -> float:
+    """Returns the length in metres of turn lanes without their taper that meets the requirements, on a road
+    of arrival with lanes of a width in metres. Usual turn lanes are shorter where the road is short."""
+    taper = TURN_TAPER * width
+    if asked.turn_length is not None:
+        wide = _length(asked.turn_length)
+    else:
+        room = span(road.length).hi - BEFORE_TURN_LANES - (1 - WIDE_IN_TAPER) * taper
+        wide = max(min(TURN_LENGTH, room - SLACK), TURN_LENGTHS.lo + SLACK)
+    return round(max(wide - WIDE_IN_TAPER * taper, LEAST_TAPER), 1)
 
 
 def with_side_of_change(places: Sequence[JunctionClause], number: int) -> JunctionClause:
@@ -465,6 +479,7 @@ def drawn_junction(
             radius=radius,
             ring_lanes=_ring_lanes(clause),
             crosswalk=clause.crosswalk,
+            turn_lanes=clause.turn_lanes,
             arms=arms,
         )
         return _with_stops(drawn) if clause.others_stop else drawn
@@ -523,7 +538,7 @@ def _missing_arm(clause: JunctionClause, rng: Rng) -> int:
     T-junction turn left" usually means that the road ends there; a priority road goes on."""
     drawn = int(rng.integers(3))
     ends = clause.take in ("left", "right") and not clause.ways and clause.control != "priority"
-    return 1 if ends and not (clause.only_in or clause.only_out) else drawn
+    return 1 if ends and not (clause.only_in or clause.only_out or clause.turn_lanes) else drawn
 
 
 def _across(clause: JunctionClause, rng: Rng) -> float | None:
@@ -573,7 +588,8 @@ def _has_ways(clause: JunctionClause, angles: Sequence[float]) -> bool:
     has_angle = clause.angle is None or is_about(least, clause.angle)
     unclear = [angle for angle in angles if STRAIGHT < abs(angle) < _clear(clause)]
     is_clear = clause.kind in ("roundabout", "star", "y_junction") or not unclear
-    sides, asked = [side_of(angle) for angle in angles], (*clause.only_in, *clause.only_out)
+    sides = [side_of(angle) for angle in angles]
+    asked = (*clause.only_in, *clause.only_out, *clause.turn_lanes)
     if clause.ways and clause.kind != "crossroads":
         has_ways = sorted([*clause.ways, *clause.only_in]) == sorted(sides)
     else:

@@ -42,6 +42,7 @@ from roadgpt.design.junction_draft import (
     drawn_change,
     drawn_junction,
     drawn_ramp,
+    drawn_turn_length,
     lanes_of_roads,
     main_roads,
     with_roads_continued,
@@ -71,8 +72,8 @@ from roadgpt.design.unbuilt import check_lanes_across
 from roadgpt.design.variety import Shapes
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.network import build_route
-from roadgpt.network.building import BESIDE, length_at_ramp, length_beside
-from roadgpt.network.growing import length_inside
+from roadgpt.network.building import BESIDE, length_at_ramp, length_beside, length_of_turn_lanes
+from roadgpt.network.growing import BEFORE_TURN_LANES, length_inside
 from roadgpt.network.stretch import level_ends, profiles_between, refuse_other_lanes
 from roadgpt.plural import plural
 from roadgpt.road import Design, Profile, Segment, World
@@ -297,6 +298,9 @@ class NetworkSearch(_Search):
                 why = "such an island is too small for so many arms" if is_small else "it has no such ways on"
                 self.failed[f"{why} at a {clause.name}"] += 1
                 return None
+            if clause.turn_lanes:
+                length = drawn_turn_length(clause, self.brief.roads[number], self.usual.width)
+                drawn = drawn.model_copy(update={"turn_length": length})
             lanes = None if self._has_usual_lanes else self.lanes[number + 1]
             found.append(drawn.model_copy(update={"lanes": lanes}))
         return found
@@ -349,16 +353,19 @@ class NetworkSearch(_Search):
         if free and rest is not None:
             free = [n for n, brief in enumerate(briefs) if n in free or brief.is_straight_of_any_length]
         free = free or [n for n, brief in enumerate(briefs) if brief.length is None]
+        wide = [length_of_turn_lanes(place, self.usual.width) for place in junctions]
+        lasts = [each and each + BEFORE_TURN_LANES for each in (*wide, 0.0)]
         found: dict[int, RoadDraft] = {}
         for n in sorted(range(len(briefs)), key=lambda n: (n in free, n)):
             share = None
             if rest is not None and n in free:
                 left = rest - sum(drafted.line.s[-1] for _, drafted in found.values())
-                share = left / sum(each not in found for each in free)
-                if share < SHORTEST:
+                others = [each for each in free if each not in found]
+                share = lasts[n] + (left - sum(lasts[each] for each in others)) / len(others)
+                if share < max(SHORTEST, lasts[n]):
                     self.failed[NO_LENGTH] += 1
                     return None
-            draft = self._stretch(_without_ramps(briefs[n], n, junctions), n, haste, share)
+            draft = self._stretch(_without_ramps(briefs[n], n, junctions), n, haste, share, lasts[n])
             if draft is None:
                 self.failed[UNDRAFTED] += 1
                 return None
@@ -388,11 +395,14 @@ class NetworkSearch(_Search):
         )
         return float(self.rng.uniform(0.7 * low + 0.3 * high, 0.3 * low + 0.7 * high)) - inside
 
-    def _stretch(self, brief: Brief, n: int, haste: float, length: float | None) -> RoadDraft | None:
+    def _stretch(
+        self, brief: Brief, n: int, haste: float, length: float | None, last: float
+    ) -> RoadDraft | None:
         """Returns a draft of road number ``n`` between junctions; None if no draft was accepted. If a ramp
         joins or leaves the road, turns that are not required are sweeping. ``length`` is what the road should
-        have in metres; None if it is open."""
-        wanted, shortest = brief, self._shortest(n, haste)
+        have in metres; None if it is open. The ``last`` metres, for turn lanes, are straight if they can be.
+        """
+        wanted, shortest = brief, max(self._shortest(n, haste), last)
         if length is not None:
             is_short = brief.speed is not None and length < limits_at(brief.speed).shortest_turn + LEADS
             is_straight = (brief.motorway or is_short) and not brief.clauses and brief.turns is None
@@ -415,11 +425,16 @@ class NetworkSearch(_Search):
         kinds = {place.kind for place in self.brief.junctions[max(n - 1, 0) : n + 1]}
         if brief.speed is not None and kinds & {*RAMPS, *LANE_KINDS} and not _asks_for_slopes(brief):
             wanted = wanted.model_copy(update={"slope": "flat"})  # its level ends are passed at full speed
-        search = DraftSearch(wanted, self.world, self.others, self.rng)
-        for _ in range(STRETCHES):
-            found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
-            if found is not None:
-                return search, found
+        tried = [wanted]
+        if last and wanted.ends is None and wanted.turns != exactly(0):
+            ends = Clause(kind="straight", length=at_least(last))
+            tried.insert(0, wanted.model_copy(update={"ends": ends}))
+        for each in tried:
+            search = DraftSearch(each, self.world, self.others, self.rng)
+            for _ in range(STRETCHES):
+                found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
+                if found is not None:
+                    return search, found
         return None
 
     def _segments(self, drafts: Sequence[RoadDraft]) -> list[tuple[Segment, ...]] | None:

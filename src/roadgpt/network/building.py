@@ -39,7 +39,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
 
-from roadgpt.brief.junctions import Control, Way, side_of
+from roadgpt.brief.junctions import Control, Side, Way, side_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import wrapped
@@ -59,7 +59,7 @@ from roadgpt.network.network import (
 from roadgpt.network.pose import STRAIGHT, NetworkPose, curve_between, tangent_length
 from roadgpt.network.stretch import road_of
 from roadgpt.road import Profile, Road, Segment
-from roadgpt.road.design import JunctionDesign, RampDesign
+from roadgpt.road.design import JunctionDesign, PlaceDesign, RampDesign
 from roadgpt.road.profile import Lane, Marking, Width, width_at
 
 
@@ -143,6 +143,8 @@ class Stub:
     direction: float  # the heading in radians out of the junction
     profile: Profile
     station: float  # the station in metres of this end of the road
+    turn_lanes: tuple[Side, ...] = ()
+    """The sides to which the outermost lanes into the junction lead alone."""
 
     @cached_property
     def into(self) -> "StubLanes":
@@ -251,10 +253,15 @@ def lane_ways(stubs: Sequence[Stub], start: int) -> Iterator[tuple[int, LaneWay]
     count = len(stubs)
     others = [(start + n) % count for n in range(1, count)]
     exits = [j for j in others if stubs[start].into and stubs[j].out_of]
+    own, inside = stubs[start].turn_lanes, int("left" in stubs[start].turn_lanes)
+    for j in [j for j in exits if side_of(_turn(stubs[start], stubs[j])) in own]:
+        exits.remove(j)
+        is_left = side_of(_turn(stubs[start], stubs[j])) == "left"
+        yield j, ((0, 0) if is_left else (len(stubs[start].into) - 1, len(stubs[j].out_of) - 1),)
     if not exits:
         return
     turns = [side_of(_turn(stubs[start], stubs[j])) for j in exits]
-    into, room = len(stubs[start].into), [len(stubs[j].out_of) for j in exits]
+    into, room = len(stubs[start].into) - len(own), [len(stubs[j].out_of) for j in exits]
     turns_right = turns[0] == "right" and len(exits) > 1
     turns_left = turns[-1] == "left" and len(exits) > 1
     left, right = _turning_lanes(stubs, exits[-1])[0], _turning_lanes(stubs, exits[0])[1]
@@ -272,7 +279,7 @@ def lane_ways(stubs: Sequence[Stub], start: int) -> Iterator[tuple[int, LaneWay]
             beside = spare  # traffic that turns left to the arm uses the others
         elif spare == 2 and joining >= {"left", "right"}:
             beside = 1  # one lane on each side of these is that of traffic which turns to the arm
-        yield j, tuple((i, beside + k) for k, i in enumerate(lanes))
+        yield j, tuple((inside + i, beside + k) for k, i in enumerate(lanes))
 
 
 def _joining(stubs: Sequence[Stub], end: int) -> set[Way]:
@@ -740,6 +747,31 @@ class RampBuilder:
         arms = tuple(Arm(stub.end, stub.direction) for stub in stubs)
         made = Junction(number, self.ramp.kind, arms, tuple(ways), self._node.point, 0.0)
         self.builder.junctions.append(made)
+
+
+TURN_TAPER = 8.0  # m of taper for each metre of a turn lane's width: AASHTO 2018, section 9.7, low speeds
+
+
+def length_of_turn_lanes(place: PlaceDesign, width: float) -> float:
+    """Returns the length in metres of the turn lanes of a place with their taper, 0 if it has none, on a road
+    with lanes of a width in metres."""
+    if not isinstance(place, JunctionDesign) or not place.turn_lanes:
+        return 0.0
+    return place.turn_length + TURN_TAPER * width
+
+
+def with_turn_lanes(profile: Profile, junction: JunctionDesign) -> Profile:
+    """Returns the cross-section of the last part of a road of arrival, along which its turn lanes become as
+    wide as its other lanes. A turn lane on the right lies outside them. One on the left lies inside them, and
+    moves the oncoming lanes to the left, so that the others lead on as before."""
+    if not junction.turn_lanes:
+        return profile
+    found = _constant(profile, FAR)
+    width = _width(found)
+    lane = CubicProfile.smooth([(0.0, 0.0), (TURN_TAPER * width, width)])
+    for side in junction.turn_lanes:
+        found = _with_lane(found, lane, side == "left")
+    return replace(found, centre_marking="solid") if found.centre_marking == "broken" else found
 
 
 def _constant(profile: Profile, s: float) -> Profile:

@@ -6,7 +6,7 @@ between the nodes are built first, and then the junctions."""
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import cast
 
@@ -24,14 +24,16 @@ from roadgpt.network.building import (
     contact_distance,
     edges_at,
     length_at_ramp,
+    length_of_turn_lanes,
     setbacks,
     smallest_radius,
+    with_turn_lanes,
 )
 from roadgpt.network.lane_along import legs_along
-from roadgpt.network.network import Continuation, Junction, Leg, RoadEnd, Roundabout
+from roadgpt.network.network import Continuation, Junction, Leg, NetworkRoad, RoadEnd, Roundabout
 from roadgpt.network.pose import NetworkPose, curve_between, tangent_length
 from roadgpt.network.route import Route
-from roadgpt.network.stretch import climb_between, road_of, stretch_profiles
+from roadgpt.network.stretch import climb_between, parts_of, road_of, stretch_profiles
 from roadgpt.road import Design, Profile, Road, World
 from roadgpt.road.design import (
     BEND,
@@ -48,6 +50,7 @@ from roadgpt.road.road import check_length, reversed_road
 
 FAR = 1e6  # m, a station behind all changes of a cross-section
 LEAST = math.radians(40.0)  # largest deviation from a straight line of two arms that count as opposite
+BEFORE_TURN_LANES = 5.0  # m, least length of a road before the taper of its turn lanes
 SHORTEST = 0.1  # m, least length of a straight road between two junctions; the rules require more
 NO_TURN = 1e-6  # rad; a bend with a smaller turn has no curve
 
@@ -141,14 +144,40 @@ class _RouteGrowth:
             self.shifts[road] = 1 if place.side == "left" else -1
         self.passed.append(road)
 
+    def _add_turn_lanes(self, junction: JunctionDesign) -> None:
+        """Makes the last part of the road of arrival a road of its own, with turn lanes."""
+        arrival, profile = self.passed[-1], self.builder.roads[self.passed[-1]].profile
+        whole = self.builder.roads[arrival].road
+        length = length_of_turn_lanes(junction, float(profile.width(whole.length)))
+        start = whole.length - length
+        if start < BEFORE_TURN_LANES or edges_at(profile, start) != edges_at(profile, FAR):
+            raise UsageError(
+                f"its turn lanes need {BEFORE_TURN_LANES + length:.0f} m of the road before it, which is "
+                f"{whole.length:.0f} m long or changes its lanes there; make that road longer"
+            )
+        first, last = parts_of(whole, start)
+        self.builder.roads[arrival] = NetworkRoad(arrival, first.with_profile(profile))
+        wide = self.builder.add(last.with_profile(with_turn_lanes(profile, junction)))
+        inside = int("left" in junction.turn_lanes)
+        lanes = (*((n, n - inside) for n in profile.along_ids), *((n, n) for n in profile.against_ids))
+        self.builder.continuations.append(
+            Continuation(RoadEnd(arrival, "end"), RoadEnd(wide, "start"), lanes)
+        )
+        self.passed.append(wide)
+
     def _pass_junction(self, number: int, junction: JunctionDesign, is_level: bool) -> None:
+        if junction.turn_lanes:
+            self._add_turn_lanes(junction)
         end, arms, taken = self._end(), junction.all_arms, junction.taken
+        if taken is not None and side_of(arms[taken].angle) in junction.turn_lanes:
+            self.shifts[self.passed[-1]] = 1 if arms[taken].angle > 0 else -1
         directions = [end.heading + math.pi, *(end.heading + math.radians(arm.angle) for arm in arms)]
         before = self.profiles[number - 1]
         profiles = [before, *profiles_of_arms(junction, before, self.profiles[number])]
         distances = contact_distances(junction, directions, profiles)
         node = end.ahead(distances[0]).point
-        stubs = [self.builder.stub(RoadEnd(self.passed[-1], "end"), directions[0])]
+        arrival = self.builder.stub(RoadEnd(self.passed[-1], "end"), directions[0])
+        stubs = [replace(arrival, turn_lanes=junction.turn_lanes)]
         for n, (arm, direction) in enumerate(zip(arms, directions[1:], strict=True)):
             start = NetworkPose(node, direction).ahead(distances[n + 1])
             if n == taken:
@@ -265,6 +294,7 @@ def contact_distances(
     if junction.kind != "roundabout":
         ends_here = {0, *(n for n, arm in enumerate(junction.all_arms, 1) if arm.one_way == "in")}
         mouths = []
+        profiles = [with_turn_lanes(profiles[0], junction), *profiles[1:]]
         for n, (direction, profile) in enumerate(zip(directions, profiles, strict=True)):
             left, right = edges_at(profile, FAR if n in ends_here else 0.0)
             into, out = (-right, left) if n in ends_here else (left, -right)

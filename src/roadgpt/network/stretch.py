@@ -11,7 +11,7 @@ from itertools import pairwise
 
 from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import UsageError
-from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile, PieceCurve
+from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.elevation import Cubic, closed
 from roadgpt.geometry.pieces import joined
 from roadgpt.plural import plural
@@ -180,6 +180,26 @@ def turned(road: Road) -> Road:
         superelevation_angle=None if angle is None else as_cubics(back(angle)).negative,
     )
     return reversed_road(road).with_profile(own)
+
+
+def parts_of(road: Road, s: float) -> tuple[Road, Road]:
+    """Returns the parts of a road before and behind a station in metres, without cross-sections."""
+    plan, heights = road.plan, road.elevation
+    assert isinstance(plan, PieceCurve)
+    assert isinstance(heights, GradeProfile)
+    before, behind, start = list[Piece](), list[Piece](), 0.0
+    for piece in plan.pieces:
+        cut = min(max(s - start, 0.0), piece.length)
+        middle = piece.k0 + (piece.k1 - piece.k0) * cut / piece.length
+        before.append(Piece(cut, piece.k0, middle))
+        behind.append(Piece(piece.length - cut, middle, piece.k1))
+        start += piece.length
+    height, grade = heights.at(s)
+    low = [*(knot for knot in heights.knots if knot[0] < s), (s, grade)]
+    high = [(0.0, grade), *((at - s, each) for at, each in heights.knots if at > s)]
+    first = PieceCurve(plan.x, plan.y, plan.heading0, joined(before))
+    second = PieceCurve(*first.end, joined(behind))
+    return Road(first, GradeProfile.of(heights.z0, low)), Road(second, GradeProfile.of(height, high))
 
 
 def joined_plans(roads: Sequence[Road]) -> PieceCurve:

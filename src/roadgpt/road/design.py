@@ -79,6 +79,8 @@ MEDIAN = 2.0  # m, width of a median
 TAPER = 60.0  # m, length of the taper of a lane that ends or begins
 LEAST_WIDTH = 1.5  # m; where a lane is narrower than this, no car can drive in it
 
+USUAL = {"ring_lanes": 1, "crosswalk": False, "taper": RAMP_TAPER, "turn_lanes": (), "turn_length": 25.0}
+"""Fields of a junction or a ramp that are written only if they differ from these values."""
 RARE = {"divided": False, "edge": "solid"}
 """Fields of a LanesDesign that are written only if they differ from these values."""
 After = Annotated[int, Field(ge=1, le=MAX_SEGMENTS)]
@@ -200,6 +202,8 @@ class FrozenFields(BaseModel):
                 changes[name] = OTHER_DIRECTION[value]
             elif name in ANGLES:
                 changes[name] = 0.0 - value
+            elif name == "turn_lanes":
+                changes[name] = tuple(OTHER_DIRECTION[side] for side in value)
             elif name in ("segments", "arms"):
                 changes[name] = tuple(each.mirrored() for each in value)[:: -1 if name == "arms" else 1]
         return self.model_copy(update=changes)
@@ -331,6 +335,10 @@ class JunctionDesign(FrozenFields):
     """Number of lanes around the central island of a roundabout."""
     crosswalk: StrictBool = False
     """Whether each arm has a crosswalk."""
+    turn_lanes: Annotated[tuple[Side, ...], Field(max_length=2)] = ()
+    """The sides for which the road of arrival has one more lane, which leads to this side only."""
+    turn_length: LaneLength = 25.0
+    """Length in metres of the turn lanes, without the taper in which they begin."""
     lanes: LanesDesign | None = None
     """The lanes of the road on which the route goes on; None for the lanes of the road of arrival."""
     arms: Annotated[tuple[ArmDesign, ...], Field(max_length=MOST_ARMS)] = ()
@@ -521,7 +529,7 @@ class Design(FrozenFields):
         out |= _written_segments(self.segments)
         for number, junction in enumerate(self.junctions, 1):
             row = _written_fields(junction, exclude={"arms", "lanes"})
-            for name, usual in (("ring_lanes", 1), ("crosswalk", False), ("taper", RAMP_TAPER)):
+            for name, usual in USUAL.items():
                 if row.get(name) == usual:
                     del row[name]
             if junction.lanes is not None:
@@ -778,6 +786,9 @@ def _check_arms(made: JunctionDesign) -> None:
         raise UsageError(
             f"a {made.kind} has {wanted} arms besides the road of arrival, and {len(angles)} are given"
         )
+    own = [side_of(angle) for angle in angles if made.kind in ("t_junction", "crossroads")]
+    if not {*made.turn_lanes} <= {*own} or len({*made.turn_lanes}) < len(made.turn_lanes):
+        raise UsageError("turn_lanes are sides with an arm of a T-junction or of crossroads, each named once")
     around = [-180.0, *angles, 180.0]
     for a, b in pairwise(around):
         if b - a < ASTERN:

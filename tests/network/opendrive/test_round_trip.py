@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from network.random_designs import random_design, random_lanes_design
+from network.random_designs import random_design, random_lanes_design, random_turn_lanes_design
 from network.random_maps import map_route
 from roadgpt.export import exporter_of
 from roadgpt.network import Network, Route, build_route
@@ -14,7 +14,7 @@ from roadgpt.road import World, read_design
 
 CASES = [
     *(f"{kind} {seed}" for kind in ("junctions", "lanes", "left", "map") for seed in range(8)),
-    *(f"ramps {seed}" for seed in range(4)),
+    *(f"{kind} {seed}" for kind in ("ramps", "turns") for seed in range(4)),
 ]
 
 
@@ -23,8 +23,8 @@ def route_of(case: str) -> Route:
     if kind == "map":
         return map_route(int(seed))
     data = random_design(int(seed)) if kind in ("junctions", "left") else random_lanes_design(int(seed))
-    if kind == "ramps":
-        data = random_lanes_design(int(seed) + 50)
+    if kind in ("ramps", "turns"):
+        data = random_lanes_design(int(seed) + 50) if kind == "ramps" else random_turn_lanes_design(int(seed))
     return build_route(read_design(data | ({"left_hand": True} if kind == "left" else {}))[0], World())
 
 

@@ -5,12 +5,13 @@ The requirements are compared with what is measured on the finished geometry: se
 road between junctions is measured and compared with its own requirements in the same way as a single road.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.brief.junctions import LANE_KINDS
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
 from roadgpt.brief.words import ROAD, heading_from
@@ -78,7 +79,9 @@ def _of_route(route: "Route | None", brief: Brief, map_size: float) -> Iterator[
     """Yields a Finding for each requirement that a route does not meet. If the number of junctions and lane
     changes is wrong, nothing else is compared. On a small map, whose side is ``map_size`` metres, "motorway"
     and "sweeping" require less."""
-    found = [] if route is None else measured_places(route)
+    wide = [] if route is None else _starts_of_turn_lanes(route, brief)
+    passed = [] if route is None else measured_places(route)
+    found = [each for each in passed if isinstance(each, MeasuredJunction) or each.s not in wide]
     if len(found) != len(brief.junctions):
         places = f"{len(brief.junctions)} junctions and places where lanes change"
         yield Finding(RULE, f"asked for {places}, passes {len(found)}")
@@ -88,7 +91,7 @@ def _of_route(route: "Route | None", brief: Brief, map_size: float) -> Iterator[
             x, y = route.at(place.s)[:2].tolist()
             for text in place_complaints(place, asked):
                 yield Finding(RULE, f"junction {number} at s = {place.s:.0f} m: {text}", place.s, x, y)
-        roads = _stretches(route)
+        roads = _stretches(route, wide)
         moved = [0.0, *map(_moved, found, brief.roads[1:]), 0.0]
         for n, ((start, road), stretch) in enumerate(zip(roads, brief.roads, strict=False)):
             if not stretch.is_open:
@@ -109,15 +112,25 @@ def _moved(place: MeasuredJunction | MeasuredLanes, behind: Brief) -> float:
     return place.behind
 
 
-def _stretches(route: "Route") -> list[tuple[float, Road]]:
-    """Returns the roads of a route outside junctions as pairs (station of the start in metres, road)."""
+def _starts_of_turn_lanes(route: "Route", brief: Brief) -> list[float]:
+    """Returns the stations in metres at which those roads begin that end at required turn lanes."""
+    asked = (each for each in brief.junctions if each.kind not in LANE_KINDS)
+    pairs = zip(route.passages, asked, strict=False)
+    wide = {passage.arrival.road for passage, clause in pairs if clause.turn_lanes}
+    return [start for start, member in route.roads if member.id in wide]
+
+
+def _stretches(route: "Route", wide: Sequence[float]) -> list[tuple[float, Road]]:
+    """Returns the roads of a route outside junctions as pairs (station of the start in metres, road). Those
+    that begin at a station in ``wide`` are parts of the road before."""
     from roadgpt.network.stretch import joined_roads  # not for single roads
 
     found: list[tuple[float, list[NetworkRoad]]] = []
     for start, member in route.roads:
         last = found[-1][1][-1] if found else None
         is_continued = RoadEnd(member.id, "start") in route.network.continued_at
-        if last is not None and is_continued and is_beside_ramp(route.network, last, member):
+        is_part = last is not None and (start in wide or is_beside_ramp(route.network, last, member))
+        if is_continued and is_part:
             found[-1][1].append(member)
         else:
             found.append((start, [member]))
