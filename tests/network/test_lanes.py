@@ -302,7 +302,7 @@ def test_a_lane_for_acceleration_gives_way_to_the_main_road(take: str, side: str
     assert own.lane in last
     assert width[own] == pytest.approx(0, abs=0.01)
     assert [abs(other.lane - own.lane) for other in others] == [1]
-    assert all(width[other] == 3.5 and other.road == own.road for other in others)
+    assert all(width[other] > 3 and other.road == own.road for other in others)
 
 
 def test_a_car_stops_before_the_line_and_the_crosswalk() -> None:

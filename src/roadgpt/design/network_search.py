@@ -834,8 +834,7 @@ def room_for_network(brief: Brief, world: World) -> float | None:
         if likely <= world.site.map_size and (failed is None or not failed.lacks_room):
             return None
         found = larger_map(brief, world, _failed, likely)
-        has_ramps = any(place.kind in RAMPS for place in brief.junctions)
-        if found is None and has_ramps:
+        if found is None and main_roads(brief.junctions):
             return larger_map(brief, world, partial(_failed, is_modest=True), likely)
         return found
     except RoadGPTError:  # the design itself refuses what cannot be built, with its reason
