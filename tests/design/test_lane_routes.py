@@ -6,15 +6,16 @@ The referee is used where it is at hand; it reads only the exported files.
 import numpy as np
 import pytest
 
-from roadgpt.brief import check
+from roadgpt.brief import check, read
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.design import draft
 from roadgpt.design.designers.planner import Planner
 from roadgpt.design.network_search import NetworkSearch
-from roadgpt.errors import DesignError, UsageError
+from roadgpt.design.room import world_for
+from roadgpt.errors import BriefError, DesignError, UsageError
 from roadgpt.network import Route, build_route
-from roadgpt.road import Design, Site, World
+from roadgpt.road import Design, Limits, Site, World
 from roadgpt.road.design import narrow_part
 from tables import rows
 
@@ -142,6 +143,39 @@ def test_a_motorway_with_a_median_has_tighter_turns_where_the_map_is_small() -> 
     route, large = build_route(design, small), World(site=Site(map_size=3000))
     assert inspect(route, brief, small) == ()
     assert any("turn 1 has a radius" in finding.sentence for finding in inspect(route, brief, large))
+
+
+@pytest.mark.parametrize(
+    ("line", "first", "apart"), rows(__file__, "two_lane_changes_are_as_far_apart_as_asked")
+)
+def test_two_lane_changes_are_as_far_apart_as_asked(
+    line: str, first: float | None, apart: list[float]
+) -> None:
+    brief = read_plan(line)
+    world = world_for(brief, World())
+    route = build_route(draft(brief, world, seed=3), world)
+    assert inspect(route, brief, world) == ()
+    s = np.arange(0, route.length, 0.05)
+    lane = route.profile.middle(s) / world.section.lane_width  # it moves by 1 in each change
+    moved = np.cumsum(np.abs(np.diff(lane)))
+    assert moved[-1] == pytest.approx(len(apart) + 1, abs=0.01)
+    places = s[np.searchsorted(moved, np.arange(len(apart) + 1) + 0.5)]
+    assert np.diff(places) == pytest.approx(apart, abs=2)
+    assert first is None or places[0] == pytest.approx(first, rel=0.06)
+
+
+@pytest.mark.parametrize("line", [line for (line,) in rows(__file__, "routes_past_ramps_are_as_asked")])
+def test_routes_past_ramps_are_as_asked(line: str) -> None:
+    brief = read_plan(line)
+    world = world_for(brief, World(limits=Limits(speed_limit=100 / 3.6)))
+    for seed in (1, 2):
+        assert inspect(build_route(draft(brief, world, seed=seed), world), brief, world) == ()
+
+
+@pytest.mark.parametrize(("line", "said"), rows(__file__, "what_has_no_room_is_told"))
+def test_what_has_no_room_is_told(line: str, said: str) -> None:
+    with pytest.raises((BriefError, DesignError), match=f"^{said}$"):
+        draft(read(line, "plan", 800), WIDE, seed=1)
 
 
 def test_a_road_with_an_exit_has_sweeping_bends_unless_others_are_asked_for() -> None:

@@ -281,6 +281,30 @@ def test_a_roundabout_s_arms_give_way_to_its_ring() -> None:
     assert (entries, exits) == (4, 8)
 
 
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize("take", ["ramp", "main"])
+def test_a_lane_for_acceleration_gives_way_to_the_main_road(take: str, side: str) -> None:
+    ramp = {"kind": "merge", "take": take, "side": side, "after": 1}
+    one_way = {"forward": 1 if take == "ramp" else 2, "backward": 0}
+    straight = {"distance": 100, "direction": "straight", "incline": 0, "turn_degrees": 0}
+    main = {"lanes": {"forward": 2, "backward": 0}}
+    design = {
+        "starting_point": [100, 100, 0], "theta": 0, "lanes": one_way, "road_segment1": straight,
+        "junction1": {**ramp, **main}, "road_segment2": straight,
+    }  # fmt: skip
+    lanes = lanes_of(build_route(read_design(design)[0], World()).network)
+    given = {lane.id: lanes.gives_way_to(lane.id) for lane in lanes if lane.kind == "driving"}
+    ((own, others),) = [pair for pair in given.items() if pair[1]]
+    (merge,) = lanes.network.junctions
+    last = {each.outgoing for way in merge.connections for each in way.lanes}
+    width = {leg: float(width_of(lanes[leg].member.profile.lanes[leg.lane].width, np.array([1e4]))[0])
+             for leg in given if leg.road == own.road}  # fmt: skip
+    assert own.lane in last
+    assert width[own] == pytest.approx(0, abs=0.01)
+    assert [abs(other.lane - own.lane) for other in others] == [1]
+    assert all(width[other] > 3 and other.road == own.road for other in others)
+
+
 def test_a_car_stops_before_the_line_and_the_crosswalk() -> None:
     lanes = crossing(control="stop")
     stops = [lane for lane in lanes if lane.control == "stop" and lane.kind == "driving"]

@@ -21,6 +21,7 @@ from roadgpt.brief.junctions import (
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import junction_plan, map_plan
 from roadgpt.brief.ranges import Range, overlap
+from roadgpt.brief.words import ROAD_LENGTH_SLACK
 from roadgpt.errors import BriefError
 
 POSSIBLE: dict[JunctionKind, tuple[str, ...]] = {
@@ -43,6 +44,7 @@ STEPS = {"lane_drop": -1, "lane_gain": 1, "lane_change": 0}
 """The number of lanes behind a lane drop, gain or change, minus the number of lanes before."""
 LEAST_BESIDE_RAMP = 28.0  # m; source: the rule ``ramp_too_short``
 LEAST_LANE = 17.0  # m, before the taper; with the wide part of a taper of 60 m, these are the required 28 m
+LEAST_NARROW = 8.0  # m, of the lane, where it has less than 0.9 of its width, if no taper is required
 WIDE_IN_TAPER = 0.196  # of the taper: the share in which the lane is still wider than 0.9 of its full width
 
 
@@ -270,6 +272,18 @@ def _faults_of_lanes(brief: Brief) -> Iterator[str]:
             yield (
                 f"the additional lane of a {place.name} is {least:.0f} m long or longer, not"
                 f" {place.length} m; change it, or its taper"
+            )
+    for n, road in enumerate(brief.stretches):
+        beside = [place for place in brief.junctions[max(n - 1, 0) : n] if place.kind == "merge"]
+        beside += [place for place in brief.junctions[n : n + 1] if place.kind == "diverge"]
+        needed = sum(max(span(each.length).lo, LEAST_BESIDE_RAMP) for each in beside)
+        needed += sum(max(span(each.taper).lo, LEAST_NARROW) for each in beside)
+        longest = span(road.length).hi
+        if beside and needed > (1 + ROAD_LENGTH_SLACK) * longest:
+            lanes = " and ".join(f"the additional lane of the {each.name}" for each in beside)
+            yield (
+                f"{lanes} with {'their tapers need' if beside[1:] else 'its taper needs'} {needed:.0f} m of a"
+                f" road of {road.length} m; ask for a longer road, or for shorter lanes"
             )
 
 

@@ -11,7 +11,7 @@ from pydantic import AfterValidator, Field, model_validator
 from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exactly, figure, span
 from roadgpt.brief.beside import BESIDE, friction_of
 from roadgpt.brief.design_speed import FASTEST, SLOWEST
-from roadgpt.brief.junctions import JunctionClause, MapClause, Side
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, Side
 from roadgpt.brief.ranges import Range, nearest
 from roadgpt.brief.words import (
     LARGEST_MAP,
@@ -274,6 +274,33 @@ class Brief(Frozen):
     def friction(self) -> float | None:
         """The friction coefficient of the slipperiest surface in ``beside``; None if there is no surface."""
         return friction_of(self.beside)
+
+
+def is_one_road(place: JunctionClause) -> bool:
+    """Returns whether the roads before and behind a place are one road, whose lanes may change there."""
+    return place.kind in LANE_KINDS or (place.kind in RAMPS and place.take == "main")
+
+
+def motorways_continued(brief: Brief) -> list[Brief]:
+    """Returns the requirements for the roads of a route. A motorway stays a motorway past its ramps and where
+    only its lanes change."""
+    roads = list(brief.stretches)
+    one_road = [n for n, place in enumerate(brief.junctions) if is_one_road(place)]
+    for n in (*one_road, *reversed(one_road)):
+        if roads[n].motorway or roads[n + 1].motorway:
+            roads[n : n + 2] = [road.model_copy(update={"motorway": True}) for road in roads[n : n + 2]]
+    return roads
+
+
+def counts_to_change(brief: Brief, number: int) -> bool:
+    """Returns whether the required length of the road before a lane change, place ``number``, counts to the
+    middle of the road behind, where the car changes lanes. It does if no length is required of the road
+    behind, or if that length is the distance to the next lane change."""
+    if brief.stretches[number + 1].length is None:
+        return True
+    following = brief.junctions[number + 1 : number + 2]
+    is_next = any(place.kind == "lane_change" for place in following)
+    return is_next and not brief.stretches[number + 2].clauses and counts_to_change(brief, number + 1)
 
 
 def mirrored(brief: Brief) -> Brief:

@@ -32,7 +32,7 @@ from roadgpt.brief.junctions import (
     is_about,
     side_of,
 )
-from roadgpt.brief.model import Brief
+from roadgpt.brief.model import Brief, counts_to_change, is_one_road, motorways_continued
 from roadgpt.brief.ranges import Range, nearest, overlap
 from roadgpt.brief.words import MOST_LANES, ROAD
 from roadgpt.network.building import BETWEEN, MOUTH, TURN_TAPER, USUALLY_FED, ring_width, smallest_radius
@@ -68,11 +68,6 @@ WITHIN = 0.97  # share of the greatest length allowed that is taken if no least 
 CLOSE = 0.5  # share of the tolerance of a required length that drafts may use
 
 
-def is_one_road(place: JunctionClause) -> bool:
-    """Returns whether the roads before and behind a place are one road, whose lanes may change there."""
-    return place.kind in LANE_KINDS or (place.kind in RAMPS and place.take == "main")
-
-
 def leads_straight_on(place: JunctionClause) -> bool:
     """Returns whether the route is required to go straight on at a junction that is no roundabout."""
     return place.take == "straight" and place.kind != "roundabout"
@@ -85,11 +80,9 @@ def with_roads_continued(brief: Brief) -> Brief:
     with tight bends or steep grades. In such places, other roads keep their slope, and stay without turns, if
     nothing else is required of the next part. Under the same condition, a road without turns also stays
     without turns behind a junction where the route goes straight on."""
-    roads = list(brief.stretches)
+    roads = motorways_continued(brief)
     one_road = [n for n, place in enumerate(brief.junctions) if is_one_road(place)]
     for n in (*one_road, *reversed(one_road)):
-        if roads[n].motorway or roads[n + 1].motorway:
-            roads[n : n + 2] = [road.model_copy(update={"motorway": True}) for road in roads[n : n + 2]]
         if speed := roads[n].speed or roads[n + 1].speed:
             own = (road.speed or speed for road in roads[n : n + 2])
             roads[n : n + 2] = [
@@ -188,22 +181,62 @@ def counted_from_lanes(brief: Brief, places: Sequence[PlaceDesign], width: float
     The Brief measures lengths from where a lane that ends or begins is ``LEAST_WIDTH`` wide. The roads,
     however, meet where the lane's taper ends or begins. A car changes lanes in the middle of the road behind
     the place of a ``lane_change``. If only the road before this place has a required length, the Brief
-    measures this length up to the lane change, and the road behind gets a length of 40 to 80 m. ``width`` is
+    measures this length up to the lane change, and the road behind gets a length of 40 to 80 m. Where lane
+    changes have required distances, all these roads get the lengths that place the changes so. ``width`` is
     that of each lane in metres."""
     roads = list(brief.roads)
     for n, place in enumerate(places):
         if not isinstance(place, LanesChangeDesign):
             continue
-        before, behind = (road.length for road in brief.roads[n : n + 2])
+        before = brief.roads[n].length
         if place.kind != "lane_change":
             more = narrow_part(place.length, width) * (1 if place.kind == "lane_drop" else -1)
             roads[n], roads[n + 1] = _longer(roads[n], more), _longer(roads[n + 1], -more)
-        elif before is not None and behind is None:
-            least, most = CHANGE
-            own = min(max(span(before).lo, least), most)
-            roads[n] = _longer(roads[n], -own / 2)
-            roads[n + 1] = roads[n + 1].model_copy(update={"length": between(own - SLACK, own + SLACK)})
+            continue
+        distances = _distances(brief, n)
+        is_placed = n > 0 and places[n - 1].kind == "lane_change" and bool(_distances(brief, n - 1))
+        if is_placed or not (distances or (before is not None and counts_to_change(brief, n))):
+            continue
+        lengths = _lengths_of_changes(brief.roads[n : n + 2], distances)
+        roads[n] = _longer(roads[n], -lengths[0] / 2)
+        for k, own in enumerate(lengths, n + 1):
+            roads[k] = roads[k].model_copy(update={"length": between(own - SLACK, own + SLACK)})
     return roads
+
+
+def _distances(brief: Brief, number: int) -> list[float]:
+    """Returns the required distances in metres from a lane change, place ``number``, to the next ones."""
+    asked = _length_of(brief.roads[number + 1])
+    following = brief.junctions[number + 1 : number + 2]
+    is_next = any(place.kind == "lane_change" for place in following) and not brief.roads[number + 2].clauses
+    if asked is None or not (is_next and counts_to_change(brief, number + 1)):
+        return []
+    return [_length(asked), *_distances(brief, number + 1)]
+
+
+def _length_of(road: Brief) -> Amount | None:
+    """Returns the required length of a road, or of the one straight of which it consists."""
+    is_straight = len(road.clauses) == 1 and road.clauses[0].kind == "straight"
+    return road.clauses[0].length if road.length is None and is_straight else road.length
+
+
+def _lengths_of_changes(around: Sequence[Brief], distances: Sequence[float]) -> list[float]:
+    """Returns the lengths in metres of the roads behind lane changes, in whose middles the changes lie.
+    ``around`` are the requirements for the roads before and behind the first change, and ``distances`` those
+    from each change to the next."""
+    before, own = around[0].length, _length_of(around[1])
+    if not distances:
+        return [min(max(span(before).lo, CHANGE[0]), CHANGE[1]) if own is None else _length(own)]
+    least = min(CHANGE[0], *distances)
+    low, high = least, inf if before is None else max(2 * (span(before).lo - SHORTEST_PART), least)
+    rest, sign = 0.0, 1
+    for distance in distances:  # each road has the length rest + sign * first
+        rest, sign = 2 * distance - rest, -sign
+        low, high = (max(low, least - rest), high) if sign > 0 else (low, min(high, rest - least))
+    lengths = [distances[0] if around[1].clauses else max(min(distances[0], high), low)]
+    for distance in distances:
+        lengths.append(2 * distance - lengths[-1])
+    return lengths
 
 
 def _longer(road: Brief, more: float) -> Brief:

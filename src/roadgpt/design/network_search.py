@@ -16,7 +16,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import accumulate, islice, pairwise
 from math import inf, sqrt
 from typing import TypeVar
@@ -107,6 +107,7 @@ DRAFTS = 400  # for one route, at most
 DRAFTS_OF_LENGTH = 1200  # the same, if a length of the whole route is required
 NO_HASTE = 12  # drafts without haste
 STRETCHES = 12  # drafts of one road between junctions
+HEIGHTS_ASKED = ("slope", "incline", "steepest", "climb", "hills", "hard")
 HEIGHTS = 3  # draws of the heights of one road
 BUILT = 60  # drafts that fit and break a rule, after which the search is given up
 LEAST_OF_MOST = 0.6  # least length of a route as a share of its greatest, if only the latter is required
@@ -218,6 +219,8 @@ class _Search:
 class NetworkSearch(_Search):
     """The search for one route."""
 
+    is_modest = False
+    """Whether drafts are level, and lanes beside ramps short, where nothing else is required."""
     tried = 40
     """Number of drafts in a search that tests whether the World's map is large enough."""
 
@@ -234,18 +237,25 @@ class NetworkSearch(_Search):
         check_lanes_across(brief.junctions, self.lanes)
 
     def run(self, drafts: int | None = None) -> Design:
-        """Returns the first of up to ``drafts`` drafts that is accepted; None stands for the usual number.
-        Raises DesignError if no draft was accepted, for the most frequent reason, or no road can have the
-        lanes that are required."""
+        """Returns the first of up to ``drafts`` drafts that is accepted. None stands for the usual number,
+        and as many modest drafts of a route with ramps if none of those was accepted. Raises DesignError if
+        no draft was accepted, for the most frequent reason, or no road can have the required lanes."""
+        is_trial = drafts is not None
         drafts = drafts or (DRAFTS if self.brief.length is None else DRAFTS_OF_LENGTH)
         least = HURRIED * max(len(self.brief.junctions) - 2, 0)
         calm = min(NO_HASTE, drafts // 3)
-        hastes = (max(0.0, (n - calm) / (drafts - calm)) ** 0.5 for n in range(drafts))
+        hastes = [max(0.0, (n - calm) / (drafts - calm)) ** 0.5 for n in range(drafts)]
         tried = (self._draft(min(max(haste, least), 1.0)) for haste in hastes)
         try:
             return self._first_accepted(tried, BUILT, self._advice)
         except UsageError as error:  # no draft can have such lanes
             raise DesignError(str(error)) from error
+        except DesignError:
+            if self.is_modest or is_trial or not self.has_wide_bends:
+                raise
+            self.is_modest = True
+            self.failed.clear()
+            return self.run()
 
     def _draft(self, haste: float) -> Design | None:
         junctions = self._places(haste)
@@ -289,7 +299,7 @@ class NetworkSearch(_Search):
                 around = self.brief.roads[number : number + 2]
                 drawn = drawn_change(with_side_of_change(self.brief.junctions, number), around)
             elif clause.kind in RAMPS:
-                drawn = drawn_ramp(clause, self._room_beside(number))
+                drawn = drawn_ramp(clause, 0.0 if self.is_modest else self._room_beside(number))
             else:
                 asked = self._at_end_of_ramp(number) or self._with_ring_lanes(number)
                 drawn = drawn_junction(asked, self.rng, haste, named)
@@ -376,12 +386,15 @@ class NetworkSearch(_Search):
         """Returns the least length in metres of a road of which no length is required. The larger ``haste``,
         from 0 to 1, the shorter a road with several lanes on which none ends, begins or is changed."""
         kinds = [place.kind for place in self.brief.junctions[max(n - 1, 0) : n + 1]]
-        if len(kinds) == 2 and all(kind in RAMPS for kind in kinds) and kinds != ["merge", "diverge"]:
-            # beside this road lie those that the route does not take
+        if self._lies_between_ramps(n):  # and beside those that the route does not take
             return BESIDE * ((kinds[0] == "diverge") + (kinds[1] == "merge")) + BETWEEN_RAMPS
         if any(kind in LANE_KINDS for kind in kinds):
             return SHORTEST_WITH_LANES
         return max(SHORTEST_WITH_LANES * (1 - haste), SHORTEST) if self.lanes[n].forward > 1 else SHORTEST
+
+    def _lies_between_ramps(self, n: int) -> bool:
+        kinds = [place.kind for place in self.brief.junctions[max(n - 1, 0) : n + 1]]
+        return len(kinds) == 2 and all(kind in RAMPS for kind in kinds) and kinds != ["merge", "diverge"]
 
     def _rest(self, junctions: Sequence[PlaceDesign]) -> float | None:
         if self.brief.length is None:
@@ -423,8 +436,12 @@ class NetworkSearch(_Search):
         if n in self.has_wide_bends and brief.turns is None and wanted.turns not in (None, exactly(0)):
             wanted = wanted.model_copy(update={"sharpness": "sweeping"})
         kinds = {place.kind for place in self.brief.junctions[max(n - 1, 0) : n + 1]}
-        if brief.speed is not None and kinds & {*RAMPS, *LANE_KINDS} and not _asks_for_slopes(brief):
+        if brief.speed is not None and kinds & {*RAMPS, *LANE_KINDS} and _leaves_heights_open(brief):
             wanted = wanted.model_copy(update={"slope": "flat"})  # its level ends are passed at full speed
+        if self.is_modest and _leaves_heights_open(wanted):
+            wanted = wanted.model_copy(update={"slope": "flat"})
+        if self.is_modest and wanted.length is None:
+            wanted = wanted.model_copy(update={"length": at_least(shortest)})
         tried = [wanted]
         if last and wanted.ends is None and wanted.turns != exactly(0):
             ends = Clause(kind="straight", length=at_least(last))
@@ -488,9 +505,21 @@ class NetworkSearch(_Search):
         if why in FOR_ROOM and size < LARGEST_MAP:
             largest = self.world.changed(map_size=LARGEST_MAP)
             try:
-                NetworkSearch(self.brief, largest, self.rng).run(TRIED_LARGER)
+                larger = NetworkSearch(self.brief, largest, self.rng)
+                larger.is_modest = self.is_modest
+                larger.run(TRIED_LARGER)
             except DesignError as error:  # room is not what it lacks
                 return str(error)
+        for n, road in enumerate(self.brief.roads):
+            if (
+                why == OVERLAPS
+                and self._lies_between_ramps(n)
+                and span(road.length).hi < self._shortest(n, 0)
+            ):
+                return (
+                    f"beside the road between an exit and an entry, {road.length} m long, there is no room "
+                    f"for their ramps; ask for {self._shortest(n, 0):g} m or more"
+                )
         if why in (TOO_LARGE, OVERLAPS):
             count = plural(len(self.brief.junctions), "junction")
             or_else = ", or give a larger map with --map-size" if size < LARGEST_MAP else ""
@@ -507,11 +536,10 @@ class NetworkSearch(_Search):
         return f"no draft of this route was accepted: {why}; {what}"
 
 
-def _asks_for_slopes(brief: Brief) -> bool:
-    clauses = (*brief.clauses, *brief.both_ends)
-    names = ("slope", "incline", "climb", "steepest", "hills")
-    said = any(getattr(each, name, None) for each in (brief, *clauses) for name in names)
-    return said or any(clause.kind in BUMPS for clause in clauses)
+def _leaves_heights_open(asked: Brief) -> bool:
+    parts = (asked, *asked.clauses, *asked.both_ends)
+    has_bump = any(clause.kind in BUMPS or clause.bump for clause in asked.clauses)
+    return not has_bump and not any(getattr(part, name, None) for part in parts for name in HEIGHTS_ASKED)
 
 
 def _without_ramps(asked: Brief, n: int, places: Sequence[PlaceDesign]) -> Brief:
@@ -831,14 +859,19 @@ def room_for_network(brief: Brief, world: World) -> float | None:
         failed = _failed(brief, world) if likely <= world.site.map_size else None
         if likely <= world.site.map_size and (failed is None or not failed.lacks_room):
             return None
-        return larger_map(brief, world, _failed, likely)
+        found = larger_map(brief, world, _failed, likely)
+        if found is None and main_roads(brief.junctions):
+            return larger_map(brief, world, partial(_failed, is_modest=True), likely)
+        return found
     except RoadGPTError:  # the design itself refuses what cannot be built, with its reason
         return None
 
 
-def _failed(brief: Brief, world: World) -> NetworkSearch | MapSearch | None:
+def _failed(brief: Brief, world: World, is_modest: bool = False) -> NetworkSearch | MapSearch | None:
     for seed in TRIALS:
         search = _search(brief, world, np.random.default_rng(seed))
+        if isinstance(search, NetworkSearch):
+            search.is_modest = is_modest
         try:
             search.run(search.tried)
         except DesignError:

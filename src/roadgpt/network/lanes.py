@@ -282,7 +282,8 @@ class Lanes:
         )
 
     def gives_way_to(self, key: Leg) -> tuple[Leg, ...]:
-        """Returns the lanes of a junction to whose traffic the traffic in one of its lanes gives way.
+        """Returns the lanes to whose traffic the traffic in a lane gives way. Where a lane ends, as one for
+        acceleration does, it gives way to those beside it that go on. All others are lanes of a junction.
 
         The signs decide: an arm with a sign to give way or to stop gives way to arms without one, and those
         to an arm with priority; in a roundabout, the arms give way to the ring. Where the signs are the same,
@@ -290,7 +291,9 @@ class Lanes:
         the other one on the side on which traffic drives (Vienna Convention on Road Traffic, 1968, articles
         16 and 18)."""
         if (found := self.network.connection_of.get(key.road)) is None:
-            return ()
+            lane = self.by_id[key]
+            beside = () if lane.successors else (lane.left, lane.right)
+            return tuple(each for each in beside if each is not None and self.by_id[each].successors)
         junction, own = found
         return tuple(
             other

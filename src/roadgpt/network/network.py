@@ -42,6 +42,7 @@ MOST_ROADS = 20_000
 T_GAP = (145.0, 215.0)  # degrees, the largest gap between the arms of a T-junction
 T_OTHERS = 55.0  # degrees, least other gap
 Y_GAP = (85.0, 155.0)  # degrees, every gap between the arms of a fork
+ALIKE = 0.01  # m, by which shoulders of the same width may differ
 CROSSED = 35.0  # degrees, that opposite arms of crossroads may be off one line
 
 
@@ -345,6 +346,14 @@ class Network:
         nodes = [covered_by([areas.pop(number) for number in numbers]) for numbers in inside]
         least = [SLIVER if kind == "roundabout" else ISLAND for kind, _ in self.nodes]
         return without_small_islands(covered_by([*nodes, *areas.values()]), nodes, least)
+
+    @cached_property
+    def shoulder(self) -> float:
+        """The usual width in metres of the shoulders, 0 for none: the median of the roads outside junctions
+        that have any. On maps of other tools, single roads have strips of 40 m beside them."""
+        found = sorted(each.shoulder for each in self.roads_outside if each.shoulder > 0)
+        usual = found[len(found) // 2] if found else 0.0
+        return max((each for each in found if each <= usual + ALIKE), default=0.0)
 
     def inside(self, junctions: tuple[Junction, ...]) -> list[NetworkRoad]:
         """Returns the connecting roads of the junctions in one of the ``nodes``, with the pieces of the ring

@@ -28,9 +28,9 @@ from roadgpt.network.network import (
     RoadEnd,
     network_to_json,
 )
-from roadgpt.network.paved import Area
+from roadgpt.network.paved import Area, paved_by
 from roadgpt.network.stretch import joined_heights, joined_plans, turned
-from roadgpt.network.surface import ROUND
+from roadgpt.network.surface import ROUND, polygons, with_shoulders
 from roadgpt.road import Edges, Profile, Road
 from roadgpt.road.profile import Lane, Marking, Width
 
@@ -105,10 +105,13 @@ def _passage(network: Network, one: Leg, other: Leg, start: float, end: float) -
 
 
 def ground_of(network: Network) -> Area:
-    """Returns the paved area of a network, widened by the widest shoulder of its roads."""
-    shoulder = max(each.shoulder for each in network.roads)
-    area = network.paved
-    return area.buffer(shoulder, quad_segs=ROUND) if shoulder > 0 else area
+    """Returns the paved area of a network, widened by its usual shoulder, with the wider ones of roads."""
+    area, shoulder = network.paved, network.shoulder
+    if shoulder <= 0:
+        return area
+    wide = [with_shoulders(each) for each in network.roads_outside if each.shoulder > shoulder]
+    ground = area.buffer(shoulder, quad_segs=ROUND)
+    return polygons(ground.union(paved_by(wide))) if wide else ground
 
 
 def edges_of_ground(route: Road, ground: Area, s: Array) -> Edges:
@@ -279,7 +282,7 @@ class Route(Road):
 
     def on_ground(self) -> Self:
         """Returns the route with shoulders that reach to the edge of the ground: the paved area of the
-        network, widened by the widest shoulder of its roads."""
+        network with its shoulders."""
         assert self.profile is not None
         left, right = shoulders_on_ground(self, self.network, self.passages, self.starts)
         profile = replace(

@@ -49,16 +49,16 @@ class NetworkSurface:
     roads: tuple[NetworkRoad, ...]  # the roads outside junctions and roundabouts
     areas: tuple[JunctionSurface, ...]
     shoulder: float
-    """The width in metres of the shoulder around the junctions, the widest of the network; 0 for none."""
+    """The width in metres of the shoulder around the junctions, see ``Network.shoulder``; 0 for none."""
 
     @classmethod
     def of(cls, network: Network) -> "NetworkSurface":
         """Returns the surface of a network, divided into its parts."""
         roads = network.roads_outside
-        width = max((each.shoulder for each in network.roads), default=0.0)
+        width = network.shoulder
         if not network.nodes:  # roads without junctions may be splines, and have no paved area
             return cls(roads, (), width)
-        beside = paved_by([_with_shoulders(each) for each in roads]) if width > 0 else network.paved
+        beside = paved_by([with_shoulders(each) for each in roads]) if width > 0 else network.paved
         areas = tuple(
             _area_of(network, node, paved, width, beside)
             for node, paved in zip(network.nodes, network.paved_nodes, strict=True)
@@ -68,8 +68,8 @@ class NetworkSurface:
     @property
     def reach(self) -> float:
         """The largest distance in metres from the reference line of a road in ``roads`` to the outer edge of
-        its shoulder; an upper bound."""
-        return max(each.profile.reach for each in self.roads)
+        its shoulder, an upper bound; roads with a wider ``shoulder`` do not count."""
+        return max(each.profile.reach for each in self.roads if each.shoulder <= self.shoulder)
 
 
 def free_ends(network: Network, road: NetworkRoad) -> tuple[bool, bool]:
@@ -80,7 +80,8 @@ def free_ends(network: Network, road: NetworkRoad) -> tuple[bool, bool]:
     )
 
 
-def _with_shoulders(member: NetworkRoad) -> Road:
+def with_shoulders(member: NetworkRoad) -> Road:
+    """Returns a road whose shoulders are driving lanes, so that its paved area includes them."""
     profile = member.profile
     sides = [tuple(replace(lane, kind="driving") for lane in side) for side in (profile.left, profile.right)]
     return member.road.with_profile(replace(profile, left=sides[0], right=sides[1]))

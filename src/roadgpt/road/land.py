@@ -1,7 +1,8 @@
 """Creates the terrain around a road: below the road surface near it, and with gentle hills farther away."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 import scipy
@@ -32,10 +33,17 @@ class Land:
     cell: float
 
     @classmethod
-    def around(cls, roads: Sequence[Road], reach: float | None, floor: float) -> "Land":
+    def around(
+        cls,
+        roads: Sequence[Road],
+        reach: float | None,
+        floor: float,
+        wide: Mapping[float, Sequence[Road]] = MappingProxyType({}),
+    ) -> "Land":
         """Returns the terrain around roads. Up to ``reach`` metres from their centre lines, the terrain lies
-        below the roads. With ``reach`` None, the terrain is flat, below all centre lines and at most at
-        height ``floor``, and the roads float above it."""
+        below the roads; ``wide`` are those of the roads that have a greater reach, by this reach. With
+        ``reach`` None, the terrain is flat, below all centre lines and at most at height ``floor``, and the
+        roads float above it."""
         lines = [road.centreline(LONGEST_STEP) for road in roads]
         if reach is not None:
             lines = [_lowest(road, line) for road, line in zip(roads, lines, strict=True)]
@@ -49,7 +57,11 @@ class Land:
             level = min(floor, float(line[:, 2].min()) - 1.0)
             away = np.full((len(y), len(x)), np.inf)
             return cls(*_widened(x, y, np.full((len(y), len(x)), level), away), cell)
-        heights, away = _relief(line, x, y, cell, reach + 1.45 * cell)
+        parts = [(line, reach)]
+        for own, some in wide.items():
+            beside = [_lowest(road, road.centreline(LONGEST_STEP)) for road in some]
+            parts.append((np.concatenate(beside), own))
+        heights, away = _relief(parts, x, y, cell)
         return cls(*_widened(x, y, heights, away), cell)
 
     def height(self, x: Array, y: Array) -> Array:
@@ -76,15 +88,20 @@ def _lowest(road: Road, line: Array) -> Array:
     return np.column_stack([line[:, :2], np.minimum(line[:, 2], np.minimum(*sides))])
 
 
-def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple[Array, Array]:
-    """Returns the heights, and the distances ``away`` as in ``Land``, each of shape (rows, columns)."""
+def _relief(parts: Sequence[tuple[Array, float]], x: Array, y: Array, cell: float) -> tuple[Array, Array]:
+    """Returns the heights, and the distances ``away`` as in ``Land``, each of shape (rows, columns).
+    ``parts`` are points on centre lines, and how far from them the land lies below the road."""
     lowest = np.full((len(y), len(x)), np.inf)
-    i = np.rint((line[:, 0] - x[0]) / cell).astype(int)
-    j = np.rint((line[:, 1] - y[0]) / cell).astype(int)
-    np.minimum.at(lowest, (j, i), line[:, 2])
-    cells = int(np.ceil(reach / cell + 0.71))
-    around = np.hypot(*np.mgrid[-cells : cells + 1, -cells : cells + 1]) * cell <= reach + 0.71 * cell
-    lowest = scipy.ndimage.minimum_filter(lowest, footprint=around, mode="constant", cval=np.inf)
+    for line, reach in parts:
+        own = np.full_like(lowest, np.inf)
+        i = np.rint((line[:, 0] - x[0]) / cell).astype(int)
+        j = np.rint((line[:, 1] - y[0]) / cell).astype(int)
+        np.minimum.at(own, (j, i), line[:, 2])
+        far = reach + 1.45 * cell
+        cells = int(np.ceil(far / cell + 0.71))
+        around = np.hypot(*np.mgrid[-cells : cells + 1, -cells : cells + 1]) * cell <= far + 0.71 * cell
+        own = scipy.ndimage.minimum_filter(own, footprint=around, mode="constant", cval=np.inf)
+        lowest = np.minimum(lowest, own)
     fixed = np.isfinite(lowest)
     away, nearest = scipy.ndimage.distance_transform_edt(~fixed, return_indices=True)
     heights = np.asarray(lowest[tuple(nearest)] - BELOW)

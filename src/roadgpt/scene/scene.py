@@ -1,5 +1,6 @@
 """Defines the Scene: a road that can be rendered."""
 
+import math
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -32,11 +33,15 @@ FARTHEST = 1e7  # m or rad; greatest number in a pose
 def landscape(road: Road, world: World) -> tuple[Land, Trees]:
     """Returns the land around all roads of a road's network, and the trees on it."""
     network = network_of(road, world)
-    roads, reach = [each.road for each in network.roads], NetworkSurface.of(network).reach
+    roads, parts = [each.road for each in network.roads], NetworkSurface.of(network)
+    wide: dict[float, list[Road]] = {}
+    for each in parts.roads:
+        if each.shoulder > parts.shoulder:
+            wide.setdefault(math.ceil(each.profile.reach), []).append(each.road)
     has_shoulders = any(each.profile.has_shoulders for each in network.roads)
-    land = Land.around(roads, reach if has_shoulders else None, world.site.z_floor)
+    land = Land.around(roads, parts.reach if has_shoulders else None, world.site.z_floor, wide)
     line = np.concatenate([each.centreline(LONGEST_STEP) for each in roads])
-    return land, plant(line[:, :2], reach, land)
+    return land, plant(line[:, :2], parts.reach, land)
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.brief.junctions import LANE_KINDS
-from roadgpt.brief.model import Brief
+from roadgpt.brief.model import Brief, counts_to_change, motorways_continued
 from roadgpt.brief.outline import outline
 from roadgpt.brief.words import ROAD, heading_from
 from roadgpt.check.finding import Finding, route_of, single_road
@@ -92,9 +92,10 @@ def _of_route(route: "Route | None", brief: Brief, map_size: float) -> Iterator[
             for text in place_complaints(place, asked):
                 yield Finding(RULE, f"junction {number} at s = {place.s:.0f} m: {text}", place.s, x, y)
         roads = _stretches(route, wide)
-        moved = [0.0, *map(_moved, found, brief.roads[1:]), 0.0]
-        for n, ((start, road), stretch) in enumerate(zip(roads, brief.roads, strict=False)):
-            if not stretch.is_open:
+        wanted = motorways_continued(brief) or brief.roads
+        moved = [0.0, *(_moved(place, brief, n) for n, place in enumerate(found)), 0.0]
+        for n, ((start, road), stretch) in enumerate(zip(roads, wanted, strict=False)):
+            if not brief.roads[n].is_open:
                 more = moved[n + 1] - moved[n]
                 yield from _of_stretch(start, road, stretch, (n > 0, n < len(roads) - 1), more, map_size)
     length = 0.0 if route is None else route.length
@@ -104,12 +105,11 @@ def _of_route(route: "Route | None", brief: Brief, map_size: float) -> Iterator[
         yield Finding(RULE, text)
 
 
-def _moved(place: MeasuredJunction | MeasuredLanes, behind: Brief) -> float:
-    """Returns the distance in metres from the end of a road to the place where its required length ends: 0 at
-    a lane change if a length is required of the following road, too."""
-    if isinstance(place, MeasuredJunction) or (place.kind == "lane_change" and behind.length is not None):
+def _moved(place: MeasuredJunction | MeasuredLanes, brief: Brief, number: int) -> float:
+    """Returns the distance in metres from the end of a road to the place where its required length ends."""
+    if isinstance(place, MeasuredJunction):
         return 0.0
-    return place.behind
+    return place.behind if place.kind != "lane_change" or counts_to_change(brief, number) else 0.0
 
 
 def _starts_of_turn_lanes(route: "Route", brief: Brief) -> list[float]:
