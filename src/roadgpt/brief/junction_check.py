@@ -273,6 +273,11 @@ def _faults_of_lanes(brief: Brief) -> Iterator[str]:
                 f"the additional lane of a {place.name} is {least:.0f} m long or longer, not"
                 f" {place.length} m; change it, or its taper"
             )
+
+
+def faults_beside_ramps(brief: Brief) -> Iterator[str]:
+    """Yields a sentence for each road of a route that is too short for the additional lanes of its ramps.
+    These are no faults of a Brief, as words may mean a length that is measured elsewhere."""
     for n, road in enumerate(brief.stretches):
         beside = [place for place in brief.junctions[max(n - 1, 0) : n] if place.kind == "merge"]
         beside += [place for place in brief.junctions[n : n + 1] if place.kind == "diverge"]

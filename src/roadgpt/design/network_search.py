@@ -26,7 +26,7 @@ import numpy as np
 from roadgpt import check
 from roadgpt.brief.amount import Amount, at_least, between, exactly, span
 from roadgpt.brief.design_speed import limits_at
-from roadgpt.brief.junction_check import check_junction
+from roadgpt.brief.junction_check import check_junction, faults_beside_ramps
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, Way, side_of
 from roadgpt.brief.map_fit import EDGE, LEADS
 from roadgpt.brief.model import Brief, Clause, mirrored
@@ -70,7 +70,7 @@ from roadgpt.design.network_sketch import sketched
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.unbuilt import check_lanes_across
 from roadgpt.design.variety import Shapes
-from roadgpt.errors import DesignError, RoadGPTError, UsageError
+from roadgpt.errors import BriefError, DesignError, RoadGPTError, UsageError
 from roadgpt.network import build_route
 from roadgpt.network.building import BESIDE, length_at_ramp, length_beside, length_of_turn_lanes
 from roadgpt.network.growing import BEFORE_TURN_LANES, length_inside
@@ -842,6 +842,8 @@ def draft_network(brief: Brief, world: World, rng: np.random.Generator) -> Desig
 
 
 def _search(brief: Brief, world: World, rng: np.random.Generator) -> NetworkSearch | MapSearch:
+    for fault in faults_beside_ramps(brief):
+        raise BriefError(fault)
     return (NetworkSearch if brief.map is None else MapSearch)(brief, world, rng)
 
 
