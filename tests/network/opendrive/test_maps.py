@@ -230,6 +230,7 @@ def test_what_a_map_says_of_speed_and_friction_is_that_of_its_lanes(tmp_path: Pa
         (crossing("direct"), "left out: direct junctions (junction 9)"),
         ([*crossing(), road(3, (0, 9, 0, 9), section(0, lane(-1, 2.0, "sidewalk")))],
          "left out: roads without a lane for cars (road 3)"),
+        ([crossing()[-1].replace('"9"', '"8"'), *crossing()], "not of the junction (junction 8)"),
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, to("successor", "road", 77, "start"))],
          "it is linked to a road that is left out or not there (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, more=TREE)],

@@ -175,7 +175,7 @@ class Joining:
             return
         found: dict[int, Connection] = {}
         for each in node.findall("connection"):
-            made = self._connection(each, where)
+            made = self._connection(each, node.get("id", ""), where)
             if made is not None:
                 known = found.get(made.road)
                 links = made.lanes if known is None else dict.fromkeys((*known.lanes, *made.lanes))
@@ -190,12 +190,12 @@ class Joining:
             self.members[road] = replace(self.members[road], junction=junction)
         self.junctions[name] = self._made(junction, list(found.values()), node)
 
-    def _connection(self, node: Element, where: str) -> Connection | None:
+    def _connection(self, node: Element, junction: str, where: str) -> Connection | None:
         """Returns a way through a junction; None, with a remark, if it cannot be read."""
         file = self.files.get(node.get("connectingRoad", ""))
         contact = node.get("contactPoint", "start")
-        if file is None or not file.junction:
-            self.remarks.add("left out: ways on roads that are left out or are no connecting roads", where)
+        if file is None or not file.junction or file.junction != junction:
+            self.remarks.add("left out: ways on roads that are left out or are not of the junction", where)
             return None
         if file.id not in self.ways:
             made = RoadBuilder(file, self.remarks).ways()
