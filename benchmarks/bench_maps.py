@@ -83,8 +83,16 @@ def drives(read: ImportedMap, lanes: Lanes, count: int) -> tuple[int, list[str]]
         verdict = judge(route, simulate(route, world, "reference", seed=1), world)
         kept += verdict.kept
         if not verdict.kept:
-            failed.append(verdict.description)
+            failed.append(f"{verdict.description}; {tightest(route, verdict.at_s or 0.0)}")
     return kept, failed
+
+
+def tightest(route: Route, station: float) -> str:
+    """What bends the most within 10 m of a station: the least radius of the line, the largest step aside."""
+    s = np.arange(max(station - 10, 0), min(station + 10, route.length), 0.01)
+    radius = 1 / max(np.abs(route.curvature(s)).max(), 1e-9)
+    aside = np.abs(np.diff(route.profile.edges(s).left)).max()
+    return f"the least radius there is {radius:.2f} m, and the lane's edge steps aside by {aside:.2f} m"
 
 
 def main() -> None:
