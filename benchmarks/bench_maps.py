@@ -56,7 +56,9 @@ def movements(lanes: Lanes, read: ImportedMap) -> list[Movement]:
         for each in lane.successors:
             goals = [each] if lanes[each].member.junction is None else lanes[each].successors
             for goal in goals:
-                if lanes[each].member.junction is None and file_of[goal.road] == file_of[lane.id.road]:
+                parts = read.roads[file_of[lane.id.road]]
+                onwards = parts.index(lane.id.road) + (1 if lane.is_along else -1)
+                if 0 <= onwards < len(parts) and goal.road == parts[onwards]:
                     continue
                 ends = lane.at(lane.length)[:2].tolist(), lanes[goal].at(0.0)[:2].tolist()
                 found.append(Movement(*(tuple(each) for each in ends)))

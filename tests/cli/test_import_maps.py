@@ -78,6 +78,8 @@ def test_random_routes_are_written_and_driven(town: Path, tmp_path: Path) -> Non
     routes = tmp_path / "routes"
     result = invoke("import", str(town), "--random-routes", "3", "--seed", "5", "--out", str(routes))
     assert result.exit_code == 0, result.output
+    remarks = [line for line in result.output.splitlines() if line.startswith("roadgpt:")]
+    assert len(remarks) == len(set(remarks)) > 0
     files = sorted(routes.iterdir())
     assert [file.name for file in files] == ["route-1.json", "route-2.json", "route-3.json"]
     again = tmp_path / "again"

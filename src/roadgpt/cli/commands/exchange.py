@@ -176,7 +176,7 @@ def import_(
             own = next(own for own in roads.numbered(_plain(source.name), ".json") if own not in taken)
             stem = file.stem if source.name == file.stem else f"{file.stem}-{source.name}"
             place = folder / own if folder else out or _free(stem, ".json")
-            said = _write(file, source, place, keep_place, quiet)
+            said = _write(file, source, place, keep_place, quiet, set())
         except UsageError as error:
             if folder is None:
                 raise
@@ -244,13 +244,14 @@ def _write_map(
     from roadgpt.plural import plural
 
     folder = (out or _free(f"{file.stem}-routes", "")) if len(ways) > 1 else None
+    heard = set[str]()
     for number, legs in enumerate(ways, 1):
         values, told = found.world_values(legs)
         remarks = (*found.remarks, *told) if number == 1 else told
         place = folder / f"route-{number}.json" if folder else out or _free(file.stem, ".json")
         route = Route.along(found.network, legs)
         source = RoadSource(route, remarks, values, file.stem)
-        _write(file, source, place, keep_place, quiet)
+        _write(file, source, place, keep_place, quiet, heard)
         if not quiet:
             over = {name: None for leg in legs for name, own in found.roads.items() if leg.road in own}
             kinds = [NAMES[each.entered.kind][0] for each in route.passages]
@@ -280,8 +281,11 @@ def _free(stem: str, ending: str) -> Path:
     return roads.free(_plain(stem), ending)
 
 
-def _write(file: Path, source: "RoadSource", out: Path, keep_place: bool, quiet: bool) -> str:
-    """Writes a road file, prints remarks, and returns in a sentence what the road is like."""
+def _write(
+    file: Path, source: "RoadSource", out: Path, keep_place: bool, quiet: bool, heard: set[str]
+) -> str:
+    """Writes a road file, prints remarks that were not ``heard`` before, and returns in a sentence what the
+    road is like."""
     from roadgpt import plugins
     from roadgpt.brief import sentence
     from roadgpt.check.describing import describe
@@ -298,7 +302,9 @@ def _write(file: Path, source: "RoadSource", out: Path, keep_place: bool, quiet:
     found = too_short(network_of(road, own), road, None, own) if is_only else ()
     road_from_json(road.to_json())  # so that nothing is written that cannot be read
     for remark in () if quiet else (*source.remarks, *told, *(finding.sentence for finding in found)):
-        warn(f"{file}: {remark}")
+        if remark not in heard:
+            warn(f"{file}: {remark}")
+            heard.add(remark)
     origin = {"origin": [0.0 - each for each in moved_by]} if any(moved_by) else {}
     with explained(RoadGPTError, f"cannot write {out}", "name another file with --out"):
         out.parent.mkdir(parents=True, exist_ok=True)
