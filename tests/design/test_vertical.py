@@ -12,6 +12,7 @@ from design.short_searches import short_searches
 from roadgpt import check, read
 from roadgpt.brief.model import Brief, Clause, at_least, exactly
 from roadgpt.brief.plan import read_plan
+from roadgpt.brief.ranges import Range
 from roadgpt.check.measures import measure
 from roadgpt.design import draft, road_search
 from roadgpt.design.vertical import softened
@@ -88,7 +89,7 @@ def test_softened_grades_leave_room_wherever_there_are_such(data: st.DataObject)
     lengths = data.draw(st.lists(st.floats(8, 120), min_size=n, max_size=n))
     grades = data.draw(st.lists(st.floats(-12, 12), min_size=n, max_size=n))
     radii = data.draw(st.lists(st.floats(50, 900), min_size=n - 1, max_size=n - 1))
-    out = softened(grades, lengths, radii, [-12.0] * n, [12.0] * n)  # one slope for all would do
+    out = softened(grades, lengths, radii, [Range(-12.0, 12.0)] * n)  # one slope for all would do
     halves = [0.0, *(r * abs(b - a) / 200 for r, (a, b) in zip(radii, pairwise(out), strict=True)), 0.0]
     for length, before, after in zip(lengths, halves, halves[1:], strict=False):
         assert before + after <= 1.03 * length  # the projections have nearly converged

@@ -263,7 +263,7 @@ def test_lights_of_a_junction_have_one_controller(seed: int) -> None:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_route_file_leads_along_lanes_that_are_linked(seed: int) -> None:
     here = written(seed)
-    legs = route_of(seed).to_route_json()["route"]
+    legs = route_of(seed).to_json()["route"]
     ways = {
         (int(c.attrib["incomingRoad"]), int(link.attrib["from"]), int(way.id), int(link.attrib["to"])): way
         for c, way in here.ways()

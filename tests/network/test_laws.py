@@ -200,7 +200,7 @@ def test_kerbs_are_as_wide_as_asked_or_wider(kind: str, kerb: float, seed: int) 
 
 def raster(network: Network, step: float) -> float:
     """The area in m^2 of all lanes, counted on a grid of points, tested against the edges of roads."""
-    (x0, y0), (x1, y1) = network.bounds()
+    x0, y0, x1, y1 = network.paved.bounds
     x, y = np.arange(x0 - 1, x1 + 1, step), np.arange(y0 - 1, y1 + 1, step)
     points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     inside = np.zeros(len(points), bool)

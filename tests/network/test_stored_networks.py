@@ -32,7 +32,7 @@ def test_a_network_of_an_earlier_version_is_read() -> None:
     assert {len(lanes) for each in connections(data) for lanes in each["lanes"]} == {2}
     route = restored(data)
     assert [each.entered.kind for each in route.passages] == ["t_junction", "roundabout"]
-    assert route.to_route_json() == {"route": data["route"]}
+    assert route.to_json()["route"] == data["route"]
     assert route.length == pytest.approx(196.8, abs=0.05)
     assert route.network.continuations == ()
     for one, two in joints(route):

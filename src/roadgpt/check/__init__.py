@@ -23,7 +23,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
 from roadgpt.check.sbft import sbft_verdict
 from roadgpt.errors import UsageError
-from roadgpt.network import has_no_route, network_of
+from roadgpt.network import network_of
 from roadgpt.road import Road, World
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
     the set is missing, so that no road passes because rules are missing."""
     laid = world.lay(road)
     network, found = network_of(laid, world), list[Finding]()
-    route = None if has_no_route(laid) else laid
+    route = laid if laid.has_way else None
     for _, rule in rules_of(rules, len(network.roads) > 1):
         findings = rule(network, route, brief, world)
         found += findings

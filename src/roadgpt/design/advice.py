@@ -45,10 +45,8 @@ def advice(
     wishes = _wishes_of(outline)
     if reason in FOR_ROOM:
         found = _offer(brief, world, trial, roomier(world, boxes))
-        where = f"on a {world.site.map_size:g} m map" + (
-            " without crossing" if reason == "over itself" else ""
-        )
-        return f"{wishes} not fit {where}; {found}"
+        crossing = " without crossing" if reason == "over itself" else ""
+        return f"{wishes} not fit on a {world.site.map_size:g} m map{crossing}; {found}"
     if reason == "longer than was asked for":
         return f"{wishes} not fit into a road of {outline.length} m; ask for a longer road or for fewer turns"
     if reason == "like an earlier road":
@@ -187,13 +185,11 @@ def _asked(brief: Brief) -> float | None:
 def _scaled(brief: Brief, share: float) -> Brief:
     if brief.length:
         return brief.model_copy(update={"length": _times(brief.length, share)})
-    clauses = tuple(
-        clause.model_copy(update={"length": _times(clause.length, share)})
-        if clause.kind == "straight" and clause.length is not None
-        else clause
-        for clause in brief.clauses
-    )
-    return brief.model_copy(update={"clauses": clauses})
+    clauses = list(brief.clauses)
+    for n, clause in enumerate(clauses):
+        if clause.kind == "straight" and clause.length is not None:
+            clauses[n] = clause.model_copy(update={"length": _times(clause.length, share)})
+    return brief.model_copy(update={"clauses": tuple(clauses)})
 
 
 def _times(amount: Amount, share: float) -> Amount:

@@ -38,8 +38,11 @@ LONG = 700.0  # m: a shorter road with a few turns fits on the usual map
 ROUNDS = 60  # of drawing sides until the numbers of left and right turns are right
 
 
+Rng = np.random.Generator
 OpenTurn = tuple[Feature, bool]
 """A turn whose side may be open, and whether it must go to the side opposite to the previous turn."""
+OpenSequence = tuple[list[OpenTurn], list[list[Feature]]]
+"""Such turns, and the straights required before, between and after them."""
 
 
 class TurnSequence(NamedTuple):
@@ -72,20 +75,27 @@ def may_repeat_last_turn(outline: Outline) -> bool:
     return len(turning) == 1 and is_last and turning[0].hi is None
 
 
-def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> TurnSequence:
+def drawn_sequence(outline: Outline, rng: Rng, plain: bool) -> TurnSequence:
     """Chooses at random what the Outline leaves open: the number of turns, the side of each, and where
     straights are. If ``plain``, the road has as few turns as the requirements allow. Raises DesignError if
     the required numbers of left, right and all turns contradict each other."""
     turns, gaps = _listed(outline, rng, plain) if outline.names_all_turns else _free(outline, rng, plain)
-    _with_ends(outline, turns, gaps)
+    for feature, index in ((outline.starts, 0), (outline.ends, -1)):
+        if feature is not None and feature.kind == "straight":
+            gap = gaps[index]
+            if not gap or not _shares(gap[index], feature):
+                gap.insert(0 if index == 0 else len(gap), feature)
+            else:
+                gap[index] = both(gap[index], feature)
+        elif feature is not None and turns:
+            one, switches = turns[index]
+            turns[index] = replace(both(one, feature), side=feature.side or one.side), switches
     sides = _sides(turns, outline, rng)
     features = tuple(replace(turn, side=side) for (turn, _), side in zip(turns, sides, strict=True))
     return TurnSequence(features, tuple(map(tuple, gaps)))
 
 
-def _listed(
-    outline: Outline, rng: np.random.Generator, plain: bool
-) -> tuple[list[OpenTurn], list[list[Feature]]]:
+def _listed(outline: Outline, rng: Rng, plain: bool) -> OpenSequence:
     turns: list[OpenTurn] = []
     gaps: list[list[Feature]] = [[]]
     counts = _group_counts(outline, rng, plain)
@@ -101,7 +111,7 @@ def _listed(
     return turns, gaps
 
 
-def _group_counts(outline: Outline, rng: np.random.Generator, plain: bool) -> list[int]:
+def _group_counts(outline: Outline, rng: Rng, plain: bool) -> list[int]:
     groups = outline.groups
     counts = [
         SEVERAL if not plain and (group.lo, group.hi) == (2, None) and is_hairpin(group.feature) else group.lo
@@ -120,9 +130,7 @@ def _group_counts(outline: Outline, rng: np.random.Generator, plain: bool) -> li
     return counts
 
 
-def _free(
-    outline: Outline, rng: np.random.Generator, plain: bool
-) -> tuple[list[OpenTurn], list[list[Feature]]]:
+def _free(outline: Outline, rng: Rng, plain: bool) -> OpenSequence:
     count = _turn_count(outline, rng, plain)
     turns = [(Feature("turn", "turn"), False)] * count
     gaps: list[list[Feature]] = [[] for _ in range(count + 1)]
@@ -134,7 +142,7 @@ def _free(
     return turns, gaps
 
 
-def _turn_count(outline: Outline, rng: np.random.Generator, plain: bool) -> int:
+def _turn_count(outline: Outline, rng: Rng, plain: bool) -> int:
     low = int(max(outline.turns.lo, outline.left.lo, 0) if outline.turns.lo > 0 else max(outline.left.lo, 0))
     low = max(low, int(max(outline.left.lo, 0) + max(outline.right.lo, 0)))
     high = min(outline.turns.hi, outline.left.hi + outline.right.hi)
@@ -162,28 +170,12 @@ def _turned(outline: Outline) -> Range:
     return Range(ceil(max(outline.turning.lo, 0) / LARGE), most)
 
 
-def _with_ends(outline: Outline, turns: list[OpenTurn], gaps: list[list[Feature]]) -> None:
-    for feature, index in ((outline.starts, 0), (outline.ends, -1)):
-        if feature is None:
-            continue
-        if feature.kind == "straight":
-            gap = gaps[index]
-            if not gap or not _shares(gap[index], feature):
-                gap.insert(0 if index == 0 else len(gap), feature)
-            else:
-                gap[index] = both(gap[index], feature)
-        elif turns:
-            one, switches = turns[index]
-            turns[index] = replace(both(one, feature), side=feature.side or one.side), switches
-
-
 def _shares(one: Feature, other: Feature) -> bool:
-    return all(
-        a.lo <= a.hi for a in (overlap(one.length, other.length), overlap(one.grade, other.grade)) if a
-    )
+    shared = overlap(one.length, other.length), overlap(one.grade, other.grade)
+    return all(each.lo <= each.hi for each in shared if each)
 
 
-def _sides(turns: Sequence[OpenTurn], outline: Outline, rng: np.random.Generator) -> list[Side]:
+def _sides(turns: Sequence[OpenTurn], outline: Outline, rng: Rng) -> list[Side]:
     left, right, n = outline.left, outline.right, len(turns)
     for _ in range(ROUNDS):
         sides = _drawn_sides(turns, outline, rng)
@@ -192,7 +184,7 @@ def _sides(turns: Sequence[OpenTurn], outline: Outline, rng: np.random.Generator
     raise DesignError(f"the sides asked for the {n} turns contradict each other; leave one of them open")
 
 
-def _drawn_sides(turns: Sequence[OpenTurn], outline: Outline, rng: np.random.Generator) -> list[Side] | None:
+def _drawn_sides(turns: Sequence[OpenTurn], outline: Outline, rng: Rng) -> list[Side] | None:
     sides: list[Side] = []
     for turn, switches in turns:
         if sides and (switches or outline.alternating):
@@ -205,9 +197,7 @@ def _drawn_sides(turns: Sequence[OpenTurn], outline: Outline, rng: np.random.Gen
     return sides
 
 
-def _free_side(
-    turn: Feature, sides: Sequence[Side], count: int, outline: Outline, rng: np.random.Generator
-) -> Side:
+def _free_side(turn: Feature, sides: Sequence[Side], count: int, outline: Outline, rng: Rng) -> Side:
     rest = count - len(sides)
     lefts, rights = sides.count("left"), len(sides) - sides.count("left")
     if lefts >= outline.left.hi or outline.right.lo - rights >= rest:
@@ -269,18 +259,15 @@ class Windows:
         if feature.grade is None:
             return self.base
         own = overlap(feature.grade.drawn_in(MARGIN, MARGIN_SHARE), self.limit) or self.limit
+        said = f"a {feature.name} of {feature.grade} %"
         if own.lo > own.hi:
             most = f"the {self.limit.hi + UNDER_LIMIT:.3g} % that the road may have"
-            raise DesignError(f"a {feature.name} of {feature.grade} % is steeper than {most}; ask for less")
+            raise DesignError(f"{said} is steeper than {most}; ask for less")
         meets = overlap(own, self.base) or own
-        if meets.lo <= meets.hi:
-            return meets
-        if own.hi <= self.allowed.lo or own.lo >= self.allowed.hi:
+        if meets.lo > meets.hi and (own.hi <= self.allowed.lo or own.lo >= self.allowed.hi):
             whole = f"a road that is {self.way} all the way"
-            raise DesignError(
-                f"a {feature.name} of {feature.grade} % contradicts {whole}; leave one of them out"
-            )
-        return own
+            raise DesignError(f"{said} contradicts {whole}; leave one of them out")
+        return meets if meets.lo <= meets.hi else own
 
     def row(self, straights: Sequence[Feature]) -> list[Range | None]:
         """Returns a range of grades per straight; an open grade gets a range unlike that of a neighbour."""
@@ -367,8 +354,7 @@ def narrowed_turns(turns: Sequence[Feature], task: DraftTask) -> list[Feature]:
     ranges lie a little inside the required ones. If a number is required, its range lies close around the
     number; the more haste, the wider. Raises DesignError if a range is empty, for example because the rules
     forbid a radius as too tight."""
-    narrowed = [_narrowed(turn, task) for turn in turns]
-    return [replace(turn, grade=task.windows.of(turn)) for turn in narrowed]
+    return [_narrowed(turn, task) for turn in turns]
 
 
 def with_one_at_bound(
@@ -411,7 +397,8 @@ def _narrowed(turn: Feature, task: DraftTask) -> Feature:
             f"a {turn.name} of {angle} degrees is not seen as a turn; ask for {LEAST_TURN + 5:g} or more"
         )
     length = overlap(turn.length, outline.each_turn.length)
-    return replace(turn, degrees=_angles(turn, angle, haste), radius=radius, length=length)
+    degrees = _angles(turn, angle, haste)
+    return replace(turn, degrees=degrees, radius=radius, length=length, grade=task.windows.of(turn))
 
 
 def _loosened(share: float, haste: float) -> float:
@@ -543,13 +530,10 @@ def drawn_turn(turn: Feature, angle: float, longest: float, task: DraftTask) -> 
     return turn_element(angle, hand_of(turn), radius, transition, turn.grade, turn.climb, bool(turn.bump))
 
 
-def _transition(is_tight: bool, angle: float, radius: float, least: float, rng: np.random.Generator) -> float:
-    arc = radius * radians(angle)
+def _transition(is_tight: bool, angle: float, radius: float, least: float, rng: Rng) -> float:
+    arc, (low, high) = radius * radians(angle), TRANSITION_LIMITS
     share = TRANSITIONS[0] + (TRANSITIONS[1] - TRANSITIONS[0]) * rng.random()
-    transition = min(
-        max(share * arc, TRANSITION_LIMITS[0]), max(TRANSITION_LIMITS[1], radius / RADII_OF_TRANSITION)
-    )
-    transition = max(transition, least)
+    transition = max(min(max(share * arc, low), max(high, radius / RADII_OF_TRANSITION)), least)
     if is_tight:
         transition = min(transition, max(arc - SEEN_ARC, 1.0))
     return min(transition, MOST_TRANSITION * arc / segments_of_turn(angle))
@@ -608,14 +592,11 @@ def _like_turn(group: LikeGroup, turns: int, task: DraftTask) -> tuple[Range, Ra
         if share in (group.common.degrees or Range()):
             span = Range(share, share)
             turn = replace(turn, degrees=span)
-    angle = span.lo + float(task.rng.random()) * (1 - 0.9 * task.haste) * (span.hi - span.lo)
-    longest = longest_turn(turns, task) * (1 - 0.6 * task.haste)
-    made = drawn_turn(turn, angle, longest, task)
+    angle = span.lo + _share(task) * (span.hi - span.lo)
+    made = drawn_turn(turn, angle, longest_turn(turns, task) * (1 - 0.6 * task.haste), task)
     angle = abs(made.turn)
-    return (
-        Range(angle - ANGLE_SPREAD, angle + ANGLE_SPREAD),
-        Range(made.radius * (1 - SPREAD), made.radius * (1 + SPREAD)),
-    )
+    radii = Range(made.radius * (1 - SPREAD), made.radius * (1 + SPREAD))
+    return Range(angle - ANGLE_SPREAD, angle + ANGLE_SPREAD), radii
 
 
 def _arc(turn: Feature) -> float:
@@ -628,13 +609,12 @@ def _like_length(group: LikeGroup, gaps: Sequence[Sequence[Feature]], arcs: floa
     span = group.common.length
     if span and span.lo > 0 and span.hi < NARROW * span.lo:
         return span
-    is_even = span is None
-    least = SEPARATE if is_even else inside((span or Range(LEAST_STRAIGHT)).lo)
-    length = (
-        free_straight(least, LIKE_JOIN_MEAN, task)
-        if is_even
-        else drawn_straight(group.common, LEAD, LIKE_JOIN_MEAN, task)
-    )
+    if span is None:
+        least = SEPARATE
+        length = free_straight(least, LIKE_JOIN_MEAN, task)
+    else:
+        least = inside(span.lo)
+        length = drawn_straight(group.common, LEAD, LIKE_JOIN_MEAN, task)
     asked = task.outline.length
     if asked and asked.hi < inf:
         others = [place for place in range(len(gaps)) if place not in group]
@@ -694,19 +674,15 @@ def composed(order: TurnSequence, task: DraftTask) -> list[Element] | None:
 
 
 def _evened(elements: list[Element], wishes: Sequence[Feature]) -> list[Element]:
-    is_free = [element.is_elastic and element.required_length is not None for element in elements]
-    free = [element.length for element, may_change in zip(elements, is_free, strict=True) if may_change]
+    free = [i for i, one in enumerate(elements) if one.is_elastic and one.required_length is not None]
     open_wishes = [wish for wish in wishes if not wish.length or wish.length.hi == inf]
     have_grades = all(wish.grade and wish.grade.number is not None for wish in open_wishes)
     heights = {abs(wish.climb.number or 0.0) if wish.climb else 0.0 for wish in open_wishes}
     are_alike = have_grades or (len(heights) == 1 and all(heights))
     if not free or len(free) != len(open_wishes) or not are_alike:
         return elements
-    length = sum(free) / len(free)
-    return [
-        element._replace(straight=length) if may_change else element
-        for element, may_change in zip(elements, is_free, strict=True)
-    ]
+    length = sum(elements[i].length for i in free) / len(free)
+    return [one._replace(straight=length) if i in free else one for i, one in enumerate(elements)]
 
 
 def _from_corner_to_corner(elements: list[Element], task: DraftTask) -> list[Element]:
@@ -772,11 +748,7 @@ def _approach(after: Element | None, task: DraftTask) -> float:
 
 
 def _asked_gap(
-    before: Element | None,
-    wishes: Sequence[Feature],
-    after: Element | None,
-    mean: float,
-    task: DraftTask,
+    before: Element | None, wishes: Sequence[Feature], after: Element | None, mean: float, task: DraftTask
 ) -> list[Element]:
     out: list[Element] = []
     windows = task.windows
@@ -836,9 +808,7 @@ def _change(grade: Range | None, other: Range | None, task: DraftTask) -> float:
     return max(CHANGE * (1 - 0.3 * task.haste), comfortable, task.windows.floor * change)
 
 
-def _with_hills(
-    elements: list[Element], hills: Range, hill: float, rng: np.random.Generator
-) -> list[Element]:
+def _with_hills(elements: list[Element], hills: Range, hill: float, rng: Rng) -> list[Element]:
     stretches = int(hills.lo) + 1
     room = sum(max(int(element.length / hill), 1) for element in elements if element.length > 0.7 * hill)
     free = [i for i, element in enumerate(elements) if element.is_elastic]
@@ -880,11 +850,10 @@ def _with_length(elements: list[Element], asked: Range, task: DraftTask) -> list
 
 
 def _least(elements: Sequence[Element], index: int, lead: float) -> float:
-    before = elements[index - 1] if index else None
-    after = elements[index + 1] if index + 1 < len(elements) else None
     least = lead
-    if before and after:
-        least = SEPARATE if before.turn * after.turn > 0 else FEWEST_METRES
+    if 0 < index < len(elements) - 1:
+        is_same = elements[index - 1].turn * elements[index + 1].turn > 0
+        least = SEPARATE if is_same else FEWEST_METRES
     required = elements[index].required_length
     if required:
         least = max(least, inside(required.lo), CHANGE)

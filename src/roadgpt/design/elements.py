@@ -78,14 +78,9 @@ def segments_of_turn(angle: float) -> int:
 def cut(element: Element) -> list[Segment]:
     """Cuts an element into segments; the element must be rounded to the precision of design files."""
     if not element.turn:
-        return [
-            Segment(
-                distance=round(element.straight * MILLIMETRE) / MILLIMETRE,
-                direction="straight",
-                incline=element.incline,
-                vertical_radius=element.vertical_radius,
-            )
-        ]
+        distance = round(element.straight * MILLIMETRE) / MILLIMETRE
+        slope = {"incline": element.incline, "vertical_radius": element.vertical_radius}
+        return [Segment(distance=distance, direction="straight", **slope)]
     parts = segments_of_turn(abs(element.turn))
     share = element.turn / parts
     arc = element.radius * radians(abs(share))
@@ -145,17 +140,17 @@ def elements_of(segments: Sequence[Segment]) -> tuple[Element, ...]:
     return tuple(out)
 
 
-def _groups(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
-    """Yields groups of segments: all segments of one turn, or a single straight segment."""
-    group = [segments[0]]
-    for before, segment in pairwise(segments):
+def _groups(segments: Sequence[Segment]) -> list[list[Segment]]:
+    """Returns groups of segments: all segments of one turn, or a single straight segment."""
+    groups: list[list[Segment]] = []
+    for segment in segments:
+        first, before = (groups[-1][0], groups[-1][-1]) if groups else (segment, segment)
         same = (before.turn_degrees, before.incline) == (segment.turn_degrees, segment.incline)
-        if segment.turn_degrees and same and segment.radius in (None, group[0].radius):
-            group.append(segment)
+        if groups and segment.turn_degrees and same and segment.radius in (None, first.radius):
+            groups[-1].append(segment)
         else:
-            yield group
-            group = [segment]
-    yield group
+            groups.append([segment])
+    return groups
 
 
 def _of_group(group: Sequence[Segment]) -> Iterator[Element]:
@@ -203,9 +198,8 @@ def segments_of(elements: Sequence[Element], world: World) -> tuple[Segment, ...
 
 
 def _cut(written: Sequence[Element], grades: Sequence[float]) -> list[Segment]:
-    pairs = zip(written, grades, strict=True)
-    sloped = (element._replace(incline=float(rounded(np.array(grade))) + 0.0) for element, grade in pairs)
-    return [segment for element in sloped for segment in cut(element)]
+    pairs = zip(written, (rounded(np.array(grades)) + 0.0).tolist(), strict=True)
+    return [segment for element, grade in pairs for segment in cut(element._replace(incline=grade))]
 
 
 def design_of(elements: Sequence[Element], place: MapPose, world: World) -> Design:
@@ -217,11 +211,8 @@ def design_of(elements: Sequence[Element], place: MapPose, world: World) -> Desi
 def design_at(place: MapPose, segments: tuple[Segment, ...], ground: float) -> Design:
     """Returns a design of these segments that starts at ``place``, with its lowest point at height
     ``ground``."""
-    return Design(
-        starting_point=(place.x, place.y, start_height(segments, ground)),
-        theta=place.theta,
-        segments=segments,
-    )
+    start = (place.x, place.y, start_height(segments, ground))
+    return Design(starting_point=start, theta=place.theta, segments=segments)
 
 
 def start_height(segments: Sequence[Segment], ground: float) -> float:

@@ -205,7 +205,10 @@ def graded(
     If all such designs violate the rule ``too_abrupt``, the last of them is returned. If no design has the
     required grades, the first one tried is returned. The plan and the start stay the same. ``before`` is the
     road before an edit, and None for a proposal."""
-    slopes = _slopes_of_edit(elements, world) if before else _slopes_of_proposal(elements, outline, world)
+    limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
+    slopes = (
+        _slopes_of_edit(elements, limit) if before else _slopes_of_proposal(elements, outline, world, limit)
+    )
     lengths, inclines = [s.distance for s in design.segments], [s.incline for s in design.segments]
     start = slopes.within_bounds(np.array(inclines))
     climb = outline.climb.drawn_in(0.3, 0.2) if outline.climb else Range()
@@ -243,8 +246,7 @@ def graded(
     return kept
 
 
-def _slopes_of_edit(elements: RoadElements, world: World) -> _Slopes:
-    limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
+def _slopes_of_edit(elements: RoadElements, limit: Range) -> _Slopes:
     asked = [element.asked.grade if element.asked else None for element in elements]
     aims = (grade.drawn_in(INSIDE, 1 / 3) if grade else limit for grade in asked)
     bounds = (
@@ -255,8 +257,7 @@ def _slopes_of_edit(elements: RoadElements, world: World) -> _Slopes:
     return _Slopes(elements, tuple(asked), tuple(aims), tuple(bounds))
 
 
-def _slopes_of_proposal(elements: RoadElements, outline: Outline, world: World) -> _Slopes:
-    limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
+def _slopes_of_proposal(elements: RoadElements, outline: Outline, world: World, limit: Range) -> _Slopes:
     accepted, aims, bounds = list[Range | None](), list[Range](), list[Range]()
     for element in elements:
         class_, *ways = map(way, (element.incline, *(s.incline for s in element.segments)))
@@ -270,9 +271,8 @@ def _slopes_of_proposal(elements: RoadElements, outline: Outline, world: World) 
             aim = asked
         own = []
         for segment, one in zip(element.segments, ways, strict=True):
-            room = Range(
-                min(CLEAR_GRADES[one].lo, segment.incline), max(CLEAR_GRADES[one].hi, segment.incline)
-            )
+            clear, now = CLEAR_GRADES[one], segment.incline
+            room = Range(min(clear.lo, now), max(clear.hi, now))
             rooms = overlap(overlap(room, limit), asked and aim), overlap(limit, asked and aim)
             own.append(next((room for room in rooms if room and room.lo <= room.hi), limit))
         if not element.is_turn and element.length < SHORTEST_SLOPE:  # it needs no slope of its own
@@ -398,11 +398,7 @@ class Aim(NamedTuple):
 
 
 def aim_of(
-    first: Look,
-    last: Look,
-    now: tuple[Segment, ...] | None,
-    free: NDArray[np.bool_],
-    margins: Margins,
+    first: Look, last: Look, now: tuple[Segment, ...] | None, free: NDArray[np.bool_], margins: Margins
 ) -> Aim:
     """Returns the lengths and turns that a plan should have, and all limits for them.
 
@@ -410,13 +406,12 @@ def aim_of(
     measured values differ from written ones. ``now`` are the segments found so far, which show where each
     segment turns; None if there are none yet. ``free`` says whether the length and the turn of each segment
     may change, ``(n,)``."""
-    world, outline = first.requirements.world, first.requirements.outline
     proposed = first.design.segments
     lengths = np.array([s.distance for s in proposed])
     turns = np.radians([s.turn_degrees for s in proposed])
     figure = polyline_of(now or proposed)
-    rows, most = _limits_of(proposed, _as_written(first, last), figure.peak, outline, world, margins)
-    return Aim(lengths, turns, free, proposed, figure, rows, most, world, margins)
+    rows, most = _limits_of(first, _as_written(first, last), figure.peak, margins)
+    return Aim(lengths, turns, free, proposed, figure, rows, most, first.requirements.world, margins)
 
 
 def _as_written(first: Look, last: Look) -> RoadElements:
@@ -471,35 +466,25 @@ class _Rows:
         self.rows.append(row)
         self.most.append(most)
 
-    def within(self, members: Sequence[int], span: Range | None) -> None:
+    def within(self, members: Sequence[int], span: Range) -> None:
         """Adds the limits of the total length of some segments, in metres."""
-        if span and span.lo > 0:
-            self.add(dict.fromkeys(members, -1.0), {}, -span.lo)
-        if span and span.hi < inf:
-            self.add(dict.fromkeys(members, 1.0), {}, span.hi)
+        for sign, limit in ((-1.0, span.lo), (1.0, span.hi)):
+            if limit > 0 and limit < inf:
+                self.add(dict.fromkeys(members, sign), {}, sign * limit)
 
-    def turned(self, members: Sequence[int], span: Range | None) -> None:
+    def turned(self, members: Sequence[int], span: Range) -> None:
         """Adds the limits of the total turning angle of some segments, in degrees."""
-        if span and span.lo > 0:
-            self.add({}, dict.fromkeys(members, -METRES_PER_RADIAN), -METRES_PER_RADIAN * radians(span.lo))
-        if span and span.hi < inf:
-            self.add({}, dict.fromkeys(members, METRES_PER_RADIAN), METRES_PER_RADIAN * radians(span.hi))
-
-    def done(self) -> tuple[Array, Array]:
-        """Returns the matrix ``(m, 2 n)`` and the right-hand side ``(m,)``."""
-        return np.array(self.rows).reshape(-1, 2 * self.count), np.array(self.most)
+        for unit, limit in ((-METRES_PER_RADIAN, span.lo), (METRES_PER_RADIAN, span.hi)):
+            if limit > 0 and limit < inf:
+                self.add({}, dict.fromkeys(members, unit), unit * radians(limit))
 
 
 def _limits_of(
-    segments: Sequence[Segment],
-    elements: Sequence[RoadElement],
-    peak: Array,
-    outline: Outline,
-    world: World,
-    margins: Margins,
+    first: Look, elements: Sequence[RoadElement], peak: Array, margins: Margins
 ) -> tuple[Array, Array]:
     """Returns all limits of lengths and turns as a matrix ``(m, 2 n)`` and a right-hand side ``(m,)``;
     ``peak`` is the ratio of maximum to mean curvature of each of the ``n`` segments."""
+    world, outline, segments = first.requirements.world, first.requirements.outline, first.design.segments
     rows = _Rows(len(segments))
     radius = world.limits.min_radius * margins.radius
     shortest = 1 / (1 - LEAST_TRANSITION)
@@ -524,7 +509,7 @@ def _limits_of(
     if outline.turning:
         turning = [i for i, segment in enumerate(segments) if segment.turn_degrees]
         rows.turned(turning, _drawn_in(outline.turning, margins.promise / 4))
-    return rows.done()
+    return np.array(rows.rows).reshape(-1, 2 * len(segments)), np.array(rows.most)
 
 
 def _seen(rows: _Rows, element: RoadElement, peak: Array, margins: Margins) -> None:
@@ -545,8 +530,8 @@ def _seen(rows: _Rows, element: RoadElement, peak: Array, margins: Margins) -> N
 
 def _wish(rows: _Rows, element: RoadElement, wish: Feature, peak: Array, margins: Margins) -> None:
     members = list(element.members)
-    length = _drawn_in(wish.length, margins.promise) if wish.length else None
-    rows.within(members, length)
+    if wish.length:
+        rows.within(members, _drawn_in(wish.length, margins.promise))
     if not element.degrees:
         return
     if wish.degrees:
@@ -625,13 +610,12 @@ def _laid(aim: Aim, v: Array, hands: Array) -> Array:
     z, _ = aim.figure.walk(v[:n], hands * v[n : 2 * n], 0.0)
     turned = np.exp(1j * HEADINGS)[:, None] * z
     box = np.maximum(np.ptp(turned.real, axis=1), np.ptp(turned.imag, axis=1))
-    fits = np.flatnonzero(
-        box <= aim.world.site.map_size - aim.world.section.road_width - 2 * aim.margins.edge
-    )
+    size = aim.world.site.map_size
+    fits = np.flatnonzero(box <= size - aim.world.section.road_width - 2 * aim.margins.edge)
     best = int(fits[0]) if fits.size else int(box.argmin())
     x, y = turned[best].real, turned[best].imag
     middle = np.array([np.ptp(x) / 2 + x.min(), np.ptp(y) / 2 + y.min()])
-    return np.concatenate([HEADINGS[best : best + 1], aim.world.site.map_size / 2 - middle])
+    return np.concatenate([HEADINGS[best : best + 1], size / 2 - middle])
 
 
 def _settled(
@@ -679,17 +663,15 @@ def _misses(aim: Aim, hands: Array, v: Array, with_slopes: bool = True) -> tuple
     by_rows = aim.rows @ v[: 2 * n] - aim.most
     over = by_rows > 0
     z, steps = aim.figure.walk(v[:n], hands * v[n : 2 * n], v[2 * n])
-    border = aim.world.section.road_width / 2 + aim.margins.edge
+    border, size = aim.world.section.road_width / 2 + aim.margins.edge, aim.world.site.map_size
     x, y = z.real + v[2 * n + 1], z.imag + v[2 * n + 2]
-    outside = np.stack(
-        [border - x, border - y, x + border - aim.world.site.map_size, y + border - aim.world.site.map_size]
-    )
+    outside = np.stack([border - x, border - y, x + border - size, y + border - size])
     out = outside > 0
     one, other = _meeting(z, v[:n], aim)
     apart = aim.world.section.road_width + aim.margins.clear
     away = z[other] - z[one]
-    size = np.maximum(np.abs(away), 1e-6)
-    missed = np.concatenate([by_rows[over], outside[out], apart - size])
+    far = np.maximum(np.abs(away), 1e-6)
+    missed = np.concatenate([by_rows[over], outside[out], apart - far])
     if not with_slopes:
         return missed, missed
     by_length, by_turn = aim.figure.slopes(v[:n], steps)
@@ -700,7 +682,7 @@ def _misses(aim: Aim, hands: Array, v: Array, with_slopes: bool = True) -> tuple
     along_y = (which % 2)[:, None]
     own = np.where(along_y, moves[point].imag, moves[point].real)
     box = sign * np.concatenate([own, 1 - along_y, along_y], axis=1)
-    part = (moves[other] - moves[one]) * (away.conj() / size)[:, None]
+    part = (moves[other] - moves[one]) * (away.conj() / far)[:, None]
     clear = np.concatenate([-part.real, np.zeros((len(one), 2))], axis=1)
     return missed, np.concatenate([rows, box, clear])
 
@@ -757,10 +739,7 @@ MOST_SEGMENTS = 60  # free segments; a road with more is not fitted
 
 
 def fit(
-    design: Design,
-    elements: RoadElements,
-    requirements: Requirements,
-    frozen: Collection[str] = frozenset(),
+    design: Design, elements: RoadElements, requirements: Requirements, frozen: Collection[str] = frozenset()
 ) -> Look:
     """Finds a road that meets all requirements and differs from the design as little as possible.
 

@@ -60,17 +60,6 @@ def asks_for_heights(plan: Sequence[Element]) -> bool:
     return any(element.required_climb for element in plan)
 
 
-def with_grades_of_climbs(
-    plan: Sequence[Element], limit: Range, pace: Pace, ease: float, bumps: bool
-) -> Sequence[Element]:
-    """Returns the elements of a plan with the grades in percent that give the heights that are asked for. For
-    ``ease`` and ``bumps``, see ``Pace.eased``."""
-    if not asks_for_heights(plan):
-        return plan
-    grades = _grades_of_climbs(plan, pace, ease, bumps)
-    return [_with_grade(element, grade, limit) for element, grade in zip(plan, grades, strict=True)]
-
-
 def has_room_for_heights(plan: Sequence[Element], limit: Range, pace: Pace, ease: float, bumps: bool) -> bool:
     """Returns whether the grades that give the heights are allowed; with shorter parabolas, which take less
     height from a crest, lower grades do."""
@@ -149,7 +138,9 @@ def drawn_heights(
 ) -> list[Element]:
     """Returns the elements of a plan with random inclines, rounded to a tenth of a percent. A straight of
     several slopes becomes several elements. For ``ease`` and ``bumps``, see ``Pace.eased``."""
-    plan = with_grades_of_climbs(plan, windows.limit, pace, ease, bumps)
+    if asks_for_heights(plan):
+        heights = zip(plan, _grades_of_climbs(plan, pace, ease, bumps), strict=True)
+        plan = [_with_grade(element, grade, windows.limit) for element, grade in heights]
     is_hilly = bool(outline.hills and outline.hills.lo > required_hills(plan))
     if is_hilly:
         assert outline.hills is not None
@@ -171,11 +162,18 @@ def drawn_heights(
         limits = _steep_kept(values, lengths, limits, outline.steepest.lo)
     if ease > 0:
         limits = _held(row, values, limits)
-    if is_hilly or _is_mountainous(outline):
-        limits = [_one_way(value, room) for value, room in zip(values, limits, strict=True)]
+    if is_hilly or _is_mountainous(outline):  # what climbs or falls clearly goes on to do so
+        ways = [Range(LEAST_SLOPE) if value > 0 else Range(-inf, -LEAST_SLOPE) for value in values]
+        limits = [
+            overlap(room, way) or room if abs(value) >= LEAST_SLOPE else room
+            for value, room, way in zip(values, limits, ways, strict=True)
+        ]
     values = _softened(values, lengths, limits, pace, ease, bumps)
     if outline.climb:
-        metres = _drawn_climb(outline.climb, rng)
+        near = outline.climb.around(NEAR_CLIMB)
+        low = near.lo if near.lo > -inf else near.hi - max(0.3 * abs(near.hi), 2.0)
+        high = near.hi if near.hi < inf else near.lo + max(0.3 * abs(near.lo), 2.0)
+        metres = low + (0.3 + 0.4 * float(rng.random())) * (high - low)
         values = climbing(values, lengths, limits, metres)
         values = _softened(values, lengths, limits, pace, ease, bumps)
         values = climbing(values, lengths, limits, metres)  # one shift of all leaves the joints as they are
@@ -300,34 +298,21 @@ def _hilly(
 
 
 def _with_steepest(
-    values: Array,
-    lengths: Array,
-    limits: Sequence[Range],
-    steepest: Range,
-    rng: np.random.Generator,
+    values: Array, lengths: Array, limits: Sequence[Range], steepest: Range, rng: np.random.Generator
 ) -> Array:
     low = steepest.lo + min(0.5, 0.3 * max(min(steepest.hi, STEEPEST) - steepest.lo, 0.0))
     if np.any((np.abs(values) >= low) & (lengths > HILL)):
         return values
     out = values.copy()
     for index in np.argsort(-lengths):
-        room = limits[index]
+        room, side = limits[index], float(np.sign(values[index]))
         wants = [side for side in (1, -1) if room.lo <= side * low <= room.hi]
         if wants:
-            side = (
-                float(np.sign(values[index])) if np.sign(values[index]) in wants else float(rng.choice(wants))
-            )
+            side = side if side in wants else float(rng.choice(wants))
             most = room.hi if side > 0 else -room.lo
             out[index] = side * (low + rng.random() * max(min(most, low + 3) - low, 0.0))
             break
     return out
-
-
-def _drawn_climb(climb: Range, rng: np.random.Generator) -> float:
-    near = climb.around(NEAR_CLIMB)
-    low = near.lo if near.lo > -inf else near.hi - max(0.3 * abs(near.hi), 2.0)
-    high = near.hi if near.hi < inf else near.lo + max(0.3 * abs(near.lo), 2.0)
-    return low + (0.3 + 0.4 * float(rng.random())) * (high - low)
 
 
 def _joining(drawn: Sequence[list[Element]]) -> list[list[Element]]:
@@ -349,9 +334,8 @@ def _joining(drawn: Sequence[list[Element]]) -> list[list[Element]]:
 
 def _steep_kept(values: Array, lengths: Array, limits: Sequence[Range], least: float) -> list[Range]:
     out = [*limits]
-    steep = [i for i in sorted(range(len(out)), key=lambda i: -lengths[i]) if abs(values[i]) >= least]
-    if steep:
-        i = steep[0]
+    steep = [i for i in range(len(out)) if abs(values[i]) >= least]
+    for i in sorted(steep, key=lambda i: -lengths[i])[:1]:
         room = Range(least) if values[i] > 0 else Range(-inf, -least)
         out[i] = overlap(out[i], room) or out[i]
     return out
@@ -370,12 +354,6 @@ def _held(row: Sequence[Element], values: Array, limits: Sequence[Range]) -> lis
     ]
 
 
-def _one_way(value: float, room: Range) -> Range:
-    if np.isnan(value) or abs(value) < LEAST_SLOPE:
-        return room
-    return overlap(room, Range(LEAST_SLOPE) if value > 0 else Range(-inf, -LEAST_SLOPE)) or room
-
-
 def _softened(
     values: Array, lengths: Array, limits: Sequence[Range], pace: Pace, ease: float, bumps: bool
 ) -> Array:
@@ -387,11 +365,8 @@ def _softened(
     joints = [float(ends[a] + begins[b]) / 2 for a, b in pairwise(known)]
     own = np.diff([0.0, *joints, float(ends[-1])])
     radii = [pace.eased(s, ease, bumps) for s in joints]
-    rooms = [limits[int(i)] for i in known]
     out = values.copy()
-    out[known] = softened(
-        values[known].tolist(), own.tolist(), radii, [r.lo for r in rooms], [r.hi for r in rooms]
-    )
+    out[known] = softened(values[known].tolist(), own.tolist(), radii, [limits[int(i)] for i in known])
     return out
 
 

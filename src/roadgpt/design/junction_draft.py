@@ -84,11 +84,8 @@ def with_roads_continued(brief: Brief) -> Brief:
     one_road = [n for n, place in enumerate(brief.junctions) if is_one_road(place)]
     for n in (*one_road, *reversed(one_road)):
         if speed := roads[n].speed or roads[n + 1].speed:
-            own = (road.speed or speed for road in roads[n : n + 2])
-            roads[n : n + 2] = [
-                road.model_copy(update={"speed": each})
-                for road, each in zip(roads[n : n + 2], own, strict=True)
-            ]
+            pair = roads[n : n + 2]
+            roads[n : n + 2] = [each.model_copy(update={"speed": each.speed or speed}) for each in pair]
     for n, place in enumerate(brief.junctions):
         if is_one_road(place) and _leaves_open(roads[n + 1], LANES) and not roads[n].clauses:
             roads[n + 1] = roads[n + 1].model_copy(update={"slope": roads[n].slope})
@@ -323,8 +320,11 @@ def _continued(brief: Brief) -> list[Brief]:
 
 
 def _may_have_centre(road: Brief) -> bool:
-    is_one_way = road.against is not None and span(road.against).hi == 0
-    return road.centre is None and not (is_one_way or road.divided or road.motorway)
+    return road.centre is None and not (_is_one_way(road) or road.divided or road.motorway)
+
+
+def _is_one_way(road: Brief) -> bool:
+    return road.against is not None and span(road.against).hi == 0
 
 
 def _of_same_road(known: Brief, road: Brief, place: JunctionClause) -> Brief:
@@ -369,8 +369,7 @@ def _with_same_lanes(known: Brief, road: Brief) -> Brief:
     if road.against is not None and road.against == known.against and road.lanes is None:
         return road.model_copy(update={"lanes": known.lanes})
     has_lanes = road.lanes is not None or road.against is not None or road.divided or road.motorway
-    has_no_centre = known.divided or (known.against is not None and span(known.against).hi == 0)
-    if has_lanes or (road.centre is not None and has_no_centre):
+    if has_lanes or (road.centre is not None and (known.divided or _is_one_way(known))):
         return road
     update = {name: getattr(known, name) for name in ("lanes", "against", "divided")}
     return road.model_copy(update=update)
@@ -520,11 +519,11 @@ def drawn_junction(
 
 
 def _with_stops(junction: JunctionDesign) -> JunctionDesign:
-    arms = tuple(
-        arm.model_copy(update={"control": "stop"}) if control == "yield" else arm
-        for arm, control in zip(junction.all_arms, controls_of(junction)[1:], strict=True)
-    )
-    return junction.model_copy(update={"arms": arms})
+    arms = list(junction.all_arms)
+    for n, control in enumerate(controls_of(junction)[1:]):
+        if control == "yield":
+            arms[n] = arms[n].model_copy(update={"control": "stop"})
+    return junction.model_copy(update={"arms": tuple(arms)})
 
 
 def _kind(asked: JunctionClause, rng: Rng, others: Collection[JunctionKind]) -> PlainKind:

@@ -118,11 +118,7 @@ def drawn_headings(rng: np.random.Generator, heading: float | None) -> Array:
 
 
 def place(
-    line: PlanLine,
-    world: World,
-    rng: np.random.Generator,
-    reach: float = 0.0,
-    heading: float | None = None,
+    line: PlanLine, world: World, rng: np.random.Generator, reach: float = 0.0, heading: float | None = None
 ) -> MapPose | None:
     """Returns a random start and heading at which the road lies on the map; None if none was found. ``reach``
     is the distance in metres from the line to the edge of the widest road, if wider than usual. ``heading``
@@ -201,8 +197,9 @@ def moved_onto_map(design: Design, world: World) -> Design | None:
     left, low, width, height = (float(edge[0]) for edge in boxes(corners, np.zeros(1)))
     pivot, spin = complex(left + width / 2, low + height / 2), np.exp(1j * radians(turn))
     start, turned = ((p - pivot) * spin + pivot for p in (complex(x, y), corners))
-    dx = _least_move(turned.real, world.site.map_size)
-    dy = _least_move(turned.imag, world.site.map_size)
+    most = world.site.map_size - LEAST_EDGE
+    edges = ((each.min(), each.max()) for each in (turned.real, turned.imag))
+    dx, dy = (float(np.clip(0.0, LEAST_EDGE - least, most - largest)) for least, largest in edges)
     if turn or dx or dy:
         x, y = (round(v * CENTIMETRE) / CENTIMETRE for v in (start.real + dx, start.imag + dy))
     theta = round((design.theta + turn) * HUNDREDTH) / HUNDREDTH if turn else design.theta
@@ -212,17 +209,13 @@ def moved_onto_map(design: Design, world: World) -> Design | None:
 def _corners(road: Road, world: World) -> Complex:
     half = world.section.road_width / 2
     left, right = sides(road.sample(), world.profile_of(road).edges(road.sample().s))
-    behind = [_beyond(road, s, t) for s in (-BEYOND, road.length + BEYOND) for t in (-half, half)]
+    behind = []
+    for end, more in ((0.0, -BEYOND), (road.length, BEYOND)):  # continued straight
+        ahead = more * np.array([cos(heading := float(road.heading(end))), sin(heading)])
+        behind += [road.at(end, t)[:2] + ahead for t in (-half, half)]
     points = np.concatenate([left, right, behind])
     x, y = points[scipy.spatial.ConvexHull(points).vertices].T
     return np.asarray(x + 1j * y)
-
-
-def _beyond(road: Road, s: float, t: float) -> Array:
-    """Returns the point of an edge at a station beyond an end of the road, which is continued straight."""
-    end = min(max(s, 0.0), road.length)
-    heading = float(road.heading(end))
-    return np.asarray(road.at(end, t)[:2] + (s - end) * np.array([cos(heading), sin(heading)]))
 
 
 def _least_turn(corners: Complex, turns: Array, room: float) -> float | None:
@@ -233,7 +226,3 @@ def _least_turn(corners: Complex, turns: Array, room: float) -> float | None:
         if found:
             return found[0]
     return None
-
-
-def _least_move(coordinates: Array, size: float) -> float:
-    return float(np.clip(0.0, LEAST_EDGE - coordinates.min(), size - LEAST_EDGE - coordinates.max()))

@@ -166,11 +166,8 @@ def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, has
         node = draft.nodes[numbers[cell]]
         draft.add(DraftNode(node.z + way * (CONTACT + drawn_stub(rng, haste)), "end"), numbers[cell])
     inner = [draft.nodes[n] for (i, j), n in numbers.items() if 0 < i < size[0] and 0 < j < size[1]]
-    return (
-        draft
-        if with_kinds_and_bends(draft, least_radius, rng) and _signed(draft, asked.signed, inner, rng)
-        else None
-    )
+    has_room = with_kinds_and_bends(draft, least_radius, rng)
+    return draft if has_room and _signed(draft, asked.signed, inner, rng) else None
 
 
 def drawn_count(asked: Amount | None, rng: Rng, most: int = 8, least: int = 1) -> int:
@@ -235,15 +232,12 @@ def _signed(draft: MapDraft, asked: Sequence[JunctionCount], inner: Sequence[Dra
         if span(each.count).lo > len(fitting):
             return False
         count = drawn_count(each.count, rng, len(fitting), least=0)
-        outer = {
-            n
-            for n, node in enumerate(fitting)
-            if each.kind == "crossroads" and not any(node is one for one in inner)
-        }
-        order = sorted(rng.permutation(len(fitting)), key=lambda n, outer=outer: n in outer)  # type: ignore[misc]
-        for n in order[:count]:
-            fitting[n].control = each.control or "none"
-            free.remove(fitting[n])
+        order = [fitting[n] for n in rng.permutation(len(fitting))]
+        if each.kind == "crossroads":
+            order.sort(key=lambda node: not any(node is one for one in inner))
+        for node in order[:count]:
+            node.control = each.control or "none"
+            free = [one for one in free if one is not node]
     return True
 
 
@@ -257,11 +251,8 @@ def with_kinds_and_bends(draft: MapDraft, least_radius: float, rng: Rng) -> bool
             continue
         one, other = (draft.nodes[n] for n in ends[number])
         turn = pi - abs(cmath.phase((one.z - node.z) / (other.z - node.z)))
-        room = min(
-            abs(each.z - node.z) * (0.48 if each.kind == "bend" else 1.0)
-            - (0.0 if each.kind == "bend" else each.kerb * 1.3 + 9.0)
-            for each in (one, other)
-        )
+        away = [(abs(each.z - node.z), each) for each in (one, other)]
+        room = min(far * 0.48 if each.kind == "bend" else far - (each.kerb * 1.3 + 9.0) for far, each in away)
         radius = drawn_bend(rng, least_radius, room / tangent_length(turn) if turn > 0 else inf)
         if radius is None:
             return False
@@ -603,10 +594,8 @@ class _Village:
     ) -> bool:
         first = len(self.draft.nodes)
         numbers = [arm.node, *range(first, first + len(points))]
-        lines = [
-            _Line(a, b, frozenset(nodes))
-            for (a, b), nodes in zip(pairwise([arm.z, *points]), pairwise(numbers), strict=True)
-        ]
+        pairs = zip(pairwise([arm.z, *points]), pairwise(numbers), strict=True)
+        lines = [_Line(*ends, frozenset(nodes)) for ends, nodes in pairs]
         reaches, here = self._reaches(junction), points[-1]
         for n, way in enumerate(_ways(junction, turn)):
             if n != back:
@@ -675,10 +664,8 @@ class _Village:
     def _linked(self, one: _FreeArm, other: _FreeArm) -> list[DraftNode]:
         for _ in range(LINKS):
             rooms = [float(self.rng.uniform(*BEFORE_BEND)) for _ in range(2)]
-            places = [
-                arm.z + arm.way * (arm.reach + STRAIGHT + room)
-                for arm, room in zip((one, other), rooms, strict=True)
-            ]
+            pairs = zip((one, other), rooms, strict=True)
+            places = [arm.z + arm.way * (arm.reach + STRAIGHT + room) for arm, room in pairs]
             across = places[1] - places[0]
             turns = [abs(cmath.phase(across / one.way)), abs(cmath.phase(-across / other.way))]
             if not all(radians(GENTLEST) <= turn <= radians(SHARPEST) for turn in turns):

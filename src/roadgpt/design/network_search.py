@@ -189,10 +189,7 @@ class _Search:
         self.boxes: list[float] = []
 
     def _first_accepted(
-        self,
-        drafts: Iterable[Design | None],
-        most: int,
-        advice: Callable[[str], str],
+        self, drafts: Iterable[Design | None], most: int, advice: Callable[[str], str]
     ) -> Design:
         """Returns the first draft whose route can be built and breaks no rule.
 
@@ -233,6 +230,7 @@ class NetworkSearch(_Search):
         self.has_wide_bends = main_roads(brief.junctions)
         self.usual = LanesDesign(width=world.section.lane_width)
         self.lanes = lanes_of_roads(brief, world.section.lane_width)
+        self.has_usual_lanes = all(each == self.usual for each in self.lanes)
         self.others = Shapes().of(())
         check_lanes_across(brief.junctions, self.lanes)
 
@@ -258,36 +256,30 @@ class NetworkSearch(_Search):
             return self.run()
 
     def _draft(self, haste: float) -> Design | None:
-        junctions = self._places(haste)
-        drafts = None if junctions is None else self._stretches(junctions, haste)
-        if junctions is None or drafts is None:
+        if (junctions := self._places(haste)) is None:
             return None
-        pose = self._place(drafts, junctions)
-        segments = None if pose is None else self._segments(drafts)
-        if pose is None or segments is None:
+        if (drafts := self._stretches(junctions, haste)) is None:
             return None
-        after = accumulate(map(len, segments))
+        if (pose := self._place(drafts, junctions)) is None or (segments := self._segments(drafts)) is None:
+            return None
+        numbered = [
+            junction.model_copy(update={"after": number})
+            for junction, number in zip(junctions, accumulate(map(len, segments)), strict=False)
+        ]
         driven = segments[:-1] if any(map(ends_route, junctions)) else segments
         every = tuple(segment for part in driven for segment in part)
         return Design(
             starting_point=(pose.x, pose.y, start_height(every, drawn_ground(self.world, self.rng))),
             theta=pose.theta,
             segments=every,
-            junctions=tuple(
-                junction.model_copy(update={"after": number})
-                for junction, number in zip(junctions, after, strict=False)
-            ),
-            lanes=None if self._has_usual_lanes else self.lanes[0],
+            junctions=tuple(numbered),
+            lanes=None if self.has_usual_lanes else self.lanes[0],
         )
 
     @property
     def lacks_room(self) -> bool:
         """Whether most drafts failed for a reason that may disappear on a larger map."""
         return main_reason(self.failed) in FOR_ROOM
-
-    @property
-    def _has_usual_lanes(self) -> bool:
-        return all(each == self.usual for each in self.lanes)
 
     def _places(self, haste: float) -> list[PlaceDesign] | None:
         found: list[PlaceDesign] = []
@@ -301,8 +293,7 @@ class NetworkSearch(_Search):
             elif clause.kind in RAMPS:
                 drawn = drawn_ramp(clause, 0.0 if self.is_modest else self._room_beside(number))
             else:
-                asked = self._at_end_of_ramp(number) or self._with_ring_lanes(number)
-                drawn = drawn_junction(asked, self.rng, haste, named)
+                drawn = drawn_junction(self._asked_of(number), self.rng, haste, named)
             if drawn is None:
                 is_small = clause.kind == "roundabout" and not (clause.take and clause.exit)
                 why = "such an island is too small for so many arms" if is_small else "it has no such ways on"
@@ -311,26 +302,22 @@ class NetworkSearch(_Search):
             if clause.turn_lanes:
                 length = drawn_turn_length(clause, self.brief.roads[number], self.usual.width)
                 drawn = drawn.model_copy(update={"turn_length": length})
-            lanes = None if self._has_usual_lanes else self.lanes[number + 1]
+            lanes = None if self.has_usual_lanes else self.lanes[number + 1]
             found.append(drawn.model_copy(update={"lanes": lanes}))
         return found
 
-    def _with_ring_lanes(self, number: int) -> JunctionClause:
+    def _asked_of(self, number: int) -> JunctionClause:
+        """Returns what is required of a junction: a ring has as many lanes as its roads need, and the ramp is
+        the stem of a T-junction at the end of a motorway's exit, if nothing else is said."""
         clause = self.brief.junctions[number]
-        if clause.kind != "roundabout" or clause.lanes is not None:
-            return clause
-        most = max(max(each.forward, each.backward) for each in self.lanes[number : number + 2])
-        return clause.model_copy(update={"lanes": exactly(most)}) if most > 1 else clause
-
-    def _at_end_of_ramp(self, number: int) -> JunctionClause | None:
-        """Returns what is required of a T-junction at the end of a motorway's exit, where the ramp is its
-        stem; None for any other junction."""
-        clause = self.brief.junctions[number]
+        if clause.kind == "roundabout" and clause.lanes is None:
+            most = max(max(each.forward, each.backward) for each in self.lanes[number : number + 2])
+            return clause.model_copy(update={"lanes": exactly(most)}) if most > 1 else clause
         before = self.brief.junctions[number - 1] if number else None
         is_exit = before is not None and before.kind == "diverge" and before.take != "main"
         is_free = clause.take in ("left", "right") and not clause.ways and clause.angle is None
         if clause.kind != "t_junction" or not is_exit or not is_free:
-            return None
+            return clause
         return clause.model_copy(update={"ways": ("left", "right")})
 
     def _room_beside(self, number: int) -> float:
@@ -416,29 +403,27 @@ class NetworkSearch(_Search):
         have in metres; None if it is open. The ``last`` metres, for turn lanes, are straight if they can be.
         """
         wanted, shortest = brief, max(self._shortest(n, haste), last)
+        kinds = {place.kind for place in self.brief.junctions[max(n - 1, 0) : n + 1]}
+        is_bare = not brief.clauses and brief.turns is None
         if length is not None:
             is_short = brief.speed is not None and length < limits_at(brief.speed).shortest_turn + LEADS
-            is_straight = (brief.motorway or is_short) and not brief.clauses and brief.turns is None
-            turns = exactly(0) if is_straight else brief.turns
+            turns = exactly(0) if (brief.motorway or is_short) and is_bare else brief.turns
             long = between(0.97 * length, 1.03 * length)
             wanted = brief.model_copy(update={"length": long, "turns": turns})
         elif brief.has_free_shape:
             wanted = self._open(haste, shortest, brief.motorway, brief.speed)
-        elif brief.length is None and not brief.clauses and brief.turns is None:
+        elif brief.length is None and is_bare:
             free = self._open(haste, shortest, is_straight=True)
-            needs_room = brief.hills is not None or brief.climb is not None
-            wanted = brief.model_copy(
-                update={"length": None if needs_room else free.length, "turns": free.turns}
-            )
-        elif not brief.clauses and brief.turns is None:
+            own = free.length if brief.hills is None and brief.climb is None else None
+            wanted = brief.model_copy(update={"length": own, "turns": free.turns})
+        elif is_bare:
             is_straight = brief.motorway or self.rng.random() > CURVED * (1 - haste)
             wanted = brief.model_copy(update={"turns": exactly(0) if is_straight else at_least(1)})
         if n in self.has_wide_bends and brief.turns is None and wanted.turns not in (None, exactly(0)):
             wanted = wanted.model_copy(update={"sharpness": "sweeping"})
-        kinds = {place.kind for place in self.brief.junctions[max(n - 1, 0) : n + 1]}
-        if brief.speed is not None and kinds & {*RAMPS, *LANE_KINDS} and _leaves_heights_open(brief):
-            wanted = wanted.model_copy(update={"slope": "flat"})  # its level ends are passed at full speed
-        if self.is_modest and _leaves_heights_open(wanted):
+        # the level ends of a road with a ramp or a lane that changes are passed at full speed
+        is_fast = brief.speed is not None and bool(kinds & {*RAMPS, *LANE_KINDS})
+        if (is_fast and _leaves_heights_open(brief)) or (self.is_modest and _leaves_heights_open(wanted)):
             wanted = wanted.model_copy(update={"slope": "flat"})
         if self.is_modest and wanted.length is None:
             wanted = wanted.model_copy(update={"length": at_least(shortest)})
@@ -446,11 +431,9 @@ class NetworkSearch(_Search):
         if last and wanted.ends is None and wanted.turns != exactly(0):
             ends = Clause(kind="straight", length=at_least(last))
             tried.insert(0, wanted.model_copy(update={"ends": ends}))
-        for each in tried:
-            search = DraftSearch(each, self.world, self.others, self.rng)
+        for search in (DraftSearch(each, self.world, self.others, self.rng) for each in tried):
             for _ in range(STRETCHES):
-                found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
-                if found is not None:
+                if (found := search.stretch(haste, plain=span(wanted.length).lo < LONG)) is not None:
                     return search, found
         return None
 
@@ -593,15 +576,12 @@ def drawn_route(draft: MapDraft, rng: Rng) -> list[int] | None:
         return None
     wanted = int(rng.integers(PASSED[0], PASSED[1] + 1))
     neighbours = draft.neighbours()
-    best: tuple[tuple[float, ...], list[int]] | None = None
-    for _ in range(WALKS):
-        walk = _walk(draft, neighbours, starts[int(rng.integers(len(starts)))], wanted, to_end, rng)
-        if walk is None:
-            continue
-        worth = _worth(draft, walk, wanted)
-        if best is None or worth > best[0]:
-            best = worth, walk
-    return None if best is None else best[1]
+    walks = (
+        _walk(draft, neighbours, starts[int(rng.integers(len(starts)))], wanted, to_end, rng)
+        for _ in range(WALKS)
+    )
+    found = [walk for walk in walks if walk is not None]
+    return max(found, key=lambda walk: _worth(draft, walk, wanted), default=None)
 
 
 def named_route(draft: MapDraft, ways: Sequence[Way], rng: Rng) -> list[int] | None:
@@ -691,20 +671,17 @@ class MapSearch(_Search):
         """Returns the first of up to ``drafts`` drafts that is accepted. Raises DesignError if none was, and
         UsageError if the World has lanes or superelevation that networks cannot have."""
         refuse_other_lanes(self.world)
+        share = PARTS / self.world.site.map_size
+        # without haste, many junctions would not fit on the map
+        least = HURRIED_MAP * max(_least_count(self.asked) * share**2 - FEW, 0.0)
         hastes = (max(0.0, (n - NO_HASTE_ON_MAP) / (drafts / 2)) ** 0.5 for n in range(drafts))
-        tried = (self._draft(min(max(haste, self._least_haste), 1.0)) for haste in hastes)
+        tried = (self._draft(min(max(haste, least), 1.0)) for haste in hastes)
         return self._first_accepted(tried, BUILT_MAPS, self._advice)
 
     @property
     def lacks_room(self) -> bool:
         """Whether drafts were too large for the map, so that a larger one may help."""
         return self.failed[TOO_LARGE] > 0
-
-    @property
-    def _least_haste(self) -> float:
-        """The haste of the first drafts, without which many junctions would not fit on the map."""
-        share = PARTS / self.world.site.map_size
-        return HURRIED_MAP * max(_least_count(self.asked) * share**2 - FEW, 0.0)
 
     def _draft(self, haste: float) -> Design | None:
         world = self.world
@@ -725,9 +702,20 @@ class MapSearch(_Search):
         if draft is None or (length is not None and not self._stretch(draft, length)):
             self.failed["its roads would overlap or bend too much"] += 1
             return None
-        if not self._place(draft, turns, room):
+        found = first_that_fits(draft.corners(), turns, room)
+        if found is None:
             self.failed[TOO_LARGE] += 1
             return None
+        turn, left, low, width, height = found
+        spin = np.exp(1j * np.radians(turn))
+        border = (world.site.map_size - room) / 2
+        x, y = (
+            border - edge + float(self.rng.random()) * max(room - size, 0.0)
+            for edge, size in ((left, width), (low, height))
+        )
+        for node in draft.nodes:
+            moved = node.z * spin + complex(x, y)
+            node.z = complex(round(moved.real, 2), round(moved.imag, 2))
         ways = self.asked.route
         route = named_route(draft, ways, self.rng) if ways else drawn_route(draft, self.rng)
         if route is None:
@@ -755,22 +743,6 @@ class MapSearch(_Search):
             between = sum(abs(draft.nodes[one].z - draft.nodes[other].z) for one, other in draft.roads)
             for node in draft.nodes:
                 node.z *= (between + wanted - built) / between
-        return True
-
-    def _place(self, draft: MapDraft, turns: np.ndarray, room: float) -> bool:
-        found = first_that_fits(draft.corners(), turns, room)
-        if found is None:
-            return False
-        turn, left, low, width, height = found
-        spin = np.exp(1j * np.radians(turn))
-        border = (self.world.site.map_size - room) / 2
-        x, y = (
-            border - edge + float(self.rng.random()) * max(room - size, 0.0)
-            for edge, size in ((left, width), (low, height))
-        )
-        for node in draft.nodes:
-            moved = node.z * spin + complex(x, y)
-            node.z = complex(round(moved.real, 2), round(moved.imag, 2))
         return True
 
     def _heights(self, draft: MapDraft, haste: float) -> list[float]:
@@ -807,17 +779,15 @@ def _design(draft: MapDraft, heights: Sequence[float], route: Sequence[int]) -> 
     )
 
 
-def likely_room_of_map(brief: Brief) -> float:
+def _likely_room(asked: MapClause, length: Amount | None) -> float:
     """Returns the side in metres of a square that a map of roads may just fit into."""
-    assert brief.map is not None
-    asked = brief.map
     if asked.junctions:
         usual = PER_JUNCTION * sqrt(_least_count(asked))
     else:
-        length = span(asked.length).lo
+        block = span(asked.length).lo
         blocks = max(span(asked.columns).lo, span(asked.rows).lo, 1.0)
-        usual = blocks * (length if 0 < length < inf else LEAST_BLOCK)
-    return max(usual, ACROSS * max(span(brief.length).lo, 0.0))
+        usual = blocks * (block if 0 < block < inf else LEAST_BLOCK)
+    return max(usual, ACROSS * max(span(length).lo, 0.0))
 
 
 def _least_count(asked: MapClause) -> float:
@@ -835,10 +805,9 @@ def draft_network(brief: Brief, world: World, rng: np.random.Generator) -> Desig
     """Returns a valid route that meets the Brief, or a valid map of roads if the Brief asks for a map. Raises
     DesignError if no draft was accepted, BriefError if a junction cannot meet its requirements, and
     UsageError if the World has lanes or banked bends that a map of roads cannot have."""
-    if not brief.left_hand:
-        return _search(brief, world, rng).run()
     # traffic on the left is the mirror image of traffic on the right
-    return _search(mirrored(brief), world, rng).run().mirrored(world.site.map_size / 2)
+    made = _search(mirrored(brief) if brief.left_hand else brief, world, rng).run()
+    return made.mirrored(world.site.map_size / 2) if brief.left_hand else made
 
 
 def _search(brief: Brief, world: World, rng: np.random.Generator) -> NetworkSearch | MapSearch:
@@ -852,7 +821,7 @@ def room_for_network(brief: Brief, world: World) -> float | None:
     """Returns the side in metres of a map that is large enough for a network; None if the World's map is
     large enough, or if no larger map would help."""
     if brief.map is not None:
-        likely = likely_room_of_map(brief)
+        likely = _likely_room(brief.map, brief.length)
     else:
         brief = mirrored(brief) if brief.left_hand else brief  # drafts are made with traffic on the right
         total = sum(map(_least, (brief, *brief.roads)))

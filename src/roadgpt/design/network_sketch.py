@@ -69,11 +69,14 @@ class _Pen:
 
     def go_on(self, line: PlanLine, reach: float) -> None:
         """Draws a road that continues the one on which the route has arrived."""
-        way, here = self._way, self._continued()
+        here = self._continued()
         self._before = self._arrival
-        self._arrival = self._drawn(self._end + way * _thinned(line.z), reach)
-        self._end, self._way = self._end + way * complex(line.z[-1]), way * _way(line.z)
+        self._draw_road(line, self._end, self._way, reach)
         self.joined |= {(part, self._arrival) for part in here}
+
+    def _draw_road(self, line: PlanLine, start: complex, way: complex, reach: float) -> None:
+        self._arrival = self._drawn(start + way * _thinned(line.z), reach)
+        self._end, self._way = start + way * complex(line.z[-1]), way * _way(line.z)
 
     def _continued(self) -> list[int]:
         """Returns the last part and the one before that it continues, which may be short."""
@@ -112,8 +115,7 @@ class _Pen:
             out = way * cmath.exp(1j * radians(arm.angle))
             start = node + out * far[n + 1]
             if n == junction.taken:
-                self._arrival = self._drawn(start + out * _thinned(line.z), profiles[1].reach)
-                self._end, self._way = start + out * complex(line.z[-1]), out * _way(line.z)
+                self._draw_road(line, start, out, profiles[1].reach)
                 here.append(self._arrival)
             else:
                 stub = start + out * np.arange(0.0, arm.length or STUB, STEP)

@@ -81,14 +81,11 @@ class RoadElement:
 
     def mirrored(self) -> "RoadElement":
         """Returns the mirror image of the element."""
-        own = (
-            segment.model_copy(
-                update={"direction": OTHER_SIDE[segment.direction], "turn_degrees": -segment.turn_degrees}
-            )
-            if segment.turn_degrees and segment.direction != "straight"
-            else segment
-            for segment in self.segments
-        )
+        own = list(self.segments)
+        for n, one in enumerate(own):
+            if one.turn_degrees and one.direction != "straight":
+                other = {"direction": OTHER_SIDE[one.direction], "turn_degrees": -one.turn_degrees}
+                own[n] = one.model_copy(update=other)
         return replace(self, side=self.side and OTHER_SIDE[self.side], segments=tuple(own))
 
     def with_grade(self, grade: float, limit: float) -> "RoadElement":
@@ -124,7 +121,7 @@ class RoadElement:
 
     def scaled(self, more: float, wider: float) -> "RoadElement":
         """Returns the element with its angles multiplied by ``more`` and its radii by ``wider``."""
-        return self.with_segments(_scaled(segment, more, wider) for segment in self.segments)
+        return self.with_segments(_scaled(s, more, wider) if s.turn_degrees else s for s in self.segments)
 
     def rewritten(self, degrees: float, radius: float) -> "RoadElement":
         """Returns a turn with a new angle and radius; its side and its mean incline, or the inclines on both
@@ -155,14 +152,11 @@ def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadE
     edges = [0, *(index for mark in marks for index in mark), len(design.segments)]
     straights = [next((f for f in gap if f.kind == "straight"), None) for gap in found.gaps]
     for number, (first, end) in enumerate(pairwise(edges)):
+        name = f"turn {number // 2 + 1}" if number % 2 else f"gap {number // 2}"
+        seen = found.turns[number // 2] if number % 2 else straights[number // 2]
+        side = seen.side if seen and number % 2 else None
         own = design.segments[first:end]
-        if number % 2:
-            turn = found.turns[number // 2]
-            out.append(RoadElement(f"turn {number // 2 + 1}", own, turn.side, first, turn))
-        else:
-            out.append(RoadElement(f"gap {number // 2}", own, None, first, straights[number // 2]))
-    if geometry != "arcs":
-        out = [replace(element, is_of_arcs=False) for element in out]
+        out.append(RoadElement(name, own, side, first, seen, is_of_arcs=geometry == "arcs"))
     return tuple(out), found
 
 
@@ -235,8 +229,6 @@ def with_inclines(segments: Sequence[Segment], grades: Array) -> tuple[Segment, 
 
 
 def _scaled(segment: Segment, more: float, wider: float) -> Segment:
-    if not segment.turn_degrees:
-        return segment
     degrees = round(segment.turn_degrees * more * TENTH) / TENTH
     more = degrees / segment.turn_degrees
     radius = segment.radius and ceil(segment.radius * wider * CENTIMETRE) / CENTIMETRE

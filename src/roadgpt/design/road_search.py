@@ -96,11 +96,10 @@ class DraftSearch:
         DesignError if the requirements contradict each other."""
         self.brief, self.world, self.others, self.rng = brief, world, others, rng
         self.outline: Outline = outline(brief, world.site.map_size)
-        if self.outline.turns.lo > self.outline.turns.hi:
-            low, high = self.outline.turns.lo, self.outline.turns.hi
-            raise DesignError(
-                f"asked for {low:g} turns, and for {high:g} at most; change one of these numbers"
-            )
+        low, high = self.outline.turns.lo, self.outline.turns.hi
+        if low > high:
+            told = f"asked for {low:g} turns, and for {high:g} at most"
+            raise DesignError(f"{told}; change one of these numbers")
         self.windows = Windows(self.outline, world)
         self.bumps = asks_for_bumps(brief)
         self.failed: Counter[str] = Counter()
@@ -110,8 +109,7 @@ class DraftSearch:
     def run(self) -> tuple[Design, Road]:
         """Returns the first draft that is accepted, as a Design and its Road; one of the least similar
         drafts, if all are like earlier roads. Raises DesignError if no draft was accepted."""
-        found = self.found()
-        if found is not None:
+        if (found := self.found()) is not None:
             return found
         from roadgpt.design.advice import advice, too_fast
 
@@ -143,16 +141,12 @@ class DraftSearch:
                     break
                 continue
             finished += 1
-            found = self._finished(drafted)
-            if found:
+            if found := self._finished(drafted):
                 return found
             if finished >= max(FEWEST_FINISHED, min(FINISHED, FINISHED_METRES / drafted.line.s[-1])):
                 break
-        for _, _, drafted in sorted(alike)[:LAST_RESORTS]:
-            found = self._finished(drafted)
-            if found:
-                return found
-        return None
+        last = map(self._finished, (drafted for _, _, drafted in sorted(alike)[:LAST_RESORTS]))
+        return next(filter(None, last), None)
 
     def _hastes(self, drafts: int) -> Iterator[float | None]:
         """Yields the haste of each of ``drafts`` drafts that are composed; None for drafts that are grown.

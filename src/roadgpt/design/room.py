@@ -47,10 +47,8 @@ def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
     lanes, centre = brief.lanes_text, brief.centre
     if lanes is not None:
         own = found.section.lanes
-        said = f"the words ask for lanes {lanes}"
-        yield (
-            f"{said}; --lanes gives others" if own == lanes else f"{said}, but --lanes {own} is set and used"
-        )
+        other = "; --lanes gives others" if own == lanes else f", but --lanes {own} is set and used"
+        yield f"the words ask for lanes {lanes}{other}"
     if centre is not None and found.section.centre_line != centre:
         yield f"the words ask for a {centre} centre line, but another one is set and used"
 

@@ -26,9 +26,8 @@ def check_built(brief: Brief) -> None:
             "yet; ask for a one-way road or for a ramp on the other side"
         )
     every = (_unbuilt(place, *brief.stretches[n : n + 2]) for n, place in enumerate(brief.junctions))
-    found = list(dict.fromkeys(chain.from_iterable(every)))
-    if found:
-        *others, last = found
+    *others, last = dict.fromkeys(chain.from_iterable(every)) or [""]
+    if last:
         named = f"{', '.join(others)} and {last}" if others else last
         raise DesignError(f"{named} cannot be built yet; leave {'them' if others else 'it'} out")
 

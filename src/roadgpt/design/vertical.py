@@ -10,7 +10,7 @@ m/s^2). Here v is the expected speed. If comfortable parabolas do not fit, neigh
 more similar, as far as the requirements allow. Then radii become smaller, but never smaller than the rule
 allows."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from functools import cached_property
 from itertools import accumulate, groupby, pairwise
 from math import floor
@@ -24,7 +24,7 @@ from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.layout import bends_of
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Segment, World, build
-from roadgpt.road.design import MOST_OF_SLOPE, VerticalCurve, vertical_curves_of
+from roadgpt.road.design import MOST_OF_SLOPE, vertical_curves_of
 from roadgpt.road.speed_profile import GRAVITY, expected_speed
 
 COMFORT = 0.5  # m/s^2
@@ -89,11 +89,7 @@ class Pace:
 
 
 def softened(
-    grades: Sequence[float],
-    lengths: Sequence[float],
-    radii: Sequence[float],
-    lows: Sequence[float],
-    highs: Sequence[float],
+    grades: Sequence[float], lengths: Sequence[float], radii: Sequence[float], rooms: Sequence[Range]
 ) -> list[float]:
     """Returns the grades, changed as little as possible within their bounds so that the parabolas fit.
 
@@ -101,13 +97,11 @@ def softened(
     neighbours. These are projections onto convex sets, which converge if a solution exists. Each slope has a
     grade and its bounds in percent and a length in metres, ``(n,)``; each joint of two slopes has a vertical
     radius in metres, ``(n - 1,)``."""
-    out = [min(max(g, lo), hi) for g, lo, hi in zip(grades, lows, highs, strict=True)]
+    out = [min(max(grade, room.lo), room.hi) for grade, room in zip(grades, rooms, strict=True)]
     halves = [0.0, *(radius / 200 for radius in radii), 0.0]
     for _ in range(ROUNDS):
-        fits = True
-        for i in range(len(out)):
-            fits = _made_room(out, i, halves, lengths, lows, highs) and fits
-        if fits:
+        fits = [_made_room(out, i, halves, lengths, rooms) for i in range(len(out))]
+        if all(fits):
             break
     return out
 
@@ -144,17 +138,12 @@ def made_to_fit(
     lows = [max(bounds[i].lo for i in row) for row in rows]
     highs = [max(min(bounds[i].hi for i in row), low) for row, low in zip(rows, lows, strict=True)]
     radii = [roomier * pace.eased(s, 0.0) for s in accumulate(own[:-1])]
-    found = softened(means, own, radii, lows, highs)
+    found = softened(means, own, radii, [*map(Range, lows, highs)])
     return np.array([grade for row, grade in zip(rows, found, strict=True) for _ in row])
 
 
 def _made_room(
-    grades: list[float],
-    i: int,
-    halves: Sequence[float],
-    lengths: Sequence[float],
-    lows: Sequence[float],
-    highs: Sequence[float],
+    grades: list[float], i: int, halves: Sequence[float], lengths: Sequence[float], rooms: Sequence[Range]
 ) -> bool:
     before = grades[i] - grades[i - 1] if i else 0.0
     after = grades[i + 1] - grades[i] if i + 1 < len(grades) else 0.0
@@ -166,12 +155,12 @@ def _made_room(
     free = [
         (j, rate)
         for j, rate in rates
-        if (grades[j] > lows[j] + 1e-9 if rate > 0 else grades[j] < highs[j] - 1e-9)
+        if (grades[j] > rooms[j].lo + 1e-9 if rate > 0 else grades[j] < rooms[j].hi - 1e-9)
     ]
     total = sum(rate * rate / lengths[j] for j, rate in free)
     for j, rate in free:
         moved = grades[j] - over * rate / lengths[j] / total
-        grades[j] = float(min(max(moved, lows[j]), highs[j]))
+        grades[j] = float(min(max(moved, rooms[j].lo), rooms[j].hi))
     return False
 
 
@@ -225,7 +214,7 @@ def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
     """Returns the segments; each vertical radius that is smaller than the rule allows is increased. If
     neighbouring parabolas leave no room, their radii are chosen anew as well."""
     out, opened = tuple(segments), set[int]()
-    while small := {parabola.number for parabola in _too_small(out, pace)}:
+    while small := _too_small(out, pace):
         numbers = [parabola.number for parabola in vertical_curves_of(segments)]
         beside = {n for pair in pairwise(numbers) if small & {*pair} for n in pair}
         more = small - opened or beside - opened
@@ -239,10 +228,10 @@ def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
 def too_abrupt(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> bool:
     """Returns whether the radius of any parabola is smaller than the rule allows; for ``bumps`` see
     ``Pace.least``."""
-    return any(True for _ in _too_small(segments, pace, bumps))
+    return bool(_too_small(segments, pace, bumps))
 
 
-def _too_small(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> Iterator[VerticalCurve]:
-    for parabola in vertical_curves_of(segments):
-        if parabola.radius < pace.least(parabola.s, bumps) * (1 - ROUNDING):
-            yield parabola
+def _too_small(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> set[int]:
+    """Returns the numbers of the segments at whose start a parabola has too small a radius."""
+    curves = vertical_curves_of(segments)
+    return {each.number for each in curves if each.radius < pace.least(each.s, bumps) * (1 - ROUNDING)}

@@ -77,9 +77,8 @@ def _with_joints(s: Array, profile: Profile) -> Array:
         return s
     rise = [np.abs(width.height(joints) - width.height(joints - BESIDE)) for width in cubics]
     steps = joints[np.max(rise, axis=0) > BESIDE]
-    away = np.abs(s - joints[np.clip(np.searchsorted(joints, s), 0, len(joints) - 1)])
-    before = np.abs(s - joints[np.clip(np.searchsorted(joints, s) - 1, 0, len(joints) - 1)])
-    return np.sort(np.r_[s[np.minimum(away, before) > 2 * BESIDE], joints, steps - BESIDE])
+    away = np.abs(s[:, None] - joints).min(axis=1)
+    return np.sort(np.r_[s[away > 2 * BESIDE], joints, steps - BESIDE])
 
 
 def fold(road: Road, profile: Profile) -> str | None:

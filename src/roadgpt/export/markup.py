@@ -72,6 +72,10 @@ class XmlElement:
         self.children.append(child)
         return child
 
+    def with_texts(self, **texts: str) -> Self:
+        """Appends a child for each name, with a text that is already escaped, and returns this element."""
+        return self.extended(*(type(self)(name, raw=text) for name, text in texts.items()))
+
     def extended(self, *children: Self) -> Self:
         """Appends the given elements as children, and returns this element."""
         self.children.extend(children)

@@ -12,7 +12,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from roadgpt.network.road_or_route import (
-    has_no_route,
     is_route,
     legs_of,
     made_from,
@@ -55,7 +54,6 @@ __all__ = [
     "Roundabout",
     "Route",
     "build_route",
-    "has_no_route",
     "is_route",
     "legs_of",
     "made_from",

@@ -56,7 +56,7 @@ from roadgpt.network.network import (
     RoadEnd,
     Roundabout,
 )
-from roadgpt.network.pose import STRAIGHT, NetworkPose, curve_between, tangent_length
+from roadgpt.network.pose import STRAIGHT, NetworkPose, Point, curve_between, tangent_length
 from roadgpt.network.stretch import road_of
 from roadgpt.road import Profile, Road, Segment
 from roadgpt.road.design import JunctionDesign, PlaceDesign, RampDesign
@@ -92,18 +92,31 @@ class Builder:
 
     def join(
         self,
-        junction: JunctionDesign,
-        node: tuple[float, float, float],
+        design: JunctionDesign,
+        node: Point,
         stubs: Sequence["Stub"],
         distances: Sequence[float],
         controls: Sequence[Control],
     ) -> Junction | Roundabout:
         """Builds the junction or the roundabout at which the stubs meet, and returns it. ``node`` is the
         point in metres at which the reference lines would meet. ``distances`` are those in metres from the
-        node to the contacts of the stubs. All sequences are in counter-clockwise order."""
-        if junction.kind == "roundabout":
-            return build_roundabout(self, junction, node, stubs, controls)
-        return build_crossing(self, junction, node, stubs, distances, controls)
+        node to the contacts of the stubs, and decide how much room there is; the kerb is only stored. All
+        sequences are in counter-clockwise order."""
+        if design.kind == "roundabout":
+            return build_roundabout(self, design, node, stubs, controls)
+        number, far = self.number(), distances
+        connections = [
+            connected(self, number, node, (stubs[i], stubs[j]), (far[i], far[j]), way)
+            for i in range(len(stubs))
+            for j, way in lane_ways(stubs, i)
+        ]
+        arms = tuple(
+            Arm(stub.end, stub.direction, control, design.crosswalk)
+            for stub, control in zip(stubs, controls, strict=True)
+        )
+        junction = Junction(number, design.kind, arms, tuple(connections), node, design.kerb)
+        self.junctions.append(junction)
+        return junction
 
     def through(self, built: Junction | Roundabout, start: int, to: int) -> list[int]:
         """Returns the ids of the roads that lead through a junction or roundabout, in driving order, from the
@@ -222,20 +235,19 @@ def _changing(change: Change, length: float) -> Width:
 
 
 def connecting_road(
-    start: tuple[float, float, float],
+    start: Point,
     heading: float,
     pieces: Sequence[Piece],
     widths: Sequence[Change],
-    offset: Change,
+    offset: Change = (0.0, 0.0),
     between: Marking = "none",
 ) -> Road:
     """Returns a level connecting road that begins at a point in metres with a heading in radians; for
     ``widths``, ``offset`` and ``between`` see ``one_way``."""
     x, y, z = start
     plan = PieceCurve(x, y, heading, tuple(pieces))
-    return Road(
-        plan, GradeProfile.level(plan.length, z), profile=one_way(widths, plan.length, offset, between)
-    )
+    profile = one_way(widths, plan.length, offset, between)
+    return Road(plan, GradeProfile.level(plan.length, z), profile=profile)
 
 
 USUALLY_FED = 2  # lanes of a road that can be reached by turning only: one lane turns left, one turns right
@@ -365,35 +377,10 @@ def setbacks(mouths: Sequence[Mouth], kerb: float) -> list[float]:
     return found
 
 
-def build_crossing(
-    builder: Builder,
-    design: JunctionDesign,
-    node: tuple[float, float, float],
-    stubs: Sequence[Stub],
-    distances: Sequence[float],
-    controls: Sequence[Control],
-) -> Junction:
-    """Adds a junction and its connecting roads to a network that has the roads of all stubs; returns it. Its
-    kerb is only stored: ``distances`` decide how much room there is. See ``Builder.join``."""
-    number = builder.number()
-    connections = []
-    for i in range(len(stubs)):
-        for j, way in lane_ways(stubs, i):
-            ends, far = (stubs[i], stubs[j]), (distances[i], distances[j])
-            connections.append(connected(builder, number, node, ends, far, way))
-    arms = tuple(
-        Arm(stub.end, stub.direction, control, design.crosswalk)
-        for stub, control in zip(stubs, controls, strict=True)
-    )
-    junction = Junction(number, design.kind, arms, tuple(connections), node, design.kerb)
-    builder.junctions.append(junction)
-    return junction
-
-
 def connected(
     builder: Builder,
     junction: int,
-    node: tuple[float, float, float],
+    node: Point,
     ends: tuple[Stub, Stub],
     distances: tuple[float, float],
     way: LaneWay,
@@ -403,14 +390,9 @@ def connected(
     ``ends`` meet at ``node``, which lies ``distances`` metres from their contacts. ``way`` has at least one
     pair of lanes, ``between`` is the marking between two lanes."""
     start, end = ends
-    x, y, z = node
     heading = start.direction + math.pi
     turn = wrapped(end.direction - heading)
-    contact = (
-        x + distances[0] * math.cos(start.direction),
-        y + distances[0] * math.sin(start.direction),
-        z,
-    )
+    contact = NetworkPose(node, start.direction).ahead(distances[0]).point
     pieces = curve_between(*distances, turn if abs(turn) >= STRAIGHT else 0.0)
     widths = [(start.into.widths[i], end.out_of.widths[j]) for i, j in way]
     first_in, first_out = way[0]
@@ -473,7 +455,7 @@ def around_length(radius: float, directions: Sequence[float], angle: float, lane
 def build_roundabout(
     builder: Builder,
     design: JunctionDesign,
-    centre: tuple[float, float, float],
+    centre: Point,
     stubs: Sequence[Stub],
     controls: Sequence[Control],
 ) -> Roundabout:
@@ -488,16 +470,13 @@ def build_roundabout(
             "change one of them"
         )
     directions = [stub.direction for stub in stubs]
-    width, half = ring_width(radius, lanes), mouth_of(radius, directions) / radius
-    count = len(stubs)
-    numbers = [builder.number() for _ in stubs]
-    ring = []
-    for i in range(count):  # from the mouth of arm i to the next mouth
-        gap = (directions[(i + 1) % count] - directions[i]) % (2 * math.pi)
-        ring.append(
-            builder.add(_arc(centre, radius, directions[i] + half, gap - 2 * half, width, lanes, "broken"))
-        )
-    found = Roundabout(tuple(numbers), tuple(ring), centre, radius, width)
+    half = mouth_of(radius, directions) / radius
+    numbers, ring = [builder.number() for _ in stubs], list[int]()
+    found = Roundabout(tuple(numbers), (), centre, radius, ring_width(radius, lanes))
+    for one, two in pairwise([*directions, directions[0]]):  # from the mouth of each arm to the next mouth
+        gap = (two - one) % (2 * math.pi)
+        ring.append(builder.add(_arc(found, one + half, gap - 2 * half, lanes, "broken")))
+    found = replace(found, ring=tuple(ring))
     for i, stub in enumerate(stubs):
         before, after = RoadEnd(ring[i - 1], "end"), RoadEnd(ring[i], "start")
         connections = _mouth(builder, found, numbers[i], stub, (before, after), half, lanes)
@@ -511,24 +490,10 @@ def build_roundabout(
     return found
 
 
-def _arc(
-    centre: tuple[float, float, float],
-    radius: float,
-    start: float,
-    angle: float,
-    width: float,
-    lanes: int,
-    between: Marking = "none",
-) -> Road:
-    x, y, z = centre
-    plan = PieceCurve(
-        x + radius * math.cos(start),
-        y + radius * math.sin(start),
-        start + math.pi / 2,
-        (Piece(angle * radius, 1 / radius, 1 / radius),),
-    )
-    profile = one_way([(width / lanes, width / lanes)] * lanes, plan.length, between=between)
-    return Road(plan, GradeProfile.level(plan.length, z), profile=profile)
+def _arc(ring: Roundabout, start: float, angle: float, lanes: int, between: Marking = "none") -> Road:
+    piece, width = Piece(angle * ring.radius, 1 / ring.radius, 1 / ring.radius), ring.width / lanes
+    begin = NetworkPose(ring.centre, start).ahead(ring.radius).point
+    return connecting_road(begin, start + math.pi / 2, [piece], [(width, width)] * lanes, between=between)
 
 
 def _mouth(
@@ -541,17 +506,16 @@ def _mouth(
     lanes: int,
 ) -> tuple[Connection, ...]:
     before, after = ends
-    x, y, z = ring.centre
     at, turn = stub.direction, math.pi / 2 - half
     # the reference line of the arm and the tangent of the ring at an end of the mouth meet here
     meeting = ring.radius / math.cos(half)
     far, each = contact_distance(ring.radius, lanes), ring.width / lanes
     to_ring, to_arm = ring.radius * math.tan(half), far - meeting
-    along = builder.add(_arc(ring.centre, ring.radius, at - half, 2 * half, ring.width, lanes), junction)
+    along = builder.add(_arc(ring, at - half, 2 * half, lanes), junction)
     links = tuple(LaneLink(n, n, n) for n in range(-1, -1 - lanes, -1))
     made = [Connection(along, before, after, links)]
     if stub.out_of:
-        start = (x + ring.radius * math.cos(at - half), y + ring.radius * math.sin(at - half), z)
+        start = NetworkPose(ring.centre, at - half).ahead(ring.radius).point
         pieces = curve_between(to_ring, to_arm, -turn)
         count = len(stub.out_of)
         widths = [(each, width) for width in stub.out_of.widths]
@@ -560,7 +524,7 @@ def _mouth(
         links = tuple(LaneLink(n - lanes, -1 - k, stub.out_of.ids[k]) for k, n in _outermost(count))
         made.append(Connection(builder.add(off, junction), before, stub.end, links))
     if stub.into:
-        start = (x + far * math.cos(at), y + far * math.sin(at), z)
+        start = NetworkPose(ring.centre, at).ahead(far).point
         pieces = curve_between(to_arm, to_ring, -turn)
         count = len(stub.into)
         widths = [(width, each) for width in stub.into.widths]
@@ -600,22 +564,21 @@ def lines_at_ramp(ramp: RampDesign) -> tuple[list[complex], list[complex]]:
     give the direction in which it goes on."""
     length, is_merge, by_ramp = length_beside(ramp), ramp.kind == "merge", ramp.take == "ramp"
     node = CONTACT if is_merge else length + CONTACT
-    ahead = cmath.exp(-1j * ANGLE) if by_ramp else complex(1.0)
-    other = complex(-1.0 if is_merge else 1.0)
+    turned = cmath.exp(-1j * ANGLE)
+    ahead = turned if by_ramp else complex(1.0)
     if is_merge:
-        other *= cmath.exp(-1j * ANGLE) if by_ramp else cmath.exp(1j * ANGLE)
-    elif not by_ramp:
-        other *= cmath.exp(-1j * ANGLE)
+        other = -1.0 * (turned if by_ramp else cmath.exp(1j * ANGLE))
+    else:
+        other = complex(1.0) if by_ramp else turned
     if ramp.is_on_left:
         ahead, other = ahead.conjugate(), other.conjugate()
     behind = CONTACT + (length if is_merge else 0.0)
-    on_route = [*_steps(0.0, 1.0, node), *_steps(node, ahead, behind), node + behind * ahead]
-    return on_route, [node + other * d for d in (CONTACT, CONTACT + BESIDE / 2, CONTACT + BESIDE)]
-
-
-def _steps(start: complex, way: complex, length: float) -> list[complex]:
-    count = max(1, int(length / 4.0))
-    return [start + way * length * n / count for n in range(count)]
+    on_route = list[complex]()
+    for start, way, far in ((0.0, complex(1.0), node), (node, ahead, behind)):
+        count = max(1, int(far / 4.0))
+        on_route += [start + way * far * n / count for n in range(count)]
+    beside = [node + other * far for far in (CONTACT, CONTACT + BESIDE / 2, CONTACT + BESIDE)]
+    return [*on_route, node + behind * ahead], beside
 
 
 @dataclass
@@ -653,52 +616,40 @@ class RampBuilder:
     def build(self, going_on: int) -> list[int]:
         """Builds the merge or exit; returns the ids of its roads on the route, in driving order. ``going_on``
         is the id of the road on which the route goes on, which begins at ``where_it_goes_on``."""
-        return self._merge(going_on) if self.ramp.kind == "merge" else self._exit(going_on)
-
-    def _merge(self, going_on: int) -> list[int]:
-        by_ramp, node = self.ramp.take == "ramp", self._node
-        after = _constant(self.after, 0.0)
-        width = _width(after)
-        length, full = length_beside(self.ramp), self.ramp.length
-        lane = CubicProfile.smooth([(0.0, width), (full, width), (length, 0.0)])
-        beside = self._straight(node.ahead(CONTACT), length, _with_lane(after, lane, self.ramp.is_on_left))
-        self._continue(beside, going_on)
-        other = self._not_taken(after, -CONTACT - BESIDE)
-        main, ramp = (other, self.arrival) if by_ramp else (self.arrival, other)
+        is_merge, is_left, by_ramp = self.ramp.kind == "merge", self.ramp.is_on_left, self.ramp.take == "ramp"
+        node, length = self._node, length_beside(self.ramp)
+        profile = _constant(self.after, 0.0) if is_merge else _constant(self.before, FAR)
+        width = _width(profile)
+        falling = [(0.0, width), (self.ramp.length, width), (length, 0.0)]
+        lane = CubicProfile.smooth(falling if is_merge else [(0.0, 0.0), (self.ramp.taper, width)])
+        start = node.ahead(CONTACT) if is_merge else self.end
+        beside = self._straight(start, length, _with_lane(profile, lane, is_left))
+        self._continue(*((beside, going_on) if is_merge else (self.arrival, beside)))
+        other = self._not_taken(profile, -CONTACT - BESIDE if is_merge else CONTACT)
+        on_route = self.arrival if is_merge else going_on
+        numbers = (other, on_route) if by_ramp else (on_route, other)
+        main, ramp = (self._stub(each, "end" if is_merge else "start") for each in numbers)
+        wide = self._stub(beside, "start" if is_merge else "end")
+        # the additional lane, and those of the main road beside it
+        count = len(main.into if is_merge else main.out_of)
+        own, lanes = (0, range(1, count + 1)) if is_left else (count, range(count))
         junction = self.builder.number()
-        stubs = [self._stub(main, "end"), self._stub(ramp, "end"), self._stub(beside, "start")]
-        own, lanes = self._lanes_beside(len(stubs[0].into))
-        ways = [
-            self._way(junction, stubs[0], stubs[2], list(enumerate(lanes))),
-            self._way(junction, stubs[1], stubs[2], [(0, own)]),
-            *self._back(junction, stubs[2], stubs[0]),
-        ]
-        self._close(junction, stubs[2], *(stubs[1::-1] if self.ramp.is_on_left else stubs[:2]), ways=ways)
-        return [ways[1 if by_ramp else 0].road, beside]
-
-    def _exit(self, going_on: int) -> list[int]:
-        by_ramp = self.ramp.take == "ramp"
-        before, length = _constant(self.before, FAR), length_beside(self.ramp)
-        lane = CubicProfile.smooth([(0.0, 0.0), (self.ramp.taper, _width(before))])
-        beside = self._straight(self.end, length, _with_lane(before, lane, self.ramp.is_on_left))
-        self._continue(self.arrival, beside)
-        other = self._not_taken(before, CONTACT)
-        main, ramp = (other, going_on) if by_ramp else (going_on, other)
-        junction = self.builder.number()
-        stubs = [self._stub(beside, "end"), self._stub(ramp, "start"), self._stub(main, "start")]
-        own, lanes = self._lanes_beside(len(stubs[2].out_of))
-        ways = [
-            self._way(junction, stubs[0], stubs[2], [(lane, n) for n, lane in enumerate(lanes)]),
-            self._way(junction, stubs[0], stubs[1], [(own, 0)]),
-            *self._back(junction, stubs[2], stubs[0]),
-        ]
-        self._close(junction, stubs[0], *(stubs[:0:-1] if self.ramp.is_on_left else stubs[1:]), ways=ways)
-        return [beside, ways[1 if by_ramp else 0].road]
-
-    def _lanes_beside(self, count: int) -> tuple[int, range]:
-        """Returns the index of the additional lane, and those of the ``count`` lanes of the main road, beside
-        each other."""
-        return (0, range(1, count + 1)) if self.ramp.is_on_left else (count, range(count))
+        if is_merge:
+            back = wide, main
+            ways = [self._way(junction, main, wide, [*enumerate(lanes)])]
+            ways.append(self._way(junction, ramp, wide, [(0, own)]))
+        else:
+            back = main, wide
+            ways = [self._way(junction, wide, main, [(lane, n) for n, lane in enumerate(lanes)])]
+            ways.append(self._way(junction, wide, ramp, [(own, 0)]))
+        pairs = [(n, n) for n in range(min(len(back[0].into), len(back[1].out_of)))]
+        ways += [self._way(junction, *back, pairs)] if pairs else []
+        stubs = wide, *((main, ramp) if is_merge != is_left else (ramp, main))
+        arms = tuple(Arm(stub.end, stub.direction) for stub in stubs)
+        made = Junction(junction, self.ramp.kind, arms, tuple(ways), node.point, 0.0)
+        self.builder.junctions.append(made)
+        taken = ways[1 if by_ramp else 0].road
+        return [taken, beside] if is_merge else [beside, taken]
 
     def _straight(self, start: NetworkPose, length: float, profile: Profile) -> int:
         segment = Segment(distance=length, direction="straight")
@@ -721,10 +672,6 @@ class RampBuilder:
         heading = float(member.heading(member.length if at_end else 0.0)) + (math.pi if at_end else 0.0)
         return self.builder.stub(RoadEnd(road, contact), heading)
 
-    def _back(self, junction: int, start: Stub, end: Stub) -> list[Connection]:
-        lanes = [(n, n) for n in range(min(len(start.into), len(end.out_of)))]
-        return [self._way(junction, start, end, lanes)] if lanes else []
-
     def _way(self, junction: int, start: Stub, end: Stub, lanes: Sequence[tuple[int, int]]) -> Connection:
         """Adds a connecting road for pairs of lanes, counted from 0 at the line between the directions. The
         broken lines between the lanes go on in the junction, because traffic hardly turns there."""
@@ -742,11 +689,6 @@ class RampBuilder:
         profile = replace(Profile.of(1, 0, width, main.shoulder_width), offset=offset)
         turn = self._angle if self.ramp.kind == "merge" else -self._angle
         return self._straight(NetworkPose(node.point, node.heading + turn).ahead(ahead), BESIDE, profile)
-
-    def _close(self, number: int, *stubs: Stub, ways: Sequence[Connection]) -> None:
-        arms = tuple(Arm(stub.end, stub.direction) for stub in stubs)
-        made = Junction(number, self.ramp.kind, arms, tuple(ways), self._node.point, 0.0)
-        self.builder.junctions.append(made)
 
 
 TURN_TAPER = 8.0  # m of taper for each metre of a turn lane's width: AASHTO 2018, section 9.7, low speeds

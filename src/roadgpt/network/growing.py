@@ -16,6 +16,7 @@ from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import wrapped
 from roadgpt.geometry.pieces import joined
 from roadgpt.network.building import (
+    FAR,
     USUALLY_FED,
     Builder,
     RampBuilder,
@@ -48,7 +49,6 @@ from roadgpt.road.design import (
 )
 from roadgpt.road.road import check_length, reversed_road
 
-FAR = 1e6  # m, a station behind all changes of a cross-section
 LEAST = math.radians(40.0)  # largest deviation from a straight line of two arms that count as opposite
 BEFORE_TURN_LANES = 5.0  # m, least length of a road before the taper of its turn lanes
 SHORTEST = 0.1  # m, least length of a straight road between two junctions; the rules require more
@@ -123,25 +123,21 @@ class _RouteGrowth:
 
     def pass_place(self, number: int, place: PlaceDesign) -> None:
         """Builds a place of the design, with its arms and the road on which the route goes on."""
-        is_level = number < len(self.design.junctions)
+        is_level, around = number < len(self.design.junctions), self.profiles[number - 1 : number + 1]
         if isinstance(place, JunctionDesign):
             self._pass_junction(number, place, is_level)
-        elif isinstance(place, LanesChangeDesign):
-            self._go_on(number, place, is_level)
+        elif isinstance(place, LanesChangeDesign):  # another road continues that of arrival, with other lanes
+            road = self._road(number, self._end(), (True, is_level))
+            self._continue(self.passed[-1], road, continued_lanes(place, *around))
+            if place.kind == "lane_change":
+                self.shifts[road] = 1 if place.side == "left" else -1
         else:
-            around = self.profiles[number - 1], self.profiles[number]
             made = RampBuilder(self.builder, place, self.passed[-1], self._end(), *around)
             road = self._road(number, made.where_it_goes_on(), (True, is_level))
             self.passed += [*made.build(road), road]
 
-    def _go_on(self, number: int, place: LanesChangeDesign, is_level: bool) -> None:
-        """Lets another road continue the one on which the route has arrived, with other lanes."""
-        before = self.passed[-1]
-        lanes = continued_lanes(place, self.profiles[number - 1], self.profiles[number])
-        road = self._road(number, self._end(), (True, is_level))
+    def _continue(self, before: int, road: int, lanes: tuple[tuple[int, int], ...]) -> None:
         self.builder.continuations.append(Continuation(RoadEnd(before, "end"), RoadEnd(road, "start"), lanes))
-        if place.kind == "lane_change":
-            self.shifts[road] = 1 if place.side == "left" else -1
         self.passed.append(road)
 
     def _add_turn_lanes(self, junction: JunctionDesign) -> None:
@@ -160,10 +156,7 @@ class _RouteGrowth:
         wide = self.builder.add(last.with_profile(with_turn_lanes(profile, junction)))
         inside = int("left" in junction.turn_lanes)
         lanes = (*((n, n - inside) for n in profile.along_ids), *((n, n) for n in profile.against_ids))
-        self.builder.continuations.append(
-            Continuation(RoadEnd(arrival, "end"), RoadEnd(wide, "start"), lanes)
-        )
-        self.passed.append(wide)
+        self._continue(arrival, wide, lanes)
 
     def _pass_junction(self, number: int, junction: JunctionDesign, is_level: bool) -> None:
         if junction.turn_lanes:
@@ -397,7 +390,11 @@ class _MapGrowth:
         """For each node and the next node on one of its roads, the end of this road at the first node."""
         for nodes in self._chains():
             self._add_road(nodes)
-        self.built = {n: self._junction(n, node) for n, node in self.nodes.items() if node.is_junction}
+        self.built: dict[int, Junction | Roundabout] = {}
+        for n, node in ((n, node) for n, node in self.nodes.items() if node.is_junction):
+            stubs = [self.builder.stub(self.ends[n, other], way) for other, way in self.ways[n].items()]
+            signs, distances = signs_at(node, [*self.ways[n].values()]), [*self.contacts[n].values()]
+            self.built[n] = self.builder.join(junction_of(node), node.at, stubs, distances, signs)
 
     def along(self, route: Sequence[int]) -> list[int]:
         """Returns the ids of the roads that lead along nodes, in driving order."""
@@ -490,13 +487,6 @@ class _MapGrowth:
             )
         tangent = radius * tangent_length(abs(turn))
         return tangent, curve_between(tangent, tangent, turn)
-
-    def _junction(self, number: int, node: MapNode) -> Junction | Roundabout:
-        """Builds the junction or roundabout at a node, when all roads exist."""
-        ways = self.ways[number]
-        stubs = [self.builder.stub(self.ends[number, other], way) for other, way in ways.items()]
-        signs, distances = signs_at(node, [*ways.values()]), [*self.contacts[number].values()]
-        return self.builder.join(junction_of(node), node.at, stubs, distances, signs)
 
 
 def junction_of(node: MapNode) -> JunctionDesign:

@@ -140,11 +140,12 @@ def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]
         each if shifts.get(roads[n]) else {lane: to for lane, to in each.items() if to in lanes} or each
         for n, (each, lanes) in enumerate(zip(ways, fit[1:], strict=True))
     ]
-    lane = _first(network, roads[0], ways[0] if ways else None, shifts.get(roads[0], 0))
+    profile, shift = network.road(roads[0]).profile, shifts.get(roads[0], 0)
+    lane = max(ways[0], key=abs) if ways else profile.side
+    lane += -shift if profile.leads_along(lane) else shift
     found: list[Leg] = []
     for n, road in enumerate(roads):
-        own = [lane]
-        shift = shifts.get(road, 0)
+        own, shift = [lane], shifts.get(road, 0)
         for _ in range(abs(shift)):
             own.append(_beside(network, road, own[-1], 1 if shift > 0 else -1))
         if n < len(ways):
@@ -156,12 +157,6 @@ def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]
             lane = ways[n][target]
         found += [Leg(road, each) for each in own]
     return found
-
-
-def _first(network: Network, road: int, ways: Ways | None, shift: int) -> int:
-    profile = network.road(road).profile
-    target = profile.side if ways is None else max(ways, key=abs)
-    return target - shift if profile.leads_along(target) else target + shift
 
 
 def _fit(

@@ -16,7 +16,7 @@ from roadgpt.geometry.elevation import Row, closed
 from roadgpt.geometry.fitting import SampledLine, fitted
 from roadgpt.network.lane_along import LaneAlong
 from roadgpt.road import Road
-from roadgpt.road.profile import as_cubics
+from roadgpt.road.profile import Width, as_cubics
 
 APART, TURNED = 0.01, 0.01  # m and rad, between the end of a reference line and the start of the next
 STEP = 1.0  # m, between the places of the lane through which the line leads
@@ -32,7 +32,7 @@ def continue_each_other(roads: Sequence[Road]) -> bool:
     return True
 
 
-def along_lanes(roads: Sequence[Road], lanes: Sequence[LaneAlong]) -> tuple[Road, LaneAlong, list[float]]:
+def along_lanes(roads: Sequence[Road], lanes: Sequence[LaneAlong]) -> tuple[Road, list[Width], list[float]]:
     """Returns the road whose centre line is the middle of the route's lane on roads that follow each other in
     the direction of the route, for traffic on the right; what lies beside this line; and the stations in
     metres of the starts of the roads and of the end. Raises UsageError if no curve follows the lane."""
@@ -57,12 +57,8 @@ def along_lanes(roads: Sequence[Road], lanes: Sequence[LaneAlong]) -> tuple[Road
     s, first = np.unique(own, return_index=True)
     rows = np.asarray(rows)
     heights = closed(CubicProfile.through(s, rows[first, 4], rows[first, 5]).rows, plan.length)
-    left_shoulder, left, offset, width, right, right_shoulder = (
-        _straight(own, rows[:, n], plan.length) for n in range(6, 12)
-    )
     starts = [0.0, *own[at[:-1]].tolist(), plan.length]
-    beside = left_shoulder, left, offset, width, right, right_shoulder
-    return Road(plan, heights), beside, starts
+    return Road(plan, heights), [_straight(own, rows[:, n], plan.length) for n in range(6, 12)], starts
 
 
 def _sampled(road: Road, lane: LaneAlong) -> Array:

@@ -124,16 +124,11 @@ def _kerb_lines(network: Network, inside: Area, height: float) -> Iterator[Paint
     import shapely
 
     inner = network.paved.buffer(-LINE / 2, join_style="mitre")
-    rings = [
-        ring
-        for part in shapely.get_parts(inner)
-        for polygon in [shapely.geometry.polygon.orient(part)]
-        for ring in (polygon.exterior, *polygon.interiors)
-    ]
-    for ring in rings:
-        for piece in _pieces(shapely.intersection(ring, inside)):
-            if piece.length >= SHORTEST:
-                yield PaintedStroke("edge", LINE, _raised(_along(piece, ring), height))
+    for polygon in map(shapely.geometry.polygon.orient, shapely.get_parts(inner)):
+        for ring in (polygon.exterior, *polygon.interiors):
+            for piece in _pieces(shapely.intersection(ring, inside)):
+                if piece.length >= SHORTEST:
+                    yield PaintedStroke("edge", LINE, _raised(_along(piece, ring), height))
 
 
 def _pieces(shape: Any) -> list[Any]:
@@ -164,13 +159,11 @@ def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedS
         for stripe in _stripes(network.road(arm.end.road), arm.end.contact):
             yield PaintedStroke("crosswalk", STRIPE, stripe)
     line = line_to_stop_at(network, junction, arm)
-    if line is None:
-        return
-    if arm.control != "yield":
+    if line is not None and arm.control != "yield":
         yield PaintedStroke("stop", STOP_LINE, line)
-        return
-    for block in _blocks(line):
-        yield PaintedStroke("give_way", STOP_LINE, block)
+    elif line is not None:
+        for block in _blocks(line):
+            yield PaintedStroke("give_way", STOP_LINE, block)
 
 
 def line_to_stop_at(network: Network, junction: Junction, arm: Arm) -> Array | None:

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal, NamedTuple, cast
 
-import numpy as np
 from pydantic import TypeAdapter
 
 from roadgpt.brief.junctions import Control, MapJunctionKind, PlainKind
@@ -234,14 +233,12 @@ class Network:
     @cached_property
     def mirrored(self) -> "Network":
         """The network with the sign of y changed and traffic on the other side. Ids and order stay."""
+        joints = [(each, tuple((-one, -two) for one, two in each.lanes)) for each in self.continuations]
         made = Network(
             tuple(replace(each, road=each.road.mirrored) for each in self.roads),
             tuple(map(_mirrored_junction, self.junctions)),
             tuple(replace(each, centre=mirrored_point(each.centre)) for each in self.roundabouts),
-            tuple(
-                replace(each, lanes=tuple((-one, -two) for one, two in each.lanes))
-                for each in self.continuations
-            ),
+            tuple(replace(each, lanes=lanes) for each, lanes in joints),
         )
         made.__dict__["mirrored"] = self
         return made
@@ -366,10 +363,6 @@ class Network:
         """Returns the outline ``(n, 2)`` in metres of the paved area inside a junction, counter-clockwise."""
         inside = [self.road(each.road).road for each in self.junction(junction).connections]
         return outline_of(paved_by(inside))
-
-    def bounds(self) -> Array:
-        """Returns the limits of the paved area in metres, ``(2, 2)``: smallest x and y, largest x and y."""
-        return np.array(self.paved.bounds, float).reshape(2, 2)
 
     def moved(self, x: float, y: float, z: float) -> "Network":
         """Returns the network shifted by these distances in metres along each axis. Ids and order stay."""

@@ -94,13 +94,10 @@ def without_small_islands(whole: Area, nodes: Sequence[Area], least: Sequence[fl
                 paved[at].append(hole)
         parts.append(shapely.Polygon(part.exterior, holes))
     new = parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
-    return (
-        new,
-        *(
-            each[0] if len(each) == 1 else shapely.set_precision(shapely.union_all(each), GRID)
-            for each in paved
-        ),
-    )
+    inside = [
+        each[0] if len(each) == 1 else shapely.set_precision(shapely.union_all(each), GRID) for each in paved
+    ]
+    return new, *inside
 
 
 def ribbon(road: Road) -> "Polygon":
@@ -122,7 +119,8 @@ def ribbons(roads: Sequence[Road]) -> NDArray[np.object_]:
     stations = [stations_of(road) for road in roads]
     centre, heading = along_all([_pieces_of(road) for road in roads], stations)
     to_left = np.stack((-np.sin(heading), np.cos(heading)), axis=-1)
-    rows = [_offsets(road, s) for road, s in zip(roads, stations, strict=True)]
+    profiles = [road.profile for road in roads if road.profile is not None]
+    rows = [(*own.edges(s), own.centre(s)) for own, s in zip(profiles, stations, strict=True)]
     left, right, middle = (centre + np.concatenate(t)[:, None] * to_left for t in zip(*rows, strict=True))
     ends = np.cumsum([len(s) for s in stations]).tolist()
     corners = [
@@ -134,12 +132,6 @@ def ribbons(roads: Sequence[Road]) -> NDArray[np.object_]:
         shapely.linearrings(np.round(np.concatenate(corners) / GRID) * GRID, indices=numbers)
     )
     return found
-
-
-def _offsets(road: Road, s: Array) -> tuple[Array, Array, Array]:
-    """Returns the offsets of the left edge, the right edge and the line between the directions."""
-    assert road.profile is not None
-    return *road.profile.edges(s), road.profile.centre(s)
 
 
 def _pieces_of(road: Road) -> PieceCurve:
@@ -161,18 +153,11 @@ def stations_of(road: Road) -> Array:
             count = max(1, math.ceil(piece.length / step))
         stops += [at + piece.length * n / count for n in range(1, count + 1)]
         at += piece.length
-    own = [s for s in _changes(road) if 0 < s < at]
-    return np.unique(np.round(np.r_[stops, own], 9)) if own else np.array(stops)
-
-
-def _changes(road: Road) -> list[float]:
-    """Returns stations about 1 m apart along the whole road if any width varies, and otherwise none."""
-    assert road.profile is not None
-    widths = [road.profile.offset, *(lane.width for lane in (*road.profile.left, *road.profile.right))]
-    if not any(isinstance(width, CubicProfile) for width in widths):
-        return []
-    stations: list[float] = np.linspace(0.0, road.length, max(2, round(road.length) + 1)).tolist()
-    return stations
+    widths = [profile.offset, *(lane.width for lane in (*profile.left, *profile.right))]
+    count = round(road.length) if any(isinstance(width, CubicProfile) for width in widths) else 0
+    own = np.linspace(0.0, road.length, max(2, count + 1))
+    own = own[(own > 0) & (own < at)]
+    return np.unique(np.round(np.r_[stops, own], 9)) if own.size else np.array(stops)
 
 
 def outline_of(area: Area) -> Array:

@@ -23,11 +23,6 @@ def is_route(road: Road) -> "TypeIs[Route]":
     return road.is_route
 
 
-def has_no_route(road: Road) -> bool:
-    """Returns whether a road is a network through which no route was asked for."""
-    return not road.has_way
-
-
 def refuse_without_route(road: Road, what: str) -> None:
     """Raises UsageError if no route was asked for; ``what`` says what cannot be done then, as in "driven"."""
     if not road.has_way:

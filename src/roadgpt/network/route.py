@@ -19,15 +19,7 @@ from roadgpt.geometry.elevation import Cubic, closed
 from roadgpt.network.lane_along import LaneAlong, change_windows, cubics_at, lane_along
 from roadgpt.network.lane_line import along_lanes, continue_each_other
 from roadgpt.network.markings import STOP_LINE, line_before
-from roadgpt.network.network import (
-    Arm,
-    Junction,
-    Leg,
-    Network,
-    NetworkRoad,
-    RoadEnd,
-    network_to_json,
-)
+from roadgpt.network.network import Arm, Junction, Leg, Network, NetworkRoad, RoadEnd, network_to_json
 from roadgpt.network.paved import Area, paved_by
 from roadgpt.network.stretch import joined_heights, joined_plans, turned
 from roadgpt.network.surface import ROUND, polygons, with_shoulders
@@ -72,16 +64,6 @@ class Passage(NamedTuple):
         return next(arm for arm in self.entered.arms if arm.end == self.arrival)
 
 
-def passages_of(network: Network, legs: Sequence[Leg], starts: Sequence[float]) -> tuple[Passage, ...]:
-    """Returns the passages of a route in driving order; ``starts`` are those of ``Route.starts``. The way
-    through a roundabout is one passage, though a roundabout has several junctions."""
-    groups = groupby(range(len(legs)), key=lambda n: _place(network, legs[n]))
-    return tuple(
-        _passage(network, legs[own[0]], legs[own[-1]], starts[own[0]], starts[own[-1] + 1])
-        for own in (list(group) for place, group in groups if place is not None)
-    )
-
-
 def _place(network: Network, leg: Leg) -> tuple[str, int] | None:
     """Returns a key for the junction or roundabout in which a leg lies; None outside junctions."""
     ring = network.roundabout_of.get(leg.road)
@@ -114,9 +96,9 @@ def ground_of(network: Network) -> Area:
     return polygons(ground.union(paved_by(wide))) if wide else ground
 
 
-def edges_of_ground(route: Road, ground: Area, s: Array) -> Edges:
-    """Returns the offsets in metres of the left and the right edge of the ground at stations ``s`` ``(n,)``:
-    at right angles to the route, the first edge, or ``FARTHEST`` where there is none."""
+def _edges_of_ground(route: Road, ground: Area, s: Array) -> Edges:
+    """Returns the offsets of the left and the right edge of the ground at stations ``s`` ``(n,)``: at right
+    angles to the route, the first edge, or ``FARTHEST`` where there is none."""
     import shapely
 
     boundary, starts = ground.boundary, route.plan.at(s)
@@ -143,27 +125,22 @@ def windows(passages: Sequence[Passage], length: float) -> list[tuple[float, flo
     return found
 
 
-def shoulders_on_ground(
-    route: Road, network: Network, passages: Sequence[Passage], starts: Sequence[float]
-) -> tuple[CubicProfile, CubicProfile]:
-    """Returns the widths in metres of the left and the right shoulder of a route, along its stations. The
-    route leads through the passages of a network; ``starts`` are the stations at which its legs begin.
-    Outside the ``windows``, the shoulders are as wide as those of the roads; inside, they reach to the edge
-    of the ground."""
-    assert route.profile is not None
-    ground, profile = ground_of(network), route.profile
+def _shoulders_on_ground(route: "Route", profile: Profile) -> tuple[CubicProfile, CubicProfile]:
+    """Returns the widths in metres of the left and the right shoulder of a route, along its stations. Outside
+    the ``windows``, the shoulders are as wide as those of the roads; inside, they reach to the edge of the
+    ground."""
+    ground = ground_of(route.network)
     rows: tuple[list[tuple[float, Cubic]], list[tuple[float, Cubic]]] = ([], [])
     last = 0.0
-    for low, high in windows(passages, route.length):
+    for low, high in windows(route.passages, route.length):
         s = np.linspace(low, high, max(2, round((high - low) / STEP) + 1))
-        s = np.union1d(s, [each for each in starts if low < each < high])
-        ends = edges_of_ground(route, ground, s)
+        s = np.union1d(s, [each for each in route.starts if low < each < high])
+        ends = _edges_of_ground(route, ground, s)
         # lanes begin and end where a junction does, so the shoulder beside them jumps there
         after, before = profile.edges(s[:-1] + JUST), profile.edges(s[1:] - JUST)
         begins = (ends.left[:-1] - after.left, after.right - ends.right[:-1])
         stops = (ends.left[1:] - before.left, before.right - ends.right[1:])
-        usuals = _usual(profile.rims(last), profile.edges(last))
-        for side, begin, stop, usual in zip(rows, begins, stops, usuals, strict=True):
+        for side, begin, stop, usual in zip(rows, begins, stops, _usual(profile, last), strict=True):
             if low > last:
                 side.append((last, (usual, 0.0, 0.0, 0.0)))
             widths = np.maximum(begin, 0.0)
@@ -172,7 +149,7 @@ def shoulders_on_ground(
                 (at, (a, b, 0.0, 0.0)) for at, a, b in np.column_stack((s[:-1], widths, slopes)).tolist()
             ]
         last = high
-    for side, usual in zip(rows, _usual(profile.rims(last), profile.edges(last)), strict=True):
+    for side, usual in zip(rows, _usual(profile, last), strict=True):
         end = min(last, route.length - 1e-6)
         while side and side[-1][0] >= end:
             side.pop()
@@ -181,7 +158,8 @@ def shoulders_on_ground(
     return left, right
 
 
-def _usual(rims: Edges, edges: Edges) -> tuple[float, float]:
+def _usual(profile: Profile, s: float) -> tuple[float, float]:
+    rims, edges = profile.rims(s), profile.edges(s)
     return float(rims.left - edges.left), float(edges.right - rims.right)
 
 
@@ -224,9 +202,7 @@ class Route(Road):
         if continue_each_other(roads):
             starts = [0.0, *accumulate(road.length for road in roads)]
             line = Road(joined_plans(roads), joined_heights(roads))
-            beside: Sequence[Width] = [
-                _joined_widths(each, roads, starts) for each in zip(*lanes, strict=True)
-            ]
+            beside = [_joined_widths(each, roads, starts) for each in zip(*lanes, strict=True)]
         else:
             line, beside, starts = along_lanes(roads, lanes)
         profile = _profile(roads, beside, starts)
@@ -263,8 +239,14 @@ class Route(Road):
 
     @cached_property
     def passages(self) -> tuple[Passage, ...]:
-        """The passages through junctions in driving order; a way through a roundabout is one passage."""
-        return passages_of(self.network, self.legs, self.starts)
+        """The passages through junctions in driving order. A way through a roundabout is one passage, though
+        a roundabout has several junctions."""
+        network, legs, starts = self.network, self.legs, self.starts
+        groups = groupby(range(len(legs)), key=lambda n: _place(network, legs[n]))
+        return tuple(
+            _passage(network, legs[own[0]], legs[own[-1]], starts[own[0]], starts[own[-1] + 1])
+            for own in (list(group) for place, group in groups if place is not None)
+        )
 
     @property
     def has_way(self) -> bool:
@@ -284,7 +266,7 @@ class Route(Road):
         """Returns the route with shoulders that reach to the edge of the ground: the paved area of the
         network with its shoulders."""
         assert self.profile is not None
-        left, right = shoulders_on_ground(self, self.network, self.passages, self.starts)
+        left, right = _shoulders_on_ground(self, self.profile)
         profile = replace(
             self.profile,
             left=(*self.profile.left[:-1], Lane("shoulder", left)),
@@ -294,11 +276,7 @@ class Route(Road):
 
     def to_json(self) -> dict[str, Any]:
         """Returns the route and its network as JSON data, for ``network.road_from_json``."""
-        return {**self.to_route_json(), "network": network_to_json(self.network)}
-
-    def to_route_json(self) -> dict[str, list[list[int]]]:
-        """Returns the content of a route file: ``{"route": [[road, lane], ...]}`` in driving order."""
-        return {"route": [list(leg) for leg in self.legs]}
+        return {"route": [list(leg) for leg in self.legs], "network": network_to_json(self.network)}
 
 
 def _mirrored_legs(legs: Sequence[Leg]) -> tuple[Leg, ...]:
@@ -327,18 +305,13 @@ def _check_joint(network: Network, one: Leg, two: Leg) -> None:
         raise UsageError(f"no way leads from road {one.road} to road {two.road}, as the route asks")
 
 
-def _directed(member: NetworkRoad, leg: Leg) -> Road:
-    """Returns a road in the direction in which the route drives along it; traffic drives on the right."""
-    return member.road if member.profile.leads_along(leg.lane) else turned(member.road)
-
-
 def _parts(network: Network, legs: Sequence[Leg]) -> tuple[list[Road], list[LaneAlong]]:
     """Returns the roads of a route in its direction, and the lane that the route follows on each; legs that
     follow each other on one road are one part."""
     roads, lanes = list[Road](), list[LaneAlong]()
     for number, group in groupby(legs, key=lambda leg: leg.road):
         own, member = list(group), network.road(number)
-        roads.append(_directed(member, own[0]))
+        roads.append(member.road if member.profile.leads_along(own[0].lane) else turned(member.road))
         lanes.append(lane_along(roads[-1], [abs(leg.lane) - 1 for leg in own]))
     return roads, lanes
 

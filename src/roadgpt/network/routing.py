@@ -5,7 +5,6 @@ possible, only where the marking may be crossed, and only on roads that are long
 along no part of a lane that is too narrow for a car, such as the beginning of a turn lane."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import partial
 from heapq import heappop, heappush
 from itertools import groupby
 
@@ -45,8 +44,8 @@ def over_roads(lanes: Lanes, roads: Sequence[Sequence[int]]) -> tuple[Leg, ...]:
         return None
 
     starts = [(lane.id, 0) for lane in _driving(lanes) if lane.id.road in named[0]]
-    last = len(named) - 1
-    found = _shortest(lanes, starts, lambda state: state[1] == last and state[0].road in named[last], onward)
+    goals = {(lane.id, len(named) - 1) for lane in lanes if lane.id.road in named[-1]}
+    found = _shortest(lanes, starts, goals, onward)
     if found is None:
         raise UsageError(f"no way leads on from road {reached + 1} of the route to the next; name others")
     return found
@@ -55,11 +54,8 @@ def over_roads(lanes: Lanes, roads: Sequence[Sequence[int]]) -> tuple[Leg, ...]:
 def between(lanes: Lanes, start: tuple[float, float], goal: tuple[float, float]) -> tuple[Leg, ...]:
     """Returns the route from the road at one point to the road at another, x and y in metres, in whichever
     directions of traffic are shortest. Raises UsageError if a point is on no road, or no way leads there."""
-    starts, goals = (_near(lanes, point) for point in (start, goal))
-    found = _shortest(
-        lanes, [(lane, 0) for lane in starts], lambda state: state[0] in goals, lambda _, lane: (lane, 0)
-    )
-    if found is None:
+    starts, goals = ({(lane, 0) for lane in _near(lanes, point)} for point in (start, goal))
+    if (found := _shortest(lanes, starts, goals)) is None:
         raise UsageError("no way leads from the one point to the other; exchange them, or give others")
     return found
 
@@ -78,14 +74,10 @@ def random_routes(lanes: Lanes, count: int, seed: int) -> list[tuple[Leg, ...]]:
             ends = [state for state in _reached(lanes, start, LONGEST) if state[1] >= least]
             if ends:
                 goal = ends[int(rng.integers(len(ends)))][0]
-                way = _shortest(lanes, [(start, 0)], partial(_is_at, goal), lambda _, lane: (lane, 0))
+                way = _shortest(lanes, [(start, 0)], {(goal, 0)})
                 if way is not None and _length(lanes, way) <= LONGEST:
                     found.setdefault(tuple(dict.fromkeys(leg.road for leg in way)), way)
     return list(found.values())
-
-
-def _is_at(goal: Leg, state: State) -> bool:
-    return state[0] == goal
 
 
 def _driving(lanes: Lanes) -> Iterator[Lane]:
@@ -128,8 +120,8 @@ def _is_wide(lane: Lane, start: float, end: float) -> bool:
 def _shortest(
     lanes: Lanes,
     starts: Iterable[State],
-    is_goal: Callable[[State], bool],
-    onward: Callable[[State, Leg], State | None],
+    goals: set[State],
+    onward: Callable[[State, Leg], State | None] = lambda _, lane: (lane, 0),
 ) -> tuple[Leg, ...] | None:
     def steps(here: State) -> Iterator[tuple[State, Cost]]:
         for lane, changes, metres in _steps(lanes, here[0]):
@@ -138,7 +130,7 @@ def _shortest(
 
     way = cheapest(
         (state for state in starts if _is_wide(lanes.by_id[state[0]], 0.0, 0.5)),
-        lambda here: is_goal(here) and _is_wide(lanes.by_id[here[0]], 0.5, 1.0),
+        lambda here: here in goals and _is_wide(lanes.by_id[here[0]], 0.5, 1.0),
         steps,
     )
     return None if way is None else tuple(lane for lane, _ in way)

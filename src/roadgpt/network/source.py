@@ -129,8 +129,10 @@ def source_in(name: str, data: Any, world: Mapping[str, Any], path: Path) -> Roa
         if isinstance(data, dict) and "world" in data:
             world = _checked(data["world"])
             data = {key: value for key, value in data.items() if key != "world"}
-        is_table = path.suffix.lower() in SUFFIXES
-        read = _through(*points_of_table(data)) if is_table else _blueprint_in(data)
+        if path.suffix.lower() in SUFFIXES:
+            points, remarks = points_of_table(data)
+            return RoadSource(Road.through(points), remarks, world, name, is_ours=is_ours)
+        read = _blueprint_in(data)
     except UsageError as error:
         which = f" (road {name})" if name != path.stem else ""
         return UsageError(f"{path}{which}: {error}")
@@ -167,13 +169,9 @@ def _blueprint_in(data: Any) -> tuple[Design | Road, tuple[str, ...]]:
         has_widths = isinstance(nodes, list) and plain(nodes)[0] != nodes
         if "pieces" in data or ("nodes" in data and not has_widths):
             return Road.from_json(data), ()
-    found = points_in(data)
-    if found is None:
+    points, remarks = points_in(data) or (None, ())
+    if points is None:
         raise UsageError(f"it holds no road; a road file is {SHAPES}")
-    return _through(*found)
-
-
-def _through(points: list[Any], remarks: tuple[str, ...]) -> tuple[Design | Road, tuple[str, ...]]:
     return Road.through(points), remarks
 
 

@@ -27,7 +27,7 @@ from roadgpt.road.design import (
     PlaceDesign,
     RampDesign,
 )
-from roadgpt.road.profile import Lane, Marking, Width, as_cubics, width_at
+from roadgpt.road.profile import Lane, Width, as_cubics, width_at
 from roadgpt.road.road import reversed_cubics, reversed_road
 from roadgpt.road.world import OWN
 
@@ -36,6 +36,7 @@ LANDING = 6.0  # m of level road before a junction: a little more than the lengt
 MOST_OF_LANDING = 0.4  # largest share of a segment that the level road may take
 MAIN = LanesDesign(forward=2, backward=0)
 """The lanes of a road that a ramp joins, where none are given: one carriageway of a motorway."""
+RAMP = LanesDesign(forward=1, backward=0)
 MOST_OF_ROAD = 0.8  # largest share of a road that the taper of a lane may take
 
 
@@ -121,28 +122,19 @@ def climb_between(z: float, end: float, length: float) -> GradeProfile:
     return GradeProfile(z, stations, (0.0, 0.0, grade, grade, 0.0, 0.0))
 
 
-def joined_grades(roads: Sequence[Road]) -> GradeProfile:
-    """Returns the heights along roads that follow each other, from the start of the first one."""
-    knots: list[tuple[float, float]] = []
-    start, height = 0.0, 0.0
-    for n, road in enumerate(roads):
-        own = road.elevation
-        if not isinstance(own, GradeProfile):
-            raise TypeError("the heights of a network are given by grades")
-        height = height if n else own.z0
-        here = [(start + s, grade) for s, grade in own.knots]
-        knots += here[1:] if knots else here
-        start += road.length
-        knots[-1] = (start, knots[-1][1])
-    return GradeProfile.of(height, _increasing(knots))
-
-
 def joined_heights(roads: Sequence[Road]) -> ElevationProfile:
     """Returns the heights along roads that follow each other, from the start of the first one: grades, or
     cubics if a road is given by cubics."""
-    if all(isinstance(road.elevation, GradeProfile) for road in roads):
-        return joined_grades(roads)
-    rows, start = list[tuple[float, Cubic]](), 0.0
+    start, knots, first = 0.0, list[tuple[float, float]](), roads[0].elevation
+    profiles = [road.elevation for road in roads if isinstance(road.elevation, GradeProfile)]
+    if isinstance(first, GradeProfile) and len(profiles) == len(roads):
+        for road, profile in zip(roads, profiles, strict=True):
+            here = [(start + s, grade) for s, grade in profile.knots]
+            knots += here[1:] if knots else here
+            start += road.length
+            knots[-1] = (start, knots[-1][1])
+        return GradeProfile.of(first.z0, _increasing(knots))
+    rows = list[tuple[float, Cubic]]()
     for road in roads:
         own = road.elevation
         if isinstance(own, GradeProfile):
@@ -204,11 +196,9 @@ def parts_of(road: Road, s: float) -> tuple[Road, Road]:
 
 def joined_plans(roads: Sequence[Road]) -> PieceCurve:
     """Returns the reference lines of roads, one after another, from the start of the first one."""
-    plans = []
-    for road in roads:
-        if not isinstance(road.plan, PieceCurve):
-            raise TypeError("the reference lines of a network are given by pieces")
-        plans.append(road.plan)
+    plans = [road.plan for road in roads if isinstance(road.plan, PieceCurve)]
+    if len(plans) < len(roads):
+        raise TypeError("the reference lines of a network are given by pieces")
     return replace(plans[0], pieces=tuple(piece for plan in plans for piece in plan.pieces))
 
 
@@ -219,7 +209,7 @@ def joined_roads(roads: Sequence[Road]) -> Road:
         return roads[0]
     profiles = [road.profile for road in roads if road.profile is not None]
     profile = min(profiles, key=lambda profile: profile.count)
-    return Road(joined_plans(roads), joined_grades(roads), profile=profile)
+    return Road(joined_plans(roads), joined_heights(roads), profile=profile)
 
 
 def stretch_profiles(design: Design, world: World) -> list[Profile]:
@@ -260,8 +250,13 @@ def profiles_between(
         before, after = around[n], around[n + 1]
         if offsets[n]:
             found[n] = replace(found[n], offset=offsets[n])
-        if isinstance(after, RampDesign):
-            _check_oncoming(n + 1, after, lanes[n : n + 2])
+        if isinstance(after, RampDesign) and after.is_on_left:
+            main = [lanes[n + (after.kind == "merge")]] if after.take == "ramp" else lanes[n : n + 2]
+            if any(each.backward for each in main):
+                raise UsageError(
+                    f"junction {n + 1}: the ramp lies on the side of oncoming traffic and would cross its "
+                    'lanes; give the road that it joins or leaves "backward": 0, or leave its side out'
+                )
         gain = before if isinstance(before, LanesChangeDesign) and before.kind == "lane_gain" else None
         drop = after if isinstance(after, LanesChangeDesign) and after.kind == "lane_drop" else None
         if gain is not None or drop is not None:
@@ -275,16 +270,6 @@ def profiles_between(
     return found
 
 
-def _check_oncoming(number: int, ramp: RampDesign, around: Sequence[LanesDesign]) -> None:
-    behind, by_ramp = ramp.kind == "merge", ramp.take == "ramp"
-    main = [around[behind]] if by_ramp else around
-    if ramp.is_on_left and any(each.backward for each in main):
-        raise UsageError(
-            f"junction {number}: the ramp lies on the side of oncoming traffic and would cross its lanes; "
-            'give the road that it joins or leaves "backward": 0, or leave its side out'
-        )
-
-
 def _offsets(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> list[float]:
     """Returns the offset of the line between the directions from the reference line, in metres for each road.
     It changes only at junctions and where the route leads from a ramp to the main road, or the other way."""
@@ -293,10 +278,10 @@ def _offsets(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> lis
         before = places[n - 1] if n else None
         if n == 0 or isinstance(before, JunctionDesign):
             found.append(_first_offset(places[n:], lanes[n:]))
-        elif isinstance(before, RampDesign) and before.take == "ramp":
-            is_merge = before.kind == "merge"
-            ramp, main = (lanes[n - 1], lanes[n]) if is_merge else (lanes[n], lanes[n - 1])
-            found.append(found[-1] + _beside_ramp(before, ramp, main) * (1 if is_merge else -1))
+        elif isinstance(before, RampDesign) and _is_ramp(before, "merge"):
+            found.append(found[-1] + _beside_ramp(before, lanes[n - 1], lanes[n]))
+        elif isinstance(before, RampDesign) and _is_ramp(before, "diverge"):
+            found.append(found[-1] - _beside_ramp(before, lanes[n], lanes[n - 1]))
         else:
             found.append(found[-1])
     return found
@@ -341,27 +326,22 @@ def _behind(number: int, place: PlaceDesign, before: LanesDesign) -> LanesDesign
         return place.lanes
     if isinstance(place, RampDesign) and place.take == "main":
         return before
-    if place.lanes is not None:
-        return place.lanes
-    if isinstance(place, RampDesign):
-        update = {"width": before.width}
-        if place.kind == "merge":
-            return MAIN.model_copy(update=update)
-        return LanesDesign(forward=1, backward=0, width=before.width)
-    return before
+    if place.lanes is not None or not isinstance(place, RampDesign):
+        return place.lanes or before
+    return (MAIN if place.kind == "merge" else RAMP).model_copy(update={"width": before.width})
 
 
 def _profile(lanes: LanesDesign, shoulder: float) -> Profile:
     made = Profile.of(lanes.forward, lanes.backward, lanes.width, shoulder)
     if lanes.edge != "solid":
-        made = replace(made, left=_edged(made.left, lanes.edge), right=_edged(made.right, lanes.edge))
+        left, right = (
+            tuple(replace(lane, marking=lanes.edge) if lane.marking == "solid" else lane for lane in side)
+            for side in (made.left, made.right)
+        )
+        made = replace(made, left=left, right=right)
     if lanes.divided:
         made = replace(made, left=(Lane("median", MEDIAN, "solid"), *made.left), centre_marking="solid")
     return made if lanes.centre is None else replace(made, centre_marking=lanes.centre)
-
-
-def _edged(side: Sequence[Lane], marking: Marking) -> tuple[Lane, ...]:
-    return tuple(replace(lane, marking=marking) if lane.marking == "solid" else lane for lane in side)
 
 
 def _tapered(

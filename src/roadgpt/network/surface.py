@@ -97,10 +97,8 @@ def _area_of(
     kind, junctions = node
     wide = paved.buffer(width, quad_segs=ROUND) if width > 0 else paved
     holes = [shapely.Polygon(hole) for part in shapely.get_parts(paved) for hole in part.interiors]
-    kerbed: list[Polygon] = []
-    green: list[Polygon] = []
-    for nose in _beside_medians(network, paved, wide, holes):
-        (green if kind in RAMPS else kerbed).append(nose)
+    noses = list(_beside_medians(network, paved, wide, holes))
+    kerbed, green = ([], noses) if kind in RAMPS else (noses, [])
     for hole in holes:
         rest = shapely.difference(hole, wide)
         if rest.area < GREEN * hole.area:

@@ -73,14 +73,11 @@ class Camera:
 
     def __post_init__(self) -> None:
         if not (1 <= self.width <= LARGEST and 1 <= self.height <= LARGEST):
-            raise UsageError(
-                f"an image of {self.width} by {self.height} pixels cannot be drawn; give 1 to {LARGEST} each"
-            )
+            size = f"{self.width} by {self.height} pixels"
+            raise UsageError(f"an image of {size} cannot be drawn; give 1 to {LARGEST} each")
         if not NARROWEST <= self.field_of_view <= WIDEST:
-            raise UsageError(
-                f"the field of view of {math.degrees(self.field_of_view):.4g} degrees is out of range: "
-                "give 5 to 150"
-            )
+            said = f"{math.degrees(self.field_of_view):.4g} degrees"
+            raise UsageError(f"the field of view of {said} is out of range: give 5 to 150")
         if self.mount not in MOUNTS:
             raise UsageError(f"there is no camera mount '{self.mount}'; choose one of {', '.join(MOUNTS)}")
 

@@ -229,10 +229,8 @@ def _turned(profile: list[tuple[float, float]], side: float, kind: int) -> Patch
 
 
 def _circle(radius: float, outward: float, angles: Array, side: float) -> Array:
-    turned = -angles * side
-    return np.column_stack(
-        [radius * np.cos(turned), np.full(len(angles), side * outward), radius * np.sin(turned)]
-    )
+    turned, aside = -angles * side, np.full(len(angles), side * outward)
+    return np.column_stack([radius * np.cos(turned), aside, radius * np.sin(turned)])
 
 
 @dataclass(frozen=True, eq=False)

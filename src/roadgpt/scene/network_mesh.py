@@ -23,14 +23,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.network import Network, NetworkRoad, RoadEnd, network_of, only_road
 from roadgpt.network.markings import JunctionSign, arrows, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area
-from roadgpt.network.surface import (
-    ROUND,
-    JunctionSurface,
-    NetworkSurface,
-    free_ends,
-    polygons,
-    triangulated,
-)
+from roadgpt.network.surface import ROUND, JunctionSurface, NetworkSurface, free_ends, polygons, triangulated
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.land import Land
 from roadgpt.road.profile import LINE as PAINTED
@@ -178,16 +171,12 @@ def slab(road: Road, profile: Profile, s: Array) -> list[Patch]:
     left, right = (line(road, s, t) for t in profile.edges(s))
     down = np.array([0.0, 0.0, -THICK])
     out = []
-    for a, b, light in (
-        (left, left + down, 0.62),
-        (right + down, right, 0.62),
-        (left + down, right + down, 0.4),
-    ):
+    sides = (left, left + down, 0.62), (right + down, right, 0.62), (left + down, right + down, 0.4)
+    for a, b, light in sides:
         out += _blocks(np.stack([a, b], axis=1), attributes(0.0, 0.0, np.full((len(s), 2), light)), CONCRETE)
-    for at, turn in ((0, True), (-1, False)):
+    for at, order in ((0, -1), (-1, 1)):
         corners = np.array([[left[at], left[at] + down], [right[at], right[at] + down]])
-        net = corners[::-1] if turn else corners
-        out.append(grid(net, attributes(0.0, 0.0, np.full((2, 2), 0.62)), CONCRETE))
+        out.append(grid(corners[::order], attributes(0.0, 0.0, np.full((2, 2), 0.62)), CONCRETE))
     return out
 
 
@@ -349,8 +338,9 @@ def _junction(area: JunctionSurface, axis: StationAxis) -> list[Patch]:
         out += [_level(island, area.height, GRASS, 0.0) for island in area.green]
     for island in area.kerbed:
         out.append(_level(island, area.height + KERB, CONCRETE, 0.0))
-        ring = np.asarray(island.exterior.coords, float)[:, :2]
-        out.append(_wall(ring if island.exterior.is_ccw else ring[::-1], area.height, KERB))
+        ring = np.asarray(island.exterior.coords, float)[:: 1 if island.exterior.is_ccw else -1, :2]
+        low = np.column_stack([ring, np.full(len(ring), area.height)])
+        out.append(_strip(low, low + [0.0, 0.0, KERB], 0.7, CONCRETE))
     return out
 
 
@@ -385,11 +375,6 @@ def _level(area: Area, height: float, kind: int, station: float, beside: "Area |
         values[:, :2] = 0.0
     points = np.column_stack([flat, np.full(len(flat), height)])
     return Patch(points, values, triangles, np.full(len(triangles), kind, np.int64))
-
-
-def _wall(ring: Array, foot: float, high: float) -> Patch:
-    low = np.column_stack([ring, np.full(len(ring), foot)])
-    return _strip(low, low + [0.0, 0.0, high], 0.7, CONCRETE)
 
 
 def _strip(right: Array, left: Array, light: float, kind: int) -> Patch:
@@ -461,9 +446,8 @@ def _banks(area: JunctionSurface, terrain: LitTerrain) -> list[Patch]:
     out = []
     for part in shapely.get_parts(whole):
         ring = shapely.geometry.polygon.orient(shapely.Polygon(part.exterior)).exterior
-        edge = np.column_stack(
-            [np.asarray(ring.coords, float)[:, :2], np.full(len(ring.coords), area.height)]
-        )
+        flat = np.asarray(ring.coords, float)[:, :2]
+        edge = np.column_stack([flat, np.full(len(flat), area.height)])
         near = _offset(edge, -OUTSIDE)
         bank = bank_from(edge, near, (near - edge)[:, :2] / OUTSIDE, terrain.land, is_left=False)
         out.append(_strip(bank.foot, bank.edge, level_light(), GRASS))
@@ -560,10 +544,8 @@ def _placed(sign: JunctionSign, outline: Array, height: float, ahead: float) -> 
 
 def _tube(sign: JunctionSign, radius: float, low: float, high: float) -> Iterator[SignFace]:
     angles = np.arange(POLE_SIDES + 1) * 2 * np.pi / POLE_SIDES
-    ring = np.array(sign.place) + np.column_stack(
-        [radius * np.cos(angles), radius * np.sin(angles), 0 * angles]
-    )
-    for one, two in pairwise(ring):
+    ring = np.column_stack([radius * np.cos(angles), radius * np.sin(angles), 0 * angles])
+    for one, two in pairwise(np.array(sign.place) + ring):
         down, up = np.array([0, 0, low]), np.array([0, 0, high])
         yield SignFace("grey", np.array([one + down, two + down, two + up, one + up]))
 

@@ -110,12 +110,7 @@ def _tree(
     for k in np.argsort(-places[:, 1]):
         x, _, z = places[k]
         inside = (across - x) ** 2 + ((up - z) * 2) ** 2 < (2 * radii[k]) ** 2
-        tone = (
-            (0.62 + 0.55 * max(lit[k], -0.45))
-            * inner[k]
-            * (0.85 + 0.3 * places[k, 2])
-            * rng.uniform(0.8, 1.2)
-        )
+        tone = (0.62 + 0.55 * max(lit[k], -0.45)) * inner[k] * (0.85 + 0.3 * z) * rng.uniform(0.8, 1.2)
         picture[inside] = [*(np.array(leaf) * tone * 1.35), 1.0]
     return picture
 

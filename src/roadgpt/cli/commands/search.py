@@ -403,7 +403,7 @@ def _given(plan: "Plan", told: Set[str], quiet: bool) -> "tuple[Plan, list[bytes
     files there are left out, and why. ``told`` are the fields of the World that precede those of files."""
     from roadgpt.campaign.given import kept_road
     from roadgpt.campaign.model import GIVEN
-    from roadgpt.network import has_no_route, made_from
+    from roadgpt.network import made_from
     from roadgpt.network.source import OF_FILE
     from roadgpt.reading import digest
 
@@ -415,7 +415,7 @@ def _given(plan: "Plan", told: Set[str], quiet: bool) -> "tuple[Plan, list[bytes
         try:
             with named_in_errors(said):
                 blueprint, world, more = source_of(said, plan.world, told)
-                if has_no_route(made_from(blueprint, world, plan.geometry)):
+                if not made_from(blueprint, world, plan.geometry).has_way:
                     how = command_line("import", said if said.endswith(".xodr") else "MAP.xodr")
                     raise UsageError(
                         f"{said} is a map without a route, on which nothing can be driven; to make routes: "

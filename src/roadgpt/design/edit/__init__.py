@@ -22,7 +22,7 @@ the road makes up the height."""
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from itertools import combinations, groupby
+from itertools import combinations, groupby, product
 from typing import NamedTuple
 
 import numpy as np
@@ -99,11 +99,13 @@ def _things(before: RoadElements, new: RoadElements, found: Measures) -> Iterato
     seen_as = {one.name: seen for one, seen in zip(new, features_of(new, found), strict=True)}
     names = _names(before)
     for element in before:
-        now = after.get(element.name)
+        now, name, was = after.get(element.name), names[element.name], element.seen
         if now is None or now.is_turn != element.is_turn:
-            yield _gone(element, names[element.name], now)
+            had = f" ({was.degrees:.0f} degrees to the {was.side})" if element.is_turn and was else ""
+            instead = f", in its place {now.length:g} m straight" if had and now and now.segments else ""
+            yield f"{name} is gone{had}{instead}"
         elif now.segments != element.segments:
-            yield from _other(element, now, names[element.name], seen_as[now.name])
+            yield from _other(element, now, name, seen_as[now.name])
     numbers = _names(new)
     for element in new:
         if element.name in names or element.name.endswith(" rest"):
@@ -132,14 +134,6 @@ def _names(elements: Sequence[RoadElement]) -> dict[str, str]:
 
 def _turn(seen: MeasuredFeature) -> str:
     return f"{seen.degrees:.0f} degrees to the {seen.side}, radius {seen.radius:.0f} m, {seen.grade:+.1f} %"
-
-
-def _gone(element: RoadElement, name: str, now: RoadElement | None) -> str:
-    seen = element.seen
-    if element.is_turn and seen:
-        instead = f", in its place {now.length:g} m straight" if now and now.segments else ""
-        return f"{name} is gone ({seen.degrees:.0f} degrees to the {seen.side}){instead}"
-    return f"{name} is gone"
 
 
 def _other(element: RoadElement, now: RoadElement, name: str, seen: MeasuredFeature | None) -> Iterator[str]:
@@ -310,13 +304,11 @@ def with_final_heights(changes: Sequence[PlacedChange]) -> list[PlacedChange]:
 
 
 def _settled(placed: PlacedChange) -> Iterator[PlacedChange]:
-    parts = [placed.elements] if placed.change.is_of_road else [(element,) for element in placed.elements]
-    for elements in parts:
-        change = placed.change
+    change = placed.change
+    for elements in [placed.elements] if change.is_of_road else [(each,) for each in placed.elements]:
         aim = None if change.bound else change.aim(rise_of(elements))
-        if aim is not None:
-            change = replace(change, to=aim, by=None, times=None, more=0)
-        yield placed._replace(change=change, elements=elements)
+        final = change if aim is None else replace(change, to=aim, by=None, times=None, more=0)
+        yield placed._replace(change=final, elements=elements)
 
 
 def _refuse_clashing_heights(placed: PlacedChange, others: Sequence[PlacedChange]) -> None:
@@ -339,16 +331,9 @@ def _refuse_clashing_heights(placed: PlacedChange, others: Sequence[PlacedChange
 
 def _refuse_unless_same_way(placed: PlacedChange, other: PlacedChange) -> None:
     height, slope = placed.change, other.change
-    is_open = (
-        slope.what == "slope" and slope.way in ("up", "down") and not slope.steepness and not slope.bound
-    )
-    if (
-        not is_open
-        or slope.to is not None
-        or slope.more
-        or other.stretch
-        or placed.elements != other.elements
-    ):
+    has_way = slope.what == "slope" and slope.way in ("up", "down")
+    has_size = slope.steepness or slope.bound or slope.to is not None or slope.more
+    if not has_way or has_size or other.stretch or placed.elements != other.elements:
         raise EditError(
             f"'{height.words}' and '{slope.words}' both give a part of the road its slopes; leave one "
             "of them out, or make one change first"
@@ -366,15 +351,15 @@ def rise_of(elements: Sequence[RoadElement]) -> float:
 def without_told(placed: PlacedChange, told: set[str]) -> PlacedChange:
     """Returns a height of a part of the road without the elements named ``told``, which keep their slopes."""
     rest = tuple(element for element in placed.elements if element.name not in told)
-    if len(rest) == len(placed.elements):
+    kept = [element for element in placed.elements if element.name in told]
+    if not kept:
         return placed
     if not rest or placed.change.to is None:
         raise EditError(
             f"'{placed.change.words}' leaves nothing that could climb, since all its parts have slopes of "
             "their own; leave one of them out"
         )
-    kept = rise_of([element for element in placed.elements if element.name in told])
-    return placed._replace(change=replace(placed.change, to=placed.change.to - kept), elements=rest)
+    return placed._replace(change=replace(placed.change, to=placed.change.to - rise_of(kept)), elements=rest)
 
 
 class Named(NamedTuple):
@@ -407,12 +392,8 @@ def stages(changes: Sequence[PlacedChange]) -> list[list[PlacedChange]]:
         is_slope = is_slope_last and each.change.what == "slope"
         by_kind["slope" if is_slope else _kind(each)].append(each)
     # every move is judged on the road that the last one left
-    groups = [
-        list(group)
-        for _, group in groupby(
-            by_kind["order"], lambda each: id(each) if each.change.what in REORDERS else -1
-        )
-    ]
+    moved = groupby(by_kind["order"], lambda each: id(each) if each.change.what in REORDERS else -1)
+    groups = [list(group) for _, group in moved]
     groups += [by_kind["whole"]] if by_kind["whole"] else []
     if groups and not any(each.stretch is not None for each in by_kind["value"]):
         first = {id(each) for each in (*by_kind["value"], *groups[0])}
@@ -427,8 +408,8 @@ def stages(changes: Sequence[PlacedChange]) -> list[list[PlacedChange]]:
 def _reaches_new_parts(changes: Sequence[PlacedChange]) -> bool:
     sloped = [each for each in changes if each.change.what == "slope"]
     is_of_all = any(_is_whole_road(each.change.target) for each in sloped)
-    is_by_distance = any(each.stretch is not None for each in sloped)
-    return is_of_all and not is_by_distance and any(_is_new_part(each.change) for each in changes)
+    is_new = any(_is_new_part(each.change) for each in changes)
+    return is_of_all and is_new and all(each.stretch is None for each in sloped)
 
 
 def _is_whole_road(target: Target | None) -> bool:
@@ -450,17 +431,13 @@ def _kind(placed: PlacedChange) -> str:
 
 
 def _refuse_conflicts(changes: Sequence[PlacedChange]) -> None:
-    gone = [each for each in changes if each.change.what in ("remove", "straighten")]
-    for one in changes:
-        own = {element.name for element in one.elements}
-        if one.change.what in REORDERS:
-            for other in gone:
-                if not own.isdisjoint(element.name for element in other.elements):
-                    raise _removed(one.change)
-        if one.change.is_hill:
-            for other in changes:
-                if other.change.what == "slope" and {element.name for element in other.elements} <= own:
-                    raise clash(one.change, other.change)
+    for one, other in product(changes, repeat=2):
+        own, theirs = ({element.name for element in each.elements} for each in (one, other))
+        is_gone = other.change.what in ("remove", "straighten")
+        if one.change.what in REORDERS and is_gone and not own.isdisjoint(theirs):
+            raise _removed(one.change)
+        if one.change.is_hill and other.change.what == "slope" and theirs <= own:
+            raise clash(one.change, other.change)
 
 
 def carried_over(placed: PlacedChange, now: Named, others: Sequence[PlacedChange]) -> PlacedChange:
@@ -537,11 +514,8 @@ def renamed(road: Look, now: Named, geometry: Geometry, stage: int) -> Named:
     known = {element.name for element in now.by_name.values()}
     names, after = list[str](), dict[str, str]()
     for element in elements:
-        if element.is_turn:
-            parts = [next(turns)]
-        else:
-            gaps = [old for old in road.elements if not old.is_turn and old.segments]
-            parts = [old for old in gaps if old.first in element.members]
+        gaps = [old for old in road.elements if not old.is_turn and old.segments]
+        parts = [next(turns)] if element.is_turn else [old for old in gaps if old.first in element.members]
         longest = max(parts, key=lambda part: (part.name in known, part.length), default=None)
         names.append(longest.name if longest else f"{element.name} of stage {stage}")
         after |= {part.name: names[-1] for part in parts}
@@ -592,7 +566,10 @@ def edit(
     except EditError as error:
         for other in other_readings(request) if _may_be_other(request, error) else ():
             with suppress(EditError):
-                return _instead(error, request, _edited(design, other, world, geometry))
+                made = _edited(design, other, world, geometry)
+                asked = "; ".join(change.words for change in request.changes)
+                told = f"'{asked}', the likeliest reading, cannot be done: {error}"
+                return made._replace(changes=(*made.changes, told), unused=request.unused)
         raise
 
 
@@ -608,12 +585,6 @@ def _may_be_other(request: EditRequest, error: EditError) -> bool:
     other = read_change_plan(request.other)
     is_alike = {each.what for each in other.changes} == {each.what for each in request.changes}
     return is_alike and (isinstance(error, IdleEditError) or all(each.is_of_road for each in other.changes))
-
-
-def _instead(error: EditError, request: EditRequest, made: Edited) -> Edited:
-    asked = "; ".join(change.words for change in request.changes)
-    told = f"'{asked}', the likeliest reading, cannot be done: {error}"
-    return made._replace(changes=(*made.changes, told), unused=request.unused)
 
 
 def _edited(design: Design, request: EditRequest, world: World, geometry: Geometry) -> Edited:

@@ -22,7 +22,7 @@ from math import atan2, cos, degrees, hypot, inf, pi, radians, sin
 from typing import Any, NamedTuple
 
 from roadgpt.brief.change.clashes import clash
-from roadgpt.brief.change.request import NUMBERING, REORDERS, Change, What
+from roadgpt.brief.change.request import NUMBERING, Change, What
 from roadgpt.brief.map_fit import ROUND_MAP
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
@@ -45,6 +45,7 @@ from roadgpt.design.edit.ways import (
     hill_candidates,
     hill_sentence,
     insertion_candidates,
+    refuse_too_tight,
     removal_candidates,
     slope_candidates,
     slope_steps,
@@ -201,13 +202,12 @@ def road_length_candidates(
     lengths = [(e, e.seen.length) for e in elements if not e.is_turn and e.seen is not None]
     spare = [length if aim > own else max(length - KEPT, 0.0) for _, length in lengths]
     share = (aim - own) / max(sum(spare), 1e-9)
+    wanted = [length + share * part for (_, length), part in zip(lengths, spare, strict=True)]
     straights: list[EditStep] = [
-        Adjust(element, length=Wanted(length + share * part, Range(SEEN)))
-        for (element, length), part in zip(lengths, spare, strict=True)
+        Adjust(element, length=Wanted(aim, Range(SEEN)))
+        for (element, _), aim in zip(lengths, wanted, strict=True)
     ]
-    everything: list[EditStep] = [
-        Adjust(element, length=Wanted(now, Range(SEEN))) for element, now in lengths
-    ]
+    everything: list[EditStep] = [Adjust(each, length=Wanted(now, Range(SEEN))) for each, now in lengths]
     for seen, element in ((e.seen, e) for e in elements if e.is_turn):
         assert seen is not None
         radius = Range(min(world.limits.design_radius, seen.radius), max(WIDEST, seen.radius))
@@ -264,15 +264,6 @@ class Move:
         return tuple(next(order) if element.is_turn else element for element in elements)
 
 
-def swap_of(chosen: Sequence[RoadElement]) -> Swap:
-    """Returns the step that lets two turns, or two straights, change places."""
-    if len(chosen) != 2 or chosen[0].is_turn != chosen[1].is_turn:
-        raise EditError(
-            "two turns, or two straights, can change places; name two, for example: swap turns 1 and 3"
-        )
-    return Swap(chosen[0].name, chosen[1].name)
-
-
 def move_of(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate, ...]:
     """Returns the candidate that moves turns to another place among the turns; none if already there."""
     moved = [element.name for element in placed.elements]
@@ -300,24 +291,6 @@ def move_of(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate
     if (*others[:index], *moved, *others[index:]) == before:
         return ()
     return ((Move(tuple(moved), others[index - 1] if index else ""),),)
-
-
-def reordering_sentence(placed: PlacedChange, elements: RoadElements) -> str:
-    """Returns a sentence on a change that only reorders elements."""
-    match placed.change.what:
-        case "reverse":
-            return REVERSED
-        case "move":
-            names = _turn_names(elements)
-            numbers = [str(names.index(element.name) + 1) for element in placed.elements]
-            moved = f"turn {numbers[0]} has" if len(numbers) == 1 else f"turns {' and '.join(numbers)} have"
-            return f"{moved} moved; the turns are named as before"
-        case _:
-            is_of_turns = placed.elements[0].is_turn
-            alike = turns(elements) if is_of_turns else straights(elements)
-            one, other = (alike.index(element) + 1 for element in placed.elements)
-            noun = "turn" if is_of_turns else "straight"
-            return f"{noun} {one} and {noun} {other} have changed places; they are named as before"
 
 
 def _turn_names(elements: Sequence[RoadElement]) -> tuple[str, ...]:
@@ -361,9 +334,21 @@ def sentence_of(asked: PlacedChange, before: RoadElements, placed: PlacedChange,
     """Returns what a change does to the road, if measurements alone would not tell; else an empty string.
     ``asked`` is the change on the road before the edit, with the elements ``before``; ``placed`` is the same
     change on the road to which it is made, with the elements ``now``."""
-    if asked.change.is_hill:
-        return hill_sentence(placed, now)
-    return reordering_sentence(asked, before) if asked.change.what in (*REORDERS, "reverse") else ""
+    match asked.change.what:
+        case "add" if asked.change.is_hill:
+            return hill_sentence(placed, now)
+        case "reverse":
+            return REVERSED
+        case "move":
+            names = _turn_names(before)
+            numbers = [str(names.index(element.name) + 1) for element in asked.elements]
+            moved = f"turn {numbers[0]} has" if len(numbers) == 1 else f"turns {' and '.join(numbers)} have"
+            return f"{moved} moved; the turns are named as before"
+        case "swap":
+            noun, alike = ("turn", turns) if asked.elements[0].is_turn else ("straight", straights)
+            one, other = (alike(before).index(element) + 1 for element in asked.elements)
+            return f"{noun} {one} and {noun} {other} have changed places; they are named as before"
+    return ""
 
 
 def _ways(
@@ -382,7 +367,12 @@ def _ways(
         case "reverse":
             return ((Reverse(),),)
         case "swap":
-            return ((swap_of(placed.elements),),)
+            if len({element.is_turn for element in placed.elements}) != 1 or len(placed.elements) != 2:
+                raise EditError(
+                    "two turns, or two straights, can change places; name two, for example: swap turns 1 "
+                    "and 3"
+                )
+            return ((Swap(*(element.name for element in placed.elements)),),)
         case "move":
             return move_of(placed, elements)
         case "count":
@@ -448,12 +438,8 @@ def _out_of_turn(elements: Sequence[RoadElement]) -> list[RoadElement]:
 
 
 def _sides_after(changes: Sequence[PlacedChange], elements: RoadElements) -> list[Side | None]:
-    wrong = [
-        turn.name
-        for placed in changes
-        if placed.change.what == "alternate"
-        for turn in _out_of_turn(placed.elements)
-    ]
+    alternating = [placed for placed in changes if placed.change.what == "alternate"]
+    wrong = {turn.name for placed in alternating for turn in _out_of_turn(placed.elements)}
     return [e.side and OTHER_SIDE[e.side] if e.name in wrong else e.side for e in elements]
 
 
@@ -509,20 +495,13 @@ def _cannot(degrees: float, radius: float) -> EditError:
 def _bent_to(change: Change, element: RoadElement, d: float, r: float, aim: float, world: World) -> EditStep:
     if change.what == "angle":
         if not LEAST_ANGLE - 1.5 <= aim <= MOST_ANGLE:
-            raise EditError(
-                f"a turn of {aim:.0f} degrees cannot be made; "
-                f"ask for {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees"
-            )
+            room = f"{LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees"
+            raise EditError(f"a turn of {aim:.0f} degrees cannot be made; ask for {room}")
         return Adjust(element, Wanted.near(aim, 1.0), Wanted(r, Range(0.5 * r, 2 * r)))
-    if aim < world.limits.min_radius:
-        raise EditError(
-            f"a radius of {aim:.1f} m is tighter than the {world.limits.min_radius:.1f} m that the rules "
-            f"allow; ask for {world.limits.design_radius:.0f} m or more"
-        )
+    refuse_too_tight(aim, f"{aim:.1f}", world)
     if aim > WIDEST:
-        raise EditError(
-            f"a turn with a radius of {aim:.0f} m is hardly seen as one; ask for {WIDEST:g} or less"
-        )
+        turn = f"a turn with a radius of {aim:.0f} m"
+        raise EditError(f"{turn} is hardly seen as one; ask for {WIDEST:g} or less")
     aim = max(aim, world.limits.design_radius)
     return Adjust(element, Wanted.near(d, 4.0), Wanted.near(aim, 0.05 * aim))
 
@@ -559,9 +538,8 @@ def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandida
     steps: list[EditStep] = [Mirror(frozenset(element.name for element in elements))]
     for element in elements:
         d, r = (element.seen.degrees, element.seen.radius) if element.seen else (0.0, inf)
-        degrees = Range(
-            max(FLIPPED.lo * d, min(LEAST_ANGLE, d - 1)), min(FLIPPED.hi * d, max(MOST_ANGLE, d + 1))
-        )
+        least, most = min(LEAST_ANGLE, d - 1), max(MOST_ANGLE, d + 1)
+        degrees = Range(max(FLIPPED.lo * d, least), min(FLIPPED.hi * d, most))
         radius = Range(max(FLIPPED.lo * r, min(world.limits.min_radius, 0.98 * r)), FLIPPED.hi * r)
         steps.append(Adjust(element, Wanted(d, degrees), Wanted(r, radius)))
     return (tuple(steps),)
@@ -588,19 +566,32 @@ def made(
 ) -> tuple[Look, Design]:
     """Returns the road with all changes, and a design in which only the elements named in them changed. A
     change without candidates is not needed; ``elements`` are those of the road before the stage, and
-    ``may_grow`` says whether the map may become larger. Raises EditError if the road already is as requested,
-    or no valid road has the requested changes."""
+    ``may_grow`` says whether the map may become larger. If it has no room for the road and may not grow,
+    other elements change. Raises EditError if the road already is as requested, or no valid road has the
+    requested changes."""
     needed = [each for each in changes if each.ways]
     idle = [each for each in changes if not each.ways]
     if not needed:
         raise IdleEditError(f"nothing is to be changed: '{idle[0].change.words}' is so already")
-    road, draft = _fitted(design, elements, needed, world, geometry, may_grow)
+    drafts, objection = _drafts(elements, needed, Requirements(world, before=design, geometry=geometry))
+    if may_grow and drafts and drafts[-1].objection:
+        drafts += _on_larger_map(drafts, world)
+    found = [(drafts[-1], drafts[-1])] if drafts and not drafts[-1].objection else []
+    for draft in drafts[:FITTED_WHOLE] if geometry == "arcs" and not found else ():
+        whole = fit(draft.design, _staying(draft.elements), draft.requirements._replace(before=None))
+        if not whole.objection:
+            found = [(whole, draft)]
+            break
+    if not found:
+        said = " and ".join(dict.fromkeys(f"'{each.change.words}'" for each in needed))
+        raise EditError(f"{said} cannot be done on this road: {objection}; ask for less, or elsewhere")
+    road, draft = found[0]
     if idle and not any(each.change.what in NUMBERING for each in needed):
         _refuse_broken_limits(idle, needed, road, geometry)
     is_of_road = any(each.change.what in ("mirror", "reverse") for each in needed)
     if road.design.segments == design.segments and not is_of_road:
         raise IdleEditError(f"nothing is to be changed: '{needed[0].change.words}' is so already")
-    return road, draft
+    return road, draft.design
 
 
 def _refuse_broken_limits(
@@ -618,44 +609,17 @@ def _refuse_broken_limits(
                 raise clash(other.change, limit.change)
 
 
-def _fitted(
-    design: Design,
-    elements: RoadElements,
-    changes: Sequence[ChangeCandidates],
-    world: World,
-    geometry: Geometry,
-    may_grow: bool,
-) -> tuple[Look, Design]:
-    """Returns the road with all changes, and its design before other elements had to change. If the map has
-    no room for it, the map grows if it may; only otherwise do other elements change."""
-    drafts, objection = _drafts(design, elements, changes, world, geometry)
-    if may_grow and drafts and drafts[-1].objection:
-        drafts += _on_larger_map(drafts, world)
-    if drafts and not drafts[-1].objection:
-        return drafts[-1], drafts[-1].design
-    for draft in drafts[:FITTED_WHOLE] if geometry == "arcs" else ():
-        whole = fit(draft.design, _staying(draft.elements), draft.requirements._replace(before=None))
-        if not whole.objection:
-            return whole, draft.design
-    said = " and ".join(dict.fromkeys(f"'{each.change.words}'" for each in changes))
-    raise EditError(f"{said} cannot be done on this road: {objection}; ask for less, or elsewhere")
-
-
 def _drafts(
-    design: Design,
-    elements: RoadElements,
-    changes: Sequence[ChangeCandidates],
-    world: World,
-    geometry: Geometry,
+    elements: RoadElements, changes: Sequence[ChangeCandidates], plain: Requirements
 ) -> tuple[list[Look], str]:
     """Returns the roads of combinations of candidates, up to the first one that is valid and as requested,
     and what was wrong with the first one tried; elements that the request does not name are frozen."""
-    objection, drafts = "", list[Look]()
+    objection, drafts, world, design = "", list[Look](), plain.world, plain.before
+    assert design is not None
     for steps in islice(_combined(changes), MOST_TRIALS):
         try:
             length = next((step.room for step in reversed(steps) if isinstance(step, RoadLength)), None)
-            needs = Requirements(world, before=design, geometry=geometry)
-            needs = needs._replace(outline=replace(needs.outline, length=length))
+            needs = plain._replace(outline=replace(plain.outline, length=length))
             after = _applied(elements, steps, world)
             begun = _started(design, after, elements, world, steps)
             begun = graded(begun, after, needs.outline, world, design)
@@ -689,19 +653,12 @@ def _on_larger_map(drafts: Sequence[Look], world: World) -> list[Look]:
 
 
 def _staying(elements: RoadElements) -> RoadElements:
-    own = [element for element in elements if element.segments]
-    turns = [True, *(element.is_turn for element in own), True]
-    between = {
-        element.name
-        for element, *beside in zip(own, turns[:-2], turns[2:], strict=True)
-        if not element.is_turn and all(beside)
-    }
-    return tuple(
-        replace(element, asked=element.asked or SEEN_STRAIGHT)
-        if element.seen and element.name in between
-        else element
-        for element in elements
-    )
+    out, own = list(elements), [n for n, element in enumerate(elements) if element.segments]
+    turns = [True, *(elements[n].is_turn for n in own), True]
+    for n, before, after in zip(own, turns[:-2], turns[2:], strict=True):
+        if out[n].seen and before and after and not out[n].is_turn:
+            out[n] = replace(out[n], asked=out[n].asked or SEEN_STRAIGHT)
+    return tuple(out)
 
 
 def _combined(changes: Sequence[ChangeCandidates]) -> Iterator[tuple[EditStep, ...]]:

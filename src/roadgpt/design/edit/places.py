@@ -238,27 +238,34 @@ def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElemen
         found = _of_stretch(target, elements, what)
     elif target.half:
         found = _half(elements, target.half)
-    if place and place.target and place.how != "on" and not is_by_distance:
+    is_within = place is not None and (place.how not in ("on", "between") or place.other is not None)
+    if place and place.target and is_within and not is_by_distance:
         marks = [elements.index(b) for b in pointed(_single(place.target), elements, what)]
-        first, stop = 0, len(elements)
-        if place.how == "after":
-            first = marks[-1] + 1
-        elif place.how == "before":
-            stop = marks[0]
-        elif place.how == "from":
-            first = marks[0]
-        elif place.how == "up_to":
-            stop = marks[-1] + 1
-        elif place.other:
-            first, stop = marks[-1] + 1, elements.index(pointed(_single(place.other), elements, what)[0])
-        there = {element.name for element in elements[first:stop]}
-        found = [element for element in found if element.name in there]
-    if target.but:
-        gone = {element.name for element in pointed(named(target.but), elements, what)}
-        found = [element for element in found if element.name not in gone]
-    if what in OF_TURNS:
-        found = [element for element in found if element.is_turn]
-    return [element for element in found if element.segments]
+        other = pointed(_single(place.other), elements, what) if place.other else None
+        there = _reach(place.how, marks, elements.index(other[0]) if other else len(elements), len(elements))
+        found = [element for element in found if element in elements[there.start : there.stop]]
+    gone = pointed(named(target.but), elements, what) if target.but else []
+    return [
+        element
+        for element in found
+        if element.segments and element not in gone and (element.is_turn or what not in OF_TURNS)
+    ]
+
+
+def _reach(how: str, marks: Sequence[int], stop: int, count: int) -> range:
+    """Returns the indices of what lies after, before, from or up to the elements with the indices ``marks``,
+    or between the last of them and ``stop``, on a road of ``count`` elements."""
+    match how:
+        case "before":
+            return range(marks[0])
+        case "from":
+            return range(marks[0], count)
+        case "up_to":
+            return range(marks[-1] + 1)
+        case "between":
+            return range(marks[-1] + 1, stop)
+        case _:
+            return range(marks[-1] + 1, count)
 
 
 def _half(elements: RoadElements, half: int) -> list[RoadElement]:
@@ -272,21 +279,15 @@ def _half(elements: RoadElements, half: int) -> list[RoadElement]:
 
 def around_middle(gaps: Sequence[RoadElement], elements: RoadElements) -> RoadElement:
     """Returns the gap that holds the middle of the road, or else the gap nearest to the middle."""
-    whole = sum(element.length for element in elements)
-
-    def away(gap: RoadElement) -> float:
-        start = sum(element.length for element in elements[: elements.index(gap)])
-        return max(start - whole / 2, whole / 2 - start - gap.length, 0.0)
-
-    return min(gaps, key=away)
+    middle = sum(element.length for element in elements) / 2
+    away = {one.name: max(at - middle, middle - at - one.length, 0.0) for one, at in with_stations(elements)}
+    return min(gaps, key=lambda gap: away[gap.name])
 
 
 def _of_stretch(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
     if what not in OF_SLOPE:
-        raise EditError(
-            f"'{target.words}' is a distance, and only its slope or its climb can be changed; name turns or "
-            "straights"
-        )
+        what_can = "only its slope or its climb can be changed"
+        raise EditError(f"'{target.words}' is a distance, and {what_can}; name turns or straights")
     stretch = stretch_of(target, elements)
     assert stretch is not None
     names = {element.name for element in within(elements, stretch)}
@@ -311,10 +312,8 @@ def _single(target: Target) -> Target:
 
 def among(target: Target, found: Sequence[RoadElement], elements: RoadElements) -> list[RoadElement]:
     """Returns the elements with the properties and the place that the target names."""
-    out = [element for element in found if _fits(target, element)]
-    if target.half:
-        there = {element.name for element in _half(elements, target.half)}
-        out = [element for element in out if element.name in there]
+    half = _half(elements, target.half) if target.half else elements
+    out = [element for element in found if _fits(target, element) and element in half]
     place = target.place
     if place and place.target:
         out = _placed(place, out, elements, many=target.every or bool(target.numbers))
@@ -324,9 +323,8 @@ def among(target: Target, found: Sequence[RoadElement], elements: RoadElements) 
 def _spared(target: Target, found: list[RoadElement], elements: RoadElements) -> list[RoadElement]:
     if target.but is None:
         return found
-    but = replace(target.but, noun=target.but.noun or target.noun)
-    gone = {element.name for element in pointed(but, elements, "length")}
-    return [element for element in found if element.name not in gone]
+    gone = pointed(replace(target.but, noun=target.but.noun or target.noun), elements, "length")
+    return [element for element in found if element not in gone]
 
 
 def _ways(element: RoadElement, grade: float) -> set[Way]:
@@ -367,23 +365,17 @@ def _placed(
     place: Place, found: Sequence[RoadElement], elements: RoadElements, many: bool
 ) -> list[RoadElement]:
     assert place.target is not None
-    at = {element.name: index for index, element in enumerate(elements)}
-    marks = [at[element.name] for element in pointed(named(place.target), elements, "length")]
-    if place.how == "after":
-        out = [element for element in found if at[element.name] > marks[-1]]
-        return out if many else out[:1]
-    if place.how == "before":
-        out = [element for element in found if at[element.name] < marks[0]]
-        return out if many else out[-1:]
-    if place.how == "from":
-        return [element for element in found if at[element.name] >= marks[0]]
-    if place.how == "up_to":
-        return [element for element in found if at[element.name] <= marks[-1]]
-    if place.how == "between" and place.other:
-        stop = at[pointed(named(place.other), elements, "length")[0].name]
-        low, high = min(marks[-1], stop), max(marks[-1], stop)
-        return [element for element in found if low < at[element.name] < high]
-    return [element for element in found if at[element.name] in marks]
+    own = pointed(named(place.target), elements, "length")
+    if place.how == "on" or (place.how == "between" and not place.other):
+        return [element for element in found if element in own]
+    marks, stop = [elements.index(element) for element in own], len(elements)
+    if place.other:
+        last, stop = sorted((marks[-1], elements.index(pointed(named(place.other), elements, "length")[0])))
+        marks = [*marks[:-1], last]
+    there = _reach(place.how, marks, stop, len(elements))
+    out = [element for element in found if elements.index(element) in there]
+    one = {"after": slice(1), "before": slice(-1, None)}.get(place.how)
+    return out if many or one is None else out[one]
 
 
 def named(target: Target) -> Target:
@@ -400,11 +392,9 @@ def _chosen(target: Target, found: Sequence[RoadElement], noun: str) -> list[Roa
         ranked = sorted(found, key=lambda element: -sign * _measure(element, measure))[: target.count or 1]
         return [element for element in found if element in ranked]
     if target.middle:
-        if len(found) % 2 == 0:
-            n = len(found)
-            raise EditError(
-                f"of {n} {noun}s none is in the middle; say its number: the {_ordinal(n // 2)} {noun}"
-            )
+        if (n := len(found)) % 2 == 0:
+            say = f"say its number: the {_ordinal(n // 2)} {noun}"
+            raise EditError(f"of {n} {noun}s none is in the middle; {say}")
         return [found[len(found) // 2]]
     if target.numbers:
         out = []
@@ -493,9 +483,8 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
         elif change.what == "count":
             out.append(_counted(change, elements))
         elif change.what in ("move", "add"):
-            moved = (
-                pointed(change.target, elements, "side") if change.target and change.what == "move" else ()
-            )
+            moves = change.target is not None and change.what == "move"
+            moved = pointed(change.target, elements, "side") if change.target and moves else ()
             out.append(PlacedChange(change, tuple(moved), *_marks(change.place, elements)))
         else:
             assert change.target is not None
@@ -529,27 +518,19 @@ def _on_straight(placed: PlacedChange, elements: RoadElements) -> PlacedChange:
         if len(placed.marks) != 1 or placed.marks[0].is_turn:
             raise EditError(f"'{placed.change.words}' names no single straight; name one")
         return placed._replace(elements=placed.marks)
-    gaps = [element for element in elements if not element.is_turn and element.segments]
-    at = {element.name: index for index, element in enumerate(elements)}
-    match how:
-        case "start" | "end":
-            found = gaps[:1] if how == "start" else gaps[-1:]
-        case "middle":
-            found = [around_middle(gaps, elements)] if gaps else []
-        case "before":
-            found = [gap for gap in gaps if at[gap.name] < at[placed.marks[0].name]][-1:]
-        case "between" if placed.stop is not None:
-            low, high = at[placed.marks[-1].name], at[placed.stop.name]
-            found = [gap for gap in gaps if low < at[gap.name] < high]
-            if len(found) != 1:
-                raise EditError(
-                    f"'{placed.change.words}' names {len(found) or 'no'} straights; name one of them"
-                )
-        case _:
-            found = [gap for gap in gaps if at[gap.name] > at[placed.marks[-1].name]][:1]
+    found = [element for element in elements if not element.is_turn and element.segments]
+    if how == "middle":
+        found = [around_middle(found, elements)] if found else []
+    elif how not in ("start", "end"):
+        marks = [elements.index(mark) for mark in placed.marks]
+        stop = elements.index(placed.stop) if placed.stop else len(elements)
+        there = _reach(how if how in ("before", "between") else "after", marks, stop, len(elements))
+        found = [gap for gap in found if elements.index(gap) in there]
+        if placed.stop and len(found) != 1:
+            raise EditError(f"'{placed.change.words}' names {len(found) or 'no'} straights; name one of them")
     if not found:
         raise EditError(too_short_for_hill(placed.change))
-    return placed._replace(elements=(found[0],))
+    return placed._replace(elements=(found[-1 if how in ("before", "end") else 0],))
 
 
 def _like_its_model(asked: Change, changes: Sequence[Change], elements: RoadElements) -> PlacedChange:

@@ -253,11 +253,9 @@ class SlopeOfAll:
         size = np.clip(np.abs(before) * self.times + self.more, self.least, self.most)
         signs = self.sign or np.where(before >= 0, 1, -1)
         after = np.clip(signs * size, -limit, limit) + 0.0  # no -0.0
-        if self.only is not None:
-            changes = tuple(
-                there and way(incline) == self.only for there, incline in zip(changes, before, strict=True)
-            )
-        return element.with_segments(with_inclines(segments, np.where(changes, after, before)))
+        is_so = [self.only in (None, way(incline)) for incline in before]
+        found = np.where(np.logical_and(changes, is_so), after, before)
+        return element.with_segments(with_inclines(segments, found))
 
 
 def slope_candidates(
@@ -274,10 +272,8 @@ def slope_candidates(
 
 def _only_parts(change: Change, step: SlopeOfAll) -> SlopeOfAll:
     assert change.target is not None
-    sign = step.sign
-    if change.way is None and change.target.way != "flat":
-        sign = 1 if change.target.way == "up" else -1
-    return replace(step, only=change.target.way, sign=sign)
+    own = {"up": 1, "down": -1}.get(change.target.way or "") if change.way is None else None
+    return replace(step, only=change.target.way, sign=own or step.sign)
 
 
 def stretch_candidates(
@@ -346,9 +342,8 @@ def slope_steps(change: Change, element: RoadElement, found: Measures, world: Wo
 
 def _refuse_too_steep(grade: float, limit: float) -> None:
     if grade > limit:
-        raise EditError(
-            f"{round(grade, 1):g} % is steeper than the {limit:g} % that the rules allow; ask for less"
-        )
+        told = f"{round(grade, 1):g} % is steeper than the {limit:g} % that the rules allow"
+        raise EditError(f"{told}; ask for less")
 
 
 def _graded(element: RoadElement, sign: int, aim: float, *rooms: Range) -> list[EditStep]:
@@ -488,13 +483,11 @@ class Insert:
             return (*elements[:at], *self.elements, *elements[at:])
         own, count = list(elements[at].segments), self.split
         if count == HALVED:
-            longest = max(range(len(own)), key=lambda i: own[i].distance)
-            half = round(own[longest].distance / 2 * MILLIMETRE) / MILLIMETRE
-            rest = round((own[longest].distance - half) * MILLIMETRE) / MILLIMETRE
-            own[longest : longest + 1] = [
-                own[longest].model_copy(update={"distance": distance}) for distance in (half, rest)
-            ]
-            count = longest + 1
+            longest = max(own, key=lambda segment: segment.distance)
+            half = round(longest.distance / 2 * MILLIMETRE) / MILLIMETRE
+            rest = round((longest.distance - half) * MILLIMETRE) / MILLIMETRE
+            count = own.index(longest) + 1
+            own[count - 1 : count] = [longest.model_copy(update={"distance": each}) for each in (half, rest)]
         first = elements[at].with_segments(own[:count])
         second = replace(first, name=f"{first.name} rest", seen=None, segments=tuple(own[count:]))
         return (*elements[:at], first, *self.elements, second, *elements[at + 1 :])
@@ -517,9 +510,9 @@ def insertion_candidates(
     elements = tuple(e if e.side == side else e.mirrored() for e, side in zip(elements, sides, strict=True))
     shape, incline, name = _shape(change, world), _incline(elements, at), _name(elements, at)
     out = []
-    for spare, sides, split in product(SPARE, _sides(change, elements[:at]), splits):
-        lead, tail = (metres + spare for metres in _missing(elements, at, split, sides))
-        new = _new_turns(change, shape, sides, lead, tail, incline, number)
+    for spare, row, split in product(SPARE, _sides(change, elements[:at]), splits):
+        lead, tail = (metres + spare for metres in _missing(elements, at, split, row))
+        new = _new_turns(change, shape, row, (lead, tail), incline, number)
         out.append((Insert(name, new, split),))
     return tuple(out)
 
@@ -574,13 +567,19 @@ def _middle(elements: RoadElements) -> tuple[int, int]:
     return number, count
 
 
+def refuse_too_tight(radius: float, said: str, world: World) -> None:
+    """Raises EditError if a radius in metres, which is ``said`` so, is tighter than the rules allow."""
+    if radius < world.limits.min_radius:
+        raise EditError(
+            f"a radius of {said} m is tighter than the {world.limits.min_radius:.1f} m that the rules allow; "
+            f"ask for {world.limits.design_radius:.0f} m or more"
+        )
+
+
 def _shape(change: Change, world: World) -> tuple[Wanted, Wanted]:
     least = world.limits.design_radius
-    if change.radius is not None and change.radius < world.limits.min_radius:
-        raise EditError(
-            f"a radius of {change.radius:g} m is tighter than the {world.limits.min_radius:.1f} m that the "
-            f"rules allow; ask for {least:.0f} m or more"
-        )
+    if change.radius is not None:
+        refuse_too_tight(change.radius, f"{change.radius:g}", world)
     if change.degrees is not None and not 11 <= change.degrees <= 240:
         raise EditError(f"a turn of {change.degrees:g} degrees cannot be added; ask for 15 to 210 degrees")
     word: str = change.sharpness or ""
@@ -593,10 +592,10 @@ def _shape(change: Change, world: World) -> tuple[Wanted, Wanted]:
     if change.degrees is not None:
         degrees = Wanted.near(change.degrees, 1.5)
     radius = max(radius, least)
-    wanted = Wanted(radius, Range(max(1.03 * radii.lo, 0.98 * least), max(0.97 * radii.hi, radius)))
     if change.radius is not None:
-        wanted = Wanted.near(max(change.radius, least), 0.05 * change.radius)
-    return degrees, wanted
+        return degrees, Wanted.near(max(change.radius, least), 0.05 * change.radius)
+    room = Range(max(1.03 * radii.lo, 0.98 * least), max(0.97 * radii.hi, radius))
+    return degrees, Wanted(radius, room)
 
 
 def _sides(change: Change, before: RoadElements) -> list[list[Side]]:
@@ -623,12 +622,11 @@ def _new_turns(
     change: Change,
     shape: tuple[Wanted, Wanted],
     sides: Sequence[Side],
-    lead: float,
-    tail: float,
+    around: tuple[float, float],
     incline: float,
     number: int,
 ) -> RoadElements:
-    (degrees, angles), (radius, radii) = shape
+    (degrees, angles), (radius, radii), (lead, tail) = *shape, around
     grade = SLOPES[change.slope].grade if change.slope else None
     if change.grade is not None:
         grade = Range(change.grade - 0.6, change.grade + 0.6)
@@ -699,18 +697,13 @@ def _straight_ways(
     beside = elements[at] if at < len(elements) and not elements[at].is_turn else elements[at - 1]
     if change.is_whole and change.length is not None and not beside.is_turn and beside.seen is not None:
         return ((Adjust(beside, length=Wanted.near(change.length, 1.0)),),)
-    if not beside.is_turn and beside.seen is None:  # then the new straight is seen by itself
-        new = [
-            replace(
-                gap(f"{NEW}{number} {STRAIGHT}", length + FADE, incline),
-                asked=replace(FREE_STRAIGHT, length=Range(length - 2.0, length + 2.0)),
-            )
-            for length in lengths
-        ]
-    else:
-        new = [gap(f"{NEW}{number} {STRAIGHT}", length, incline) for length in lengths]
-        if change.length is not None:  # then it stays as long as the words say
-            new = [replace(each, asked=None) for each in new]
+    is_alone = not beside.is_turn and beside.seen is None  # then the new straight is seen by itself
+    new = [gap(f"{NEW}{number} {STRAIGHT}", each + (FADE if is_alone else 0.0), incline) for each in lengths]
+    for n, length in enumerate(lengths):
+        if is_alone:
+            new[n] = replace(new[n], asked=replace(FREE_STRAIGHT, length=Range(length - 2.0, length + 2.0)))
+        elif change.length is not None:  # then it stays as long as the words say
+            new[n] = replace(new[n], asked=None)
     return tuple((Insert(_name(elements, at), (each,), split),) for split in splits for each in new)
 
 

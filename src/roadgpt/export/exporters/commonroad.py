@@ -18,7 +18,6 @@ from roadgpt.export.georeference import LATITUDE, LONGITUDE
 from roadgpt.export.lanelets import Lanelet, arms_of, lanelets_of
 from roadgpt.export.markup import XmlElement, number
 from roadgpt.geometry import wrap_angle
-from roadgpt.geometry.curve import Array
 from roadgpt.network import Arm, Connection, Junction, Leg, Network, legs_of, network_of
 from roadgpt.network.markings import gives_way_to_ring, line_to_stop_at, place_of_sign
 from roadgpt.road import Road, World
@@ -121,28 +120,20 @@ class Crossings:
         turn = degrees(float(road.heading(road.length) - road.heading(0.0)))
         return side_of(turn * SIDE if junction.kind == "diverge" and abs(turn) > 1 else turn)
 
-    def _place(self, arm: Arm) -> XmlElement:
+    def _place(self, arm: Arm) -> list[float]:
         member = self.network.road(arm.end.road)
-        s, t = place_of_sign(member, arm.end.contact)
-        x, y = member.road.at(s, t)[:2].tolist()
-        return XmlElement("position").extended(point_element((round(x, 4), round(y, 4))))
+        return [
+            round(each, 4) for each in member.road.at(*place_of_sign(member, arm.end.contact))[:2].tolist()
+        ]
 
     def _sign(self, arm: Arm, id_: int) -> XmlElement:
-        out = XmlElement("trafficSign", {"id": id_})
-        out.add("trafficSignElement").add("trafficSignID", raw=SIGNS[arm.control])
-        out.extended(self._place(arm)).add("virtual", raw="false")
-        return out
+        return _sign(id_, self._place(arm), "false", trafficSignID=SIGNS[arm.control])
 
     def _light(self, arm: Arm, id_: int) -> XmlElement:
         out = XmlElement("trafficLight", {"id": id_})
-        cycle = XmlElement("cycle")
-        phase = cycle.add("cycleElement")
-        phase.add("duration", raw=str(GREEN))
-        phase.add("color", raw="green")
-        out.extended(cycle, self._place(arm))
-        out.add("direction", raw="all")
-        out.add("active", raw="true")
-        return out
+        out.add("cycle").add("cycleElement").with_texts(duration=str(GREEN), color="green")
+        out.add("position").extended(point_element(self._place(arm)))
+        return out.with_texts(direction="all", active="true")
 
 
 class CommonRoad:
@@ -180,18 +171,16 @@ def document(road: Road, world: World) -> XmlElement:
             "date": "2026-01-01",  # fixed, so that the same road gives the same bytes
         },
     )
-    location = root.add("location")
-    location.add("geoNameId", raw=str(NOWHERE))
-    location.add("gpsLatitude", raw=number(LATITUDE))
-    location.add("gpsLongitude", raw=number(LONGITUDE))
+    place = {"geoNameId": str(NOWHERE), "gpsLatitude": number(LATITUDE), "gpsLongitude": number(LONGITUDE)}
+    root.add("location").with_texts(**place)
     root.add("scenarioTags").add("rural")
     junctions = Crossings(network_of(road, world), lanelets, sign + 2)
     for each in lanelets:
         root.extended(_lanelet(each, sign, junctions))
     edges = world.profile_of(road).edges(0.0)
     side = edges.left if world.profile_of(road).left_hand else edges.right
-    root.extended(_limit(sign, road.at(0.0, side), world))
-    root.extended(*junctions.elements())
+    limit = {"trafficSignID": SPEED_LIMIT, "additionalValue": number(round(world.limits.speed_limit, 6))}
+    root.extended(_sign(sign, road.at(0.0, side)[:2].tolist(), "true", **limit), *junctions.elements())
     last = legs_of(road, world)[-1]
     goal = [each.id for each in lanelets if Leg(each.road, each.lane) == last][-1]
     return root.extended(_problem(sign + 1, road, world, goal))
@@ -211,21 +200,16 @@ def _lanelet(lanelet: Lanelet, sign: int, junctions: Crossings) -> XmlElement:
         if neighbour is not None:
             id_, is_same = neighbour
             out.add(name, {"ref": id_, "drivingDir": "same" if is_same else "opposite"})
-    out.extended(*junctions.line_of(lanelet.id))
-    out.add("laneletType", raw="country")
-    out.add("userOneWay", raw="vehicle")
+    out.extended(*junctions.line_of(lanelet.id)).with_texts(laneletType="country", userOneWay="vehicle")
     out.add("trafficSignRef", {"ref": sign})
     return out.extended(*junctions.references(lanelet.id))
 
 
-def _limit(id_: int, place: Array, world: World) -> XmlElement:
+def _sign(id_: int, place: Sequence[float], virtual: str, **told: str) -> XmlElement:
     out = XmlElement("trafficSign", {"id": id_})
-    told = out.add("trafficSignElement")
-    told.add("trafficSignID", raw=SPEED_LIMIT)
-    told.add("additionalValue", raw=number(round(world.limits.speed_limit, 6)))
-    out.add("position").extended(point_element(place[:2].tolist()))
-    out.add("virtual", raw="true")
-    return out
+    out.add("trafficSignElement").with_texts(**told)
+    out.add("position").extended(point_element(place))
+    return out.with_texts(virtual=virtual)
 
 
 def _problem(id_: int, road: Road, world: World, goal: int) -> XmlElement:
@@ -241,17 +225,13 @@ def _problem(id_: int, road: Road, world: World, goal: int) -> XmlElement:
     for name, value in values.items():
         state.add(name).add("exact", raw=number(value))
     state = out.add("goalState")
-    time = state.add("time")
-    time.add("intervalStart", raw="0")
     steps = int(np.ceil((PATIENCE * road.length / calm_speed(road, world) + 10.0) / STEP))
-    time.add("intervalEnd", raw=str(steps))
+    state.add("time").with_texts(intervalStart="0", intervalEnd=str(steps))
     state.add("position").add("lanelet", {"ref": goal})
     return out
 
 
 def point_element(values: Sequence[float]) -> XmlElement:
     """Returns the element ``point`` with x and y in metres."""
-    out = XmlElement("point")
-    for name, value in zip("xy", values, strict=True):
-        out.add(name, raw=number(value))
-    return out
+    x, y = map(number, values)
+    return XmlElement("point").with_texts(x=x, y=y)

@@ -59,9 +59,9 @@ def document(road: Road, world: World) -> str:
     points = finite(road.at(np.linspace(0.0, road.length, count + 1)))
     headings = np.array(_headings(points[:, :2].tolist(), step))
     right, left = _across(headings, step, world.profile_of(road), road.length)
-    phi = [NOTHING, *map(_field, headings.tolist())]
-    edges = [map(_field, _heights(road, points, t).tolist()) for t in (right, left)]
-    rows = ["".join(fields) for fields in zip(phi, *edges, strict=True)]
+    columns = [headings.tolist(), *(_heights(road, points, t).tolist() for t in (right, left))]
+    phi, *edges = ([f"{value:20.12e}" for value in column] for column in columns)
+    rows = ["".join(fields) for fields in zip([NOTHING, *phi], *edges, strict=True)]
     return "\n".join([*_header(road.length, step, points, headings, right, left), *rows, ""])
 
 
@@ -82,18 +82,10 @@ def _header(
     length: float, step: float, points: Array, headings: Array, right: float, left: float
 ) -> list[str]:
     """Returns the lines that define the reference line, the surface's width, and the columns of a row."""
-    end = points[0, :2] + step * np.array([np.cos(headings).sum(), np.sin(headings).sum()])
-    numbers = {
-        "start_u": 0.0,
-        "end_u": length,
-        "increment": step,
-        "start_x": points[0, 0],
-        "start_y": points[0, 1],
-        "start_phi": headings[0],
-        "end_x": end[0],
-        "end_y": end[1],
-        "end_phi": headings[-1],
-    }
+    (x, y), phi = points[0, :2], headings[[0, -1]]
+    end_x, end_y = x + step * np.cos(headings).sum(), y + step * np.sin(headings).sum()
+    numbers = {"start_u": 0.0, "end_u": length, "increment": step, "start_x": x, "start_y": y}
+    numbers |= {"start_phi": phi[0], "end_x": end_x, "end_y": end_y, "end_phi": phi[1]}
     sides = {"v_right": right, "v_left": left, "v_increment": left - right}
     return [
         "$CT",
@@ -144,7 +136,3 @@ def _across(headings: Array, step: float, profile: Profile, length: float) -> tu
         )
     rims = profile.rims(np.linspace(0.0, length, len(headings) + 1))
     return max(float(rims.right.min()), -room), min(float(rims.left.max()), room)
-
-
-def _field(value: float) -> str:
-    return f"{value:20.12e}"

@@ -87,16 +87,13 @@ def _line(name: str, points: Array, properties: dict[str, Any]) -> dict[str, Any
 
 
 def _feature(name: str, geometry: dict[str, Any], properties: dict[str, Any]) -> dict[str, Any]:
-    rounded = {
-        key: round(value, 3) if isinstance(value, float) else value for key, value in properties.items()
-    }
+    pairs = properties.items()
+    rounded = {key: round(value, 3) if isinstance(value, float) else value for key, value in pairs}
     return {"type": "Feature", "properties": {"name": name, **rounded}, "geometry": geometry}
 
 
 def _on_globe(points: Array) -> list[list[float]]:
     x, y, z = finite(points).T
-    longitude, latitude = degrees(x, y)
-    columns = [np.round(longitude, DECIMALS), np.round(latitude, DECIMALS)]
-    heights = np.round(z, HEIGHT_DECIMALS) + 0.0
-    rows: list[list[float]] = np.column_stack([*columns, heights]).tolist()
+    columns = [np.round(each, DECIMALS) for each in degrees(x, y)]
+    rows: list[list[float]] = np.column_stack([*columns, np.round(z, HEIGHT_DECIMALS) + 0.0]).tolist()
     return rows

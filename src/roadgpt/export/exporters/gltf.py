@@ -180,9 +180,8 @@ def _path(road: Road, s: Array, world: World, poses: Poses | None) -> TriangleMe
         middle = world.profile_of(road).middle(part)
         half = np.minimum(PATH_WIDTH, world.profile_of(road).width(part) / 2) / 2
         return _strip("path", "path", road, part, middle + half, middle - half, PATH)
-    moved = np.r_[
-        True, np.hypot(np.diff(poses.x), np.diff(poses.y)) > 1e-6
-    ]  # keeps a single point where the car stands
+    # keeps a single point where the car stands
+    moved = np.r_[True, np.hypot(np.diff(poses.x), np.diff(poses.y)) > 1e-6]
     ground = on_the_ground(poses, 0.0)[moved] + PATH * UP
     heading = poses.heading[moved]
     if len(ground) < 2:
@@ -287,48 +286,39 @@ def to_bytes(meshes: Sequence[TriangleMesh], near: Array) -> bytes:
 
 def _scene(meshes: Sequence[TriangleMesh], origin: Array, materials: Sequence[str]) -> dict[str, Any]:
     grained = [name for name in materials if name in GRAINS]
+    children = list(range(1, len(meshes) + 1))
+    whole = {"name": "map", "translation": (Y_UP @ origin + 0.0).tolist(), "children": children}
     return {
         "asset": {"version": "2.0", "generator": "RoadGPT"},
         "scene": 0,
         "scenes": [{"name": "road", "nodes": [0]}],
-        "nodes": [
-            {
-                "name": "map",
-                "translation": (Y_UP @ origin + 0.0).tolist(),
-                "children": list(range(1, len(meshes) + 1)),
-            },
-            *({"name": mesh.name, "mesh": i} for i, mesh in enumerate(meshes)),
-        ],
+        "nodes": [whole, *({"name": mesh.name, "mesh": i} for i, mesh in enumerate(meshes))],
         "materials": [_material(name, grained) for name in materials],
         "textures": [{"source": i, "sampler": 0} for i in range(len(grained))],
         "samplers": [REPEATED] if grained else [],
-        "images": [],
-        "meshes": [],
-        "accessors": [],
-        "bufferViews": [],
-        "buffers": [],
+        **{name: [] for name in ("images", "meshes", "accessors", "bufferViews", "buffers")},
     }
 
 
 def _image(data: dict[str, Any], content: bytearray, material: str) -> dict[str, Any]:
-    """Appends a picture to the buffer, padded to a multiple of 4 bytes."""
-    packed = _picture(material)
-    view = {"buffer": 0, "byteOffset": len(content), "byteLength": len(packed)}
-    data["bufferViews"].append(view)
+    """Appends a picture to the buffer."""
+    view = _view(data, content, _picture(material))
+    return {"bufferView": view, "mimeType": "image/png", "name": material}
+
+
+def _view(data: dict[str, Any], content: bytearray, packed: bytes, **more: int) -> int:
+    """Appends bytes to the buffer, padded to a multiple of 4; returns the index of their view."""
+    data["bufferViews"].append({"buffer": 0, "byteOffset": len(content), "byteLength": len(packed), **more})
     content += packed + b"\0" * (-len(packed) % 4)
-    return {"bufferView": len(data["bufferViews"]) - 1, "mimeType": "image/png", "name": material}
+    return len(data["bufferViews"]) - 1
 
 
 def _put(data: dict[str, Any], content: bytearray, values: np.ndarray, bounded: bool = False) -> int:
-    """Appends an array to the buffer and returns the index of its accessor. Every array is a multiple of 4
-    bytes."""
+    """Appends an array to the buffer and returns the index of its accessor."""
     is_index = values.ndim == 1
     packed = np.ascontiguousarray(values, dtype="<u4" if is_index else "<f4")
-    view = {"buffer": 0, "byteOffset": len(content), "byteLength": packed.nbytes}
-    data["bufferViews"].append({**view, "target": INDICES if is_index else VERTICES})
-    content += packed.tobytes()
     accessor: dict[str, Any] = {
-        "bufferView": len(data["bufferViews"]) - 1,
+        "bufferView": _view(data, content, packed.tobytes(), target=INDICES if is_index else VERTICES),
         "componentType": UINT if is_index else FLOAT,
         "count": len(packed),
         "type": "SCALAR" if is_index else f"VEC{packed.shape[1]}",

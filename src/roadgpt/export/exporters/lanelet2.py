@@ -104,20 +104,15 @@ class _MapBuilder:
     def _at(self, point: Array) -> int | None:
         """Returns the id of the nearest end node of a way within SAME of a point; None if there is none."""
         cells = {_cell(point + (x, y, 0)) for x in (-SAME, SAME) for y in (-SAME, SAME)}
-        near = [
-            (float(np.abs(place - point).max()), node)
-            for cell in cells
-            for place, node in self._ends.get(cell, ())
-        ]
+        ends = [end for cell in cells for end in self._ends.get(cell, ())]
+        near = [(float(np.abs(place - point).max()), node) for place, node in ends]
         away, node = min(near, default=(2 * SAME, 0))
         return node if away <= SAME else None
 
     def _way(self, nodes: list[int], tags: dict[str, str]) -> int:
         number = next(self._numbers)
-        way = XmlElement("way", {"id": number, **KEEP})
-        for node in nodes:
-            way.add("nd", {"ref": node})
-        self.ways.append(_tagged(way, tags))
+        own = [XmlElement("nd", {"ref": node}) for node in nodes]
+        self.ways.append(_tagged(XmlElement("way", {"id": number, **KEEP}, own), tags))
         return number
 
     def _add_nodes(self, points: Array) -> list[int]:
@@ -158,10 +153,8 @@ class _MapBuilder:
         self.rules.append(_tagged(rule, {"type": "regulatory_element", "subtype": kind}))
         for each in incoming:
             # members must come before the tags
-            member_of = XmlElement(
-                "member", {"type": "relation", "ref": rule.attributes["id"], "role": "regulatory_element"}
-            )
-            self.lanelets[each].children.insert(2, member_of)
+            link = {"type": "relation", "ref": rule.attributes["id"], "role": "regulatory_element"}
+            self.lanelets[each].children.insert(2, XmlElement("member", link))
 
 
 def _cell(point: Array) -> Cell:
@@ -169,6 +162,4 @@ def _cell(point: Array) -> Cell:
 
 
 def _tagged(element: XmlElement, tags: dict[str, str]) -> XmlElement:
-    for key, value in tags.items():
-        element.add("tag", {"k": key, "v": value})
-    return element
+    return element.extended(*(XmlElement("tag", {"k": key, "v": value}) for key, value in tags.items()))

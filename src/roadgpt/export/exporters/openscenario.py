@@ -68,20 +68,17 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
         told = "A car drives a route through a network of roads."
         measured = {"coordinateSystem": "entity", "relativeDistanceType": "euclidianDistance"}
         # a route that turns back ends beside its start
-        driven = XmlElement("EntityCondition")
-        driven.add("TraveledDistanceCondition", {"value": round(road.length / 2, DECIMALS)})
+        driven = XmlElement("TraveledDistanceCondition", {"value": round(road.length / 2, DECIMALS)})
         also["half of it is driven"] = _of_ego(driven)
     root, actions, story = _frame(world, map_, told)
-    actions.add("PrivateAction").add("TeleportAction").extended(waypoints[0])
-    actions.add("PrivateAction").extended(_speed(0.0))
+    _start(actions, waypoints[0], 0.0)
     assigned = actions.add("PrivateAction").add("RoutingAction").add("AssignRouteAction")
     points = assigned.add("Route", {"name": "to the end", "closed": "false"})
     for waypoint in waypoints:
         points.add("Waypoint", {"routeStrategy": "shortest"}).extended(waypoint)
     _act(story, "drive").extended(_profile(plan))
-    reached = XmlElement("EntityCondition")
     distance: dict[str, Value] = {"value": round(near, DECIMALS), "freespace": "false", "rule": "lessThan"}
-    reached.add("DistanceCondition", {**distance, **measured}).extended(waypoints[-1])
+    reached = XmlElement("DistanceCondition", {**distance, **measured}).extended(waypoints[-1])
     most = round(float(plan.time[-1]) + PATIENCE, DECIMALS)
     _stop(root, {"the end is near": _of_ego(reached), **also}, {"too long": _after(most)})
     return root
@@ -96,15 +93,14 @@ def _on_route(road: Road, world: World, s: float) -> XmlElement:
     along = min(s - road.starts[first], member.road.length)
     is_along = member.profile.leads_along(leg.lane)
     place = {"s": along if is_along else member.road.length - along, "offset": 0}
-    out = XmlElement("Position")
-    out.add("LanePosition", {"roadId": str(leg.road), "laneId": str(leg.lane), **place})
-    return out
+    lane: dict[str, Value] = {"roadId": str(leg.road), "laneId": str(leg.lane), **place}
+    return XmlElement("Position").extended(XmlElement("LanePosition", lane))
 
 
 def _of_ego(condition: XmlElement) -> XmlElement:
     out = XmlElement("ByEntityCondition")
     out.add("TriggeringEntities", {"triggeringEntitiesRule": "any"}).add("EntityRef", {"entityRef": EGO})
-    return out.extended(condition)
+    return out.extended(XmlElement("EntityCondition").extended(condition))
 
 
 def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
@@ -115,8 +111,7 @@ def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
     exact = np.column_stack([ground, poses.heading, -poses.pitch, poses.roll])
     rows = np.asarray(np.round(exact, DECIMALS) + 0.0, float)
     root, actions, story = _frame(world, map_, "A car repeats its recorded drive.")
-    actions.add("PrivateAction").add("TeleportAction").extended(_in_world(rows[0]))
-    actions.add("PrivateAction").extended(_speed(round(float(poses.speed[0]), DECIMALS)))
+    _start(actions, _in_world(rows[0]), round(float(poses.speed[0]), DECIMALS))
     begin = _drives_off(ground)
     follow = _act(story, "repeat", float(time[begin])).add("RoutingAction").add("FollowTrajectoryAction")
     trajectory = follow.add("TrajectoryRef").add("Trajectory", {"name": "drive", "closed": "false"})
@@ -142,14 +137,8 @@ def _drives_off(ground: Array) -> int:
 
 def _frame(world: World, map_: str, description: str) -> tuple[XmlElement, XmlElement, XmlElement]:
     root = XmlElement("OpenSCENARIO")
-    header: dict[str, Value] = {
-        "revMajor": 1,
-        "revMinor": 2,
-        "date": DATE,
-        "description": description,
-        "author": "RoadGPT",
-    }
-    root.add("FileHeader", header)
+    told: dict[str, Value] = {"date": DATE, "description": description, "author": "RoadGPT"}
+    root.add("FileHeader", {"revMajor": 1, "revMinor": 2, **told})
     root.add("CatalogLocations")
     root.add("RoadNetwork").add("LogicFile", {"filepath": map_})
     root.add("Entities").add("ScenarioObject", {"name": EGO}).extended(_vehicle())
@@ -205,18 +194,16 @@ def _trigger(name: str, *groups: Mapping[str, XmlElement]) -> XmlElement:
 
 
 def _after(seconds: float) -> XmlElement:
-    out = XmlElement("ByValueCondition")
-    out.add("SimulationTimeCondition", {"value": seconds, "rule": "greaterThan"})
-    return out
+    value: dict[str, Value] = {"value": seconds, "rule": "greaterThan"}
+    return XmlElement("ByValueCondition").extended(XmlElement("SimulationTimeCondition", value))
 
 
-def _speed(target: float) -> XmlElement:
-    out = XmlElement("LongitudinalAction")
-    action = out.add("SpeedAction")
+def _start(actions: XmlElement, place: XmlElement, speed: float) -> None:
+    actions.add("PrivateAction").add("TeleportAction").extended(place)
+    action = actions.add("PrivateAction").add("LongitudinalAction").add("SpeedAction")
     shape: dict[str, Value] = {"dynamicsShape": "step", "value": 0, "dynamicsDimension": "time"}
     action.add("SpeedActionDynamics", shape)
-    action.add("SpeedActionTarget").add("AbsoluteTargetSpeed", {"value": target})
-    return out
+    action.add("SpeedActionTarget").add("AbsoluteTargetSpeed", {"value": speed})
 
 
 def _profile(profile: SpeedProfile) -> XmlElement:
@@ -232,6 +219,5 @@ def _profile(profile: SpeedProfile) -> XmlElement:
 
 
 def _in_world(row: Array) -> XmlElement:
-    out = XmlElement("Position")
-    out.add("WorldPosition", dict(zip("xyzhpr", row.tolist(), strict=True)))
-    return out
+    place = XmlElement("WorldPosition", dict(zip("xyzhpr", row.tolist(), strict=True)))
+    return XmlElement("Position").extended(place)

@@ -47,22 +47,20 @@ class Sumo:
         installed."""
         stem = path.name.removesuffix(self.suffix)
         limits, ways = speed_zones(road, world), _ways(road, world.profile_of(road))
+        converted: dict[str, dict[str, Value]] = {
+            "input": {"node-files": f"{stem}.nod.xml", "edge-files": f"{stem}.edg.xml"},
+            "output": {"output-file": f"{stem}.net.xml"},
+            "formatting": {"precision": PRECISION},
+            "processing": {"offset.disable-normalization": "true"},
+            "junctions": {"no-turnarounds": "true"},
+        }
+        simulated = {"input": {"net-file": f"{stem}.net.xml", "route-files": f"{stem}.rou.xml"}}
         files = {
             self.suffix: _nodes(ways[0].shape),
             ".edg.xml": _edges(ways, world, limits),
-            ".netccfg": _configuration(
-                {
-                    "input": {"node-files": f"{stem}.nod.xml", "edge-files": f"{stem}.edg.xml"},
-                    "output": {"output-file": f"{stem}.net.xml"},
-                    "formatting": {"precision": PRECISION},
-                    "processing": {"offset.disable-normalization": "true"},
-                    "junctions": {"no-turnarounds": "true"},
-                }
-            ),
+            ".netccfg": _configuration(converted),
             ".rou.xml": _trip(limits, world.profile_of(road)),
-            ".sumocfg": _configuration(
-                {"input": {"net-file": f"{stem}.net.xml", "route-files": f"{stem}.rou.xml"}}
-            ),
+            ".sumocfg": _configuration(simulated),
         }
         for suffix, document in files.items():
             path.with_name(stem + suffix).write_bytes(document.to_text().encode())
@@ -87,8 +85,8 @@ def netconvert() -> str | None:
 
 def _nodes(shape: Array) -> XmlElement:
     out = XmlElement("nodes")
-    for name, point in (("start", shape[0]), ("end", shape[-1])):
-        out.add("node", {"id": name, **dict(zip("xyz", point.tolist(), strict=True)), "type": "dead_end"})
+    for name, (x, y, z) in (("start", shape[0].tolist()), ("end", shape[-1].tolist())):
+        out.add("node", {"id": name, "x": x, "y": y, "z": z, "type": "dead_end"})
     return out
 
 
@@ -128,8 +126,7 @@ def speed_zones(road: Road, world: World) -> list[SpeedZone]:
 
     A zone is at least SHORTEST metres long; a shorter road is a single zone. Cars in SUMO brake in time for
     the speed limit of the next zone, so they drive bends at a suitable speed."""
-    count = max(1, int(road.length / SHORTEST))
-    ends = np.linspace(0.0, road.length, count + 1)
+    ends = np.linspace(0.0, road.length, max(1, int(road.length / SHORTEST)) + 1)
     out: list[SpeedZone] = []
     for a, b in pairwise(ends.tolist()):
         least = float(calm_speeds(road, world, np.linspace(a, b, LOOKS)).min())
@@ -145,13 +142,8 @@ def _edges(ways: Sequence[Way], world: World, limits: Sequence[SpeedZone]) -> Xm
     back = [SpeedZone(along - end, limit.speed) for end, limit in zip(ends, limits, strict=True)][::-1]
     out = XmlElement("edges")
     for (name, start, end, points, widths), pieces in zip(ways, (limits, back), strict=False):
-        lanes: dict[str, Value] = {
-            "numLanes": len(widths),
-            "speed": round(pieces[0].speed, 6),
-            "width": widths[0],
-            "friction": world.site.friction,
-            "spreadType": "right",
-        }
+        lanes: dict[str, Value] = {"numLanes": len(widths), "speed": round(pieces[0].speed, 6)}
+        lanes |= {"width": widths[0], "friction": world.site.friction, "spreadType": "right"}
         told = " ".join(",".join(map(number, point)) for point in points.tolist())
         edge = out.add("edge", {"id": name, "from": start, "to": end, **lanes, "shape": told})
         if len({*widths}) > 1:

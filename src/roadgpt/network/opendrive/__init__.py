@@ -36,15 +36,11 @@ class ImportedMap:
         """Returns the speed limit in m/s and the friction that hold for the longest part of a route, or of
         all lanes, as the fields of a World; and a sentence about each that differs on another part, or is
         limited. What the file does not state is left out."""
-        profiles = {each.id: each.profile for each in self.network.roads}
-        legs = legs or [
-            Leg(number, lane)
-            for number, own in profiles.items()
-            for lane in (*own.along_ids, *own.against_ids)
-        ]
-        return world_values(
-            [(self.network.road(leg.road).road.length, profiles[leg.road].lanes[leg.lane]) for leg in legs]
-        )
+        roads = {each.id: each for each in self.network.roads}
+        ids = {number: each.profile.along_ids + each.profile.against_ids for number, each in roads.items()}
+        legs = legs or [Leg(number, lane) for number, own in ids.items() for lane in own]
+        lanes = ((roads[leg.road], leg.lane) for leg in legs)
+        return world_values([(each.road.length, each.profile.lanes[lane]) for each, lane in lanes])
 
 
 def read_map(path: Path | str) -> ImportedMap:

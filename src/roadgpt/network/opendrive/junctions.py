@@ -33,7 +33,7 @@ from roadgpt.network.network import (
     Roundabout,
     kinds_of,
 )
-from roadgpt.network.opendrive.roads import UNLINKED, FileRoad, LaneStretch, RoadBuilder, Way
+from roadgpt.network.opendrive.roads import UNLINKED, FileRoad, RoadBuilder, Way
 from roadgpt.network.opendrive.tree import Remarks, number
 from roadgpt.network.pose import Point
 
@@ -111,7 +111,8 @@ class Joining:
                 self.remarks.add("left out: parts of roads without a lane for cars", f"road {road.id}")
         for n, joint in enumerate(road.joints):
             one, two = (RoadEnd(self.parts[road.id][n + at], "start" if at else "end") for at in (0, 1))
-            self._join(one, two, _numbered(joint, road.stretches[n], road.stretches[n + 1]))
+            here, after = road.stretches[n].lanes, road.stretches[n + 1].lanes
+            self._join(one, two, [(here[a], after[b]) for a, b in joint if a in here and b in after])
 
     def _join(self, one: RoadEnd, two: RoadEnd, pairs: Iterable[tuple[int, int]]) -> None:
         """Lets lanes continue each other, of which the first one is of ``one``; lanes for cars only."""
@@ -120,9 +121,8 @@ class Joining:
         first, second = self.members[one.road], self.members[two.road]
         into, out = first.ids_towards(one.contact), second.ids_towards(OTHER_CONTACT[two.contact])
         back_in, back_out = second.ids_towards(two.contact), first.ids_towards(OTHER_CONTACT[one.contact])
-        lanes = sorted(
-            {(a, b) for a, b in pairs if (a in into and b in out) or (a in back_out and b in back_in)}
-        )
+        own = {(a, b) for a, b in pairs if (a in into and b in out) or (a in back_out and b in back_in)}
+        lanes = sorted(own)
         taken = {end for known in self.continuations for end in known}
         if not lanes or frozenset((one, two)) in self.continuations:
             return
@@ -142,11 +142,9 @@ class Joining:
 
     def _lanes_at(self, road: str, contact: str) -> Lanes:
         """Returns the lanes at an end of a road of the file."""
-        file = self.files[road]
-        stretch, ids = (
-            (file.stretches[0], file.entry) if contact == "start" else (file.stretches[-1], file.exit)
-        )
-        return {a: stretch.lanes[b] for a, b in ids.items() if b in stretch.lanes}
+        file, begins = self.files[road], contact == "start"
+        lanes = file.stretches[0 if begins else -1].lanes
+        return {a: lanes[b] for a, b in (file.entry if begins else file.exit).items() if b in lanes}
 
     def _continue(self, road: FileRoad, name: str) -> None:
         link, contact = road.ends(name), "start" if name == "predecessor" else "end"
@@ -158,8 +156,7 @@ class Joining:
                 self.remarks.add("it is linked to a road that is left out or not there", f"road {road.id}")
             return
         here, there = self._lanes_at(road.id, contact), self._lanes_at(link[1], link[2])
-        pairs = _outward_links(road, contact)
-        pairs |= {(b, a) for a, b in _outward_links(self.files[link[1]], link[2])}
+        pairs = road.links_at(contact) | {(b, a) for a, b in self.files[link[1]].links_at(link[2])}
         if not pairs:
             self.remarks.add(UNLINKED, f"road {road.id}")
             same = 1 if contact != link[2] else -1
@@ -194,6 +191,7 @@ class Joining:
         """Returns a way through a junction; None, with a remark, if it cannot be read."""
         file = self.files.get(node.get("connectingRoad", ""))
         contact = node.get("contactPoint", "start")
+        none = "left out: ways that lead from or to no road, or on which no lane does"
         if file is None or not file.junction or file.junction != junction:
             self.remarks.add("left out: ways on roads that are left out or are not of the junction", where)
             return None
@@ -205,25 +203,20 @@ class Joining:
         found = next((each for each in self.ways[file.id] if each[1].is_along == (contact == "start")), None)
         names = ("predecessor", "successor") if contact == "start" else ("successor", "predecessor")
         links = [file.ends(name) for name in names]
-        ends = [
-            self._end(each[1], each[2]) if each is not None and each[0] == "road" else None for each in links
-        ]
-        before, after = ends
+        before, after = (self._end(*each[1:]) if each and each[0] == "road" else None for each in links)
         if found is None or before is None or after is None or links[0] is None or links[1] is None:
-            self.remarks.add("left out: ways that lead from or to no road, or on which no lane does", where)
+            self.remarks.add(none, where)
             return None
         road, way = found
         first, last = (way.at_start, way.at_end) if way.is_along else (way.at_end, way.at_start)
         here, there = self._lanes_at(*links[0][1:]), self._lanes_at(*links[1][1:])
         into = {(int(number(each, "from")), int(number(each, "to"))) for each in node.findall("laneLink")}
-        into = into or {(b, a) for a, b in _outward_links(file, "start" if way.is_along else "end")}
-        out = _outward_links(file, "end" if way.is_along else "start")
-        out |= {
-            (b, a)
-            for a, b in _outward_links(self.files[links[1][1]], links[1][2])
-            if self.files[links[1][1]].ends("predecessor" if links[1][2] == "start" else "successor")
-            == ("road", file.id, "end" if way.is_along else "start")
-        }
+        first_end, last_end = ("start", "end") if way.is_along else ("end", "start")
+        into = into or {(b, a) for a, b in file.links_at(first_end)}
+        out, next_road = file.links_at(last_end), self.files[links[1][1]]
+        name = "predecessor" if links[1][2] == "start" else "successor"
+        if next_road.ends(name) == ("road", file.id, last_end):
+            out |= {(b, a) for a, b in next_road.links_at(links[1][2])}
         onward = {last[a]: there[b] for a, b in sorted(out) if a in last and b in there}
         incoming, outgoing = self.members[before.road], self.members[after.road]
         lanes = tuple(
@@ -236,7 +229,7 @@ class Joining:
             and onward[first[b]] in outgoing.ids_towards(OTHER_CONTACT[after.contact])
         )
         if not lanes:
-            self.remarks.add("left out: ways that lead from or to no road, or on which no lane does", where)
+            self.remarks.add(none, where)
             return None
         return Connection(road, before, after, lanes)
 
@@ -267,25 +260,19 @@ class Joining:
         reach = 2 * np.linalg.norm(poses[:, :2] - middle, axis=1).max() + 1.0
         if rank < 2 or np.linalg.norm(found - middle) > reach:
             found = middle
-        heights = [self._height(end) for end in ends]
+        roads = [(self.members[end.road].road, end.contact == "start") for end in ends]
+        heights = [float(road.elevation.height(0.0 if begins else road.length)) for road, begins in roads]
         return float(found[0]), float(found[1]), float(np.mean(heights))
-
-    def _height(self, end: RoadEnd) -> float:
-        road = self.members[end.road].road
-        return float(road.elevation.height(0.0 if end.contact == "start" else road.length))
 
     def _kind(self, arms: Sequence[Arm]) -> Kind:
         directions = sorted(math.degrees(arm.direction) % 360 for arm in arms)
         gaps = [(b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
         if len(arms) == 3:
-            into = [bool(self.members[arm.end.road].ids_towards(arm.end.contact)) for arm in arms]
-            out = [
-                bool(self.members[arm.end.road].ids_towards(OTHER_CONTACT[arm.end.contact])) for arm in arms
-            ]
-            if min(gaps) < PARALLEL and sum(into) != sum(out):
-                return "merge" if sum(into) > sum(out) else "diverge"
+            ends = [(self.members[arm.end.road], arm.end.contact) for arm in arms]
+            into = sum(bool(road.ids_towards(contact)) for road, contact in ends)
+            out = sum(bool(road.ids_towards(OTHER_CONTACT[contact])) for road, contact in ends)
             if min(gaps) < PARALLEL:
-                return "junction"
+                return "junction" if into == out else "merge" if into > out else "diverge"
         return next(iter(kinds_of(gaps)), "junction") if len(arms) > 2 else "junction"
 
     def _controls(
@@ -334,21 +321,17 @@ class Joining:
     def network(self) -> Network:
         """Returns the network of all roads and junctions."""
         crossed = self._crosswalks()
-        junctions = [
-            replace(
-                junction,
-                arms=tuple(replace(arm, crosswalk=arm.end in crossed) for arm in junction.arms),
-            )
-            for junction in self.junctions.values()
-        ]
+        junctions = []
+        for each in self.junctions.values():
+            arms = tuple(replace(arm, crosswalk=arm.end in crossed) for arm in each.arms)
+            junctions.append(replace(each, arms=arms))
         for file in self.files.values():
             tell_unread(file.node, self.remarks, f"road {file.id}", is_alone=False)
             if file.junction and file.id not in self.ways:
                 self.remarks.add("left out: connecting roads that no junction names", f"road {file.id}")
         at_junctions = {arm.end for junction in junctions for arm in junction.arms}
-        joined = [
-            each for each in self.continuations.values() if not {each.before, each.after} & at_junctions
-        ]
+        known = self.continuations.values()
+        joined = [each for each in known if not {each.before, each.after} & at_junctions]
         used = {each.road for junction in junctions for each in junction.connections}
         roads = [each for each in self.members.values() if each.junction is None or each.id in used]
         whole = Network(tuple(sorted(roads, key=lambda each: each.id)), tuple(junctions), (), tuple(joined))
@@ -395,23 +378,6 @@ def _is_number(name: str) -> bool:
     return name.isascii() and name.isdigit() and len(name) <= 9
 
 
-def _numbered(joint: Iterable[tuple[int, int]], one: LaneStretch, two: LaneStretch) -> list[tuple[int, int]]:
-    return [(one.lanes[a], two.lanes[b]) for a, b in joint if a in one.lanes and b in two.lanes]
-
-
-def _outward_links(road: FileRoad, contact: str) -> set[tuple[int, int]]:
-    """Returns the links of the lanes at an end of a road to those of the next road, by ids in the file."""
-    name = "predecessor" if contact == "start" else "successor"
-    nodes = road.node.findall("lanes/laneSection")
-    section = nodes[0 if contact == "start" else -1]
-    return {
-        (int(number(lane, "id")), int(number(link, "id")))
-        for side in ("left", "right")
-        for lane in section.findall(f"{side}/lane")
-        for link in lane.findall(f"link/{name}")
-    }
-
-
 def _control(node: Element) -> Control | None:
     """Returns what a signal means at a junction; None if nothing."""
     kind, name = node.get("type", "").lower(), node.get("name", "").lower()
@@ -449,25 +415,15 @@ def _with_roundabouts(network: Network) -> Network:
         if ring is not None:
             taken |= {*ring.ring}
             found.append(ring)
-    inside = {number for ring in found for number in ring.junctions}
     on_ring = {road for ring in found for road in ring.ring}
-    junctions = tuple(
-        replace(
-            each,
-            kind="roundabout",
-            arms=_from_outside(each.arms, on_ring),
-            node=next(ring.centre for ring in found if each.id in ring.junctions),
-        )
-        if each.id in inside
-        else each
-        for each in network.junctions
-    )
-    return replace(network, junctions=junctions, roundabouts=tuple(found))
-
-
-def _from_outside(arms: tuple[Arm, ...], ring: set[int]) -> tuple[Arm, ...]:
-    first = next(n for n, arm in enumerate(arms) if arm.end.road not in ring)
-    return (*arms[first:], *arms[:first])
+    centres = {number: ring.centre for ring in reversed(found) for number in ring.junctions}
+    junctions = list(network.junctions)
+    for n, each in enumerate(junctions):
+        if each.id in centres:
+            first = next(k for k, arm in enumerate(each.arms) if arm.end.road not in on_ring)
+            arms = (*each.arms[first:], *each.arms[:first])
+            junctions[n] = replace(each, kind="roundabout", arms=arms, node=centres[each.id])
+    return replace(network, junctions=tuple(junctions), roundabouts=tuple(found))
 
 
 def _ring(network: Network, first: int, starts: Mapping[int, Junction], side: int) -> Roundabout | None:
@@ -478,13 +434,9 @@ def _ring(network: Network, first: int, starts: Mapping[int, Junction], side: in
         at = network.junction_at.get(RoadEnd(ring[-1], "end"))
         if at is None or len(ring) > 12 or turned > 2 * math.pi + FULL:
             return None
-        onward = [
-            each
-            for each in network.junction(at).connections
-            if each.incoming == RoadEnd(ring[-1], "end")
-            and each.outgoing.contact == "start"
-            and each.outgoing.road in starts
-        ]
+        ways_on = [each for each in network.junction(at).connections if each.outgoing.contact == "start"]
+        end = RoadEnd(ring[-1], "end")
+        onward = [each for each in ways_on if each.incoming == end and each.outgoing.road in starts]
         bends = [_turn(network, each.road) * side for each in onward]
         if not bends:
             return None
@@ -510,11 +462,8 @@ def _ring(network: Network, first: int, starts: Mapping[int, Junction], side: in
     inner = max(side * float(edges.left if side > 0 else edges.right), 0.0)
     if np.ptp(away) > ROUND * away.mean() or away.mean() > LARGEST_RING:
         return None
-    radius = float(away.mean()) - inner
-    width = float(edges.left - edges.right)
-    return Roundabout(
-        tuple(junctions), tuple(ring), (float(x), float(y), float(points[:, 2].mean())), radius, width
-    )
+    centre, radius = (float(x), float(y), float(points[:, 2].mean())), float(away.mean()) - inner
+    return Roundabout(tuple(junctions), tuple(ring), centre, radius, float(edges.left - edges.right))
 
 
 def _turn(network: Network, road: int) -> float:

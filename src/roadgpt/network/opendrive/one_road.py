@@ -1,7 +1,7 @@
 """Takes one road of an OpenDRIVE file by itself, and selects the lane that is driven."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
@@ -24,7 +24,7 @@ from roadgpt.network.opendrive.roads import (
 from roadgpt.network.opendrive.tree import DRIVING, NUMBER, Remarks, read_tree
 from roadgpt.network.stretch import turned
 from roadgpt.road import Profile, Road, World
-from roadgpt.road.profile import Lane, Marking, as_cubics
+from roadgpt.road.profile import Marking, as_cubics
 from roadgpt.road.world import LANE_WIDTHS
 
 PLACES = 1_000  # stations at which widths are sampled
@@ -137,17 +137,12 @@ def _alone(file: FileRoad, remarks: Remarks) -> tuple[Road, dict[str, float]]:
     profile = road.profile
     assert profile is not None
     along, against = (
-        sum(
-            each.end - each.start
-            for each in file.whole.sections
-            if any(lane * side > 0 for lane in each.driving)
-        )
+        sum(each.end - each.start for each in file.whole.sections if any(n * side > 0 for n in each.driving))
         for side in (-1, 1)
     )
     if not profile.along_ids or (profile.against_ids and against > 2 * along):
-        remarks.add(
-            "no lane to the right of its line is driven; the road follows the direction of its left lanes", ""
-        )
+        what = "no lane to the right of its line is driven"
+        remarks.add(f"{what}; the road follows the direction of its left lanes", "")
         road = turned(road)
         assert road.profile is not None
         profile = road.profile
@@ -162,18 +157,13 @@ def _alone(file: FileRoad, remarks: Remarks) -> tuple[Road, dict[str, float]]:
     for each in told:
         remarks.add(each, "")
     # what holds for the driven lane is said by the World
-    left, right = (
-        tuple(
-            replace(
-                lane,
-                speed_limit=None if lane.speed_limit == own.speed_limit else lane.speed_limit,
-                friction=None if lane.friction == own.friction else lane.friction,
-            )
-            for lane in side
-        )
-        for side in (profile.left, profile.right)
-    )
-    made = road.with_profile(replace(profile, left=left, right=right))
+    left, right = list(profile.left), list(profile.right)
+    for side in (left, right):
+        for n, lane in enumerate(side):
+            limit = None if lane.speed_limit == own.speed_limit else lane.speed_limit
+            friction = None if lane.friction == own.friction else lane.friction
+            side[n] = replace(lane, speed_limit=limit, friction=friction)
+    made = road.with_profile(replace(profile, left=tuple(left), right=tuple(right)))
     return Road.from_json(made.to_json()), values  # so that no road is written that cannot be read
 
 
@@ -182,16 +172,12 @@ def _painted(profile: Profile) -> Profile:
     ends = {ids[-1] for ids in (profile.along_ids, profile.against_ids) if ids}
     centre: Marking = "broken" if profile.count == (1, 1) else "solid"
 
-    def painted(lanes: Sequence[Lane], side: int) -> tuple[Lane, ...]:
-        return tuple(
-            replace(lane, marking="solid" if side * n in ends else "broken")
-            if lane.kind == "driving"
-            else lane
-            for n, lane in enumerate(lanes, 1)
-        )
-
-    left, right = painted(profile.left, 1), painted(profile.right, -1)
-    return replace(profile, left=left, right=right, centre_marking=centre)
+    left, right = list(profile.left), list(profile.right)
+    for side, lanes in ((1, left), (-1, right)):
+        for n, lane in enumerate(lanes, 1):
+            if lane.kind == "driving":
+                lanes[n - 1] = replace(lane, marking="solid" if side * n in ends else "broken")
+    return replace(profile, left=tuple(left), right=tuple(right), centre_marking=centre)
 
 
 def _driven(profile: Profile, length: float, remarks: Remarks) -> Profile:

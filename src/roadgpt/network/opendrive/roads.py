@@ -148,6 +148,7 @@ class FileRoad:
     entry: dict[int, int]  # the lanes of the first stretch, by the ids in the first section of the file
     exit: dict[int, int]  # the same at the end
     speeds: list[tuple[float, float | None]]  # stations in metres, and the speed limit in m/s from there on
+    links: tuple[Pairs, Pairs]
 
     def ends(self, name: str) -> tuple[str, str, str] | None:
         """Returns type, id and contact point of the ``predecessor`` or ``successor``; None without one."""
@@ -156,6 +157,10 @@ class FileRoad:
             return None
         kind = node.get("elementType", "road")
         return kind, node.get("elementId", ""), node.get("contactPoint", "start")
+
+    def links_at(self, contact: str) -> Pairs:
+        """Returns the links of the lanes at an end to those of the next road, by ids in the file."""
+        return self.links[0 if contact == "start" else 1]
 
 
 def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
@@ -200,6 +205,7 @@ def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
             for each in node.findall("type")
             if (found := each.find("speed")) is not None
         ],
+        (sections[0].links("predecessor"), sections[-1].links("successor")),
     )
 
 
@@ -243,9 +249,8 @@ def world_values(lanes: Sequence[tuple[float, Lane]]) -> tuple[dict[str, float],
         found[name] = min(max(most, limits[0]), limits[1])
         least, largest, used = (said_of(what, value) for value in (min(metres), max(metres), found[name]))
         if len(metres) > 1:
-            remarks.append(
-                f"its {what} is {least.removesuffix(' km/h')} to {largest}; {used} is used everywhere"
-            )
+            both = f"{least.removesuffix(' km/h')} to {largest}"
+            remarks.append(f"its {what} is {both}; {used} is used everywhere")
         elif found[name] != most:
             remarks.append(f"its {what} of {least} is taken as {used}")
     return found, tuple(remarks)
@@ -278,12 +283,10 @@ def _sections(node: Element, first: float, last: float) -> list[FileSection]:
 def lane_elements(section: Element, side: str, s: float) -> tuple[LaneElement, ...]:
     """Returns the lanes on the side "left" or "right" of a section that begins at station ``s``, from the
     inside out."""
-    nodes = {int(number(lane, "id")): lane for lane in section.findall(f"{side}/lane")}
+    nodes = [(int(number(lane, "id")), lane) for lane in section.findall(f"{side}/lane")]
     return tuple(
-        LaneElement(
-            n, nodes[n], *(cubics(nodes[n].findall(tag), "sOffset", s) for tag in ("width", "border"))
-        )
-        for n in sorted(nodes, key=abs)
+        LaneElement(n, lane, *(cubics(lane.findall(tag), "sOffset", s) for tag in ("width", "border")))
+        for n, lane in sorted(dict(nodes).items(), key=lambda pair: abs(pair[0]))
     )
 
 
@@ -541,11 +544,9 @@ class RoadBuilder:
                     for n, own in slot.items():
                         ids[n][own] = side * len(made)
             sides.append(tuple(made))
-        offset = [
-            row
-            for each in sections
-            for row in _reaching(combined([(1.0, self.file.offset)], *each.own), each.start)
-        ]
+        offset = list[Row]()
+        for each in sections:
+            offset += _reaching(combined([(1.0, self.file.offset)], *each.own), each.start)
         centre = [(each.start, each.end, each.centre[0]) for each in sections if each.centre]
         left, right = sides
         along, angle = left if self.file.left_hand else right, None
@@ -555,9 +556,8 @@ class RoadBuilder:
             angle = angle if any(any(cubic) for cubic in angle.coefficients) else None
         driven = max((n for n, lane in enumerate(along) if lane.kind == "driving"), default=0)
         centre_offset = _constant(self.file.line.moved(offset, start, end))
-        profile = Profile(
-            left, right, driven, self._marking(centre), angle, centre_offset, self.file.left_hand
-        )
+        marking, left_hand = self._marking(centre), self.file.left_hand
+        profile = Profile(left, right, driven, marking, angle, centre_offset, left_hand)
         plan = self.file.line.part(start, end)
         heights = self.file.line.moved(combined([(1.0, self.file.heights)], start, end), start, end)
         return Road(plan, plain(heights, plan.length), profile=profile), ids
@@ -597,10 +597,8 @@ class RoadBuilder:
             return None
         kind, nodes = parts[0][2].kind, [(start, end, own.node) for start, end, own in parts]
         if kind == "driving" and widest <= THIN:
-            kind = "none"
-            self.remarks.add(
-                f"a lane for cars that is nowhere wider than {THIN:g} m is a strip here", self.name
-            )
+            kind, told = "none", f"a lane for cars that is nowhere wider than {THIN:g} m is a strip here"
+            self.remarks.add(told, self.name)
         if kind != "driving":
             if any(node.find(tag) is not None for _, _, node in nodes for tag in ("speed", "material")):
                 what = "left out: speed limits and frictions of lanes that are not for cars"
@@ -623,9 +621,8 @@ class RoadBuilder:
         if what == "friction":
             found = stated(lanes, "material", self._friction)
         else:
-            found = self._or_of_road(
-                stated(lanes, "speed", lambda node: speed_of(node, self.remarks, self.name))
-            )
+            own = stated(lanes, "speed", lambda node: speed_of(node, self.remarks, self.name))
+            found = self._or_of_road(own)
         groups = groupby((each for each in found if each.end > each.start), lambda each: each.value)
         firsts, values = [next(group) for _, group in groups], longest_first(found)
         if values and len(firsts) > 1:
@@ -663,12 +660,8 @@ class RoadBuilder:
         profile = road.profile
         assert profile is not None
         through = set.intersection(*(set(each.values()) for each in ids))
-        offset, kept, lanes, inside = (
-            profile.offset,
-            dict[int, int](),
-            list[Lane](),
-            list[tuple[float, Width]](),
-        )
+        offset, kept, lanes = profile.offset, dict[int, int](), list[Lane]()
+        inside: list[tuple[float, Width]] = []
         for n, lane in enumerate(profile.left if sign > 0 else profile.right, 1):
             if lane.kind != "driving" or sign * n not in through:
                 inside.append((1.0, lane.width))
@@ -684,11 +677,10 @@ class RoadBuilder:
             kept[sign * n], inside = sign * len(lanes), []
         if not kept:
             return None
-        sides = (tuple(lanes), ()) if sign > 0 else ((), tuple(lanes))
+        left, right = (tuple(lanes), ()) if sign > 0 else ((), tuple(lanes))
         driven = len(lanes) - 1 if is_along else 0
-        road = road.with_profile(replace(
-            profile, left=sides[0], right=sides[1], driven=driven, centre_marking="none", offset=offset
-        ))  # fmt: skip
+        own = replace(profile, left=left, right=right, driven=driven, centre_marking="none", offset=offset)
+        road = road.with_profile(own)
         at_start, at_end = (
             {lane: kept[there[own]] for lane, own in lanes_at.items() if there.get(own) in kept}
             for lanes_at, there in ((self.file.entry, ids[0]), (self.file.exit, ids[-1]))

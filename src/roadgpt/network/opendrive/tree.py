@@ -162,9 +162,8 @@ def _read(path: Path, reader: "_Reader") -> None:
                     raise UsageError("one tag is longer than a megabyte; that is not an OpenDRIVE file")
             parser.Parse(b"", True)
     except OSError as error:
-        raise UsageError(
-            f"it cannot be read: {error.strerror}; give the path of an OpenDRIVE file"
-        ) from error
+        why = f"it cannot be read: {error.strerror}"
+        raise UsageError(f"{why}; give the path of an OpenDRIVE file") from error
     except (expat.ExpatError, UnicodeError, LookupError, ValueError) as error:
         raise UsageError(f"it is not well-formed XML ({error}); save it again as OpenDRIVE") from error
 
@@ -205,9 +204,8 @@ class _Reader:
             node = Element(tag, attributes)
             self.kept += 1
             if self.kept > MOST_KEPT:
-                raise UsageError(
-                    f"one of its roads has more than {MOST_KEPT:,} elements; cut out what you need"
-                )
+                most = f"more than {MOST_KEPT:,} elements"
+                raise UsageError(f"one of its roads has {most}; cut out what you need")
             self.stack[-1].append(node)
             self.stack.append(node)
         elif self.depth == 2 and tag in TOPS:

@@ -14,7 +14,7 @@ from roadgpt.export.exporters.opendrive.lanes import LaneLinks, RoadParts, later
 from roadgpt.export.exporters.opendrive.reference_line import Start, bounds_of, geometries, reaches, starts_of
 from roadgpt.export.exporters.opendrive.signals import Signals
 from roadgpt.export.georeference import PROJECTION
-from roadgpt.export.markup import XmlElement
+from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry import PieceCurve
 from roadgpt.network import Junction, Network, NetworkRoad, RoadEnd, legs_of, network_of, only_road
 from roadgpt.road import Road, World
@@ -83,22 +83,10 @@ def document(road: Road, world: World, revision: int = REVISION) -> XmlElement:
 def _header(bounds: Sequence[float], revision: int) -> XmlElement:
     """Returns the header, without a date; bounds are west, south, east and north of the lanes, in metres."""
     west, south, east, north = (round(float(value), 3) for value in bounds)
-    made = XmlElement(
-        "header",
-        {
-            "revMajor": 1,
-            "revMinor": revision,
-            "name": "road",
-            "version": "1",
-            "north": north,
-            "south": south,
-            "east": east,
-            "west": west,
-            "vendor": "RoadGPT",
-        },
-    )
-    made.add("geoReference", raw=f"<![CDATA[{PROJECTION}]]>")
-    return made
+    box = {"north": north, "south": south, "east": east, "west": west}
+    about: dict[str, Value] = {"revMajor": 1, "revMinor": revision, "name": "road", "version": "1"}
+    made = XmlElement("header", {**about, **box, "vendor": "RoadGPT"})
+    return made.with_texts(geoReference=f"<![CDATA[{PROJECTION}]]>")
 
 
 def _road(
@@ -107,16 +95,9 @@ def _road(
     """Returns the element ``road``. ``starts`` are those of the pieces of the reference line; None if they
     have not been computed yet."""
     road, junction = member.road, -1 if member.junction is None else member.junction
-    body = XmlElement(
-        "road",
-        {
-            "name": "road" if is_only else f"road {member.id}",
-            "length": road.length,
-            "id": str(member.id),
-            "junction": str(junction),
-            "rule": "LHT" if member.profile.left_hand else "RHT",
-        },
-    )
+    name, rule = "road" if is_only else f"road {member.id}", "LHT" if member.profile.left_hand else "RHT"
+    own: dict[str, Value] = {"name": name, "length": road.length, "id": str(member.id)}
+    body = XmlElement("road", {**own, "junction": str(junction), "rule": rule})
     if not is_only:
         body.add("link").extended(*_links(network, member))
     body.extended(parts.road_type)
@@ -158,15 +139,6 @@ def _lane_links(network: Network, member: NetworkRoad) -> LaneLinks:
 
 def _connections(junction: Junction) -> Iterator[XmlElement]:
     for number, each in enumerate(junction.connections):
-        made = XmlElement(
-            "connection",
-            {
-                "id": str(number),
-                "incomingRoad": str(each.incoming.road),
-                "connectingRoad": str(each.road),
-                "contactPoint": "start",
-            },
-        )
-        for before, own, _ in each.lanes:
-            made.add("laneLink", {"from": before, "to": own})
-        yield made
+        roads = {"incomingRoad": str(each.incoming.road), "connectingRoad": str(each.road)}
+        links = [XmlElement("laneLink", {"from": before, "to": own}) for before, own, _ in each.lanes]
+        yield XmlElement("connection", {"id": str(number), **roads, "contactPoint": "start"}, links)

@@ -10,6 +10,7 @@ is then mirrored back: the segments are followed in reverse order, with left and
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -70,13 +71,14 @@ def _segments(network: Network, junction: Junction) -> Iterator[BoundarySegment]
     """Yields the segments of a boundary in a network with traffic on the right."""
     arms = [arm.end for arm in junction.arms]
     ways = {(each.incoming, each.outgoing): each for each in junction.connections}
-    if _needs_outline(junction):
-        yield from _by_outline(network, junction)
-        return
-    for n, end in enumerate(arms):
+    outline = PavedOutline.of(network, junction) if _needs_outline(junction) else None
+    for end, after in pairwise([*arms, arms[0]]):
         yield _across(junction, end)
-        after = arms[(n + 1) % len(arms)]
-        if (right := ways.get((end, after))) is not None:
+        if outline is not None:
+            corners = _corner(network, junction, end, 1), _corner(network, junction, after, 0)
+            for edge, first, last in outline.between(*corners):
+                yield _along(edge.road, edge.lane, first, last)
+        elif (right := ways.get((end, after))) is not None:
             # traffic on the right that turns right into the next arm keeps to the kerb
             yield from _outermost(network, junction, right)
         elif (left := ways.get((after, end))) is not None:
@@ -93,16 +95,6 @@ def _needs_outline(junction: Junction) -> bool:
     count = len(junction.arms)
     usual = ROUNDABOUT_WAYS if junction.kind == "roundabout" else count * (count - 1)
     return len(junction.connections) < usual or any(len(each.lanes) > 1 for each in junction.connections)
-
-
-def _by_outline(network: Network, junction: Junction) -> Iterator[BoundarySegment]:
-    outline, ends = PavedOutline.of(network, junction), [arm.end for arm in junction.arms]
-    for n, end in enumerate(ends):
-        after = ends[(n + 1) % len(ends)]
-        yield _across(junction, end)
-        start, goal = _corner(network, junction, end, 1), _corner(network, junction, after, 0)
-        for edge, first, last in outline.between(start, goal):
-            yield _along(edge.road, edge.lane, first, last)
 
 
 def _corner(network: Network, junction: Junction, end: RoadEnd, which: int) -> Array:

@@ -136,20 +136,9 @@ def _mark(kind: Marking, is_inside: bool) -> tuple[XmlElement, ...]:
     if kind == "none":
         blank: dict[str, Value] = {"sOffset": 0, "type": "none", "color": "standard"}
         return (XmlElement("roadMark", blank, is_shared=True),) if is_inside else ()
-    name = "solid solid" if kind == "double" else kind
-    mark = XmlElement(
-        "roadMark",
-        {
-            "sOffset": 0,
-            "type": name,
-            "weight": "standard",
-            "color": "white",
-            "material": "standard",
-            "width": LINE,
-            "laneChange": "both" if kind == "broken" else "none",
-        },
-        is_shared=True,
-    )
+    name, change = "solid solid" if kind == "double" else kind, "both" if kind == "broken" else "none"
+    looks: dict[str, Value] = {"weight": "standard", "color": "white", "material": "standard", "width": LINE}
+    mark = XmlElement("roadMark", {"sOffset": 0, "type": name, **looks, "laneChange": change}, is_shared=True)
     length, space = (DASH, GAP) if kind == "broken" else (DASH + GAP, 0.0)
     made = mark.add("type", {"name": name, "width": LINE})
     for t in (DOUBLE / 2, -DOUBLE / 2) if kind == "double" else (0,):

@@ -242,8 +242,7 @@ def _widest(width: Width) -> float:
 
 def elevations(road: Road) -> list[XmlElement]:
     """Returns the ``elevation`` elements of a road in the order of their stations, beginning at station 0."""
-    stations, table = _table(road)
-    return _elements("elevation", "s", stations, table)
+    return _elements("elevation", "s", *_table(road))
 
 
 def level_height(road: Road) -> float | None:
@@ -286,8 +285,6 @@ def _table(road: Road) -> tuple[Array, Array]:
     """Returns stations ``(n,)`` and coefficients ``(n, 4)``. From each station on, the height is a cubic of
     the distance from that station."""
     profile, length = road.elevation, road.length
-    if (level := level_height(road)) is not None:
-        return np.zeros(1), np.array([[level, 0.0, 0.0, 0.0]])
     if isinstance(profile, GradeProfile):
         stations = _within(profile.stations[:-1], length)
         half = profile.vertical_curvature(stations) / 2
@@ -297,17 +294,10 @@ def _table(road: Road) -> tuple[Array, Array]:
         stations = _within(profile.stations, length)
         return stations, profile.cubics(stations)
 
-    def height(s: Array) -> Array:
-        return np.asarray(profile.height(s))[:, None]
+    def column(of: Function) -> Function:
+        return lambda s: np.asarray(of(s))[:, None]
 
-    def grade(s: Array) -> Array:
-        return np.asarray(profile.grade(s))[:, None]
-
-    stations, found = cubics(height, grade, breaks_of(road.plan), TOLERANCE)
-    return _without_repetition(stations, found)
-
-
-def _without_repetition(stations: Array, found: Array) -> tuple[Array, Array]:
+    stations, found = cubics(column(profile.height), column(profile.grade), breaks_of(road.plan), TOLERANCE)
     kept = [0]
     for i in range(1, len(found)):
         last, length = found[kept[-1]][None], stations[i + 1] - stations[i]

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from roadgpt.export.markup import XmlElement
+from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Arm, Junction, Network, NetworkRoad, RoadEnd
 from roadgpt.network.markings import (
@@ -28,17 +28,14 @@ from roadgpt.network.markings import (
     road_of_line,
 )
 
-TYPES = {"stop": "206", "yield": "205", "priority": "306", "lights": "1000001"}
-NAMES = {
-    "stop": "stop sign",
-    "yield": "give way sign",
-    "priority": "priority road sign",
-    "lights": "traffic light",
+SIGNS = {
+    "stop": ("206", "stop sign", 0.9, 0.9, 2.0),
+    "yield": ("205", "give way sign", 0.9, 0.9, 2.0),
+    "priority": ("306", "priority road sign", 0.6, 0.6, 2.0),
+    "lights": ("1000001", "traffic light", 0.9, 0.3, 2.1),
 }
-SIZES = {"stop": (0.9, 0.9), "yield": (0.9, 0.9), "priority": (0.6, 0.6), "lights": (0.9, 0.3)}
-"""Height and width in metres of each sign and of a light."""
-HEIGHTS = {"stop": 2.0, "yield": 2.0, "priority": 2.0, "lights": 2.1}
-"""Height in metres of the lower edge of each sign and of a light above the road."""
+"""Type, name, height and width in metres, and height of the lower edge in metres above the road, of each sign
+and of a light."""
 HIGH = 0.01  # m
 DIRECTIONS = ("straight", "left", "right")
 """The order of the directions in the name of a subtype, such as ``arrowStraightLeft``."""
@@ -91,27 +88,14 @@ class Signals:
 
 def _signal(member: NetworkRoad, arm: Arm, number: int) -> XmlElement:
     control, end = arm.control, arm.end
-    at_end = end.contact == "end"
     s, t = place_of_sign(member, end.contact)
-    height, width = SIZES[control]
-    made = XmlElement(
-        "signal",
-        {
-            "id": str(number),
-            "name": NAMES[control],
-            "s": s,
-            "t": t,
-            "zOffset": HEIGHTS[control],
-            "height": height,
-            "width": width,
-            "dynamic": "yes" if control == "lights" else "no",
-            "orientation": "+" if at_end else "-",
-            "country": "OpenDRIVE" if control == "lights" else "DE",
-            "type": TYPES[control],
-            "subtype": "-1",
-            "value": "-1",
-        },
-    )
+    kind, name, height, width, above = SIGNS[control]
+    dynamic, country = ("yes", "OpenDRIVE") if control == "lights" else ("no", "DE")
+    place = {"s": s, "t": t, "zOffset": above, "height": height, "width": width, "dynamic": dynamic}
+    meaning = {"country": country, "type": kind, "subtype": "-1", "value": "-1"}
+    orientation = "+" if end.contact == "end" else "-"
+    about = {"id": str(number), "name": name, **place, "orientation": orientation, **meaning}
+    made = XmlElement("signal", about)
     lanes = member.ids_towards(end.contact)
     made.add("validity", {"fromLane": min(lanes), "toLane": max(lanes)})
     return made
@@ -195,23 +179,15 @@ def _object(
 ) -> XmlElement:
     """Returns an object with its middle at ``place`` (s, t) and of this ``size`` (length, width), in metres.
     ``kind`` holds its type and subtype."""
-    return XmlElement(
-        "object",
-        {
-            "id": str(number),
-            "name": name,
-            **kind,
-            "s": place[0],
-            "t": place[1],
-            "zOffset": 0.0,
-            "hdg": heading,
-            "orientation": orientation,
-            "length": size[0],
-            "width": size[1],
-            "height": HIGH,
-            "dynamic": "no",
-        },
-    )
+    at: dict[str, Value] = {
+        "s": place[0],
+        "t": place[1],
+        "zOffset": 0.0,
+        "hdg": heading,
+        "orientation": orientation,
+    }
+    extent: dict[str, Value] = {"length": size[0], "width": size[1], "height": HIGH, "dynamic": "no"}
+    return XmlElement("object", {"id": str(number), "name": name, **kind, **at, **extent})
 
 
 def _with_corners(made: XmlElement, corners: Iterable[Iterable[float]]) -> XmlElement:
