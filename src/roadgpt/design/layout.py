@@ -211,7 +211,8 @@ def _corners(road: Road, world: World) -> Complex:
     left, right = sides(road.sample(), world.profile_of(road).edges(road.sample().s))
     behind = []
     for end, more in ((0.0, -BEYOND), (road.length, BEYOND)):  # continued straight
-        ahead = more * np.array([cos(heading := float(road.heading(end))), sin(heading)])
+        heading = float(road.heading(end))
+        ahead = more * np.array([cos(heading), sin(heading)])
         behind += [road.at(end, t)[:2] + ahead for t in (-half, half)]
     points = np.concatenate([left, right, behind])
     x, y = points[scipy.spatial.ConvexHull(points).vertices].T

@@ -286,8 +286,8 @@ def around_middle(gaps: Sequence[RoadElement], elements: RoadElements) -> RoadEl
 
 def _of_stretch(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
     if what not in OF_SLOPE:
-        what_can = "only its slope or its climb can be changed"
-        raise EditError(f"'{target.words}' is a distance, and {what_can}; name turns or straights")
+        told = f"'{target.words}' is a distance, and only its slope or its climb can be changed"
+        raise EditError(f"{told}; name turns or straights")
     stretch = stretch_of(target, elements)
     assert stretch is not None
     names = {element.name for element in within(elements, stretch)}
@@ -483,8 +483,8 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
         elif change.what == "count":
             out.append(_counted(change, elements))
         elif change.what in ("move", "add"):
-            moves = change.target is not None and change.what == "move"
-            moved = pointed(change.target, elements, "side") if change.target and moves else ()
+            target = change.target if change.what == "move" else None
+            moved = pointed(target, elements, "side") if target else ()
             out.append(PlacedChange(change, tuple(moved), *_marks(change.place, elements)))
         else:
             assert change.target is not None
