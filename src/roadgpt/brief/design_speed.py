@@ -8,11 +8,12 @@ two rows get values between them. The guide sets no limits for straights; those 
 or more between two curves to the same side, and 20 V at most, for V in km/h.
 """
 
+from collections.abc import Mapping
 from functools import cache
 from math import radians
 from typing import NamedTuple
 
-from roadgpt.brief.words import KINDS
+from roadgpt.brief.words import KINDS, Surroundings
 
 SLOWEST, FASTEST = 20.0, 130.0  # km/h
 EVERY = 10.0  # km/h, from one value of the table to the next
@@ -22,6 +23,12 @@ SIGHT = (20, 35, 50, 65, 85, 105, 130, 160, 185, 220, 250, 285)
 SUPERELEVATION = 0.06
 TRANSITION = 2.0  # s
 BETWEEN_SAME_SIDE = 6.0  # m of straight for each km/h, between two turns to the same side
+USUAL: Mapping[Surroundings, float] = {"country": 80.0, "residential": 30.0}
+"""The design speed in km/h of a country road and of a residential street that give none.
+
+Both are conventions. Chapter 6 of the guide has 60 to 100 km/h for rural collectors on level ground, by
+traffic; most member states of the EU allow 80 to 100 km/h on rural roads. Streets where people live are
+usually zones of 30 km/h."""
 FOR_ROUNDING = 1.002  # ratio of drawn vertical radii to the least ones: inclines are written to the tenth
 
 

@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exactly, figure, span
 from roadgpt.brief.beside import BESIDE, friction_of
-from roadgpt.brief.design_speed import FASTEST, SLOWEST
+from roadgpt.brief.design_speed import FASTEST, SLOWEST, USUAL
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, Side
 from roadgpt.brief.ranges import Range, nearest
 from roadgpt.brief.words import (
@@ -23,6 +23,7 @@ from roadgpt.brief.words import (
     Sharpness,
     Size,
     Slope,
+    Surroundings,
 )
 
 __all__ = [
@@ -173,11 +174,19 @@ class Brief(Frozen):
     comes_from: Compass | None = None
     """The direction from which one comes at the start; the map has north at the top. Not for maps of roads.
     """
+    surroundings: Surroundings | None = None
+    """Where the road lies: "country" for a country road, "residential" for a residential street."""
     speed: Annotated[float, Field(ge=SLOWEST, le=FASTEST)] | None = None
-    """The design speed in km/h: see ``brief.design_speed``. That of a route holds for its roads without one.
-    """
+    """The design speed in km/h: see ``brief.design_speed``. Without a number, it is the usual one of
+    ``surroundings``; that of a route holds for its roads without one."""
     other: str = ""
     """The plan of the second likeliest reading, if the reader is not sure of this Brief; otherwise empty."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_usual_speed(cls, fields: Any) -> Any:
+        usual = USUAL.get(fields.get("surroundings")) if isinstance(fields, dict) else None
+        return fields if usual is None or fields.get("speed") else {**fields, "speed": usual}
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -198,7 +207,11 @@ class Brief(Frozen):
         if any(stretch.comes_from for stretch in self.stretches):
             raise ValueError("a route comes from one direction at its start; write from= after ||")
         if self.map is not None and (self.comes_from or self.speed):
-            raise ValueError("from= and speed= are for roads and routes; leave them out of a map of roads")
+            known = "from=, speed=, country and residential"
+            raise ValueError(f"{known} are for roads and routes; leave them out of a map of roads")
+        if self.motorway and self.surroundings:
+            kinds = "a motorway, a country road or a residential street"
+            raise ValueError(f"a road is {kinds}; leave one of the words out")
         return self
 
     @property
@@ -254,8 +267,8 @@ class Brief(Frozen):
 
     @property
     def has_free_shape(self) -> bool:
-        """Whether nothing is required of the road but lanes, markings, a speed, or that it is a motorway."""
-        free = ("lanes", "against", "divided", "centre", "motorway", "speed")
+        """Whether nothing is required of the road but lanes, markings, a speed, or its kind."""
+        free = ("lanes", "against", "divided", "centre", "motorway", "surroundings", "speed")
         return self._requires_only((*OF_THE_WORDS, *free))
 
     @property

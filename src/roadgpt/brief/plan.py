@@ -19,7 +19,7 @@ from typing import Any, NamedTuple, TypeVar, get_args
 from pydantic import ValidationError
 
 from roadgpt.brief.amount import amount_text, figure, read_amount
-from roadgpt.brief.design_speed import FASTEST, SLOWEST
+from roadgpt.brief.design_speed import FASTEST, SLOWEST, USUAL
 from roadgpt.brief.junctions import (
     LONGEST_ROUTE,
     MAP,
@@ -38,7 +38,17 @@ from roadgpt.brief.junctions import (
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Frozen, exactly, span
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.refusal import refused
-from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, Bump, Compass, Kind, Sharpness, Size, Slope
+from roadgpt.brief.words import (
+    LARGEST_MAP,
+    SMALLEST_MAP,
+    Bump,
+    Compass,
+    Kind,
+    Sharpness,
+    Size,
+    Slope,
+    Surroundings,
+)
 from roadgpt.errors import BriefError
 
 KINDS = frozenset(get_args(Kind))
@@ -68,10 +78,11 @@ OF_WHOLE = {
     "map_size": "map_size",
     "beside": "beside",
     "comes_from": "from",
+    "surroundings": "country, residential",
     "speed": "speed",
 }
-"""The fields of a Brief that can be asked of a whole route, with their names in plans; a map has no last two.
-"""
+"""The fields of a Brief that can be asked of a whole route, with their names in plans; a map has none of the
+last three."""
 PLACES = ("starts", "ends")
 INNER = "(starts|ends|beside)"
 ALIKE = "alike"
@@ -165,6 +176,7 @@ ROAD = _Language(
         **_words(
             sharpness=Sharpness,
             slope=Slope,
+            surroundings=Surroundings,
             flags=("alternating", ALIKE, "hard", "motorway", "divided", "left_hand"),
         ),
         ONE_WAY: ("against", NO_LANE),
@@ -250,7 +262,8 @@ def _wishes(brief: Brief) -> list[str]:
     wishes += [f"centre={brief.centre}"] if brief.centre is not None else []
     wishes += [f"map_size={brief.map_size:g}"] if brief.map_size is not None else []
     wishes += [f"from={brief.comes_from}"] if brief.comes_from is not None else []
-    return wishes + ([f"speed={figure(brief.speed)}"] if brief.speed is not None else [])
+    is_usual = brief.surroundings is not None and brief.speed == USUAL[brief.surroundings]
+    return wishes + ([] if brief.speed is None or is_usual else [f"speed={figure(brief.speed)}"])
 
 
 def _clause(clause: Clause) -> str:

@@ -40,6 +40,7 @@ Kind = Literal[
 
 
 MOST_LANES = 4  # in one direction
+Surroundings = Literal["country", "residential"]
 Compass = Literal["west", "southwest", "south", "southeast", "east", "northeast", "north", "northwest"]
 
 
