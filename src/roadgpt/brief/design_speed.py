@@ -13,7 +13,7 @@ from functools import cache
 from math import radians
 from typing import NamedTuple
 
-from roadgpt.brief.words import KINDS, Surroundings
+from roadgpt.brief.words import KINDS
 
 SLOWEST, FASTEST = 20.0, 130.0  # km/h
 EVERY = 10.0  # km/h, from one value of the table to the next
@@ -23,7 +23,7 @@ SIGHT = (20, 35, 50, 65, 85, 105, 130, 160, 185, 220, 250, 285)
 SUPERELEVATION = 0.06
 TRANSITION = 2.0  # s
 BETWEEN_SAME_SIDE = 6.0  # m of straight for each km/h, between two turns to the same side
-USUAL: Mapping[Surroundings, float] = {"country": 80.0, "residential": 30.0}
+USUAL: Mapping[str, float] = {"country": 80.0, "residential": 30.0}
 """The design speed in km/h of a country road and of a residential street that give none.
 
 Both are conventions. Chapter 6 of the guide has 60 to 100 km/h for rural collectors on level ground, by

@@ -248,9 +248,8 @@ def _go_together(junction: JunctionClause) -> bool:
 
 def _allows(junction: JunctionClause, turn: float, least: float) -> bool:
     """Returns whether the route may turn by an angle where the closest roads are ``least`` degrees apart."""
-    turns = junction.degrees is None or is_about(turn, junction.degrees)
-    is_between = junction.angle is None or is_about(least, junction.angle)
-    return turns and is_between and (not junction.skew or least < SKEW)
+    turns = is_about(turn, junction.degrees) and is_about(least, junction.angle)
+    return turns and (not junction.skew or least < SKEW)
 
 
 def _faults_of_lanes(brief: Brief) -> Iterator[str]:

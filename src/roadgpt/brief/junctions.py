@@ -9,7 +9,7 @@ from typing import Literal, Self, get_args
 
 from pydantic import Field, field_validator, model_validator
 
-from roadgpt.brief.amount import Amount, Frozen, exactly, span
+from roadgpt.brief.amount import Amount, Frozen, about, exactly, span
 from roadgpt.brief.ranges import Range
 
 PlainKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
@@ -237,7 +237,6 @@ def bends_as(take: Take | None, turn: float) -> bool:
     return abs(turn) in BENDS.get((take or "").partition("_")[0], Range())
 
 
-def is_about(degrees: float, asked: Amount) -> bool:
+def is_about(degrees: float, asked: Amount | None) -> bool:
     """Returns whether an angle in degrees is as required; the tolerance of a single number is ``ABOUT``."""
-    wanted, slack = span(asked), ABOUT if asked.exact else 0.0
-    return degrees in Range(wanted.lo - slack, wanted.hi + slack)
+    return degrees in about(asked, lambda _: ABOUT)

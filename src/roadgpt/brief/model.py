@@ -185,7 +185,7 @@ class Brief(Frozen):
     @model_validator(mode="before")
     @classmethod
     def _with_usual_speed(cls, fields: Any) -> Any:
-        usual = USUAL.get(fields.get("surroundings")) if isinstance(fields, dict) else None
+        usual = USUAL.get(str(fields.get("surroundings"))) if isinstance(fields, dict) else None
         return fields if usual is None or fields.get("speed") else {**fields, "speed": usual}
 
     @model_validator(mode="after")

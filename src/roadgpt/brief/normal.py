@@ -38,19 +38,16 @@ def normal(brief: Brief) -> Brief:
     For a route with junctions, the requirements for each road are brought into normal form.
     """
     if brief.junctions or brief.map is not None:
-        stretches = tuple(map(_normal_stretch, brief.stretches))
-        return brief.model_copy(update={**UNSAID, "stretches": stretches})
+        stretches = [
+            normal(road).model_copy(update={} if road.clauses or road.turns else {"turns": road.turns})
+            for road in brief.stretches
+        ]
+        return brief.model_copy(update={**UNSAID, "stretches": tuple(stretches)})
     for _ in range(MOST_STEPS):
         before, brief = brief, _simpler(brief)
         if brief == before:
             break
     return brief
-
-
-def _normal_stretch(brief: Brief) -> Brief:
-    if brief.clauses or brief.turns is not None:
-        return normal(brief)
-    return normal(brief).model_copy(update={"turns": None})
 
 
 def _simpler(brief: Brief) -> Brief:

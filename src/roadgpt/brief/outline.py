@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, Literal, TypeVar
 
+from roadgpt.brief.amount import about
 from roadgpt.brief.design_speed import SpeedLimits, limits_at
 from roadgpt.brief.map_fit import has_low_grades, has_wide_turns
 from roadgpt.brief.model import Amount, Brief, Clause, Kind, Side, Slope, span
@@ -227,12 +228,14 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
         heading=heading_from(brief.comes_from) if brief.comes_from else None,
     )
     found = _with_both_ends(found)
-    found = _as_motorway(found, brief, map_size) if brief.motorway else found
-    if brief.speed is None:
-        return found
-    limits = limits_at(brief.speed)
-    wide = overlap(found.each_turn.radius, Range(limits.radius))
-    return replace(found, speed=limits, each_turn=replace(found.each_turn, radius=wide))
+    if has_low_grades(brief):
+        found = replace(found, steepest=overlap(found.steepest, Range(0, MOTORWAY_GRADE)))
+    limits = limits_at(brief.speed) if brief.speed else None
+    least = [MOTORWAY_RADIUS] if has_wide_turns(brief, map_size) else []
+    for radius in (*least, *([limits.radius] if limits else [])):
+        wide = overlap(found.each_turn.radius, Range(radius))
+        found = replace(found, each_turn=replace(found.each_turn, radius=wide))
+    return replace(found, speed=limits)
 
 
 def _with_both_ends(found: Outline) -> Outline:
@@ -277,15 +280,6 @@ def _within(said: Sloped, most: float) -> Sloped:
     if least <= EASIER * most or (said.slope.startswith("steeply") and most < FIGURE_WINS * least):
         return said
     return said.model_copy(update={"incline": Amount(lo=max(most / 2, LEAST_GRADE), hi=most)})
-
-
-def _as_motorway(found: Outline, brief: Brief, map_size: float) -> Outline:
-    if has_low_grades(brief):
-        found = replace(found, steepest=overlap(found.steepest, Range(0, MOTORWAY_GRADE)))
-    if not has_wide_turns(brief, map_size):
-        return found
-    wide = overlap(found.each_turn.radius, Range(MOTORWAY_RADIUS))
-    return replace(found, each_turn=replace(found.each_turn, radius=wide))
 
 
 def _groups(clause: Clause, roomy: bool) -> list[Group]:
@@ -490,10 +484,4 @@ def _angle(amount: Amount) -> Range:
 
 
 def _near(amount: Amount | None, quantity: Quantity) -> Range | None:
-    """Returns an exact number with its tolerance, and a bound or a range unchanged."""
-    if amount is None:
-        return None
-    if amount.exact and amount.lo is not None:
-        slack = quantity.slack(amount.lo)
-        return Range(amount.lo - slack, amount.lo + slack, number=amount.lo)
-    return Range(span(amount).lo, span(amount).hi)
+    return None if amount is None else about(amount, quantity.slack)

@@ -4,7 +4,7 @@
 ``AnotherRoadError`` contains the plan and the Brief of a road that can be built.
 """
 
-from roadgpt.brief.beside import NOT_BUILT, ON_ROUTES, SAID_OTHERWISE, networks_in
+from roadgpt.brief.beside import NOT_BUILT, ON_ROUTES, SAID_OTHERWISE, TEXTS, networks_in
 from roadgpt.brief.model import Brief
 from roadgpt.brief.words import SURFACES
 from roadgpt.errors import BriefError
@@ -13,39 +13,9 @@ MOST_CHARACTERS = 2000
 """The largest number of characters in a description."""
 EXAMPLE = "say for example 'an uphill road with 3 turns'"
 """The end of the message for a description that is empty or says nothing about a road."""
-ADVICE = {
-    "!nonsense": "this does not describe a road; say what it should be like: 'uphill with three turns'",
-    "!contradiction": "the description contradicts itself; leave something out, or say which part of"
-    " the road is meant",
-    "!impossible": "no such road can be built: loops, radii below 15 m and grades above 15 percent are not"
-    " possible; leave that out",
-    "!unclear": "what is wanted is not said; say what the road should be like, or what is to change where",
-}
-"""The refusals of the plan language, with the message for a refusal that names no cause."""
-CLASHING = {
-    "turns": "the number of turns",
-    "sides": "left and right",
-    "order": "the order of its parts",
-    "sharpness": "how sharp the turns are",
-    "degrees": "the angles",
-    "radius": "the radii",
-    "slope": "uphill, downhill and level",
-    "steepness": "how steep it is",
-    "climb": "its heights",
-    "length": "its length",
-}
-"""Causes of a contradiction, with their wording in the message."""
-BEYOND = {
-    "grade": "grades above 15 percent",
-    "radius": "radii below 15 m",
-    "degrees": "turns of more than 240 degrees",
-    "length": "more than 1500 m of road on a map of 250 m",
-    "turns": "more than 12 turns on a map of 250 m",
-    "loop": "a closed loop, or a road that crosses itself",
-}
-"""Causes for which a road cannot be built, with their wording in the message."""
-
-
+ADVICE, CLASHING, BEYOND = (TEXTS[part] for part in ("refusals", "clashing", "beyond"))
+"""The refusals of the plan language, with the message for one that names no cause; and the causes of a
+contradiction, and those for which a road cannot be built, with their wording in the message."""
 BY_OPTION = {
     **SAID_OTHERWISE,
     **{name: f"the surface is set with --friction {each.friction:g}" for name, each in SURFACES.items()},

@@ -10,7 +10,7 @@ reproduced on purpose:
 * the radius is that of the circle through nodes i, i+2, i+4, and the last such triple of nodes is left out.
 
 The competition's validator compares every pair of quads with the library shapely. Here numpy decides all
-pairs for which rounding errors cannot matter. Shapely, imported only if needed, decides the rest."""
+pairs for which rounding errors cannot matter, and shapely the rest."""
 
 import math
 
@@ -61,7 +61,8 @@ def _complaint(nodes: Array, map_size: float) -> str:
         return OUTSIDE
     if not keeps_clear(quads_of(left, right)):
         return CROSSING
-    if not _is_long_enough(nodes):
+    apart = nodes[-1] - nodes[0]  # the road is no shorter than the distance between its ends
+    if apart @ apart <= (MIN_LENGTH + 1) ** 2 and measured_length(nodes) <= MIN_LENGTH:
         return TOO_SHORT
     if smallest_radius(nodes)[0] * FEET_PER_METRE < MIN_RADIUS:
         return TOO_SHARP
@@ -118,9 +119,12 @@ def keeps_clear(quads: Array) -> bool:
     """Returns whether all quads are valid, neighbouring quads share exactly one edge, and all other pairs
     of quads are disjoint."""
     plain = is_convex(quads)
-    odd = np.flatnonzero(~plain)
-    if odd.size and not _are_valid(quads[odd]):
-        return False
+    odd = quads[~plain]
+    if len(odd):
+        import shapely
+
+        if not (np.isfinite(odd).all() and shapely.is_valid(shapely.polygons(odd)).all()):
+            return False
     doubt = _doubt(quads)
     if not all(_are_apart(quads, plain, i, j, doubt) for i, j in near_pairs(quads, reach=doubt)):
         return False
@@ -143,12 +147,6 @@ def _are_apart(quads: Array, plain: NDArray[np.bool_], i: Indices, j: Indices, d
     return not shapely.intersects(one, other).any()
 
 
-def _are_valid(quads: Array) -> bool:
-    import shapely
-
-    return bool(np.isfinite(quads).all() and shapely.is_valid(shapely.polygons(quads)).all())
-
-
 def _share_a_side(quads: Array, joints: Indices) -> bool:
     """Returns whether quads i and i + 1 share exactly one line for every joint i; ignores equal quads."""
     import shapely
@@ -158,13 +156,6 @@ def _share_a_side(quads: Array, joints: Indices) -> bool:
     inside = shapely.contains(one, other) | shapely.contains(other, one)
     is_line = shapely.get_type_id(shapely.intersection(one, other)) == shapely.GeometryType.LINESTRING
     return bool((equal | (is_line & ~inside)).all())
-
-
-def _is_long_enough(nodes: Array) -> bool:
-    apart = nodes[-1] - nodes[0]
-    if apart @ apart > (MIN_LENGTH + 1) ** 2:  # the road is no shorter than the distance between its ends
-        return True
-    return measured_length(nodes) > MIN_LENGTH
 
 
 def measured_length(nodes: Array) -> float:

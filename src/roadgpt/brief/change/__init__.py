@@ -64,7 +64,7 @@ def read_request(words: str, chat: ChatSettings | None = None) -> EditRequest:
         unused = request.unused if surface else tuple(dict.fromkeys((*named, *request.unused)))
         return replace(request, unused=unused)
     try:
-        reading = _reader().read_change(words, _normal_form)
+        reading = _reader().read_change(words, lambda line: change_plan(read_change_plan(line)))
     except BriefError as error:
         raise EditError(str(error)) from error
     surface, named = _surface_in(words)
@@ -111,10 +111,6 @@ def other_readings(request: EditRequest) -> Iterator[EditRequest]:
 @cache
 def _reader() -> ModelReader:
     return ModelReader()
-
-
-def _normal_form(line: str) -> str:
-    return change_plan(read_change_plan(line))
 
 
 def _refusal(words: str, plan: str, other: str) -> EditError:

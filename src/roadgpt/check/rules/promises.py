@@ -99,7 +99,7 @@ def _of_route(route: "Route | None", brief: Brief, map_size: float) -> Iterator[
                 more = moved[n + 1] - moved[n]
                 yield from _of_stretch(start, road, stretch, (n > 0, n < len(roads) - 1), more, map_size)
     length = 0.0 if route is None else route.length
-    if brief.length is not None and length not in (allowed := length_range(brief.length)):
+    if length not in (allowed := length_range(brief.length)):
         quantity = ROAD["length"]
         text = f"asked for {quantity.asked.format(allowed)}, has {quantity.measured.format(length)}"
         yield Finding(RULE, text)

@@ -4,25 +4,16 @@ The network does not see the values of numbers, so it can only guess whether a r
 is a mini one, a normal one or a large one.
 """
 
-import re
 from collections.abc import Sequence
 
 from roadgpt.brief.amount import exactly, span
 from roadgpt.brief.junctions import ACROSS, SIZES, JunctionClause
+from roadgpt.brief.languages import pattern_of
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.slots import SlottedText, slot_name
 from roadgpt.brief.readers.model.vocabulary import ROUNDABOUT, SLOT_TOKENS
 
-TOLD = re.compile(r"across|diam|durchmess|circle|ø")
-ISLAND = re.compile(
-    r"island|insel|ilot|\bisla\b|isleta|islote|isola|anillo|inner|innen|interi|radius|rayon|radio|raggio"
-)
-SHARED = re.compile(
-    r"\b(?:both|each|all|every|beide|jeweils|alle|chacun|chaque|tous|cada|ambas|todas|tutte|entrambe|ognuna|"
-    r"ciascuna)\b|\b(?:roundabouts|ronds - points|giratoires|rotatorie|rotonde|glorietas|rotondas) "
-    r"(?:of|de|di) \[unused"
-)
-"""Words near the only diameter of a text that make it the diameter of all roundabouts."""
+TOLD, ISLAND, SHARED = map(pattern_of, ("across", "island", "shared"))
 REACH = 4
 """The largest number of words between a length and a word such as "across"."""
 LEAST, MORE, FEW = 28.0, 8.0, 4

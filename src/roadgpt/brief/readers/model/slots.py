@@ -75,18 +75,13 @@ def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
     Returns three values: the corresponding unit in plans (such as metres), the factor that converts to it,
     and how many words the unit takes up in the text.
     """
-    for size in (2, 1):
+    for size in (3, 2, 1):
         found = UNITS.get(tuple(tokens[at : at + size]))
         if found:
             unit, factor = found
             over, time = [*tokens[at + size : at + size + 2], "", ""][:2]
             if unit == "metres" and over == "/" and time in TIMES:
                 return "kmh", 1.0, size + 2  # a speed
-            if tokens[at] in ("km", "kilometers") and list(tokens[at + 1 : at + 3]) in (
-                ["per", "hour"],
-                ["an", "hour"],
-            ):
-                return "kmh", 1.0, size + 2
             return unit, factor, size
     return None
 
@@ -568,8 +563,8 @@ def _digits(tokens: list[str], at: int) -> Number | None:
     if value is None:
         return _point(tokens, at)
     after = tokens[at + 1 : at + 3]
-    if len(after) == 2 and value < 10 and _is_fraction(tokens, at):
-        return None
+    if value < 10 and len(after) == 2 and after[0] == "/" and after[1] in ("2", "3", "4"):
+        return None  # a share of the road, which a plan cannot express
     size = SIZES.get(after[0], 0) if after and after[1:] != ["marin"] else 0
     is_clear = bool(after) and (after[0] in ("hundred", "thousand") or unit_at(tokens, at + 2) is not None)
     if is_clear and value * size <= MILLION and value < size:
@@ -583,11 +578,6 @@ def _point(tokens: list[str], at: int) -> Number | None:
         return None
     tenths = number_word(tokens[at + 1])
     return Number(tenths / 10, at, at + 1) if 0 < tenths < 10 else None
-
-
-def _is_fraction(tokens: list[str], at: int) -> bool:
-    """True for "2 / 3" and "1/2": shares of the road, which a plan cannot express."""
-    return tokens[at + 1] == "/" and tokens[at + 2] in ("2", "3", "4")
 
 
 def _set(tokens: list[str], at: int) -> Number | None:
