@@ -29,8 +29,7 @@ class Frozen(BaseModel):
 
 class Amount(Frozen):
     """A number as the description gives it: exact (lo == hi), a lower bound (hi is None), an upper bound (lo
-    is None) or a range.
-    """
+    is None) or a range."""
 
     lo: Annotated[float | None, Field(allow_inf_nan=False)] = None
     hi: Annotated[float | None, Field(allow_inf_nan=False)] = None

@@ -2,8 +2,7 @@
 
 A reader that recognises such a thing adds the name of the thing to ``Brief.beside``. RoadGPT then tells the
 user that the thing is not built, must be given as a number, is set by an option or sets the friction, so that
-nothing is ignored silently.
-"""
+nothing is ignored silently."""
 
 import tomllib
 from collections.abc import Iterable, Iterator, Sequence
@@ -29,8 +28,7 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
 
     Args:
         names: names from ``Brief.beside``.
-        friction: friction coefficient that the user has set; with None, a surface in ``names`` sets it.
-    """
+        friction: friction coefficient that the user has set; with None, a surface in ``names`` sets it."""
     for name in names:
         if name in ON_ROUTES:
             yield (
@@ -47,8 +45,7 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
 
 def networks_in(names: Iterable[str]) -> str:
     """Returns a sentence, without a full stop, that says why things in ``NETWORKS`` are not built; empty if
-    none of them is named.
-    """
+    none of them is named."""
     named = [name for name in names if name in NETWORKS]
     if not named:
         return ""
@@ -66,8 +63,7 @@ def friction_of(names: Iterable[str]) -> float | None:
 
 def surface_remark(names: Sequence[str], friction: float | None = None) -> str:
     """Returns a sentence on whether the named surface, such as ice, sets the friction; empty if no surface is
-    named. The arguments are those of ``remarks``.
-    """
+    named. The arguments are those of ``remarks``."""
     own = friction_of(names)
     if own is None:
         return ""

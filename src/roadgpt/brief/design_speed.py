@@ -5,8 +5,7 @@ least radius is V^2 / (127 (e + f)) with the side friction f of the table and a 
 Vertical curves give the stopping sight distance S of the table: K is S^2 / 658 on a crest, and S^2 / (120 +
 3.5 S) in a sag, in metres per percentage point. A transition takes 2 s at the design speed. Speeds between
 two rows get values between them. The guide sets no limits for straights; those are of RAS-L 1995: 6 V metres
-or more between two curves to the same side, and 20 V at most, for V in km/h.
-"""
+or more between two curves to the same side, and 20 V at most, for V in km/h."""
 
 from collections.abc import Mapping
 from functools import cache

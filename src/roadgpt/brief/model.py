@@ -1,14 +1,13 @@
 """The Brief: the requirements for a road that were read from a description, as data.
 
-Numbers in a Brief are in everyday units (degrees, metres and percent), so that people can write Briefs.
-"""
+Numbers in a Brief are in everyday units (degrees, metres and percent), so that people can write Briefs."""
 
 import re
 from typing import Annotated, Any, Literal, Self, cast
 
 from pydantic import AfterValidator, Field, model_validator
 
-from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exactly, figure, span
+from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exactly, span
 from roadgpt.brief.beside import BESIDE, friction_of
 from roadgpt.brief.design_speed import FASTEST, SLOWEST, USUAL
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, Side
@@ -29,7 +28,6 @@ from roadgpt.brief.words import (
 __all__ = [
     "OTHER_SIDE",
     "Amount",
-    "Beside",
     "Brief",
     "Clause",
     "Frozen",
@@ -43,7 +41,6 @@ __all__ = [
     "at_most",
     "between",
     "exactly",
-    "figure",
     "span",
 ]
 
@@ -72,8 +69,7 @@ class Clause(Frozen):
     count: Amount = Amount(lo=1, hi=1)
     """The number of features of this kind in a row. For a serpentine, zigzag, slalom, winding road or
     switchback with a number ("4 switchbacks"), ``count`` is the number of turns. An s_bend or a chicane
-    counts as one feature ("two S-bends" is 2).
-    """
+    counts as one feature ("two S-bends" is 2)."""
     side: Side | None = None
     """The direction of every turn; if the turns alternate, the direction of the first turn."""
     alternating: bool = False
@@ -94,16 +90,14 @@ class Clause(Frozen):
     """The grade in percent, always positive; ``slope`` says whether it is up or down."""
     climb: Amount | None = None
     """How many metres each feature rises or falls from its start to its end, always positive; ``slope`` says
-    whether it is up or down. For a crest or a dip, ``climb`` is the height or the depth.
-    """
+    whether it is up or down. For a crest or a dip, ``climb`` is the height or the depth."""
 
 
 class Brief(Frozen):
     """A description and the requirements that were read from it.
 
     ``clauses`` are in driving order. If any clause is a turn, the clauses name *all* turns of the road. The
-    other fields are requirements for the road as a whole, which hold in addition to the clauses.
-    """
+    other fields are requirements for the road as a whole, which hold in addition to the clauses."""
 
     words: str = ""
     clauses: tuple[Clause, ...] = ()
@@ -152,8 +146,7 @@ class Brief(Frozen):
     junctions: tuple[JunctionClause, ...] = ()
     """The junctions that the route passes, in driving order. If there are any, ``stretches`` has the
     requirements for the roads; of the fields above, only ``words``, ``length``, ``beside``, ``unused`` and
-    ``confidence`` are then used, for the whole route.
-    """
+    ``confidence`` are then used, for the whole route."""
     stretches: "tuple[Brief, ...]" = ()
     """The requirements for the roads before, between and after the junctions: one more than junctions."""
     lanes: Amount | None = None
@@ -228,8 +221,7 @@ class Brief(Frozen):
         """The numbers of lanes along and against the drive, such as "2+1"; None if neither is required.
 
         A direction without a requirement gets one lane. On a motorway, the direction against the drive then
-        gets no lane, because a motorway is built as one carriageway.
-        """
+        gets no lane, because a motorway is built as one carriageway."""
         if self.lanes is None and self.against is None:
             return None
         most = Range(1, MOST_LANES), Range(0, MOST_LANES)
@@ -250,8 +242,7 @@ class Brief(Frozen):
         """The requirements for each road before, between and after the junctions.
 
         Without junctions, there is one road; it needs at least one turn if neither clauses nor a number of
-        turns are given.
-        """
+        turns are given."""
         if self.stretches:
             own = ({"speed": road.speed or self.speed} for road in self.stretches)
             return tuple(
@@ -322,8 +313,7 @@ def mirrored(brief: Brief) -> Brief:
     west to east, meets the mirrored Brief.
 
     The numbers of exits stay, because exits are counted in the direction in which traffic drives around a
-    roundabout. ``map`` also stays as it is.
-    """
+    roundabout. ``map`` also stays as it is."""
     names = {"clauses", "starts", "ends", "left", "right", "junctions", "stretches"}
     other = {**brief.model_dump(exclude=names), **_with_other_sides(brief.model_dump(include=names))}
     start = brief.comes_from and UPSIDE_DOWN.sub(lambda way: OTHER_POLE[way[0]], brief.comes_from)

@@ -1,8 +1,7 @@
 """Defines errors and messages for refused descriptions, and the largest length of a description.
 
 ``TooMuchError`` and ``NoRoomError`` contain the Brief, because a larger map may hold the road.
-``AnotherRoadError`` contains the plan and the Brief of a road that can be built.
-"""
+``AnotherRoadError`` contains the plan and the Brief of a road that can be built."""
 
 from roadgpt.brief.beside import NOT_BUILT, ON_ROUTES, SAID_OTHERWISE, TEXTS, networks_in
 from roadgpt.brief.model import Brief
@@ -28,8 +27,7 @@ OF_CAUSES = {"!contradiction": CLASHING, "!impossible": NOT_BUILT | BEYOND | BY_
 
 def causes_of(line: str) -> tuple[str, str]:
     """Returns the kind of a refusal, such as "!impossible", and its causes in words ("" if it names none).
-    Raises BriefError if the plan is not a refusal, or has causes that this kind of refusal cannot have.
-    """
+    Raises BriefError if the plan is not a refusal, or has causes that this kind of refusal cannot have."""
     kind, *causes = line.split()
     known = OF_CAUSES.get(kind, {})
     if kind not in ADVICE or any(cause not in known for cause in causes):
@@ -56,8 +54,7 @@ def refused(line: str) -> BriefError:
 
 class TooMuchError(BriefError):
     """Raised if a description asks for more than the usual map of 250 m can hold; ``brief.read`` checks the
-    requirements in ``brief`` against the actual map, which may be larger.
-    """
+    requirements in ``brief`` against the actual map, which may be larger."""
 
     def __init__(self, sentence: str, brief: Brief) -> None:
         super().__init__(sentence)
@@ -71,8 +68,7 @@ class AnotherRoadError(BriefError):
         offer: why the description cannot be built, and what is offered instead; a colon and the plan, or a
             description of the road, can be added.
         plan: the plan of the road that is offered.
-        brief: the requirements of this plan.
-    """
+        brief: the requirements of this plan."""
 
     def __init__(self, offer: str, plan: str, brief: Brief) -> None:
         super().__init__(f'{offer}: --plan "{plan}"')
@@ -81,8 +77,7 @@ class AnotherRoadError(BriefError):
 
 class NotBuiltError(AnotherRoadError):
     """Raised if a reader puts something into ``Brief.beside`` that cannot stand beside a road, such as a
-    roundabout; offers the road without this thing.
-    """
+    roundabout; offers the road without this thing."""
 
 
 class ContradictionError(AnotherRoadError):

@@ -200,8 +200,7 @@ def clause_columns(clause: Clause) -> tuple[str, str]:
 
 def road_words(brief: Brief) -> str:
     """Returns the requirements for the whole road as text, such as 'uphill, 3 turns'; empty if there are
-    none.
-    """
+    none."""
     turns = ""
     if not brief.clauses and brief.turns and brief.turns not in (at_least(1), exactly(0), at_least(0)):
         turns = _counted(brief.turns, "turn")
@@ -309,8 +308,7 @@ FROM: Mapping[Way, str] = {
 
 def junction_text(junction: JunctionClause) -> str:
     """Returns a junction and what the route does there, such as 'at a crossroads with traffic lights turn
-    left'.
-    """
+    left'."""
     parts = [
         "at a",
         junction.size,

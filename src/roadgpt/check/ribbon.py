@@ -1,4 +1,4 @@
-"""Represents the surface of a road by a row of quads, and computes the distances between quads with numpy.
+"""Represents the surface of a road by a row of quads, and finds those that come near each other.
 
 left[0] ---- left[1] ---- left[2]        quad i is (left i, left i+1, right i+1, right i),
    |   quad 0   |   quad 1   |           clockwise where the road does not fold
@@ -67,23 +67,3 @@ def near_pairs(quads: Array, reach: float, apart: int = 2) -> Iterator[tuple[Ind
         j, i = tree.query(boxes[first : first + PORTION])
         wanted = j + first - i >= apart
         yield i[wanted], j[wanted] + first
-
-
-def gaps(quads: Array, i: Indices, j: Indices) -> Array:
-    """Returns the signed distances in metres ``(m,)`` between convex quads i and j, by the separating axis
-    theorem: at least this far apart, or, if negative, the distance by which one must move to separate them.
-    """
-    used, index = np.unique(np.concatenate((i, j)), return_inverse=True)
-    quads, i, j = quads[used], index[: len(i)], index[len(i) :]
-    sides = np.roll(quads, -1, axis=1) - quads
-    outward = np.stack((-sides[..., 1], sides[..., 0]), axis=-1)
-    outward /= np.maximum(np.sqrt((outward**2).sum(axis=-1, keepdims=True)), 1e-12)
-    edge = (outward * quads).sum(axis=-1)
-    return np.maximum(_beyond(quads, outward, edge, i, j), _beyond(quads, outward, edge, j, i))
-
-
-def _beyond(quads: Array, outward: Array, edge: Array, i: Indices, j: Indices) -> Array:
-    """Returns how far all of quad j lies beyond the side of quad i that separates them best."""
-    normal, corner = outward[i][:, :, None], quads[j][:, None]
-    along = normal[..., 0] * corner[..., 0] + normal[..., 1] * corner[..., 1]
-    return np.asarray((along.min(axis=2) - edge[i]).max(axis=1))

@@ -3,8 +3,7 @@
     turn 2: radius x0.75; end: slope down; turn all but(turn 1): side left; add hairpin right after(turn 2)
 
 Changes are separated by ``;``. A change either consists of a place, a colon and what is to be changed there,
-or it begins with ``add``. The page docs/reference/plans.md describes the language.
-"""
+or it begins with ``add``. The page docs/reference/plans.md describes the language."""
 
 import re
 from collections.abc import Container, Iterator, Mapping
@@ -123,8 +122,7 @@ def _place(target: Target) -> str:
 
 def read_change_plan(line: str) -> EditRequest:
     """Returns the changes that a plan describes; raises EditError if a word or number is not part of the
-    language, or is in the wrong place.
-    """
+    language, or is in the wrong place."""
     changes = tuple(ChangeParser(part).change() for part in line.split(";") if part.strip())
     if not changes:
         raise EditError("the plan names no change; write for example: turn 2: radius x0.75")

@@ -2,8 +2,7 @@
 junctions in order and the roads between them; or blocks, junctions, dead ends, signs and distances.
 
 The requirements are compared with what is measured on the finished geometry: see ``check.matching``. Each
-road between junctions is measured and compared with its own requirements in the same way as a single road.
-"""
+road between junctions is measured and compared with its own requirements in the same way as a single road."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

@@ -95,8 +95,7 @@ def numbers_in_words(key: tuple[str, ...]) -> Mapping[str, int]:
     The number 1 is left out: as a word it is mostly an article or a pronoun ("un virage", "the last one").
 
     Args:
-        key: the words in lower case, without accents and hyphens; all of them belong to the number.
-    """
+        key: the words in lower case, without accents and hyphens; all of them belong to the number."""
     text = " ".join(key)
     found = {language: _value(text, language) for language in LANGUAGES}
     return {language: value for language, value in found.items() if value is not None and value != 1}
@@ -105,8 +104,7 @@ def numbers_in_words(key: tuple[str, ...]) -> Mapping[str, int]:
 @cache
 def number_word(word: str) -> int:
     """Returns the number that a word stands for, in the first language in which the word is a number; 0 if
-    there is no such language.
-    """
+    there is no such language."""
     return next(iter(numbers_in_words((word,)).values()), 0)
 
 
