@@ -138,8 +138,6 @@ FIGURE_WINS = 0.6
 precedence. The number may lie outside the usual range of the word: down to this factor times the lower end,
 or up to the upper end divided by this factor."""
 
-MOUNTAIN = Range(4, 15)
-"""The grade of the steepest place of 'a mountain road' in percent, up or down."""
 HILLS = 3
 """The least number of changes between climbing and falling of 'a hilly road': up, down, up, down."""
 

@@ -205,7 +205,9 @@ class ChangeParser:
     def _wish(self, target: Target) -> Change:
         what = self._word()
         if what == "x":
-            return self._counted(Change("count", target))
+            is_most = self._take("..")
+            number = self._whole()
+            return Change("count", target, to=number, bound=-1 if is_most else 1 if self._take("..") else 0)
         if what in MOVES:
             return Change("move", target, place=self._position(what))
         if what in ALONE:
@@ -239,12 +241,6 @@ class ChangeParser:
             if not self._next() or steepness or way == "flat":
                 return change
         return self._valued(change)
-
-    def _counted(self, change: Change) -> Change:
-        if self._take(".."):
-            return replace(change, to=self._whole(), bound=-1)
-        change = replace(change, to=self._whole())
-        return replace(change, bound=1) if self._take("..") else change
 
     def _shape(self, change: Change) -> Change:
         while word := self._next():
