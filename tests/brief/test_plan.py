@@ -32,6 +32,17 @@ def test_a_brief_comes_back_from_its_line(brief: Brief) -> None:
     assert read_plan(line) == brief
 
 
+@given(shaped, st.sampled_from([("country", 80), ("residential", 30)]))
+def test_a_kind_of_road_has_a_usual_design_speed_unless_one_is_given(
+    brief: Brief, kind: tuple[str, int]
+) -> None:
+    where, usual = kind
+    asked = Brief.model_validate({**brief.model_dump(), "motorway": False, "surroundings": where})
+    assert asked.speed == (brief.speed or usual)
+    assert read_plan(plan(asked)) == asked
+    assert {"country": "country road", "residential": "residential street"}[where] in sentence(asked)
+
+
 @given(shaped)
 def test_any_brief_has_a_normal_form_that_is_its_own(brief: Brief) -> None:
     form = normal(brief)

@@ -1,11 +1,11 @@
-"""Quads of the ribbon: shapely measures the same gaps, and no near pair is missed."""
+"""Quads of the ribbon: no near pair is missed, and convex ones are valid."""
 
 import numpy as np
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadgpt.check.ribbon import gaps, is_convex, near_pairs, quads_of
+from roadgpt.check.ribbon import is_convex, near_pairs, quads_of
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -17,21 +17,6 @@ def winding_quads(seed: int) -> np.ndarray:
     across = np.stack((-forward[:, 1], forward[:, 0]), axis=1) * 4
     centre = np.cumsum(forward, axis=0)
     return quads_of(centre + across, centre - across)
-
-
-@given(seeds)
-@settings(max_examples=40, deadline=None)
-def test_gaps_have_the_sign_that_shapely_finds(seed: int) -> None:
-    quads = winding_quads(seed)
-    quads = quads[is_convex(quads)]
-    i, j = np.triu_indices(len(quads), 1)
-    found = gaps(quads, i, j)
-    shapes = shapely.polygons(quads)
-    distance, clear = shapely.distance(shapes[i], shapes[j]), np.abs(found) > 1e-9
-    assert ((distance > 0) == (found > 0))[clear].all()
-    assert (found <= distance + 1e-9).all()  # a separating axis never shows more than the distance
-    deep = shapely.area(shapely.intersection(shapes[i], shapes[j]))
-    assert ((deep > 0) == (found < 0))[clear].all()
 
 
 @given(seeds, st.floats(0, 3), st.integers(2, 20))

@@ -44,7 +44,10 @@ PLANS = [
     "| len=3000 speed=50 from=west",
     "turn // crossroads left // | hills=1 // t_junction right // turn x2 | down || speed=80 from=southwest",
     "| speed=50 // crossroads left // turn left || speed=50 left_hand from=northeast",
+    "turn left; turn right | country",
+    "turn | residential // crossroads left // turn x2 || residential",
 ]
+USUAL = {"country": 80, "residential": 30}  # km/h, on a country road and in a 30 km/h zone
 
 
 @pytest.mark.parametrize("kmh", GREEN_BOOK)
@@ -93,7 +96,8 @@ def test_roads_of_a_design_speed_have_its_radii_and_come_from_where_they_should(
     rings = {str(name) for name in road.network.roundabout_of} if isinstance(road, Route) else set()
     roads = fromstring(document(road, world).to_text()).findall("road")
     roads = [each for each in roads if each.get("junction") == "-1" and each.get("id") not in rings]
-    limits = limits_at(float(plan.partition("speed=")[2].split()[0]))
+    said = plan.partition("speed=")[2].split()[:1] or [USUAL[word] for word in plan.split() if word in USUAL]
+    limits = limits_at(float(said[0]))
     long = [each for each in roads if float(each.get("length", "0")) > 2 * AT_JUNCTION + FAR]
     assert long
     for each in long:

@@ -10,8 +10,7 @@ method
 about a road, contradicts itself or asks for something impossible. Words that the reader did not understand
 are listed in ``Brief.unused``. All readers take the meanings of words from one table, in ``words.py``. A
 reader may also have a method ``alternatives(words, number, temperature, seed)``, which returns several
-different readings of a vague description, the likeliest first.
-"""
+different readings of a vague description, the likeliest first."""
 
 from collections.abc import Callable
 from functools import cache
@@ -71,8 +70,7 @@ class Reader(Protocol):
         """Returns the Brief of a description.
 
         Raises:
-            BriefError: the description does not ask for a road that can be built.
-        """
+            BriefError: the description does not ask for a road that can be built."""
         ...
 
 
@@ -108,8 +106,7 @@ def read(
         BriefError: the description does not ask for a road that can be built; the message says what to
             change.
         PartError: no reader of that name is installed.
-        ChatError: the language model could not be asked.
-    """
+        ChatError: the language model could not be asked."""
     words = words.encode("utf-8", "replace").decode()  # lone surrogates cannot be written to a file
     sized = None if reader == PLAN else said_map_size(words)
     try:
@@ -175,8 +172,7 @@ def alternatives(
 
     Raises:
         BriefError: ``read`` would raise this error for the likeliest reading.
-        PartError: no reader of that name is installed.
-    """
+        PartError: no reader of that name is installed."""
     first = read(words, reader, map_size, min_radius, max_grade)
     more: Callable[..., tuple[Brief, ...]] | None = getattr(reader_of(reader), "alternatives", None)
     if more is None:
@@ -201,8 +197,7 @@ def remarks(brief: Brief, map_size: float, friction: float | None = None) -> tup
     Args:
         brief: the Brief.
         map_size: side of the square map in metres.
-        friction: friction coefficient of the road; with None, a surface named in the description sets it.
-    """
+        friction: friction coefficient of the road; with None, a surface named in the description sets it."""
     return (*beside.remarks(brief.beside, friction), *motorway_remarks(brief, map_size))
 
 
@@ -214,8 +209,7 @@ def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:
         chat: settings of the language model, for readers that use one; None takes the user's settings.
 
     Raises:
-        PartError: no such reader is installed, the reader takes no folder, or the folder holds no weights.
-    """
+        PartError: no such reader is installed, the reader takes no folder, or the folder holds no weights."""
     part, _, folder = name.partition(":")
     return _from_folder(part, folder) if folder else cast(Reader, plugin_of("readers", part, chat))
 

@@ -1,7 +1,7 @@
 """Defines Amount, a number as a description gives it, and Frozen, the base class of immutable values."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from math import inf
 from typing import Annotated, Any, Self
 
@@ -29,8 +29,7 @@ class Frozen(BaseModel):
 
 class Amount(Frozen):
     """A number as the description gives it: exact (lo == hi), a lower bound (hi is None), an upper bound (lo
-    is None) or a range.
-    """
+    is None) or a range."""
 
     lo: Annotated[float | None, Field(allow_inf_nan=False)] = None
     hi: Annotated[float | None, Field(allow_inf_nan=False)] = None
@@ -65,6 +64,14 @@ def span(amount: Amount | None) -> Range:
     """Returns the range of numbers that an amount allows; None allows every number."""
     lo, hi = (amount.lo, amount.hi) if amount else (None, None)
     return Range(-inf if lo is None else lo, inf if hi is None else hi)
+
+
+def about(amount: Amount | None, slack: Callable[[float], float]) -> Range:
+    """Returns the range of numbers that an amount allows, with a tolerance around a single number."""
+    asked = span(amount)
+    if amount is None or not amount.exact:
+        return asked
+    return Range(asked.lo - slack(asked.lo), asked.lo + slack(asked.lo), number=asked.lo)
 
 
 def meets(amount: Amount | None, possible: Range) -> bool:

@@ -5,9 +5,9 @@ least radius is V^2 / (127 (e + f)) with the side friction f of the table and a 
 Vertical curves give the stopping sight distance S of the table: K is S^2 / 658 on a crest, and S^2 / (120 +
 3.5 S) in a sag, in metres per percentage point. A transition takes 2 s at the design speed. Speeds between
 two rows get values between them. The guide sets no limits for straights; those are of RAS-L 1995: 6 V metres
-or more between two curves to the same side, and 20 V at most, for V in km/h.
-"""
+or more between two curves to the same side, and 20 V at most, for V in km/h."""
 
+from collections.abc import Mapping
 from functools import cache
 from math import radians
 from typing import NamedTuple
@@ -22,6 +22,12 @@ SIGHT = (20, 35, 50, 65, 85, 105, 130, 160, 185, 220, 250, 285)
 SUPERELEVATION = 0.06
 TRANSITION = 2.0  # s
 BETWEEN_SAME_SIDE = 6.0  # m of straight for each km/h, between two turns to the same side
+USUAL: Mapping[str, float] = {"country": 80.0, "residential": 30.0}
+"""The design speed in km/h of a country road and of a residential street that give none.
+
+Both are conventions. Chapter 6 of the guide has 60 to 100 km/h for rural collectors on level ground, by
+traffic; most member states of the EU allow 80 to 100 km/h on rural roads. Streets where people live are
+usually zones of 30 km/h."""
 FOR_ROUNDING = 1.002  # ratio of drawn vertical radii to the least ones: inclines are written to the tenth
 
 

@@ -9,8 +9,7 @@ from roadgpt.brief.ranges import Range
 class Element(NamedTuple):
     """One turn or one straight; its grade is constant, and ``turn`` is 0 for a straight.
 
-    A turn consists of a clothoid, an arc and a second clothoid.
-    """
+    A turn consists of a clothoid, an arc and a second clothoid."""
 
     straight: float = 0.0
     """Length of a straight in metres; not used for a turn, whose length follows from its other fields."""
@@ -27,8 +26,7 @@ class Element(NamedTuple):
     leaves the choice to the design."""
     required_length: Range | None = None
     """Allowed range of the length of a straight, in metres; None for a turn, and for a straight that was
-    added only to join other elements.
-    """
+    added only to join other elements."""
     required_grade: Range | None = None
     """Allowed range of the mean grade, in percent; None if the description asks for no grade here."""
     required_climb: Range | None = None

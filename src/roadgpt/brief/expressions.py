@@ -2,8 +2,7 @@
 traffic on the left, a motorway.
 
 The readers take every length for a length of the road. The size of a map ("on a map of 500 m by 500 m") is
-therefore removed from the words before a reader reads the words.
-"""
+therefore removed from the words before a reader reads the words."""
 
 import re
 from itertools import pairwise
@@ -46,8 +45,7 @@ def said_map_size(words: str) -> tuple[float, str] | None:
     and the other words; None if the words give no size.
 
     "On a map of 500 m by 500 m" is removed; "a map of 500 m by 500 m with two crossroads" only loses the
-    size. Raises BriefError if no map may have this size, or if the words say nothing else.
-    """
+    size. Raises BriefError if no map may have this size, or if the words say nothing else."""
     found = next(filter(None, (form.search(words) for form in MAP_SIZES)), None)
     if found is None:
         return None
@@ -89,8 +87,7 @@ def with_driving_side(brief: Brief, words: str) -> Brief:
     """Returns the Brief with traffic on the left if the Brief or the words ask for it; otherwise unchanged.
 
     The phrase "left-hand traffic" does not ask for other cars. If no other word of the description asks for
-    cars, "traffic" is removed from ``beside``, the things that are mentioned but not required.
-    """
+    cars, "traffic" is removed from ``beside``, the things that are mentioned but not required."""
     if not (brief.left_hand or says_left_hand(words)):
         return brief
     has_others = TRAFFIC.search(LEFT_HAND.sub(" ", unaccented(words))) is not None

@@ -1,6 +1,5 @@
 """Finds contradictions and impossible requirements in a Brief before a road is designed, and says what to
-change.
-"""
+change."""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -69,8 +68,7 @@ def check(
     Raises:
         NoRoomError: the map is too small; a larger one may hold the road.
         BriefError: there is a contradiction or an impossible requirement; the message, one sentence, names
-            the first one found.
-    """
+            the first one found."""
     is_network = bool(brief.junctions) or brief.map is not None
     if is_network:
         from roadgpt.brief.junction_check import faults_of_network  # only for networks
@@ -369,8 +367,7 @@ def _length(brief: Brief, min_radius: float, steepest: float) -> Iterator[str]:
 
 def _design_speed(brief: Brief, limits: SpeedLimits) -> Iterator[str]:
     """Checks the turns against the least radius of a design speed, and lengths against its vertical curves,
-    which lie half on either side of the place where two slopes meet.
-    """
+    which lie half on either side of the place where two slopes meet."""
     found, fast = outline(brief.model_copy(update={"speed": None})), f"a road for {limits.kmh:g} km/h"
     features = [group.feature for group in found.groups for _ in range(max(group.lo, 1))]
     ends = [end for end in (found.starts, found.ends) if end is not None]

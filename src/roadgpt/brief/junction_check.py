@@ -70,8 +70,7 @@ FORK_GAPS = (87.0, 153.0)  # degrees between neighbouring arms of a fork for whi
 
 def faults_of_network(brief: Brief) -> Iterator[str]:
     """Yields how the junctions and lanes of a route, or the map, contradict themselves or cannot be built, as
-    sentences that say what to change.
-    """
+    sentences that say what to change."""
     for junction in brief.junctions:
         yield from _faults_of_junction(junction)
     backs = [n for n, junction in enumerate(brief.junctions) if junction.take == "back"]
@@ -199,8 +198,7 @@ def _are_signs_possible(junction: JunctionClause) -> bool:
 
 def _are_one_way_arms_possible(junction: JunctionClause) -> bool:
     """Returns whether a junction can have the one-way arms that it asks for. The road behind it makes the arm
-    of the route one-way, so that arm cannot be listed.
-    """
+    of the route one-way, so that arm cannot be listed."""
     into, out, ways = {*junction.only_in}, {*junction.only_out}, {*junction.ways}
     count = len(junction.only_in) + len(junction.only_out)
     return not count or (
@@ -248,9 +246,8 @@ def _go_together(junction: JunctionClause) -> bool:
 
 def _allows(junction: JunctionClause, turn: float, least: float) -> bool:
     """Returns whether the route may turn by an angle where the closest roads are ``least`` degrees apart."""
-    turns = junction.degrees is None or is_about(turn, junction.degrees)
-    is_between = junction.angle is None or is_about(least, junction.angle)
-    return turns and is_between and (not junction.skew or least < SKEW)
+    turns = is_about(turn, junction.degrees) and is_about(least, junction.angle)
+    return turns and (not junction.skew or least < SKEW)
 
 
 def _faults_of_lanes(brief: Brief) -> Iterator[str]:
@@ -311,8 +308,7 @@ def _are_signed_possible(asked: MapClause) -> bool:
     """Returns whether a grid can have the junctions that have signs of their own.
 
     A grid has four junctions fewer than corners of blocks, unless roads lead out at its own corners. Only
-    where a road leads out, the junctions at its border are crossroads.
-    """
+    where a road leads out, the junctions at its border are crossroads."""
     if not asked.signed:
         return True
     columns, rows = (min(span(each).hi, MOST_BLOCKS) for each in (asked.columns, asked.rows))

@@ -1,15 +1,14 @@
 """Defines what a description can ask of a junction on the route, and of a map of roads.
 
 Merges, motorway exits, lane drops, lane gains and lane changes are listed together with the junctions, in
-driving order.
-"""
+driving order."""
 
 from collections.abc import Mapping
 from typing import Literal, Self, get_args
 
 from pydantic import Field, field_validator, model_validator
 
-from roadgpt.brief.amount import Amount, Frozen, exactly, span
+from roadgpt.brief.amount import Amount, Frozen, about, exactly, span
 from roadgpt.brief.ranges import Range
 
 PlainKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
@@ -52,8 +51,7 @@ NAMES: Mapping[JunctionKind, tuple[str, ...]] = {
 }
 """The English words for each kind; RoadGPT's own texts use the first one.
 
-The kind "junction" means that the description names no kind; any kind but a roundabout is then possible.
-"""
+The kind "junction" means that the description names no kind; any kind but a roundabout is then possible."""
 MAP = "map"
 ROUTE = "route"
 LONGEST_ROUTE = 12  # junctions
@@ -103,8 +101,7 @@ class JunctionClause(Frozen):
     """The side of the ramp of a merge or an exit, or of the lane that ends or begins."""
     length: Amount | None = None
     """The length in metres: at a merge or an exit, of the acceleration or deceleration lane; where a lane of
-    the road ends or begins, of its taper.
-    """
+    the road ends or begins, of its taper."""
     taper: Amount | None = None
     """The length in metres of the taper of the acceleration or deceleration lane."""
     all_way: bool = False
@@ -180,8 +177,7 @@ class MapClause(Frozen):
 
     def ends_of_tree(self, arms: float) -> Range:
         """Returns how many dead ends the map may have. ``arms`` is the number of arms that are free if the
-        junctions are joined as a tree without blocks; each block uses two of these arms.
-        """
+        junctions are joined as a tree without blocks; each block uses two of these arms."""
         blocks = span(self.blocks)
         enclosing = Range(arms - 2 * blocks.hi, arms - 2 * max(blocks.lo, 0))
         asked = span(self.dead_ends)
@@ -212,8 +208,7 @@ SIZES: Mapping[IslandSize, Range] = {
 """The range of the outer diameter of a roundabout in metres, for each word for its size.
 
 CD 116 Geometric design of roundabouts (National Highways) calls a roundabout of less than 28 m "compact" or
-"mini"; the other limits are usual figures.
-"""
+"mini"; the other limits are usual figures."""
 ACROSS = Range(18, 70)
 """The outer diameters in metres with which roundabouts can be built."""
 SKEW = 70.0  # degrees; crossroads with a smaller angle between two neighbouring arms are skew
@@ -225,19 +220,16 @@ BENDS = {"slight": Range(SIDE, 75), "sharp": Range(95, 180)}
 
 def side_of(turn: float) -> Way:
     """Returns the way that corresponds to a change of direction in degrees, positive to the left. Changes of
-    up to ``SIDE`` degrees are "straight".
-    """
+    up to ``SIDE`` degrees are "straight"."""
     return "left" if turn > SIDE else "right" if turn < -SIDE else "straight"
 
 
 def bends_as(take: Take | None, turn: float) -> bool:
     """Returns whether a change of direction in degrees is as slight or as sharp as ``take``, such as
-    "slight_left", requires; the sides are not compared.
-    """
+    "slight_left", requires; the sides are not compared."""
     return abs(turn) in BENDS.get((take or "").partition("_")[0], Range())
 
 
-def is_about(degrees: float, asked: Amount) -> bool:
+def is_about(degrees: float, asked: Amount | None) -> bool:
     """Returns whether an angle in degrees is as required; the tolerance of a single number is ``ABOUT``."""
-    wanted, slack = span(asked), ABOUT if asked.exact else 0.0
-    return degrees in Range(wanted.lo - slack, wanted.hi + slack)
+    return degrees in about(asked, lambda _: ABOUT)

@@ -9,8 +9,7 @@ word.
 Sources: AASHTO, A Policy on Geometric Design of Highways and Streets (2018), for 70 mph: radii of 2,040 ft or
 more (622 m) at 6 percent superelevation, grades up to 5 percent in mountains, curves at least 15 ft long per
 mph (1,050 ft, 320 m). RAA 2008, design classes EKA 1 A, 1 B, 2 and 3: radii of at least 900, 720, 470 and 280
-m, grades up to 4, 4.5, 4.5 and 6 percent.
-"""
+m, grades up to 4, 4.5, 4.5 and 6 percent."""
 
 from math import ceil, floor, inf, pi, prod, radians, sin, sqrt
 
@@ -43,8 +42,7 @@ GAP = 16.0  # metres of straight between two turns to the same side
 
 def longest_straight(map_size: float, road_width: float = ROAD_WIDTH) -> float:
     """Returns the length in metres of the longest straight on the map: from corner to corner, as far from the
-    border as the whole carriageway needs.
-    """
+    border as the whole carriageway needs."""
     return sqrt(2) * (map_size - road_width - 2 * EDGE)
 
 
@@ -53,8 +51,7 @@ def check_room(brief: Brief, map_size: float, min_radius: float, road_width: flo
     the road really fits. Lengths are in metres.
 
     Raises:
-        NoRoomError: the road cannot fit; the message says what would fit.
-    """
+        NoRoomError: the road cannot fit; the message says what would fit."""
     _straights(brief, map_size, road_width)
     _turns(brief, map_size, road_width)
     least = least_length(brief, min_radius)
@@ -114,8 +111,7 @@ def _too_long(what: str, metres: float, brief: Brief, map_size: float, road_widt
 
 def least_length(brief: Brief, min_radius: float) -> float:
     """Returns a lower bound, in metres, on the length of a road with the clauses and turns of a Brief, whose
-    turns have a radius of ``min_radius`` metres or more, and the radius that the design speed needs.
-    """
+    turns have a radius of ``min_radius`` metres or more, and the radius that the design speed needs."""
     limits = limits_at(brief.speed) if brief.speed else None
     least = max(min_radius, limits.radius) if limits else min_radius
     metres = sum(_way(clause, least) for clause in brief.clauses)
@@ -164,8 +160,7 @@ STEEP = ("steeply_up", "steeply_down")
 
 def has_wide_turns(brief: Brief, map_size: float) -> bool:
     """Returns True if the Brief asks for a motorway and for no tighter turns, and if the wide turns of a
-    motorway fit on the map and into the required length; ``map_size`` is in metres.
-    """
+    motorway fit on the map and into the required length; ``map_size`` is in metres."""
     return brief.motorway and not _is_tighter(brief) and not _lack_of_room(brief, map_size)
 
 
@@ -182,8 +177,7 @@ def has_low_grades(brief: Brief) -> bool:
 def motorway_remarks(brief: Brief, map_size: float) -> tuple[str, ...]:
     """Returns sentences, without full stops, on what "motorway" requires and whether the map can hold it.
 
-    Empty if the Brief asks for no motorway; ``map_size`` is the side of the map in metres.
-    """
+    Empty if the Brief asks for no motorway; ``map_size`` is the side of the map in metres."""
     if not brief.motorway:
         return ()
     wide, low = f"turns of {MOTORWAY_RADIUS:g} m radius or more", f"grades of {MOTORWAY_GRADE:g} % or less"

@@ -1,16 +1,15 @@
 """The Brief: the requirements for a road that were read from a description, as data.
 
-Numbers in a Brief are in everyday units (degrees, metres and percent), so that people can write Briefs.
-"""
+Numbers in a Brief are in everyday units (degrees, metres and percent), so that people can write Briefs."""
 
 import re
 from typing import Annotated, Any, Literal, Self, cast
 
 from pydantic import AfterValidator, Field, model_validator
 
-from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exactly, figure, span
+from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exactly, span
 from roadgpt.brief.beside import BESIDE, friction_of
-from roadgpt.brief.design_speed import FASTEST, SLOWEST
+from roadgpt.brief.design_speed import FASTEST, SLOWEST, USUAL
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, Side
 from roadgpt.brief.ranges import Range, nearest
 from roadgpt.brief.words import (
@@ -23,12 +22,12 @@ from roadgpt.brief.words import (
     Sharpness,
     Size,
     Slope,
+    Surroundings,
 )
 
 __all__ = [
     "OTHER_SIDE",
     "Amount",
-    "Beside",
     "Brief",
     "Clause",
     "Frozen",
@@ -42,7 +41,6 @@ __all__ = [
     "at_most",
     "between",
     "exactly",
-    "figure",
     "span",
 ]
 
@@ -71,8 +69,7 @@ class Clause(Frozen):
     count: Amount = Amount(lo=1, hi=1)
     """The number of features of this kind in a row. For a serpentine, zigzag, slalom, winding road or
     switchback with a number ("4 switchbacks"), ``count`` is the number of turns. An s_bend or a chicane
-    counts as one feature ("two S-bends" is 2).
-    """
+    counts as one feature ("two S-bends" is 2)."""
     side: Side | None = None
     """The direction of every turn; if the turns alternate, the direction of the first turn."""
     alternating: bool = False
@@ -93,16 +90,14 @@ class Clause(Frozen):
     """The grade in percent, always positive; ``slope`` says whether it is up or down."""
     climb: Amount | None = None
     """How many metres each feature rises or falls from its start to its end, always positive; ``slope`` says
-    whether it is up or down. For a crest or a dip, ``climb`` is the height or the depth.
-    """
+    whether it is up or down. For a crest or a dip, ``climb`` is the height or the depth."""
 
 
 class Brief(Frozen):
     """A description and the requirements that were read from it.
 
     ``clauses`` are in driving order. If any clause is a turn, the clauses name *all* turns of the road. The
-    other fields are requirements for the road as a whole, which hold in addition to the clauses.
-    """
+    other fields are requirements for the road as a whole, which hold in addition to the clauses."""
 
     words: str = ""
     clauses: tuple[Clause, ...] = ()
@@ -151,8 +146,7 @@ class Brief(Frozen):
     junctions: tuple[JunctionClause, ...] = ()
     """The junctions that the route passes, in driving order. If there are any, ``stretches`` has the
     requirements for the roads; of the fields above, only ``words``, ``length``, ``beside``, ``unused`` and
-    ``confidence`` are then used, for the whole route.
-    """
+    ``confidence`` are then used, for the whole route."""
     stretches: "tuple[Brief, ...]" = ()
     """The requirements for the roads before, between and after the junctions: one more than junctions."""
     lanes: Amount | None = None
@@ -173,11 +167,19 @@ class Brief(Frozen):
     comes_from: Compass | None = None
     """The direction from which one comes at the start; the map has north at the top. Not for maps of roads.
     """
+    surroundings: Surroundings | None = None
+    """Where the road lies: "country" for a country road, "residential" for a residential street."""
     speed: Annotated[float, Field(ge=SLOWEST, le=FASTEST)] | None = None
-    """The design speed in km/h: see ``brief.design_speed``. That of a route holds for its roads without one.
-    """
+    """The design speed in km/h: see ``brief.design_speed``. Without a number, it is the usual one of
+    ``surroundings``; that of a route holds for its roads without one."""
     other: str = ""
     """The plan of the second likeliest reading, if the reader is not sure of this Brief; otherwise empty."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_usual_speed(cls, fields: Any) -> Any:
+        usual = USUAL.get(str(fields.get("surroundings"))) if isinstance(fields, dict) else None
+        return fields if usual is None or fields.get("speed") else {**fields, "speed": usual}
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -198,7 +200,11 @@ class Brief(Frozen):
         if any(stretch.comes_from for stretch in self.stretches):
             raise ValueError("a route comes from one direction at its start; write from= after ||")
         if self.map is not None and (self.comes_from or self.speed):
-            raise ValueError("from= and speed= are for roads and routes; leave them out of a map of roads")
+            known = "from=, speed=, country and residential"
+            raise ValueError(f"{known} are for roads and routes; leave them out of a map of roads")
+        if self.motorway and self.surroundings:
+            kinds = "a motorway, a country road or a residential street"
+            raise ValueError(f"a road is {kinds}; leave one of the words out")
         return self
 
     @property
@@ -215,8 +221,7 @@ class Brief(Frozen):
         """The numbers of lanes along and against the drive, such as "2+1"; None if neither is required.
 
         A direction without a requirement gets one lane. On a motorway, the direction against the drive then
-        gets no lane, because a motorway is built as one carriageway.
-        """
+        gets no lane, because a motorway is built as one carriageway."""
         if self.lanes is None and self.against is None:
             return None
         most = Range(1, MOST_LANES), Range(0, MOST_LANES)
@@ -237,8 +242,7 @@ class Brief(Frozen):
         """The requirements for each road before, between and after the junctions.
 
         Without junctions, there is one road; it needs at least one turn if neither clauses nor a number of
-        turns are given.
-        """
+        turns are given."""
         if self.stretches:
             own = ({"speed": road.speed or self.speed} for road in self.stretches)
             return tuple(
@@ -254,8 +258,8 @@ class Brief(Frozen):
 
     @property
     def has_free_shape(self) -> bool:
-        """Whether nothing is required of the road but lanes, markings, a speed, or that it is a motorway."""
-        free = ("lanes", "against", "divided", "centre", "motorway", "speed")
+        """Whether nothing is required of the road but lanes, markings, a speed, or its kind."""
+        free = ("lanes", "against", "divided", "centre", "motorway", "surroundings", "speed")
         return self._requires_only((*OF_THE_WORDS, *free))
 
     @property
@@ -309,8 +313,7 @@ def mirrored(brief: Brief) -> Brief:
     west to east, meets the mirrored Brief.
 
     The numbers of exits stay, because exits are counted in the direction in which traffic drives around a
-    roundabout. ``map`` also stays as it is.
-    """
+    roundabout. ``map`` also stays as it is."""
     names = {"clauses", "starts", "ends", "left", "right", "junctions", "stretches"}
     other = {**brief.model_dump(exclude=names), **_with_other_sides(brief.model_dump(include=names))}
     start = brief.comes_from and UPSIDE_DOWN.sub(lambda way: OTHER_POLE[way[0]], brief.comes_from)

@@ -4,8 +4,7 @@ What describes only the origin of a Brief is cleared. Each requirement stands in
 number replaces its word; what holds for every turn stands in the clauses if they name the turns; equal
 neighbours are one clause; what only repeats the clauses, or follows from other numbers, is left out or filled
 in always. A Brief without features and number of turns asks for at least one turn, and one of straights alone
-for none, unless it asks for '0 or more turns'.
-"""
+for none, unless it asks for '0 or more turns'."""
 
 from collections.abc import Iterable, Sequence
 from math import inf
@@ -35,22 +34,18 @@ PLAIN: dict[Slope, Slope] = {
 def normal(brief: Brief) -> Brief:
     """Returns the normal form of a Brief; a Brief in normal form is returned unchanged.
 
-    For a route with junctions, the requirements for each road are brought into normal form.
-    """
+    For a route with junctions, the requirements for each road are brought into normal form."""
     if brief.junctions or brief.map is not None:
-        stretches = tuple(map(_normal_stretch, brief.stretches))
-        return brief.model_copy(update={**UNSAID, "stretches": stretches})
+        stretches = [
+            normal(road).model_copy(update={} if road.clauses or road.turns else {"turns": road.turns})
+            for road in brief.stretches
+        ]
+        return brief.model_copy(update={**UNSAID, "stretches": tuple(stretches)})
     for _ in range(MOST_STEPS):
         before, brief = brief, _simpler(brief)
         if brief == before:
             break
     return brief
-
-
-def _normal_stretch(brief: Brief) -> Brief:
-    if brief.clauses or brief.turns is not None:
-        return normal(brief)
-    return normal(brief).model_copy(update={"turns": None})
 
 
 def _simpler(brief: Brief) -> Brief:
@@ -75,8 +70,7 @@ def _simpler(brief: Brief) -> Brief:
 def with_continued_grades(clauses: Sequence[Clause]) -> list[Clause]:
     """Returns the clauses; one that goes on climbing or falling behind a clause with a number for its grade
     gets the same number: "down at 3 percent, then a right turn, still downhill". Straights that follow each
-    other have grades of their own, since only their grades tell them apart.
-    """
+    other have grades of their own, since only their grades tell them apart."""
     out: list[Clause] = []
     for clause in clauses:
         last = out[-1] if out else None
@@ -92,8 +86,7 @@ def with_like_numbers(brief: Brief) -> Brief:
     """Returns a Brief in which all clauses of a kind get the angle, radius or length that one clause has.
 
     A clause with a word instead of the number, such as "sharp", stays as it is. If clauses of a kind have
-    different numbers, they all stay as they are. A Brief without ``alike`` is returned unchanged.
-    """
+    different numbers, they all stay as they are. A Brief without ``alike`` is returned unchanged."""
     if not brief.alike:
         return brief
     clauses = brief.clauses
@@ -270,8 +263,7 @@ def _sided(brief: Brief) -> Brief:
 
 def _forced_side(brief: Brief) -> Side | None:
     """Returns the direction of all turns if turns in the other direction are excluded; None if they are
-    not.
-    """
+    not."""
     sides = [one for one, other in OTHER_SIDE.items() if getattr(brief, other) == exactly(0)]
     return sides[0] if len(sides) == 1 else None
 

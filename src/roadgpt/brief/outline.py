@@ -2,14 +2,14 @@
 
 Designers aim for values inside the ranges of an Outline, and the rule ``promises`` compares a finished road
 with them. All numbers are in the units of ``words.py`` (degrees, metres, percent with uphill positive), and
-are measured as in ``check.measures``.
-"""
+are measured as in ``check.measures``."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, Literal, TypeVar
 
+from roadgpt.brief.amount import about
 from roadgpt.brief.design_speed import SpeedLimits, limits_at
 from roadgpt.brief.map_fit import has_low_grades, has_wide_turns
 from roadgpt.brief.model import Amount, Brief, Clause, Kind, Side, Slope, span
@@ -91,8 +91,7 @@ class Feature:
 
     def limits(self, *more: str) -> str:
         """Returns the requirements as text, such as ': to the left, 25 to 120 degrees'; empty if there are
-        none. The texts in ``more`` are added at the end.
-        """
+        none. The texts in ``more`` are added at the end."""
         spans = {name: getattr(self, name) for name in FEATURE}
         if self.kind == "straight":
             del spans["degrees"]
@@ -105,8 +104,7 @@ class Feature:
 
 def both(one: Feature, other: Feature) -> Feature:
     """Returns a feature with the requirements of two features; ranges are intersected and may become
-    empty. The result has the name of the second feature if the first name is only its kind.
-    """
+    empty. The result has the name of the second feature if the first name is only its kind."""
     name = other.name if one.name == one.kind else one.name
     ranges: dict[str, Any] = {name: overlap(getattr(one, name), getattr(other, name)) for name in FEATURE}
     return replace(one, name=name, side=one.side or other.side, bump=one.bump or other.bump, **ranges)
@@ -192,8 +190,7 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
     Args:
         brief: the requirements.
         map_size: side of the map in metres. On a map of less than 150 m, sweeping turns only need a radius of
-            40 m, as gentle turns do; a motorway gets wide turns only if the map can hold them.
-    """
+            40 m, as gentle turns do; a motorway gets wide turns only if the map can hold them."""
     roomy = map_size >= ROOMY
     brief = _with_figures_first(with_like_numbers(brief))
     groups = tuple(
@@ -227,12 +224,14 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
         heading=heading_from(brief.comes_from) if brief.comes_from else None,
     )
     found = _with_both_ends(found)
-    found = _as_motorway(found, brief, map_size) if brief.motorway else found
-    if brief.speed is None:
-        return found
-    limits = limits_at(brief.speed)
-    wide = overlap(found.each_turn.radius, Range(limits.radius))
-    return replace(found, speed=limits, each_turn=replace(found.each_turn, radius=wide))
+    if has_low_grades(brief):
+        found = replace(found, steepest=overlap(found.steepest, Range(0, MOTORWAY_GRADE)))
+    limits = limits_at(brief.speed) if brief.speed else None
+    least = [MOTORWAY_RADIUS] if has_wide_turns(brief, map_size) else []
+    for radius in (*least, *([limits.radius] if limits else [])):
+        wide = overlap(found.each_turn.radius, Range(radius))
+        found = replace(found, each_turn=replace(found.each_turn, radius=wide))
+    return replace(found, speed=limits)
 
 
 def _with_both_ends(found: Outline) -> Outline:
@@ -252,8 +251,7 @@ def _with_figures_first(brief: Brief) -> Brief:
 
     "Uphill" usually means 3 to 12 percent. "Uphill, at most 2 percent" means 1 to 2 percent. "Uphill, 6 m
     over 300 m" also allows the 2 percent that follow from these numbers. "Uphill, 6 m" allows 1 to 12
-    percent, since the length of the road is open.
-    """
+    percent, since the length of the road is open."""
     most = span(brief.steepest).hi
     clauses = tuple(_within(clause, most) for clause in with_continued_grades(brief.clauses))
     brief = _within(brief.model_copy(update={"clauses": clauses}), most)
@@ -268,8 +266,7 @@ def _with_figures_first(brief: Brief) -> Brief:
 
 def _within(said: Sloped, most: float) -> Sloped:
     """Returns a Brief or a clause with an incline of ``most`` percent or less, if its slope has no number of
-    its own and the usual grades of the slope are too close to ``most`` or above it; else unchanged.
-    """
+    its own and the usual grades of the slope are too close to ``most`` or above it; else unchanged."""
     usual = SLOPES[said.slope].grade if said.slope and not said.incline else None
     if said.slope is None or usual is None or 0 in usual:
         return said
@@ -277,15 +274,6 @@ def _within(said: Sloped, most: float) -> Sloped:
     if least <= EASIER * most or (said.slope.startswith("steeply") and most < FIGURE_WINS * least):
         return said
     return said.model_copy(update={"incline": Amount(lo=max(most / 2, LEAST_GRADE), hi=most)})
-
-
-def _as_motorway(found: Outline, brief: Brief, map_size: float) -> Outline:
-    if has_low_grades(brief):
-        found = replace(found, steepest=overlap(found.steepest, Range(0, MOTORWAY_GRADE)))
-    if not has_wide_turns(brief, map_size):
-        return found
-    wide = overlap(found.each_turn.radius, Range(MOTORWAY_RADIUS))
-    return replace(found, each_turn=replace(found.each_turn, radius=wide))
 
 
 def _groups(clause: Clause, roomy: bool) -> list[Group]:
@@ -335,8 +323,7 @@ def _straight(clause: Clause) -> Feature:
 
 def climb_of_each(clause: Clause) -> Amount | None:
     """Returns how many metres each single turn or straight of a clause rises or falls; None if the clause
-    asks for no height. The turns of an S-bend share its height equally.
-    """
+    asks for no height. The turns of an S-bend share its height equally."""
     if clause.climb is None or clause.kind in STRAIGHT or clause.kind not in TOGETHER:
         return clause.climb
     turns = KINDS[clause.kind].turns
@@ -356,8 +343,7 @@ def slopes_of_bump(clause: Clause) -> list[Clause]:
 def without_joints(clauses: tuple[Clause, ...]) -> list[Clause]:
     """Leaves out each crest between a climbing and a falling straight, and each dip between a falling and a
     climbing straight: such a crest or dip is only the place where the straights meet. A crest or dip with
-    requirements of its own stays.
-    """
+    requirements of its own stays."""
     around = zip((STRAIGHT_ON, *clauses), clauses, (*clauses[1:], STRAIGHT_ON), strict=False)
     return [clause for before, clause, after in around if not _is_joint(before, clause, after)]
 
@@ -383,8 +369,7 @@ def limits_of_climb(
     """Returns the ranges of length (metres) and grade (percent, positive) of a part of a given height.
 
     ``length`` and ``grade`` are the ranges that are asked for, or None. ``has_radius`` is True for a turn
-    whose radius is given; the angle and the radius then determine the length.
-    """
+    whose radius is given; the angle and the radius then determine the length."""
     allowed = grade or Range(LEAST_GRADE, STEEPEST)
     low, high = max(climb.lo, 0.0), climb.hi
     if length is None and not has_radius:
@@ -402,8 +387,7 @@ def limits_of_climb(
 
 def _climbing(feature: Feature, clause: Clause) -> Feature:
     """Returns a feature of a clause with the height that is asked of it, and the lengths and grades that are
-    possible with it.
-    """
+    possible with it."""
     each = _near(climb_of_each(clause), FEATURE["climb"])
     if each is None:
         return feature
@@ -462,8 +446,7 @@ def _turn_count(brief: Brief, groups: Sequence[Group]) -> Range:
     """Returns how many turns the road has.
 
     These are the turns of the groups if any group turns, otherwise the number that was asked for; a road of
-    straights alone has none.
-    """
+    straights alone has none."""
     turning = [group for group in groups if group.feature.kind == "turn"]
     wished = _count(brief.turns)
     if turning:
@@ -490,10 +473,4 @@ def _angle(amount: Amount) -> Range:
 
 
 def _near(amount: Amount | None, quantity: Quantity) -> Range | None:
-    """Returns an exact number with its tolerance, and a bound or a range unchanged."""
-    if amount is None:
-        return None
-    if amount.exact and amount.lo is not None:
-        slack = quantity.slack(amount.lo)
-        return Range(amount.lo - slack, amount.lo + slack, number=amount.lo)
-    return Range(span(amount).lo, span(amount).hi)
+    return None if amount is None else about(amount, quantity.slack)

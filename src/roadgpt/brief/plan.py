@@ -9,8 +9,7 @@ The clauses are in driving order, separated by ``;``. The requirements for the w
 Junctions and the roads between them alternate, separated by ``//``; a road without requirements is left out,
 and requirements for the whole route follow after ``||``. A map is a grid, or junctions joined by roads.
 A number is exact (``3``), a bound (``3..`` or ``..3``) or a range (``3..5``), in the units of the Brief. The
-page docs/reference/plans.md describes the language.
-"""
+page docs/reference/plans.md describes the language."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping
@@ -19,7 +18,7 @@ from typing import Any, NamedTuple, TypeVar, get_args
 from pydantic import ValidationError
 
 from roadgpt.brief.amount import amount_text, figure, read_amount
-from roadgpt.brief.design_speed import FASTEST, SLOWEST
+from roadgpt.brief.design_speed import FASTEST, SLOWEST, USUAL
 from roadgpt.brief.junctions import (
     LONGEST_ROUTE,
     MAP,
@@ -38,7 +37,17 @@ from roadgpt.brief.junctions import (
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Frozen, exactly, span
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.refusal import refused
-from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, Bump, Compass, Kind, Sharpness, Size, Slope
+from roadgpt.brief.words import (
+    LARGEST_MAP,
+    SMALLEST_MAP,
+    Bump,
+    Compass,
+    Kind,
+    Sharpness,
+    Size,
+    Slope,
+    Surroundings,
+)
 from roadgpt.errors import BriefError
 
 KINDS = frozenset(get_args(Kind))
@@ -68,10 +77,11 @@ OF_WHOLE = {
     "map_size": "map_size",
     "beside": "beside",
     "comes_from": "from",
+    "surroundings": "country, residential",
     "speed": "speed",
 }
-"""The fields of a Brief that can be asked of a whole route, with their names in plans; a map has no last two.
-"""
+"""The fields of a Brief that can be asked of a whole route, with their names in plans; a map has none of the
+last three."""
 PLACES = ("starts", "ends")
 INNER = "(starts|ends|beside)"
 ALIKE = "alike"
@@ -144,8 +154,7 @@ def _compass(text: str) -> str:
 
 def read_ways(text: str) -> tuple[Way, ...]:
     """Returns the ways that a route takes at junctions, from a text such as "left, straight"; raises
-    BriefError unless the text is 1 to 12 of left, right and straight.
-    """
+    BriefError unless the text is 1 to 12 of left, right and straight."""
     words = [word for word in re.split(r"[+,\s]+", text) if word]
     ways: list[Way] = [way for word in words for way in get_args(Way) if way == word]
     if not 1 <= len(ways) == len(words) <= LONGEST_ROUTE:
@@ -165,6 +174,7 @@ ROAD = _Language(
         **_words(
             sharpness=Sharpness,
             slope=Slope,
+            surroundings=Surroundings,
             flags=("alternating", ALIKE, "hard", "motorway", "divided", "left_hand"),
         ),
         ONE_WAY: ("against", NO_LANE),
@@ -250,7 +260,8 @@ def _wishes(brief: Brief) -> list[str]:
     wishes += [f"centre={brief.centre}"] if brief.centre is not None else []
     wishes += [f"map_size={brief.map_size:g}"] if brief.map_size is not None else []
     wishes += [f"from={brief.comes_from}"] if brief.comes_from is not None else []
-    return wishes + ([f"speed={figure(brief.speed)}"] if brief.speed is not None else [])
+    is_usual = brief.surroundings is not None and brief.speed == USUAL[brief.surroundings]
+    return wishes + ([] if brief.speed is None or is_usual else [f"speed={figure(brief.speed)}"])
 
 
 def _clause(clause: Clause) -> str:
@@ -283,12 +294,14 @@ def read_plan(line: str) -> Brief:
     """Returns the Brief that a plan describes.
 
     Raises BriefError if a word, key or number is not part of the plan language, a field is given twice, roads
-    and junctions do not alternate, or the plan is a refusal.
-    """
+    and junctions do not alternate, or the plan is a refusal."""
     if line.lstrip().startswith("!"):
         raise refused(line)
     if BETWEEN in line or is_junction(line):
-        return _read_network(_without_halfway(line))
+        half, word = half_of_route(line), rf"\b{HALFWAY}\b"
+        if re.search(word, line) and not half:
+            raise BriefError("'halfway' in a plan needs the length of the whole route, as in || len=400")
+        return _read_network(re.sub(word, half, line))
     road, _, whole = line.partition(WHOLE)
     if is_map(line):
         return _made(Brief, {"map": _read_map(road), **_read_whole(whole)}, line)
@@ -311,17 +324,9 @@ def read_plan(line: str) -> Brief:
 
 def half_of_route(line: str) -> str:
     """Returns the lengths that are half of the route of a plan, such as "len=180..220"; "" if the plan does
-    not give the length of the whole route as one number.
-    """
+    not give the length of the whole route as one number."""
     found = WHOLE_LENGTH.search(line)
     return "len=" + "..".join(figure(share * float(found[1])) for share in SHARES_OF_HALF) if found else ""
-
-
-def _without_halfway(line: str) -> str:
-    half, word = half_of_route(line), rf"\b{HALFWAY}\b"
-    if re.search(word, line) and not half:
-        raise BriefError("'halfway' in a plan needs the length of the whole route, as in || len=400")
-    return re.sub(word, half, line)
 
 
 def is_junction(text: str) -> bool:
@@ -340,7 +345,11 @@ def _read_network(line: str) -> Brief:
     roads = [""]
     for part in filter(None, map(str.strip, route.split(BETWEEN))):
         if is_junction(part):
-            junctions.append(_read_junction(part))
+            kind, *words = part.split()
+            fields: dict[str, object] = {"kind": kind}
+            for word in words:
+                _read_word(fields, word, JUNCTION)
+            junctions.append(_made(JunctionClause, fields, part))
             roads.append("")
         elif roads[-1]:
             raise BriefError(
@@ -369,18 +378,9 @@ def _read_whole(text: str) -> dict[str, object]:
     return fields
 
 
-def _read_junction(text: str) -> JunctionClause:
-    kind, *words = text.split()
-    fields: dict[str, object] = {"kind": kind}
-    for word in words:
-        _read_word(fields, word, JUNCTION)
-    return _made(JunctionClause, fields, text)
-
-
 def _read_map(line: str) -> MapClause:
     """Returns the map that a plan describes. A sign behind the last kind of junction is that of the whole
-    map, except in a grid.
-    """
+    map, except in a grid."""
     fields: dict[str, object] = {}
     counts: list[dict[str, object]] = []
     words = line.replace(";", " ").split()
@@ -401,8 +401,7 @@ def _read_map(line: str) -> MapClause:
 
 def with_route(asked: MapClause | None, text: str) -> MapClause:
     """Returns the map ``asked`` with the route that a text such as "left,straight" describes. Raises
-    BriefError if the description asks for no map (None), or the text cannot be read.
-    """
+    BriefError if the description asks for no map (None), or the text cannot be read."""
     if asked is None:
         raise BriefError(
             "a route can be named through a map only, such as 'a grid of 3 by 2 blocks'; this description "

@@ -27,8 +27,7 @@ class Range:
 
     def drawn_in(self, margin: float, share: float) -> Range:
         """Returns the range narrowed at both ends by ``margin``, or by the fraction ``share`` (0 to 1) of
-        its width if that is less.
-        """
+        its width if that is less."""
         edge = min(margin, share * (self.hi - self.lo))
         return Range(self.lo + edge, self.hi - edge, self.number)
 
@@ -44,8 +43,7 @@ class Range:
 
     def around(self, share: float) -> Range:
         """Returns the range with its tolerance on both sides of ``number`` multiplied by ``share`` (0 to 1);
-        unchanged if ``number`` is None.
-        """
+        unchanged if ``number`` is None."""
         if self.number is None:
             return self
         low, high = self.number - self.lo, self.hi - self.number
@@ -60,8 +58,7 @@ def nearest(number: float, *ranges: Range) -> float:
 
 def overlap(one: Range | None, other: Range | None) -> Range | None:
     """Returns the intersection of two ranges; None means no limit, and an empty intersection has ``lo`` >
-    ``hi``.
-    """
+    ``hi``."""
     if one is None or other is None:
         return one or other
     found = Range(max(one.lo, other.lo), min(one.hi, other.hi))

@@ -1,10 +1,9 @@
 """Defines errors and messages for refused descriptions, and the largest length of a description.
 
 ``TooMuchError`` and ``NoRoomError`` contain the Brief, because a larger map may hold the road.
-``AnotherRoadError`` contains the plan and the Brief of a road that can be built.
-"""
+``AnotherRoadError`` contains the plan and the Brief of a road that can be built."""
 
-from roadgpt.brief.beside import NOT_BUILT, ON_ROUTES, SAID_OTHERWISE, networks_in
+from roadgpt.brief.beside import NOT_BUILT, ON_ROUTES, SAID_OTHERWISE, TEXTS, networks_in
 from roadgpt.brief.model import Brief
 from roadgpt.brief.words import SURFACES
 from roadgpt.errors import BriefError
@@ -13,39 +12,9 @@ MOST_CHARACTERS = 2000
 """The largest number of characters in a description."""
 EXAMPLE = "say for example 'an uphill road with 3 turns'"
 """The end of the message for a description that is empty or says nothing about a road."""
-ADVICE = {
-    "!nonsense": "this does not describe a road; say what it should be like: 'uphill with three turns'",
-    "!contradiction": "the description contradicts itself; leave something out, or say which part of"
-    " the road is meant",
-    "!impossible": "no such road can be built: loops, radii below 15 m and grades above 15 percent are not"
-    " possible; leave that out",
-    "!unclear": "what is wanted is not said; say what the road should be like, or what is to change where",
-}
-"""The refusals of the plan language, with the message for a refusal that names no cause."""
-CLASHING = {
-    "turns": "the number of turns",
-    "sides": "left and right",
-    "order": "the order of its parts",
-    "sharpness": "how sharp the turns are",
-    "degrees": "the angles",
-    "radius": "the radii",
-    "slope": "uphill, downhill and level",
-    "steepness": "how steep it is",
-    "climb": "its heights",
-    "length": "its length",
-}
-"""Causes of a contradiction, with their wording in the message."""
-BEYOND = {
-    "grade": "grades above 15 percent",
-    "radius": "radii below 15 m",
-    "degrees": "turns of more than 240 degrees",
-    "length": "more than 1500 m of road on a map of 250 m",
-    "turns": "more than 12 turns on a map of 250 m",
-    "loop": "a closed loop, or a road that crosses itself",
-}
-"""Causes for which a road cannot be built, with their wording in the message."""
-
-
+ADVICE, CLASHING, BEYOND = (TEXTS[part] for part in ("refusals", "clashing", "beyond"))
+"""The refusals of the plan language, with the message for one that names no cause; and the causes of a
+contradiction, and those for which a road cannot be built, with their wording in the message."""
 BY_OPTION = {
     **SAID_OTHERWISE,
     **{name: f"the surface is set with --friction {each.friction:g}" for name, each in SURFACES.items()},
@@ -58,8 +27,7 @@ OF_CAUSES = {"!contradiction": CLASHING, "!impossible": NOT_BUILT | BEYOND | BY_
 
 def causes_of(line: str) -> tuple[str, str]:
     """Returns the kind of a refusal, such as "!impossible", and its causes in words ("" if it names none).
-    Raises BriefError if the plan is not a refusal, or has causes that this kind of refusal cannot have.
-    """
+    Raises BriefError if the plan is not a refusal, or has causes that this kind of refusal cannot have."""
     kind, *causes = line.split()
     known = OF_CAUSES.get(kind, {})
     if kind not in ADVICE or any(cause not in known for cause in causes):
@@ -86,8 +54,7 @@ def refused(line: str) -> BriefError:
 
 class TooMuchError(BriefError):
     """Raised if a description asks for more than the usual map of 250 m can hold; ``brief.read`` checks the
-    requirements in ``brief`` against the actual map, which may be larger.
-    """
+    requirements in ``brief`` against the actual map, which may be larger."""
 
     def __init__(self, sentence: str, brief: Brief) -> None:
         super().__init__(sentence)
@@ -101,8 +68,7 @@ class AnotherRoadError(BriefError):
         offer: why the description cannot be built, and what is offered instead; a colon and the plan, or a
             description of the road, can be added.
         plan: the plan of the road that is offered.
-        brief: the requirements of this plan.
-    """
+        brief: the requirements of this plan."""
 
     def __init__(self, offer: str, plan: str, brief: Brief) -> None:
         super().__init__(f'{offer}: --plan "{plan}"')
@@ -111,8 +77,7 @@ class AnotherRoadError(BriefError):
 
 class NotBuiltError(AnotherRoadError):
     """Raised if a reader puts something into ``Brief.beside`` that cannot stand beside a road, such as a
-    roundabout; offers the road without this thing.
-    """
+    roundabout; offers the road without this thing."""
 
 
 class ContradictionError(AnotherRoadError):

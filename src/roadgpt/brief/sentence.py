@@ -23,6 +23,7 @@ CENTRES: dict[CentreLine, str] = {
     "double": "a double centre line",
     "none": "no centre line",
 }
+SURROUNDINGS = {None: "road", "country": "country road", "residential": "residential street"}
 WAVY = ("serpentine", "zigzag", "winding", "slalom")
 """The kinds whose name stands for several turns; their ``count`` is the number of these turns."""
 
@@ -34,7 +35,8 @@ def sentence(brief: Brief) -> str:
     if brief.map is not None:
         return _map_sentence(brief.map, brief)
     said = normal(brief)
-    road = _joined(_exact_metres(said.length), _slope(said), "motorway" if said.motorway else "road")
+    noun = "motorway" if said.motorway else SURROUNDINGS[said.surroundings]
+    road = _joined(_exact_metres(said.length), _slope(said), noun)
     if said.clauses:
         road += " with " + ", then ".join(clause_text(clause) for clause in said.clauses)
     elif said.turns and said.turns not in (at_least(1), exactly(0)):
@@ -50,7 +52,8 @@ def _route_sentence(brief: Brief) -> str:
     way = ", then ".join(part for part in parts if part)
     length = f"{brief.length} metres in all" if brief.length else ""
     others = "other roads" if any(stretch.speed for stretch in brief.stretches) else "roads"
-    speed = f"its {others} designed for {brief.speed:g} km/h" if brief.speed else ""
+    where = f"its {others} {SURROUNDINGS[brief.surroundings]}s" if brief.surroundings else f"its {others}"
+    speed = f"{where} designed for {brief.speed:g} km/h" if brief.speed else ""
     apart = {"junctions": (), "stretches": (), "length": None, "speed": None}
     text = "; ".join(filter(None, [way, *_wishes(brief.model_copy(update=apart)), speed, length]))
     return text[0].upper() + text[1:] + "."
@@ -197,8 +200,7 @@ def clause_columns(clause: Clause) -> tuple[str, str]:
 
 def road_words(brief: Brief) -> str:
     """Returns the requirements for the whole road as text, such as 'uphill, 3 turns'; empty if there are
-    none.
-    """
+    none."""
     turns = ""
     if not brief.clauses and brief.turns and brief.turns not in (at_least(1), exactly(0), at_least(0)):
         turns = _counted(brief.turns, "turn")
@@ -306,8 +308,7 @@ FROM: Mapping[Way, str] = {
 
 def junction_text(junction: JunctionClause) -> str:
     """Returns a junction and what the route does there, such as 'at a crossroads with traffic lights turn
-    left'.
-    """
+    left'."""
     parts = [
         "at a",
         junction.size,

@@ -6,8 +6,7 @@ Everything takes these meanings and numbers from here: the readers, the Outline,
 Every number is in everyday units (degrees, metres, percent with uphill positive) and applies to a measurement
 on the finished geometry: the angle and the tightest radius of a turn, the length of a straight, the mean
 grade of a feature. Designers aim well inside these ranges, and close to a number that was given; measured
-curvature is averaged over 5 m.
-"""
+curvature is averaged over 5 m."""
 
 from __future__ import annotations
 
@@ -40,6 +39,7 @@ Kind = Literal[
 
 
 MOST_LANES = 4  # in one direction
+Surroundings = Literal["country", "residential"]
 Compass = Literal["west", "southwest", "south", "southeast", "east", "northeast", "north", "northwest"]
 
 
@@ -61,8 +61,7 @@ class Meaning:
     """The change of heading of each turn in degrees; for a straight, the total change of heading along it."""
     aim: Range | None = None
     """The range of degrees that designers aim for, if some allowed values would be poor examples of the
-    word.
-    """
+    word."""
     radius: Range | None = None
     """The radius in metres at the tightest place of each turn."""
     length: Range | None = None
@@ -139,8 +138,6 @@ FIGURE_WINS = 0.6
 precedence. The number may lie outside the usual range of the word: down to this factor times the lower end,
 or up to the upper end divided by this factor."""
 
-MOUNTAIN = Range(4, 15)
-"""The grade of the steepest place of 'a mountain road' in percent, up or down."""
 HILLS = 3
 """The least number of changes between climbing and falling of 'a hilly road': up, down, up, down."""
 
@@ -162,8 +159,7 @@ TURNING_SLACK = 0.10  # ratio, around the degrees of all turns together
 
 def degrees_slack(degrees: float) -> float:
     """Returns the tolerance of an angle in degrees: 10 % of the angle, but at most 7 degrees for angles below
-    90 degrees, and at most 10 degrees for angles from 90 degrees on.
-    """
+    90 degrees, and at most 10 degrees for angles from 90 degrees on."""
     return min(0.1 * abs(degrees), 7.0 if abs(degrees) < 90 else 10.0)
 
 

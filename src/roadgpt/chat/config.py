@@ -272,20 +272,19 @@ def _dotenv(path: Path) -> dict[str, Any]:
     """Returns the variables in lines NAME=VALUE that are meant for RoadGPT; all other lines are ignored."""
     found: dict[str, Any] = {}
     for line in _read(path).splitlines():
-        match = LINE.fullmatch(line)
-        if match and _is_ours(match[1], value := _unquoted(match[2])):
-            found[match[1]] = value
+        if match := LINE.fullmatch(line):
+            name, value = match.groups()
+            if len(value) >= 2 and value[0] in "\"'" and value[0] in value[1:]:
+                value = value[1 : value.index(value[0], 1)]
+            else:
+                value = re.split(r"\s#", value)[0].strip()
+            if _is_ours(name, value):
+                found[name] = value
     return found
 
 
 def _is_ours(name: str, value: str) -> bool:
     return name.startswith(PREFIXES) and bool(value.strip())
-
-
-def _unquoted(text: str) -> str:
-    if len(text) >= 2 and text[0] in "\"'" and text[0] in text[1:]:
-        return text[1 : text.index(text[0], 1)]
-    return re.split(r"\s#", text)[0].strip()
 
 
 def _toml(path: Path) -> dict[str, Any]:

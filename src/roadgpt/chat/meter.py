@@ -3,53 +3,26 @@
 Each reader and each designer has its own Chat, which counts its questions with an Account; one Meter counts
 for all of them. ``counting`` makes a meter the current one inside a ``with`` block.
 
-Prices are in USD per million tokens, separately for the question and the answer. Source: OpenAI's price page
-as stored in the package genai-prices 0.2.3, standard rates for prompts below 272,000 tokens, taken on
-2026-11-20. Discounts for cached prompts are not counted, so a computed cost may be too high, but not too low.
-No price is known for models that are not in the table, nor for any model on a server other than OpenAI's. For
-these, the user gives the price with ``--price``."""
+Prices are in USD per million tokens, separately for the question and the answer; ``prices.toml`` has those of
+OpenAI, and their source. Discounts for cached prompts are not counted, so a computed cost may be too high,
+but not too low. No price is known for models that are not in the table, nor for any model on a server other
+than OpenAI's. For these, the user gives the price with ``--price``."""
 
 import re
+import tomllib
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from math import ceil
+from math import ceil, inf
+from pathlib import Path
 from urllib.parse import urlsplit
 
 from roadgpt.chat.model import LEAST_REPLY, OPENAI, ChatSettings, Message, Spent, Usage, two_prices
 from roadgpt.errors import BudgetError
+from roadgpt.reading import read_text
 
-PRICES: dict[str, tuple[float, float]] = {
-    "gpt-3.5-turbo": (0.5, 1.5),
-    "gpt-4": (30, 60),
-    "gpt-4-turbo": (10, 30),
-    "gpt-4.1": (2, 8),
-    "gpt-4.1-mini": (0.4, 1.6),
-    "gpt-4.1-nano": (0.1, 0.4),
-    "gpt-4o": (2.5, 10),
-    "gpt-4o-mini": (0.15, 0.6),
-    "gpt-5": (1.25, 10),
-    "gpt-5-mini": (0.25, 2),
-    "gpt-5-nano": (0.05, 0.4),
-    "gpt-5.1": (1.25, 10),
-    "gpt-5.2": (1.75, 14),
-    "gpt-5.3": (1.75, 14),
-    "gpt-5.4": (2.5, 15),
-    "gpt-5.4-mini": (0.75, 4.5),
-    "gpt-5.4-nano": (0.2, 1.25),
-    "gpt-5.5": (5, 30),
-    "gpt-5.6-luna": (0.2, 1.2),
-    "gpt-5.6-sol": (4, 20),
-    "gpt-5.6-terra": (2, 12),
-    "gpt-6-astra": (10, 50),
-    "gpt-6-luna": (0.1, 0.5),
-    "gpt-6-sol": (2, 10),
-    "gpt-6.1-sol": (2, 10),
-    "gpt-6.1-terra": (1, 5),
-    "o3": (2, 8),
-    "o4-mini": (1.1, 4.4),
-}
+PRICES: dict[str, list[float]] = tomllib.loads(read_text(Path(__file__).with_name("prices.toml")))
 DATED = re.compile(r"-\d{4}-\d{2}-\d{2}$")  # suffix of a dated snapshot of a model
 SOLD_BY = ("api.openai.com", ".openai.azure.com")
 
@@ -69,12 +42,11 @@ def price_of(settings: ChatSettings, model: str = "") -> tuple[float, float] | N
     for name in (model, settings.model or ""):
         found = PRICES.get(name) or PRICES.get(DATED.sub("", name))
         if found:
-            return found
+            return found[0], found[1]
     return None
 
 
 LETTERS_PER_TOKEN = 4  # bytes of English and JSON; an estimate until the server has counted
-ENDLESS = 10**15
 
 
 class Meter:
@@ -101,27 +73,23 @@ class Meter:
         limit. Raises BudgetError if too few are left, or if money is limited and a price is unknown."""
         prompt = tokens_in(*(message.text for message in messages))
         affordable = self._affordable(prompt, price_of(settings, model), model)
-        reply_tokens = min(settings.max_completion, self._tokens_left(prompt), affordable)
+        left = inf if self.max_tokens is None else self.max_tokens - self.spent.usage.total - prompt
+        reply_tokens = int(min(settings.max_completion, left, affordable))
         if reply_tokens >= LEAST_REPLY:
             return reply_tokens
         spent = self.spent
         limit, so_far, flag = f"{self.max_tokens or 0:,} tokens", f"{spent.usage.total:,}", "--max-tokens"
-        if self._tokens_left(prompt) > reply_tokens:
+        if left > reply_tokens:
             limit, so_far, flag = f"{self.max_cost or 0:g} USD", f"{spent.cost or 0:.4f}", "--max-cost"
         raise BudgetError(
             f"the limit of {limit} is too low for the next question ({so_far} are spent); "
             f"continue with the same command, --out and a higher {flag}"
         )
 
-    def _tokens_left(self, prompt: int) -> int:
-        if self.max_tokens is None:
-            return ENDLESS
-        return self.max_tokens - self.spent.usage.total - prompt
-
-    def _affordable(self, prompt: int, price: tuple[float, float] | None, model: str) -> int:
+    def _affordable(self, prompt: int, price: tuple[float, float] | None, model: str) -> float:
         """Returns the largest number of tokens in an answer that the remaining money can pay for."""
         if self.max_cost is None:
-            return ENDLESS
+            return inf
         if price is None or self.spent.cost is None:
             from roadgpt.chat.answer import plain  # only for the message
 
@@ -130,9 +98,7 @@ class Meter:
                 "give --price 0.15/0.60 (USD per million tokens of question and answer)"
             )
         left = self.max_cost - self.spent.cost - prompt * price[0] / 1e6
-        if price[1] > 0:
-            return int(left * 1e6 / price[1])
-        return ENDLESS if left >= 0 else 0
+        return left * 1e6 / price[1] if price[1] > 0 else inf if left >= 0 else 0.0
 
 
 NOBODY: tuple["Meter | None", str] = (None, "")

@@ -110,16 +110,15 @@ class Spent(ChatValue):
 
     def since(self, before: "Spent") -> "Spent":
         """Returns the difference between this total and an earlier total, ``before``."""
-        cost = None if self.cost is None or before.cost is None else round(self.cost - before.cost, DECIMALS)
-        return Spent(
-            calls=self.calls - before.calls,
-            usage=Usage(
-                prompt=self.usage.prompt - before.usage.prompt,
-                completion=self.usage.completion - before.usage.completion,
-            ),
-            seconds=round(self.seconds - before.seconds, DECIMALS),
-            cost=cost,
+        old = before.usage
+        more = self + Spent(
+            calls=-before.calls,
+            usage=Usage(prompt=-old.prompt, completion=-old.completion),
+            seconds=-before.seconds,
+            cost=None if before.cost is None else -before.cost,
         )
+        cost = None if more.cost is None else round(more.cost, DECIMALS)
+        return more.model_copy(update={"seconds": round(more.seconds, DECIMALS), "cost": cost})
 
 
 class ChatSettings(ChatValue):

@@ -20,6 +20,7 @@ from math import inf, isfinite
 from operator import itemgetter
 from typing import NamedTuple
 
+from roadgpt.brief.amount import about
 from roadgpt.brief.design_speed import SpeedLimits
 from roadgpt.brief.junction_check import TURN_LENGTHS
 from roadgpt.brief.junctions import (
@@ -32,7 +33,6 @@ from roadgpt.brief.junctions import (
     Control,
     JunctionCount,
     MapClause,
-    MapJunctionKind,
     bends_as,
     is_about,
 )
@@ -427,9 +427,9 @@ def _ends(found: Measures, asked: Outline) -> Iterator[Complaint]:
 def lane_complaints(profile: Profile, asked: Brief) -> Iterator[Complaint]:
     """Yields a complaint for each requirement of lanes that the cross-section of a road does not meet."""
     forward, backward = profile.count
-    if asked.lanes is not None and forward not in span(asked.lanes):
+    if forward not in span(asked.lanes):
         yield Complaint(f"asked for {asked.lanes} lanes, has {forward}")
-    if asked.against is not None and backward not in span(asked.against):
+    if backward not in span(asked.against):
         yield Complaint(f"asked for {asked.against} oncoming lanes, has {backward}")
     if asked.divided and not profile.is_divided:
         yield Complaint("asked for a median, has none")
@@ -451,13 +451,9 @@ def place_complaints(found: MeasuredJunction | MeasuredLanes, asked: JunctionCla
         yield from junction_complaints(found, asked)
 
 
-def length_range(length: Amount) -> Range:
+def length_range(length: Amount | None) -> Range:
     """Returns the range of measured lengths in metres that meet a required length."""
-    asked = span(length)
-    if not length.exact:
-        return asked
-    slack = ROAD["length"].slack(asked.lo)
-    return Range(asked.lo - slack, asked.hi + slack)
+    return about(length, ROAD["length"].slack)
 
 
 def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
@@ -466,7 +462,7 @@ def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Itera
     if not is_any and asked.kind not in found.kinds:
         gaps = ", ".join(f"{gap:.0f}" for gap in found.gaps)
         yield f"asked for a {asked.name}, has arms {gaps} degrees apart"
-    if asked.arms is not None and found.arms not in span(asked.arms):
+    if found.arms not in span(asked.arms):
         yield f"asked for {asked.arms} arms, has {found.arms}"
     if asked.ways and sorted(found.ways_on) != sorted(asked.ways):
         yield f"asked for ways to the {' and '.join(asked.ways)}, has {' and '.join(found.ways_on)}"
@@ -476,17 +472,20 @@ def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Itera
     ):
         if not {*sides} <= {*own}:
             yield f"asked for a one-way road {said} the junction on the {' and '.join(sides)}, has none there"
-    if asked.exit is not None and found.exit not in span(asked.exit):
+    if found.exit not in span(asked.exit):
         yield f"asked for exit {asked.exit}, takes exit {found.exit}"
     if asked.take is not None and not takes(found, asked):
         yield f"asked to {TAKES[asked.take]}, turns {found.turn:.0f} degrees"
-    if asked.control is not None and not _is_controlled(found, asked):
+    control = asked.control
+    if control in ("none", "priority") and "roundabout" in found.kinds:
+        control = "yield"  # everybody gives way to those on the ring
+    if control not in (None, found.control):
         yield f"asked for {asked.control}, has {found.control}"
     if asked.skew and min(found.gaps) >= SKEW:
         yield f"asked for skew crossroads, the least angle is {min(found.gaps):.0f} degrees"
-    if asked.degrees is not None and not is_about(abs(found.turn), asked.degrees):
+    if not is_about(abs(found.turn), asked.degrees):
         yield f"asked for a turn of {asked.degrees} degrees, is {abs(found.turn):.0f} degrees"
-    if asked.angle is not None and not is_about(min(found.gaps), asked.angle):
+    if not is_about(min(found.gaps), asked.angle):
         yield f"asked for roads {asked.angle} degrees apart, the least angle is {min(found.gaps):.0f} degrees"
     yield from _sizes(found, asked)
     yield from _of_ramp(found, asked)
@@ -504,7 +503,7 @@ def _of_ramp(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
     if asked.side not in (None, side):
         yield f"asked for a ramp on the {asked.side}, is on the {side}"
     for name, length, own in (("lane", asked.length, lane), ("taper", asked.taper, taper)):
-        if length is not None and own is not None and own not in length_range(length):
+        if own is not None and own not in length_range(length):
             yield f"asked for a {name} of {length} m, has {own:.0f} m"
 
 
@@ -537,17 +536,11 @@ def takes(found: MeasuredJunction, asked: JunctionClause) -> bool:
     return take == found.sides[found.exit - 1]
 
 
-def _is_controlled(found: MeasuredJunction, asked: JunctionClause) -> bool:
-    if asked.control in ("none", "priority") and "roundabout" in found.kinds:
-        return found.control == "yield"  # everybody gives way to those on the ring
-    return found.control == asked.control
-
-
 def _sizes(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
     if found.ring is None:
         return
     island, outer = found.ring.radius, 2 * (found.ring.radius + found.ring.width)
-    if asked.lanes is not None and found.ring_lanes not in span(asked.lanes):
+    if found.ring_lanes not in span(asked.lanes):
         yield f"asked for a ring with {asked.lanes} lanes, has {found.ring_lanes}"
     if asked.size is not None:
         size = SIZES[asked.size]
@@ -557,12 +550,8 @@ def _sizes(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
         wanted = span(asked.outer)
         if outer not in Range(wanted.lo - ROUNDING, wanted.hi + ROUNDING):
             yield f"asked for a roundabout {asked.outer} m across, is {outer:.1f} m across"
-    if asked.radius is not None:
-        wanted = span(asked.radius)
-        if asked.radius.exact:
-            wanted = Range(wanted.lo * (1 - SLACK), wanted.hi * (1 + SLACK))
-        if island not in wanted:
-            yield f"asked for an island of {asked.radius} m radius, has {island:.1f} m"
+    if island not in about(asked.radius, lambda radius: SLACK * radius):
+        yield f"asked for an island of {asked.radius} m radius, has {island:.1f} m"
 
 
 def map_complaints(
@@ -574,10 +563,10 @@ def map_complaints(
     if asked.route and [*goes] != [*asked.route]:
         ways = f"{', '.join(asked.route)}, goes {', '.join(goes) or 'nowhere'}"
         yield Complaint(f"asked for a route that goes {ways}")
-    if length is not None and found.length not in length_range(length):
+    if found.length not in length_range(length):
         yield Complaint(f"asked for {length} m of roads in all, has {found.length:.0f} m")
     if asked.signed or any(each.control for each in asked.junctions):
-        yield from map(Complaint, (_controls_of_grid if asked.signed else _controls)(found, asked))
+        yield from map(Complaint, _controls(found, asked))
         return
     for node in found.nodes:
         if asked.control is not None and not _has_control(node, asked.control):
@@ -591,9 +580,9 @@ def _whole_map(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
     if found.parts > 1:
         yield f"asked for one map, has {found.parts} parts that no road joins"
     yield from _kinds(found, asked) if asked.junctions else _grid(found, asked)
-    if asked.blocks is not None and found.blocks not in span(asked.blocks):
+    if found.blocks not in span(asked.blocks):
         yield f"asked for {asked.blocks} enclosed blocks, has {found.blocks}"
-    if asked.dead_ends is not None and found.ends not in span(asked.dead_ends):
+    if found.ends not in span(asked.dead_ends):
         yield f"asked for {asked.dead_ends} dead ends, has {found.ends}"
     if asked.length is not None:
         allowed = _allowed(asked.length)
@@ -635,44 +624,27 @@ def _in_all(asked: Iterable[JunctionCount]) -> Range:
 
 
 def _controls(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
-    wanted = [asked.control_of(each) for each in asked.junctions]
-    for control in dict.fromkeys(each for each in wanted if each is not None):
-        allowed = _in_all(each for each in asked.junctions if asked.control_of(each) == control)
-        number = sum(_has_control(node, control) for node in found.nodes)
-        if number < allowed.lo or (control in NEVER_USUAL and number > allowed.hi):
-            yield f"asked for {SIGNS[control]} at {allowed} junctions, has {number}"
-    yield from _kinds_with_signs(found, asked, asked.junctions)
-
-
-def _controls_of_grid(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
-    """Checks the signs of a grid some of whose junctions have their own; all others have that of the grid, or
-    none."""
-    left = len(found.nodes)
-    for control in dict.fromkeys(each.control for each in asked.signed if each.control is not None):
-        allowed = _in_all(each for each in asked.signed if each.control == control)
+    """Checks the signs of a map whose kinds of junctions have their own, or of a grid some of whose junctions
+    have; all other junctions of a grid have the sign of the grid, or none."""
+    kinds, left = asked.signed or asked.junctions, len(found.nodes)
+    wanted = [control for control in map(asked.control_of, kinds) if control is not None]
+    for control in dict.fromkeys(wanted):
+        allowed = _in_all(each for each in kinds if asked.control_of(each) == control)
         number = sum(_has_control(node, control) for node in found.nodes)
         left -= number
-        if number not in allowed:
-            yield f"asked for {SIGNS[control]} at {allowed} of the junctions of the grid, has {number}"
-    yield from _kinds_with_signs(found, asked, asked.signed)
-    usual = asked.control or "none"
-    number = sum(_has_control(node, usual) for node in found.nodes)
-    if number != left:
-        yield f"asked for {SIGNS[usual]} at the {left} other junctions of the grid, has {number}"
-
-
-def _kinds_with_signs(found: MeasuredMap, asked: MapClause, kinds: Sequence[JunctionCount]) -> Iterator[str]:
+        is_too_often = number > allowed.hi and (bool(asked.signed) or control in NEVER_USUAL)
+        if number < allowed.lo or is_too_often:
+            where = "of the junctions of the grid" if asked.signed else "junctions"
+            yield f"asked for {SIGNS[control]} at {allowed} {where}, has {number}"
     for each in kinds:
-        held = asked.control_of(each)
-        if held is not None:
-            number = sum(_is_of(node, each.kind) and _has_control(node, held) for node in found.nodes)
-            if number < span(each.count).lo:
-                kind = NAMES[each.kind][0]
-                yield f"asked for {SIGNS[held]} at {each.count} of the kind {kind}, has {number}"
-
-
-def _is_of(node: MeasuredNode, kind: MapJunctionKind) -> bool:
-    return "roundabout" not in node.kinds if kind == "junction" else kind in node.kinds
+        held, is_any = asked.control_of(each), each.kind == "junction"  # any but a roundabout
+        own = [n for n in found.nodes if ("roundabout" not in n.kinds if is_any else each.kind in n.kinds)]
+        if held is not None and (number := sum(_has_control(n, held) for n in own)) < span(each.count).lo:
+            yield f"asked for {SIGNS[held]} at {each.count} of the kind {NAMES[each.kind][0]}, has {number}"
+    usual: Control = asked.control or "none"
+    number = sum(_has_control(node, usual) for node in found.nodes)
+    if asked.signed and number != left:
+        yield f"asked for {SIGNS[usual]} at the {left} other junctions of the grid, has {number}"
 
 
 def _allowed(length: Amount) -> Range:

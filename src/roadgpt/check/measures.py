@@ -521,7 +521,7 @@ def _measured(network: Network, passage: "Passage", directions: Sequence[float])
     ramp = ramp_of(network, passage.entered)
     around = 1 if not network.left_hand else -1
     gaps = [around * (b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
-    ways = tuple(_wrapped(each - directions[0] - 180) for each in directions[1:])
+    ways = tuple((each - directions[0]) % 360 - 180 for each in directions[1:])
     return MeasuredJunction(
         passage.start,
         kinds_of(gaps) if ring is None and ramp is None else (passage.entered.kind,),
@@ -538,10 +538,6 @@ def _measured(network: Network, passage: "Passage", directions: Sequence[float])
         *_one_way_sides(network, passage, ways),
         tuple(_turn_lanes(network, passage, ways)),
     )
-
-
-def _wrapped(degrees: float) -> float:
-    return (degrees + 180) % 360 - 180
 
 
 def _one_way_sides(

@@ -9,15 +9,15 @@ reproduced on purpose:
 * the length is measured on nodes that have been interpolated a second time;
 * the radius is that of the circle through nodes i, i+2, i+4, and the last such triple of nodes is left out.
 
-The competition's validator compares every pair of quads with the library shapely. Here numpy decides all
-pairs for which rounding errors cannot matter. Shapely, imported only if needed, decides the rest."""
+The competition's validator compares every pair of quads with the library shapely, one after another. Here
+shapely compares at once those pairs whose bounding boxes meet."""
 
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from roadgpt.check.ribbon import Indices, gaps, is_convex, near_pairs, quads_of
+from roadgpt.check.ribbon import Indices, is_convex, near_pairs, quads_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry import interpolate, walked
 from roadgpt.geometry.curve import Array
@@ -29,7 +29,6 @@ MIN_LENGTH = 20.0  # m
 MAX_POINTS = 500
 STRAIGHT = 1e-6  # m^2: three nodes that span less (twice the triangle's area) lie on a line
 SPLINE_REACH = 1.5  # m by which the competition's spline may leave a road: a node 1 m too far, and rounding
-DOUBT = 1e-9  # of the largest coordinate, or metres if more: closer cases are left to shapely
 
 TOO_FEW = "Not enough road points."
 TOO_MANY = "The road definition contains too many points"
@@ -61,7 +60,8 @@ def _complaint(nodes: Array, map_size: float) -> str:
         return OUTSIDE
     if not keeps_clear(quads_of(left, right)):
         return CROSSING
-    if not _is_long_enough(nodes):
+    apart = nodes[-1] - nodes[0]  # the road is no shorter than the distance between its ends
+    if apart @ apart <= (MIN_LENGTH + 1) ** 2 and measured_length(nodes) <= MIN_LENGTH:
         return TOO_SHORT
     if smallest_radius(nodes)[0] * FEET_PER_METRE < MIN_RADIUS:
         return TOO_SHARP
@@ -96,8 +96,7 @@ def _passes_for_inside(nodes: Array, map_size: float) -> bool:
 
 def _meets_border(left: Array, right: Array, map_size: float) -> bool:
     outline = np.concatenate((left, right[::-1]))
-    low, high, doubt = outline.min(), outline.max(), _doubt(outline)
-    if low > doubt and high < map_size - doubt:
+    if outline.min() > 0 and outline.max() < map_size:
         return False
     import shapely
 
@@ -109,44 +108,24 @@ def _meets_border(left: Array, right: Array, map_size: float) -> bool:
         return False
 
 
-def _doubt(points: Array) -> float:
-    """Returns the distance in metres below which floating point cannot decide."""
-    return DOUBT * max(1.0, float(np.abs(points).max()))
-
-
 def keeps_clear(quads: Array) -> bool:
     """Returns whether all quads are valid, neighbouring quads share exactly one edge, and all other pairs
     of quads are disjoint."""
+    import shapely
+
     plain = is_convex(quads)
-    odd = np.flatnonzero(~plain)
-    if odd.size and not _are_valid(quads[odd]):
+    if not np.isfinite(quads[~plain]).all():
         return False
-    doubt = _doubt(quads)
-    if not all(_are_apart(quads, plain, i, j, doubt) for i, j in near_pairs(quads, reach=doubt)):
+    shapes = shapely.polygons(quads)
+    if not shapely.is_valid(shapes[~plain]).all():
         return False
+    for i, j in near_pairs(quads, reach=0.0):
+        differ = (quads[i] != quads[j]).any(axis=(1, 2))
+        if shapely.intersects(shapes[i[differ]], shapes[j[differ]]).any():
+            return False
     # Two convex clockwise neighbours lie on either side of their common side, and so meet in it alone.
     joints = np.flatnonzero(~(plain[:-1] & plain[1:]))
     return not joints.size or _share_a_side(quads, joints)
-
-
-def _are_apart(quads: Array, plain: NDArray[np.bool_], i: Indices, j: Indices, doubt: float) -> bool:
-    gap = np.where(plain[i] & plain[j], gaps(quads, i, j), 0.0)
-    i, j, gap = i[gap <= doubt], j[gap <= doubt], gap[gap <= doubt]
-    differ = (quads[i] != quads[j]).any(axis=(1, 2))
-    if (differ & (gap < -doubt)).any():
-        return False
-    if not differ.any():
-        return True
-    import shapely
-
-    one, other = shapely.polygons(quads[i[differ]]), shapely.polygons(quads[j[differ]])
-    return not shapely.intersects(one, other).any()
-
-
-def _are_valid(quads: Array) -> bool:
-    import shapely
-
-    return bool(np.isfinite(quads).all() and shapely.is_valid(shapely.polygons(quads)).all())
 
 
 def _share_a_side(quads: Array, joints: Indices) -> bool:
@@ -158,13 +137,6 @@ def _share_a_side(quads: Array, joints: Indices) -> bool:
     inside = shapely.contains(one, other) | shapely.contains(other, one)
     is_line = shapely.get_type_id(shapely.intersection(one, other)) == shapely.GeometryType.LINESTRING
     return bool((equal | (is_line & ~inside)).all())
-
-
-def _is_long_enough(nodes: Array) -> bool:
-    apart = nodes[-1] - nodes[0]
-    if apart @ apart > (MIN_LENGTH + 1) ** 2:  # the road is no shorter than the distance between its ends
-        return True
-    return measured_length(nodes) > MIN_LENGTH
 
 
 def measured_length(nodes: Array) -> float:

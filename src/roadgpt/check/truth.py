@@ -203,7 +203,12 @@ def _of_features(found: Measures, asked: Outline) -> dict[Criterion, bool]:
         )
         ends_say = any(each and (is_order or _says(each)) for each in (first, last))
         if says or ends_say:
-            good = not says or _has_sequence(found, tuple(wanted))
+            turns = sum(group.feature.kind == "turn" for group in wanted)
+            is_exact = all(group.lo == group.hi == 1 for group in wanted)  # then the road has no more turns
+            has_sequence = not (is_exact and len(found.turns) != turns) and not complaints(
+                found, replace(FREE, groups=tuple(wanted))
+            )
+            good = not says or has_sequence
             at_ends = replace(FREE, starts=first, ends=last)
             out[criterion] = good and (not ends_say or not complaints(found, at_ends))
     return out
@@ -219,12 +224,3 @@ def _part(feature: Feature, fields: tuple[str, ...]) -> Feature:
 
 def _says(feature: Feature) -> bool:
     return feature != Feature(feature.kind, feature.name)
-
-
-def _has_sequence(found: Measures, groups: tuple[Group, ...]) -> bool:
-    """Returns whether a road has the turns of the groups in the given order, with the required straights
-    between them. If every group names exactly one element, the road must not have more turns."""
-    turns = sum(group.feature.kind == "turn" for group in groups)
-    if len(found.turns) != turns and all(group.lo == group.hi == 1 for group in groups):
-        return False
-    return not complaints(found, replace(FREE, groups=groups))

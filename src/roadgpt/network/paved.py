@@ -139,9 +139,9 @@ def _pieces_of(road: Road) -> PieceCurve:
     return road.plan
 
 
-def stations_of(road: Road) -> Array:
+def stations_of(road: Road, sag: float = SAG) -> Array:
     """Returns stations in metres along a road, so close together that chords between them deviate from the
-    edges of the road by at most ``SAG`` metres. The ends of all pieces of the reference line are stations; if
+    edges of the road by at most ``sag`` metres. The ends of all pieces of the reference line are stations; if
     widths vary, there is also a station about every metre."""
     profile = road.profile
     assert profile is not None
@@ -149,7 +149,7 @@ def stations_of(road: Road) -> Array:
     for piece in _pieces_of(road).pieces:
         bend, count = max(abs(piece.k0), abs(piece.k1)), 1
         if bend:
-            step = min(LONGEST, math.sqrt(8 * SAG / (bend * (1 + bend * profile.reach))))
+            step = min(LONGEST, math.sqrt(8 * sag / (bend * (1 + bend * profile.reach))))
             count = max(1, math.ceil(piece.length / step))
         stops += [at + piece.length * n / count for n in range(1, count + 1)]
         at += piece.length

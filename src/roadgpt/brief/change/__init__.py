@@ -2,8 +2,7 @@
 
 ``read_request`` reads words with RoadGPT's neural network, or with a language model (``chatting``);
 ``plan.read_change_plan`` reads plans.
-``design.edit`` finds the turns and straights of the road to which a request refers.
-"""
+``design.edit`` finds the turns and straights of the road to which a request refers."""
 
 import re
 from collections.abc import Iterator
@@ -34,8 +33,7 @@ def checked_request(words: str | EditRequest) -> EditRequest:
 
     Raises:
         EditError: the words cannot be read, as for ``read_request``; a change does not fit its place; or two
-            changes need separate requests.
-    """
+            changes need separate requests."""
     request = read_request(words) if isinstance(words, str) else words
     refuse_clashes(request.changes)
     return request
@@ -48,8 +46,7 @@ def read_request(words: str, chat: ChatSettings | None = None) -> EditRequest:
     Raises:
         EditError: the request is empty or too long, asks for no change that can be read, contradicts itself,
             or asks for something that cannot be built.
-        ChatError: the language model could not be asked.
-    """
+        ChatError: the language model could not be asked."""
     if not words.strip():
         raise EditError(f"no change was asked for; {ADVICE}")
     if len(words) > MOST_CHARACTERS:
@@ -64,7 +61,7 @@ def read_request(words: str, chat: ChatSettings | None = None) -> EditRequest:
         unused = request.unused if surface else tuple(dict.fromkeys((*named, *request.unused)))
         return replace(request, unused=unused)
     try:
-        reading = _reader().read_change(words, _normal_form)
+        reading = _reader().read_change(words, lambda line: change_plan(read_change_plan(line)))
     except BriefError as error:
         raise EditError(str(error)) from error
     surface, named = _surface_in(words)
@@ -88,8 +85,7 @@ def read_request(words: str, chat: ChatSettings | None = None) -> EditRequest:
 
 def _surface_in(words: str) -> tuple[str, tuple[str, ...]]:
     """Returns the slipperiest surface that the words ask for, and the words that name a surface. The surface
-    is "" if there is none, or if the words may deny it.
-    """
+    is "" if there is none, or if the words may deny it."""
     found = {name: tuple(pattern_of(name, "surfaces", re.I).findall(words)) for name in SURFACES}
     named = [name for name, those in found.items() if those]
     is_denied = pattern_of("denials", flags=re.I).search(words)
@@ -99,8 +95,7 @@ def _surface_in(words: str) -> tuple[str, tuple[str, ...]]:
 
 def other_readings(request: EditRequest) -> Iterator[EditRequest]:
     """Yields the other likely readings of a change request, the likeliest first, each with a confidence of
-    ``DOUBT`` or less. A reading whose changes need separate requests is left out.
-    """
+    ``DOUBT`` or less. A reading whose changes need separate requests is left out."""
     for plan in request.others:
         other = spoken(read_change_plan(plan))
         with suppress(EditError):
@@ -111,10 +106,6 @@ def other_readings(request: EditRequest) -> Iterator[EditRequest]:
 @cache
 def _reader() -> ModelReader:
     return ModelReader()
-
-
-def _normal_form(line: str) -> str:
-    return change_plan(read_change_plan(line))
 
 
 def _refusal(words: str, plan: str, other: str) -> EditError:

@@ -1,8 +1,7 @@
 """Asks a language model for the plan of a change request, and checks the plan like any other.
 
 The model answers in the language of ``roadgpt.brief.change.plan``. If the answer is not a valid plan, it is
-asked again, with a sentence that states the error.
-"""
+asked again, with a sentence that states the error."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -32,8 +31,7 @@ class ChangeAnswer(BaseModel):
 
 def request_by_chat(words: str, settings: ChatSettings, surface: str = "") -> EditRequest:
     """Returns a change request as a language model reads it; raises EditError if it writes no valid plan.
-    ``surface`` is what the words say of the surface, which may be all that they ask for.
-    """
+    ``surface`` is what the words say of the surface, which may be all that they ask for."""
 
     def read(answer: ChangeAnswer) -> EditRequest:
         unused, line = said_in(words, answer.unused), "; ".join(answer.changes)[:MOST_PLAN]

@@ -3,8 +3,7 @@
     turn 2: radius x0.75; end: slope down; turn all but(turn 1): side left; add hairpin right after(turn 2)
 
 Changes are separated by ``;``. A change either consists of a place, a colon and what is to be changed there,
-or it begins with ``add``. The page docs/reference/plans.md describes the language.
-"""
+or it begins with ``add``. The page docs/reference/plans.md describes the language."""
 
 import re
 from collections.abc import Container, Iterator, Mapping
@@ -123,8 +122,7 @@ def _place(target: Target) -> str:
 
 def read_change_plan(line: str) -> EditRequest:
     """Returns the changes that a plan describes; raises EditError if a word or number is not part of the
-    language, or is in the wrong place.
-    """
+    language, or is in the wrong place."""
     changes = tuple(ChangeParser(part).change() for part in line.split(";") if part.strip())
     if not changes:
         raise EditError("the plan names no change; write for example: turn 2: radius x0.75")
@@ -207,7 +205,9 @@ class ChangeParser:
     def _wish(self, target: Target) -> Change:
         what = self._word()
         if what == "x":
-            return self._counted(Change("count", target))
+            is_most = self._take("..")
+            number = self._whole()
+            return Change("count", target, to=number, bound=-1 if is_most else 1 if self._take("..") else 0)
         if what in MOVES:
             return Change("move", target, place=self._position(what))
         if what in ALONE:
@@ -241,12 +241,6 @@ class ChangeParser:
             if not self._next() or steepness or way == "flat":
                 return change
         return self._valued(change)
-
-    def _counted(self, change: Change) -> Change:
-        if self._take(".."):
-            return replace(change, to=self._whole(), bound=-1)
-        change = replace(change, to=self._whole())
-        return replace(change, bound=1) if self._take("..") else change
 
     def _shape(self, change: Change) -> Change:
         while word := self._next():

@@ -91,8 +91,7 @@ class Target:
 class Place:
     """A place on the road: after, before or on something, between two things, or the start, middle or end.
 
-    'from' and 'up_to' include the thing itself, as in 'from the third turn on'.
-    """
+    'from' and 'up_to' include the thing itself, as in 'from the third turn on'."""
 
     how: Literal["after", "before", "from", "up_to", "between", "on", "start", "end", "middle"]
     target: Target | None = None
@@ -116,8 +115,7 @@ class Change:
     what: What
     target: Target | None = None
     """The places to change. With None, the request names no places and means the whole road, or the places
-    mentioned before.
-    """
+    mentioned before."""
     more: int = 0
     """1 for sharper, wider, longer or steeper, -1 for the opposite, 0 if the request gives no direction."""
     by: float | None = None
@@ -130,8 +128,7 @@ class Change:
     """-1: ``to`` is an upper limit; 1: ``to`` is a lower limit; 0: ``to`` is the value itself."""
     dose: float = 1.0
     """The size of a change for which no number is given: less than 1 for 'slightly', more than 1 for
-    'much'.
-    """
+    'much'."""
     way: Way | None = None
     steepness: Steepness | None = None
     """How steep the new slope is if ``way`` is "up" or "down"; None if the request does not say."""
@@ -148,8 +145,7 @@ class Change:
     grade: float | None = None
     is_whole: bool = False
     """For a straight at an end of the road: whether its length includes the straight that is already there
-    ('end with a 60 m straight').
-    """
+    ('end with a 60 m straight')."""
     words: str = ""
 
     @property
@@ -185,8 +181,7 @@ class Change:
     def aim(self, now: float) -> float | None:
         """Returns the value that the change asks for; None if the request gives no number.
 
-        A difference or a factor is applied to the present value ``now``.
-        """
+        A difference or a factor is applied to the present value ``now``."""
         if self.to is not None:
             return self.to
         if self.by is not None:

@@ -2,8 +2,7 @@
 
 The model answers in the plan language of ``roadgpt.brief.plan``; every word of the answer is looked up and
 nothing is executed. If the answer is not a valid plan, the model is asked again, with a sentence that states
-the error.
-"""
+the error."""
 
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -81,8 +80,7 @@ class ChatReader:
 
     def read(self, words: str) -> Brief:
         """Returns the Brief of a description, in normal form; raises BriefError if the description is empty
-        or too long, or the model writes no valid plan for it, and ChatError if it cannot be asked.
-        """
+        or too long, or the model writes no valid plan for it, and ChatError if it cannot be asked."""
         if not words.strip():
             raise BriefError(f"the description is empty; {EXAMPLE}")
         if len(words) > MOST_CHARACTERS:
@@ -117,8 +115,7 @@ def until_valid(
     objection: Callable[[RoadGPTError, Answer], str],
 ) -> Read:
     """Returns what ``read`` makes of a model's answer. If it raises an error, the model is asked again, with
-    an objection, in up to ``rounds`` questions.
-    """
+    an objection, in up to ``rounds`` questions."""
     asked = [*opening]
     for left in reversed(range(rounds)):
         answer: Answer = chat.ask(asked, schema).data

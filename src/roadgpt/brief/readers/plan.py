@@ -17,8 +17,7 @@ class PlanReader:
         """Returns the Brief that a plan describes.
 
         Raises:
-            BriefError: the plan is empty, has an unknown word, or contradicts itself.
-        """
+            BriefError: the plan is empty, has an unknown word, or contradicts itself."""
         if not words.strip():
             raise BriefError("the plan is empty; write for example 'turn left 90 r30; straight 40'")
         brief = read_plan(words)

@@ -140,7 +140,11 @@ class OpenAI:
         form = None if schema is None else schema_of(schema)
         told = list(messages)
         if form is not None and not by_schema:
-            told.append(_instruction(form))
+            text = (
+                "Answer with one JSON object and nothing else. It must fit this JSON schema, with every field"
+            )
+            text += f":\n{json.dumps(form, separators=(',', ':'))}"
+            told.append(Message(role="user", text=text))
         prompt = tokens_in(*(message.text for message in told))
         room = self._account.meter.reply_tokens(told, self._settings, self._model)
         body: dict[str, Any] = {"model": self._model}
@@ -204,11 +208,3 @@ def _data(answer: Answer, schema: type[BaseModel] | None) -> BaseModel | None:
         if answer.finish == "length":
             raise NotReadableError(f"it was cut off (see --max-completion), and {error}") from None
         raise
-
-
-def _instruction(form: dict[str, Any]) -> Message:
-    return Message(
-        role="user",
-        text="Answer with one JSON object and nothing else. It must fit this JSON schema, with every field:\n"
-        + json.dumps(form, separators=(",", ":")),
-    )

@@ -8,7 +8,7 @@ import numpy as np
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding, road_finding, single_road
 from roadgpt.geometry import CubicProfile, GradeProfile, PieceCurve
-from roadgpt.network import Network, NetworkRoad
+from roadgpt.network import Network
 from roadgpt.road import Road, World
 
 
@@ -18,7 +18,9 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
     for member in network.roads:
         found = None if math.isfinite(_sum(member.road)) else missing_number(member.road)
         if found is None:
-            if math.isfinite(_sum_of_widths(member)):
+            widths = [lane.width for lane in (*member.profile.left, *member.profile.right)]
+            numbers = (sum(map(sum, w.coefficients)) if isinstance(w, CubicProfile) else w for w in widths)
+            if math.isfinite(sum(numbers)):
                 continue
             found = 0.0, "the width of a lane is not a number"
         s, what = found
@@ -40,11 +42,6 @@ def _sum(road: Road) -> float:
     if isinstance(heights, GradeProfile):
         found += heights.z0 + sum(heights.stations) + sum(heights.grades)
     return found
-
-
-def _sum_of_widths(member: NetworkRoad) -> float:
-    widths = [lane.width for lane in (*member.profile.left, *member.profile.right)]
-    return sum(sum(map(sum, w.coefficients)) if isinstance(w, CubicProfile) else w for w in widths)
 
 
 def missing_number(road: Road) -> tuple[float | None, str] | None:

@@ -29,20 +29,16 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
         arms = {arm.end for arm in junction.arms}
         for each in junction.connections:
             for lanes in each.lanes:
-                if (what := _no_arm(each, arms) or _wrong(network, each, lanes)) is not None:
+                if (what := _wrong(network, arms, each, lanes)) is not None:
                     found.append(junction_finding("lanes_do_not_match", route, junction, what))
     return tuple(found)
 
 
-def _no_arm(each: Connection, arms: set[RoadEnd]) -> str | None:
+def _wrong(network: Network, arms: set[RoadEnd], each: Connection, lanes: LaneLink) -> str | None:
     for end in (each.incoming, each.outgoing):
         if end not in arms:
             joined = f"connecting road {each.road} meets the {end.contact} of road {end.road}"
             return f"{joined}, which is no arm; join it to an arm"
-    return None
-
-
-def _wrong(network: Network, each: Connection, lanes: LaneLink) -> str | None:
     lane, own, target = lanes
     start, finish, points = RoadEnd(each.road, "start"), RoadEnd(each.road, "end"), _points(network)
     if lane not in network.lanes_into(each.incoming):

@@ -17,7 +17,7 @@ import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding, owner_of, road_finding, single_road, station_on
-from roadgpt.check.ribbon import bulge, gaps, is_convex, near_pairs, quads_of, sides
+from roadgpt.check.ribbon import bulge, is_convex, near_pairs, quads_of, sides
 from roadgpt.check.sbft import SPLINE_REACH, edges, keeps_clear, splines
 from roadgpt.network import Network, NetworkRoad
 from roadgpt.road import Road, World
@@ -42,6 +42,8 @@ def overlap_with_itself(member: NetworkRoad) -> tuple[tuple[int, str] | None, in
     part, and what is wrong there (None: nothing is wrong); the index of the sample that is nearest to an
     earlier part (0 if the road folds, or no parts are close); and the metres between these two parts. The
     metres are 0 if the road folds or overlaps itself, and may be infinite above ``SPLINE_REACH``."""
+    import shapely
+
     samples = member.road.sample()
     offsets = member.profile.edges(samples.s)
     quads = quads_of(*sides(samples, offsets))
@@ -55,9 +57,9 @@ def overlap_with_itself(member: NetworkRoad) -> tuple[tuple[int, str] | None, in
     if radius < max(offsets.left.max(), -offsets.right.min()):
         radius = narrowest  # as the surface does not fold, no bend is tighter
     half_turn = np.pi * radius / max(float(samples.s[1] - samples.s[0]), 1e-9)
-    nearest = (np.inf, 0)
+    shapes, nearest = shapely.polygons(quads), (np.inf, 0)
     for i, j in near_pairs(quads, reach=SPLINE_REACH, apart=max(2, int(min(half_turn, len(quads))))):
-        gap = gaps(quads, i, j)
+        gap = shapely.distance(shapes[i], shapes[j])
         lies_over = gap <= slack
         if lies_over.any():
             again = int(j[lies_over].min())

@@ -2,8 +2,7 @@
 junctions in order and the roads between them; or blocks, junctions, dead ends, signs and distances.
 
 The requirements are compared with what is measured on the finished geometry: see ``check.matching``. Each
-road between junctions is measured and compared with its own requirements in the same way as a single road.
-"""
+road between junctions is measured and compared with its own requirements in the same way as a single road."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -99,7 +98,7 @@ def _of_route(route: "Route | None", brief: Brief, map_size: float) -> Iterator[
                 more = moved[n + 1] - moved[n]
                 yield from _of_stretch(start, road, stretch, (n > 0, n < len(roads) - 1), more, map_size)
     length = 0.0 if route is None else route.length
-    if brief.length is not None and length not in (allowed := length_range(brief.length)):
+    if length not in (allowed := length_range(brief.length)):
         quantity = ROAD["length"]
         text = f"asked for {quantity.asked.format(allowed)}, has {quantity.measured.format(length)}"
         yield Finding(RULE, text)

@@ -21,7 +21,7 @@ ROUNDING = 1e-9  # m
 
 def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports each roundabout that is too small, and each one whose mouths overlap."""
-    found = []
+    found, ring_of = [], network.roundabout_of.get
     for ring in network.roundabouts:
         first = network.junction(ring.junctions[0])
         diameter = min(_diameter(network.right_hand.road(each)) for each in ring.ring)
@@ -31,7 +31,11 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
                 "its island a larger radius"
             )
             found.append(junction_finding("ring_too_small", route, first, what))
-        if abs(_turning(network.right_hand, ring) - 2 * math.pi) > ONCE or _overlaps(network, ring):
+        mouths_overlap = any(
+            ring_of(one.id) is ring and ring_of(other.id) is ring and area > OVERLAP
+            for one, other, area, *_ in footprint(network).overlaps
+        )
+        if mouths_overlap or abs(_turning(network.right_hand, ring) - 2 * math.pi) > ONCE:
             what = "the mouths of two arms overlap; turn the arms apart or give the island a larger radius"
             found.append(junction_finding("ring_too_small", route, first, what))
     return tuple(found)
@@ -55,11 +59,3 @@ def _turning(network: Network, ring: Roundabout) -> float:
     ]
     plans = [network.road(number).road.plan for number in (*ring.ring, *along)]
     return sum((p.k0 + p.k1) / 2 * p.length for plan in plans for p in plan.pieces)  # type: ignore[attr-defined]
-
-
-def _overlaps(network: Network, ring: Roundabout) -> bool:
-    ring_of = network.roundabout_of.get
-    return any(
-        ring_of(one.id) is ring and ring_of(other.id) is ring and area > OVERLAP
-        for one, other, area, *_ in footprint(network).overlaps
-    )

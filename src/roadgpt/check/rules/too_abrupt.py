@@ -18,7 +18,6 @@ from roadgpt.check.extremes import vertical_bends
 from roadgpt.check.finding import Finding, road_finding, single_road
 from roadgpt.check.measures import measure
 from roadgpt.geometry import GradeProfile
-from roadgpt.geometry.curve import Array
 from roadgpt.network import Network, legs_of
 from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import GRAVITY, expected_speed
@@ -101,7 +100,9 @@ def abrupt_place(road: Road, brief: Brief | None, world: World) -> tuple[float, 
         return None
     s = np.linspace(0.0, road.length, max(1, round(road.length / STEP)) + 1)
     speed = expected_speed(road.curvature(s), road.grade(s), float(s[1]), world, road.profile)
-    fastest = np.array([_fastest(s, speed, begin[i], end[i]) for i in suspects])
+    inside = (speed[(s > begin[i]) & (s < end[i])].max(initial=0.0) for i in suspects)
+    at_ends = np.interp(np.stack((begin[suspects], end[suspects])), s, speed).max(axis=0)
+    fastest = np.maximum(at_ends, np.fromiter(inside, float))
     felt = fastest**2 * np.abs(bend[suspects])
     if felt.max() <= MOST * (1 + ROUNDING):
         return None
@@ -111,19 +112,9 @@ def abrupt_place(road: Road, brief: Brief | None, world: World) -> tuple[float, 
     worst = int((felt / most).argmax())
     if felt[worst] <= most[worst] * (1 + ROUNDING):
         return None
-    said = _said(float(bend[suspects[worst]]), float(fastest[worst]), float(most[worst]))
-    return float(middle[worst]), said
-
-
-def _fastest(s: Array, speed: Array, begin: float, end: float) -> float:
-    inner = speed[(s > begin) & (s < end)]
-    return float(max(np.interp([begin, end], s, speed).max(), inner.max(initial=0.0)))
-
-
-def _said(bend: float, speed: float, most: float) -> str:
-    what = "crest" if bend < 0 else "dip"
-    felt = f"{speed**2 * abs(bend):.1f} m/s2 at the {3.6 * speed:.0f} km/h expected there"
-    return (
-        f"the vertical radius of the {what} is {1 / abs(bend):.1f} m, which is {felt}; "
-        f"{speed**2 / most:.0f} m would be enough for {most:.3g} m/s2"
+    what, radius = "crest" if bend[suspects[worst]] < 0 else "dip", 1 / abs(bend[suspects[worst]])
+    return float(middle[worst]), (
+        f"the vertical radius of the {what} is {radius:.1f} m, which is {felt[worst]:.1f} m/s2 at the "
+        f"{3.6 * fastest[worst]:.0f} km/h expected there; {fastest[worst] ** 2 / most[worst]:.0f} m would be "
+        f"enough for {most[worst]:.3g} m/s2"
     )

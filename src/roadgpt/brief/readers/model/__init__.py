@@ -4,8 +4,7 @@ milliseconds.
 Rules take the numbers out of the text before a network reads it, and insert them into the plan that the
 network writes. The decoding is constrained, so that the network can only write valid plans. One network reads
 descriptions of single roads and change requests, another one descriptions that mention junctions, ramps,
-lanes or maps. The weights and their documentation are in ``weights/``.
-"""
+lanes or maps. The weights and their documentation are in ``weights/``."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -89,8 +88,7 @@ class ModelReader:
         """Returns a reader that uses the weights in a folder written by a training.
 
         Raises:
-            PartError: a file is missing in the folder.
-        """
+            PartError: a file is missing in the folder."""
         missing = next((name for name in FILES if not (Path(folder) / name).is_file()), None)
         if missing:
             raise PartError(f"there is no {missing} in '{folder}'; give a folder that training wrote")
@@ -98,8 +96,7 @@ class ModelReader:
 
     def read(self, words: str) -> Brief:
         """Returns the Brief of a description; raises TooMuchError, with the Brief, if the road is too large
-        for the usual map of 250 m, and BriefError if the description cannot be read.
-        """
+        for the usual map of 250 m, and BriefError if the description cannot be read."""
         text = _text(words)
         trained, found = chosen(self.roads, self.routes, words, text)
         if not found:
@@ -114,8 +111,7 @@ class ModelReader:
     def read_change(self, words: str, key: Callable[[str], str]) -> ChangeReading:
         """Returns what a change request asks for, as a plan; raises BriefError if the network wrote none that
         can be read. ``key`` returns the normal form of a plan of changes, or raises an error for an invalid
-        one.
-        """
+        one."""
         text = slotted(words, is_change=True)
         found = scored_plans(self.roads.network, text, self.roads.refuse_from, key)
         if not found:
@@ -130,8 +126,7 @@ class ModelReader:
         self, words: str, number: int = 3, temperature: float = 1.0, seed: int = 0
     ) -> tuple[Brief, ...]:
         """Returns up to ``number`` different readings: first the likeliest, then sampled ones. For the
-        arguments see ``brief.alternatives``.
-        """
+        arguments see ``brief.alternatives``."""
         first = self.read(words)
         text = _text(words)
         trained, _ = chosen(self.roads, self.routes, words, text)
@@ -164,8 +159,7 @@ class ModelReader:
 
         Raises:
             ContradictionError: the description contradicts itself; the error has the Brief.
-            BriefError: the same, but no plan without a contradiction is likely.
-        """
+            BriefError: the same, but no plan without a contradiction is likely."""
         found = trained.plans(text, NEVER)
         best = most_plausible(found) if found else None
         if best is None or best.asks is None or not is_possible(best.asks, *ANY_WORLD):
@@ -181,8 +175,7 @@ class ModelReader:
         The network was trained for one map of 250 m and refuses roads that do not fit on it, but other maps
         may hold such a road. The Brief has the original numbers, which are later checked against the actual
         map. None if the numbers are ordinary already, or if the description is refused with ordinary numbers
-        too ("with a roundabout").
-        """
+        too ("with a roundabout")."""
         usual, counts = _with_ordinary_numbers(text)
         if usual == text:
             return None
@@ -275,8 +268,7 @@ def _text(words: str) -> SlottedText:
 
 def _with_ordinary_numbers(text: SlottedText) -> tuple[SlottedText, dict[str, str]]:
     """Returns the description with small counts of turns in place of unusually large ones, and without marks
-    of unusual measures; and the original of each small count.
-    """
+    of unusual measures; and the original of each small count."""
     free = [number for number in STAND_INS if all(word.text != number for word in text.words)]
     counts: dict[str, str] = {}
     out: list[Word] = []

@@ -3,8 +3,7 @@ counts are refused; and the network for routes reads only texts with a word that
 lane or map. A text with such a word may still describe a single road ("no junctions, please").
 
 Grades and climbs may be negative, and a dash may be just punctuation, so only negative numbers that are
-certainly lengths, radii or counts are refused.
-"""
+certainly lengths, radii or counts are refused."""
 
 import re
 from collections.abc import Sequence
@@ -36,8 +35,7 @@ def asks_for_a_closed_loop(words: str) -> bool:
 
 def negative_number(text: SlottedText) -> str | None:
     """Returns the first negative length, radius or count, for example "minus three turns"; None if there is
-    none.
-    """
+    none."""
     words = [word.text for word in text.words]
     for at, word in enumerate(words):
         if not _is_number(word) or not _is_below_nothing(words, at):

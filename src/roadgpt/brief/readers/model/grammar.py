@@ -146,8 +146,7 @@ PATTERNS = [*map(pattern_of, ("angle", "mountain", "hilly"))]
 @dataclass(frozen=True, slots=True)
 class Evidence:
     """The numbers that a description can imply: angles ("right angle"), a grade ("mountain road"), a number
-    of hills ("rolling"), and numbers relative to other numbers ("twice as long").
-    """
+    of hills ("rolling"), and numbers relative to other numbers ("twice as long")."""
 
     angles: bool = True
     mountains: bool = True
@@ -157,8 +156,7 @@ class Evidence:
     @classmethod
     def of(cls, text: str) -> "Evidence":
         """Returns which numbers a description can imply; the text must be in lower case and without
-        accents.
-        """
+        accents."""
         angles, mountains, hills = (pattern.search(text) is not None for pattern in PATTERNS)
         return cls(angles, mountains, hills, Compared.of(text))
 
@@ -188,8 +186,7 @@ class Numbers:
     def keyed(self, key: str, is_signed: bool = False) -> Symbol:
         """Returns a key and its amount, such as "len=60"; never written if no number suits the key.
 
-        The amount is a number, a bound or a range, and with ``is_signed`` also a negative number.
-        """
+        The amount is a number, a bound or a range, and with ``is_signed`` also a negative number."""
         amount = Symbol(
             lambda: [BOUND, *self.of(key), *([MINUS] if is_signed else [])],
             lambda token: self._after_begin_of_amount(key, token),
@@ -258,8 +255,7 @@ class PlanAutomaton:
         slots: the numbers of the text.
         said: the words of the text.
         evidence: which numbers the words may imply; None allows all numbers.
-        is_change: whether the text is a change request instead of a description.
-    """
+        is_change: whether the text is a change request instead of a description."""
 
     def __init__(
         self,

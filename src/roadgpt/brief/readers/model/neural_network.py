@@ -32,8 +32,7 @@ class WordPieces:
 
     def encode(self, words: Iterable[str]) -> tuple[list[int], list[int]]:
         """Returns the numbers of all pieces, and for each piece the index of its word (-1 for the special end
-        pieces).
-        """
+        pieces)."""
         numbers, of_word = [self.number["[CLS]"]], [-1]
         for index, word in enumerate(words):
             for piece in self._split(word):
@@ -82,8 +81,7 @@ class WrittenPlan:
     tokens: tuple[str, ...] = ()
     log_chances: tuple[float, ...] = ()
     """The log-probability of each token, including the end token, relative to all tokens allowed at its
-    position.
-    """
+    position."""
     is_done: bool = False
 
     @classmethod
@@ -138,8 +136,7 @@ class NeuralNetwork:
     def encode(self, text: SlottedText) -> Array:
         """Returns the keys and values of a description, to which the decoder attends.
 
-        Their shape is (layers, 2, 1, heads, pieces, head size).
-        """
+        Their shape is (layers, 2, 1, heads, pieces, head size)."""
         numbers, _ = self.pieces.encode(word.text for word in text.words)
         out: Array = self._encoder.run(None, {"pieces": np.array([numbers], dtype=np.int64)})[0]
         return out
@@ -185,8 +182,7 @@ class NeuralNetwork:
         refuse_from: float,
     ) -> tuple[WrittenPlan, ...]:
         """Returns the likeliest plans for a description, best first, from a beam search; for ``refuse_from``
-        see ``scored_plans``.
-        """
+        see ``scored_plans``."""
         drafts, done = [WrittenPlan.of(text)], list[WrittenPlan]()
         own = _nothing(across)
         for place in range(MOST_TOKENS):
@@ -225,8 +221,7 @@ class NeuralNetwork:
     ) -> WrittenPlan:
         """Returns a plan sampled token by token, but never a refusal.
 
-        A higher temperature gives more varied plans.
-        """
+        A higher temperature gives more varied plans."""
         draft, own = WrittenPlan.of(text), _nothing(across)
         for place in range(MOST_TOKENS):
             scores, own = self._step([draft], place, own, across)
@@ -251,8 +246,7 @@ class NeuralNetwork:
     ) -> tuple[Array, Array]:
         """Returns the scores of the next tokens, and ``own`` extended by the keys and values of ``token``.
 
-        Tokens that are newer than the weights are never written.
-        """
+        Tokens that are newer than the weights are never written."""
         feed = {"token": token, "place": np.array([place]), "own": own, "across": across, "seen": seen}
         scores, kept = self._decoder.run(None, feed)
         newer = ((0, 0), (0, len(TOKENS) - scores.shape[1]))

@@ -3,7 +3,6 @@
 import re
 import unicodedata
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cache
 from typing import Literal
 
@@ -51,27 +50,7 @@ LONGEST = 10
 THOUSAND, HUNDRED = 1000, 100
 
 
-@dataclass(frozen=True, slots=True)
-class NumberWords:
-    """How a language puts numbers together."""
-
-    sizes: Mapping[int, str]
-    """The patterns of the words for 1000 and for 100, by the number, the larger number first."""
-    joint: str
-    """The pattern of what may stand between such a word and the rest of the number, such as "and"."""
-
-
-COMPOSITIONS: Mapping[str, NumberWords] = {
-    "en": NumberWords({THOUSAND: r" ?\bthousand\b", HUNDRED: r" ?\bhundred\b"}, " (?:and )?"),
-    "de": NumberWords({THOUSAND: " ?tausend", HUNDRED: " ?hundert"}, "(?: |und|)"),
-    "fr": NumberWords({THOUSAND: r" ?\bmille\b", HUNDRED: r" ?\bcent\b|(?<=.) cents\b"}, " "),
-    "es": NumberWords({THOUSAND: r" ?\bmil\b"}, " "),
-    "it": NumberWords({THOUSAND: r"(?<=.) ?mila|\bmille", HUNDRED: " ?cento"}, "(?: e | |)"),
-}
-SIZES: Mapping[str, int] = {
-    **dict.fromkeys(("hundred", "hundert", "cent", "cents", "cento"), HUNDRED),
-    **dict.fromkeys(("thousand", "tausend", "mille", "mil", "mila"), THOUSAND),
-}
+SIZES = {word: int(size) for size, words in TABLE["sizes"].items() for word in words.split()}
 """Words that multiply the number before them."""
 FRENCH_TENS = {70: ("septante",), 80: ("huitante", "octante"), 90: ("nonante",)}
 """The tens of Switzerland and Belgium."""
@@ -116,8 +95,7 @@ def numbers_in_words(key: tuple[str, ...]) -> Mapping[str, int]:
     The number 1 is left out: as a word it is mostly an article or a pronoun ("un virage", "the last one").
 
     Args:
-        key: the words in lower case, without accents and hyphens; all of them belong to the number.
-    """
+        key: the words in lower case, without accents and hyphens; all of them belong to the number."""
     text = " ".join(key)
     found = {language: _value(text, language) for language in LANGUAGES}
     return {language: value for language, value in found.items() if value is not None and value != 1}
@@ -126,8 +104,7 @@ def numbers_in_words(key: tuple[str, ...]) -> Mapping[str, int]:
 @cache
 def number_word(word: str) -> int:
     """Returns the number that a word stands for, in the first language in which the word is a number; 0 if
-    there is no such language.
-    """
+    there is no such language."""
     return next(iter(numbers_in_words((word,)).values()), 0)
 
 
@@ -142,9 +119,9 @@ def _value(text: str, language: str) -> int | None:
     found = _small_numbers(language).get(text)
     if found is not None:
         return found
-    its = COMPOSITIONS[language]
-    for size, name in its.sizes.items():
-        for match in re.finditer(rf"(?:{name})", text):
+    its = TABLE["compositions"][language]
+    for size in (THOUSAND, HUNDRED):
+        for match in re.finditer(rf"(?:{its[str(size)]})", text) if str(size) in its else ():
             many = _many(text[: match.start()].strip(), size, language)
             rest = _rest(text[match.end() :], size, language)
             if many is not None and rest is not None:
@@ -165,7 +142,7 @@ def _rest(text: str, size: int, language: str) -> int | None:
     """Returns what is added to thousands or hundreds; None if it is no number below one of them."""
     if not text:
         return 0
-    joint = re.match(COMPOSITIONS[language].joint, text)
+    joint = re.match(TABLE["compositions"][language]["joint"], text)
     rest = _value(text[joint.end() :], language) if joint else None
     is_round = rest is not None and size == THOUSAND and rest % HUNDRED == 0
     is_list = joint is not None and joint[0] == " e " and not is_round  # "mille e cinquecento" is 1500

@@ -2,8 +2,7 @@
 
 Since version 1.31 onnxruntime looks up a host of its maker when it is imported, and stores a device id in
 the user's cache. The variable is read once, at the import; the function that switches telemetry off comes
-too late.
-"""
+too late."""
 
 import os
 

@@ -1,34 +1,23 @@
 """Takes the sizes of roundabouts from their outer diameters, where the text gives these in metres.
 
 The network does not see the values of numbers, so it can only guess whether a roundabout that is 32 m across
-is a mini one, a normal one or a large one.
-"""
+is a mini one, a normal one or a large one."""
 
-import re
 from collections.abc import Sequence
 
 from roadgpt.brief.amount import exactly, span
 from roadgpt.brief.junctions import ACROSS, SIZES, JunctionClause
+from roadgpt.brief.languages import pattern_of
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.slots import SlottedText, slot_name
 from roadgpt.brief.readers.model.vocabulary import ROUNDABOUT, SLOT_TOKENS
 
-TOLD = re.compile(r"across|diam|durchmess|circle|ø")
-ISLAND = re.compile(
-    r"island|insel|ilot|\bisla\b|isleta|islote|isola|anillo|inner|innen|interi|radius|rayon|radio|raggio"
-)
-SHARED = re.compile(
-    r"\b(?:both|each|all|every|beide|jeweils|alle|chacun|chaque|tous|cada|ambas|todas|tutte|entrambe|ognuna|"
-    r"ciascuna)\b|\b(?:roundabouts|ronds - points|giratoires|rotatorie|rotonde|glorietas|rotondas) "
-    r"(?:of|de|di) \[unused"
-)
-"""Words near the only diameter of a text that make it the diameter of all roundabouts."""
+TOLD, ISLAND, SHARED = map(pattern_of, ("across", "island", "shared"))
 REACH = 4
 """The largest number of words between a length and a word such as "across"."""
 LEAST, MORE, FEW = 28.0, 8.0, 4
 """The outer diameter in metres at which FEW arms and one lane have room, the additional diameter for each
-further arm and for a second lane, and the number of arms FEW.
-"""
+further arm and for a second lane, and the number of arms FEW."""
 
 
 def with_diameters(brief: Brief, tokens: Sequence[str], text: SlottedText) -> Brief:
@@ -37,8 +26,7 @@ def with_diameters(brief: Brief, tokens: Sequence[str], text: SlottedText) -> Br
 
     They are set only if each roundabout without a radius, or each of these with a size word, has a diameter
     in the text; one may be given for all. Where a diameter is above 70 m, or has too little room for the arms
-    and lanes, only the size word is set.
-    """
+    and lanes, only the size word is set."""
     told = diameters(tokens, text)
     rings = [n for n, each in enumerate(brief.junctions) if each.kind == ROUNDABOUT and not each.radius]
     sized = [n for n in rings if brief.junctions[n].size]
@@ -69,8 +57,7 @@ def diameters(tokens: Sequence[str], text: SlottedText) -> list[int]:
 
 def least_diameter(ring: JunctionClause, roads: Sequence[Brief]) -> float:
     """Returns the least outer diameter in metres at which every draft of a roundabout has room for its arms
-    and lanes, and for the lanes of the roads before and behind the roundabout.
-    """
+    and lanes, and for the lanes of the roads before and behind the roundabout."""
     arms = max(span(ring.arms).lo, span(ring.exit).lo + 1)
     lanes = [ring.lanes, *(each for road in roads for each in (road.lanes, road.against))]
     is_wide = any(span(each).lo > 1 for each in lanes)

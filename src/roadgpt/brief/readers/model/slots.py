@@ -5,8 +5,7 @@ slots.
 
 Small numbers without a unit remain digits, because the model must know the counts ("4 turns, the first two
 uphill"). Every other number becomes a slot: a token whose value is stored separately, in metres, degrees or
-percent.
-"""
+percent."""
 
 import re
 from collections.abc import Sequence
@@ -73,20 +72,14 @@ def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
     """Returns the unit that begins at token ``at``; None if no unit begins there.
 
     Returns three values: the corresponding unit in plans (such as metres), the factor that converts to it,
-    and how many words the unit takes up in the text.
-    """
-    for size in (2, 1):
+    and how many words the unit takes up in the text."""
+    for size in (3, 2, 1):
         found = UNITS.get(tuple(tokens[at : at + size]))
         if found:
             unit, factor = found
             over, time = [*tokens[at + size : at + size + 2], "", ""][:2]
             if unit == "metres" and over == "/" and time in TIMES:
                 return "kmh", 1.0, size + 2  # a speed
-            if tokens[at] in ("km", "kilometers") and list(tokens[at + 1 : at + 3]) in (
-                ["per", "hour"],
-                ["an", "hour"],
-            ):
-                return "kmh", 1.0, size + 2
             return unit, factor, size
     return None
 
@@ -111,8 +104,7 @@ def take_unit(number: Number, tokens: list[str]) -> None:
 
 def share_units(numbers: list[Number], tokens: list[str]) -> None:
     """Assigns to "40" in "40 to 60 metres" the unit of "60"; works backwards, so that it also handles longer
-    lists.
-    """
+    lists."""
     is_shared = False
     for one, other in zip(numbers[-2::-1], numbers[:0:-1], strict=False):
         was_shared, is_shared = is_shared, False
@@ -136,8 +128,7 @@ def share_units(numbers: list[Number], tokens: list[str]) -> None:
 
 def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
     """Treats numbers without a unit, except counts, as feet or yards if the description says so, as in
-    "lengths in feet: 250 straight".
-    """
+    "lengths in feet: 250 straight"."""
     factors = {UNITS.get((unit,), ("", 0.0)) for word, unit in pairwise(tokens) if word in ("in", "en")}
     sizes = [factor for unit, factor in factors if unit == "metres" and factor < 1.0]
     if len(sizes) != 1 or any(number.unit == "metres" for number in numbers):
@@ -167,8 +158,7 @@ def is_radius(tokens: Sequence[str], number: Number) -> bool:
 def as_grade(number: Number, tokens: Sequence[str]) -> None:
     """Converts degrees to percent if the words next to the number show that it is a slope.
 
-    Only a number close to a word for a slope is a slope; "climbs 30 degrees to the left" remains a turn.
-    """
+    Only a number close to a word for a slope is a slope; "climbs 30 degrees to the left" remains a turn."""
     if number.unit == "degrees" and number.value <= STEEPEST and _is_tilt(number, tokens):
         number.value, number.unit = round(100 * tan(radians(number.value)), 1), "percent"
 
@@ -224,8 +214,7 @@ def _share(tokens: list[str], at: int) -> float | None:
 def _of_unit(value: float, tokens: list[str], at: int, last: int) -> Number | None:
     """Returns a number from token ``at`` to ``last`` and the words before its unit, a length.
 
-    None if no unit follows, or if it is a fraction of a unit as small as a metre: "turns 3/4 m wide".
-    """
+    None if no unit follows, or if it is a fraction of a unit as small as a metre: "turns 3/4 m wide"."""
     while tokens[last + 1 : last + 2] and tokens[last + 1] in SHARE_FILLERS:
         last += 1
     unit = unit_at(tokens, last + 1)
@@ -235,8 +224,7 @@ def _of_unit(value: float, tokens: list[str], at: int, last: int) -> Number | No
 
 def whole_and_share(tokens: list[str], at: int) -> Number | None:
     """Reads "two and a half kilometres", "three and a quarter miles", "zweieinhalb Kilometer" and "one and a
-    half thousand metres".
-    """
+    half thousand metres"."""
     value = _german_half(tokens[at])
     if value is not None:
         return _before_unit(value, tokens, at, at)
@@ -368,8 +356,7 @@ def with_tolerances(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Nu
 def _take_one(number: Number, tokens: Sequence[str]) -> None:
     """Sets the tolerance of a count to 1 if the text gives the tolerance as a word such as "one" or "eine".
 
-    Such words are not read as numbers elsewhere, since they are mostly articles.
-    """
+    Such words are not read as numbers elsewhere, since they are mostly articles."""
     if not (number.is_bare and is_count(tokens, number)) or number.spread:
         return
     for place in range(number.last + 1, min(number.last + 2 + LONGEST_SIGN, len(tokens))):
@@ -440,8 +427,7 @@ class NumberSlot:
     """A number that a slot stands for.
 
     The value is in metres, degrees or percent, rounded to one decimal; ``unit`` is empty if the text gives no
-    unit. A speed has the unit "kmh" and the value that the text gives, even in miles per hour.
-    """
+    unit. A speed has the unit "kmh" and the value that the text gives, even in miles per hour."""
 
     value: float
     unit: Unit
@@ -497,8 +483,7 @@ def slot_name(index: int) -> str:
 def language_of(tokens: Sequence[str]) -> str:
     """Returns the code, such as "de", of the language with the most function words in the text.
 
-    If several languages have the most, English ("en") is preferred, then the first in ``FUNCTION_WORDS``.
-    """
+    If several languages have the most, English ("en") is preferred, then the first in ``FUNCTION_WORDS``."""
     found = set(tokens)
     return max(FUNCTION_WORDS, key=lambda code: (len(found & FUNCTION_WORDS[code]), code == "en"))
 
@@ -568,8 +553,8 @@ def _digits(tokens: list[str], at: int) -> Number | None:
     if value is None:
         return _point(tokens, at)
     after = tokens[at + 1 : at + 3]
-    if len(after) == 2 and value < 10 and _is_fraction(tokens, at):
-        return None
+    if value < 10 and len(after) == 2 and after[0] == "/" and after[1] in ("2", "3", "4"):
+        return None  # a share of the road, which a plan cannot express
     size = SIZES.get(after[0], 0) if after and after[1:] != ["marin"] else 0
     is_clear = bool(after) and (after[0] in ("hundred", "thousand") or unit_at(tokens, at + 2) is not None)
     if is_clear and value * size <= MILLION and value < size:
@@ -583,11 +568,6 @@ def _point(tokens: list[str], at: int) -> Number | None:
         return None
     tenths = number_word(tokens[at + 1])
     return Number(tenths / 10, at, at + 1) if 0 < tenths < 10 else None
-
-
-def _is_fraction(tokens: list[str], at: int) -> bool:
-    """True for "2 / 3" and "1/2": shares of the road, which a plan cannot express."""
-    return tokens[at + 1] == "/" and tokens[at + 2] in ("2", "3", "4")
 
 
 def _set(tokens: list[str], at: int) -> Number | None:
@@ -683,8 +663,7 @@ def _replaced(tokens: list[str], said: list[str], numbers: list[Number], is_chan
 def _measure(number: Number, spoken: str, slots: list[NumberSlot], is_change: bool) -> list[Word]:
     """Returns the words for a measure and adds its slot to ``slots``; one with a tolerance becomes a range.
 
-    In a change request the tolerance is left out, because a change has one target.
-    """
+    In a change request the tolerance is left out, because a change has one target."""
     has_range = 0 < number.spread < number.value and not is_change
     ends = (-number.spread, number.spread) if has_range else (0.0,)
     if len(slots) + len(ends) > SLOTS:

@@ -3,8 +3,7 @@ are, which words of the text they do not use; and the choice between two such ne
 
 The confidence in a reading is computed from the probability, the length and the tokens of its plan, and from
 the numbers of the text that the plan lacks. To find unused words, each word in turn, except function words,
-is left out, and the network computes how likely the plan is for the remaining words.
-"""
+is left out, and the network computes how likely the plan is for the remaining words."""
 
 import unicodedata
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -75,8 +74,7 @@ def scored_plans(
         refuse_from: smallest probability of a refusal, from 0 to 1, at which a refusal is allowed as a plan;
             with a value above 1, refusals are never allowed.
         read: function that reads a plan into its normal form, or raises an error if it cannot be read. Of
-            plans with the same normal form, the likeliest is returned.
-    """
+            plans with the same normal form, the likeliest is returned."""
     found: list[ScoredPlan[Asked]] = []
     for written in network.write(network.encode(text), text, refuse_from):
         tokens, asks = written.tokens, None
@@ -109,8 +107,7 @@ def left_out(tokens: Sequence[str], text: SlottedText) -> list[int]:
 
 def lost(tokens: Sequence[str], text: SlottedText) -> set[int]:
     """Returns the indices of the numbers of a text that its plan uses neither as numbers nor as the size of a
-    roundabout.
-    """
+    roundabout."""
     across = diameters(tokens, text) if ROUNDABOUT in tokens else ()
     return {*left_out(tokens, text)}.difference(n for n in across if text.slots[n].value >= LEAST)
 
@@ -119,8 +116,7 @@ def passes_over(unused: Sequence[str], text: SlottedText) -> bool:
     """Returns whether one of the unused words is a measured number of the text, such as "40 m".
 
     Counts and words such as "not" are no sign of a wrong reading: another word often says the same ("five
-    turns: left, left, ..."), and readings that ignore such a word were right as often as others.
-    """
+    turns: left, left, ..."), and readings that ignore such a word were right as often as others."""
     numbers = {w.written for w in text.words if w.text.startswith("[unused")}
     return any(word in numbers for word in unused)
 
@@ -145,8 +141,7 @@ def features(draft: ScoredPlan[Any], text: SlottedText) -> dict[str, float]:
       probability than a short plan, even if both are right equally often.
     - ``has TOKEN``: 1 for each token of the plan except slots; left and right count as the same token. The
       networks misread some tokens, such as a fall or a number of turns, more often than the probability says.
-      They misread other tokens, such as a hairpin, less often.
-    """
+      They misread other tokens, such as a hairpin, less often."""
     return {
         "all": _unlikely(-sum(draft.log_chances)),
         "worst": _unlikely(-min(draft.log_chances)),
@@ -173,8 +168,7 @@ def confidence(
 
     The confidence model was fitted on held-out texts. The result for a reading that ignores a measured
     number is at most ``DOUBT``. Other unused words do not lower it: on held-out texts, readings with and
-    without such words were right equally often.
-    """
+    without such words were right equally often."""
     score = weights["bias"] + sum(weight * found.get(name, 0.0) for name, weight in weights.items())
     sure = round(1 / (1 + exp(-score)), 3)
     return min(sure, DOUBT) if passes_over(unused, text) else sure
@@ -199,8 +193,7 @@ class Trained:
 
     def unused(self, text: SlottedText, tokens: Sequence[str]) -> tuple[str, ...]:
         """Returns the words that a plan does not depend on, and the numbers that it lacks: spelled as in the
-        text, each once, in the order of the text.
-        """
+        text, each once, in the order of the text."""
         idle = self._idle(text, tokens)
         out: list[str] = []
         missing, slot = lost(tokens, text), 0
@@ -220,8 +213,7 @@ class Trained:
         If two words mean the same ("uphill, climbing all the way"), each of them can be left out, but not
         both. If the plan changes when all such words are left out, a word that alone restores the plan counts
         as used. A word in letters of another script than Latin is in none of the languages that are read: it
-        never counts as used, even if the plan happens to be less likely without it.
-        """
+        never counts as used, even if the plan happens to be less likely without it."""
         content = [place for place, word in enumerate(text.words) if _is_content(word, self.fillers)]
         foreign = frozenset(place for place in content if not _is_latin(text.words[place].text))
         tried = [place for place in content if place not in foreign][:MOST_WORDS]
@@ -268,8 +260,7 @@ def chosen(
     Otherwise ``roads`` is chosen.
 
     ``refuse_from`` is the smallest probability of a refusal at which a refusal is allowed as a plan; None
-    takes the value that was fitted to each network.
-    """
+    takes the value that was fitted to each network."""
     read = routes.plans(text, refuse_from) if routes and may_tell_a_route(words) else ()
     is_route = bool(read) and _is_route(read[0], roads)
     sure = _confidence(routes, read, text) if routes and is_route else 0.0

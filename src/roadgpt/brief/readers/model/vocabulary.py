@@ -1,7 +1,6 @@
 """The tokens that the model writes: plans split into words, with slots in place of measured numbers.
 
-turn x3 left; straight len=91.4 | up        ->  turn x 3 left ; straight len= [1] | up
-"""
+turn x3 left; straight len=91.4 | up        ->  turn x 3 left ; straight len= [1] | up"""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -113,8 +112,7 @@ TOKENS: tuple[str, ...] = tuple(read_text(Path(__file__).with_name("tokens.txt")
 """All tokens. The weights know the tokens by their positions, so new tokens are added at the end."""
 OF_ROADS = TOKENS[: TOKENS.index("//")]
 """All tokens of single roads and changes. Networks for single roads know no other tokens and cannot write a
-plan that needs one.
-"""
+plan that needs one."""
 NUMBER_OF = {token: index for index, token in enumerate(TOKENS)}
 WAYS = re.compile(r"(?<=route=)(?:left|right|straight)(?:[+ ](?:left|right|straight))*")
 """The ways of a route through a map. As tokens they follow each other without a "+"."""
