@@ -17,7 +17,6 @@ from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
 
 COMMANDS = (
-    ("show", "c", "--watch"),
     ("show", "c"),
     ("report", "c"),
     ("faults", "c", "--repeat", "1", "--no-plot"),
