@@ -1,25 +1,32 @@
 """Writes the report of a study, from the files in its folder."""
 
 from collections.abc import Mapping, Sequence
+from itertools import combinations, product
 from pathlib import Path
+
+import numpy as np
 
 from roadgpt.plural import plural
 from roadgpt.reading import read_json
 from roadgpt.report.chapters.alignment import alignment
 from roadgpt.report.chapters.roads import overview
-from roadgpt.report.chapters.validity import (
-    departures,
-    validity,
-)
+from roadgpt.report.chapters.wording import decimal, row
 from roadgpt.report.page import write
-from roadgpt.report.page.model import Page
+from roadgpt.report.page.model import Page, Table, TableCell
 from roadgpt.report.road_record import StudyPartRecord, read_part
 from roadgpt.report.run_report import card_of, comparisons_of, sentences_of
+from roadgpt.report.similarity import similarity
 from roadgpt.run.atomic import json_text, write_whole
 from roadgpt_study.execution import Problem
 from roadgpt_study.plan import StudyPlan, read_plan
+from roadgpt_study.validity import NAME, THESIS_LEFT, THESIS_VALID, departures, of_thesis, validity
 
 PROBLEMS = "problems.json"
+MOST_BETWEEN = 40  # roads of a study part that are compared with those of another part
+BESIDE = (
+    f"; {NAME} had {THESIS_VALID.share} by its own checks",
+    f"; in the thesis on {THESIS_LEFT.share}",
+)
 
 
 def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:
@@ -58,7 +65,7 @@ def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> Page:
     return Page(
         title,
         _summary(plan, parts),
-        [*([first] if first else []), *own, *comparisons_of(parts, plan.world)],
+        [*([first] if first else []), *own, *comparisons_of(parts, plan.world, [_between(parts)])],
         card_of(plan.command, plan.roads, plan.seed, plan.setup, plan.world, parts),
         f"{lead}, seed {plan.seed}" + (f", from {plan.source}" if plan.source else ""),
     )
@@ -72,6 +79,25 @@ def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> list[str]:
             problem = next((part.problem for part in own if part.problem), "nothing was made")
             lines.append(f"{designer} was not run: {problem}.")
             continue
-        said = sentences_of(own, plan.world, plan.kind == "thesis")
+        if plan.kind == "thesis":
+            said = sentences_of(own, plan.world, counted=of_thesis(own), beside=BESIDE)
+        else:
+            said = sentences_of(own, plan.world)
         lines += said if len(plan.designers) == 1 else [f"{designer}: {sentence}" for sentence in said]
     return lines
+
+
+def _between(parts: Sequence[StudyPartRecord]) -> Table:
+    rows: list[list[TableCell]] = []
+    for designer in dict.fromkeys(part.designer for part in parts):
+        own = [part for part in parts if part.designer == designer and part.roads][:6]
+        for one, other in combinations(own, 2):
+            compared = product(one.likenesses[:MOST_BETWEEN], other.likenesses[:MOST_BETWEEN])
+            found = [similarity(*pair, mirror=True) for pair in compared]
+            general = decimal(float(np.mean([each.general for each in found])) if found else None)
+            nearest = decimal(min((each.metres for each in found), default=None), 1)
+            duplicates = sum(each.is_duplicate for each in found)
+            rows.append(row(one.words, other.words, designer, general, nearest, duplicates))
+    heads = ["prompt", "and", "made by", "mean similarity", "nearest pair, m", "near duplicates"]
+    note = f"The first {MOST_BETWEEN} roads of either, each with each."
+    return Table("diversity-between", "Roads of different descriptions", heads, rows, note)

@@ -95,7 +95,7 @@ def test_a_store_that_is_not_as_we_wrote_it_is_told_by_its_name(campaign: Path, 
 )
 def test_designs_and_sentences_are_checked_as_they_are_read(campaign: Path, sql: str) -> None:
     change(campaign, sql + "; UPDATE tests SET outcome = 'FAIL'")
-    for words in (COMMANDS[3], COMMANDS[4]):
+    for words in COMMANDS[2:4]:
         result = invoke(*words)
         assert result.exit_code == 2, (words, result.output)
         assert "campaign.sqlite is damaged" in result.stderr
