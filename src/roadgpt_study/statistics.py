@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import special, stats
 
-from roadgpt.report.statistics import Array, complete_rows, holm
+from roadgpt.report.statistics import CONFIDENCE, Array, Interval, complete_rows, holm
 
 MOST_TABLES = 2_000_000  # tables with the same sums; if there are more, a sample of them is drawn
 DRAWN, FEWEST = 99_999, 999  # number of tables that are drawn: usually, and if they are very large
 MOST_CELLS, AT_ONCE = 20_000_000, 2_000_000  # cells of all tables that are drawn, and of those in memory
 AS_RARE = 1e-7  # two tables whose log-probabilities differ by less are equally probable
+RESAMPLES = 10_000
 FEW_ORDERS = 8  # pairs up to which Spearman's test counts every order: 8! are 40,320
 
 
@@ -36,6 +37,28 @@ class Correlation(NamedTuple):
     rho: float
     p: float
     pairs: int
+
+
+def bootstrap(groups: Sequence[Sequence[float]]) -> tuple[float, Interval]:
+    """Returns the mean of all values, with its 95 % percentile interval from a bootstrap that resamples
+    groups; empty groups are left out.
+
+    Roads of one prompt are alike, so whole prompts are resampled. The random seed is fixed."""
+    sums, sizes = (np.array([size(group) for group in groups if len(group)], float) for size in (sum, len))
+    if not len(sums):
+        return nan, Interval(nan, nan)
+    value = float(sums.sum() / sizes.sum())
+    if len(sums) == 1:
+        return value, Interval(value, value)
+
+    def mean(sums: Array, sizes: Array, axis: int) -> Array:
+        return np.asarray(sums.sum(axis) / sizes.sum(axis))
+
+    found = stats.bootstrap(
+        (sums, sizes), mean, n_resamples=RESAMPLES, paired=True, vectorized=True, method="percentile",
+        confidence_level=CONFIDENCE, rng=np.random.default_rng(0),
+    )  # fmt: skip
+    return value, Interval(*map(float, found.confidence_interval))
 
 
 def exact(table: ArrayLike) -> Exact:

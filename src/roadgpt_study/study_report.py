@@ -19,6 +19,7 @@ from roadgpt.report.similarity import similarity
 from roadgpt.run.atomic import json_text, write_whole
 from roadgpt_study.execution import Problem
 from roadgpt_study.plan import StudyPlan, read_plan
+from roadgpt_study.statistics import bootstrap
 from roadgpt_study.validity import NAME, THESIS_LEFT, THESIS_VALID, departures, of_thesis, validity
 
 PROBLEMS = "problems.json"
@@ -58,7 +59,8 @@ def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> Page:
     """Returns the page with the report of a study."""
     is_thesis = plan.kind == "thesis"
     valid, left = (make(parts, plan.designers, has_baseline=is_thesis) for make in (validity, departures))
-    kept, first = alignment(parts, plan.designers), overview(parts, plan.world.site.map_size)
+    kept = alignment(parts, plan.designers, lambda asking: bootstrap(asking)[1])
+    first = overview(parts, plan.world.site.map_size)
     own = [valid, left, kept] if is_thesis else [kept, valid, *([left] if plan.setup.drives else [])]
     title = "The evaluation of RoadGPT's thesis, done again" if is_thesis else "Do roads keep the words?"
     lead = f"{plural(len(plan.prompts), 'description')}, {plural(plan.roads, 'road')} each"

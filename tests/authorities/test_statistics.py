@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from roadgpt.report.statistics import (
-    bootstrap,
     chi_squared,
     clopper_pearson,
     friedman,
@@ -21,7 +20,7 @@ from roadgpt.report.statistics import (
     wilson,
 )
 from roadgpt_study import statistics
-from roadgpt_study.statistics import conover, exact, krippendorff, spearman, trend
+from roadgpt_study.statistics import bootstrap, conover, exact, krippendorff, spearman, trend
 
 THESIS = [[88, 12], [57, 43], [37, 63]]
 LEFT = [[1, 87], [2, 55], [5, 32]]

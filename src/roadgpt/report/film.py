@@ -132,7 +132,6 @@ def _ride(road: Road, world: World) -> tuple[Array, dict[str, Array], Array]:
 
 
 Frame = NDArray[np.uint8]
-Weight = Literal["normal", "bold"]
 TITLE, TEXT, SMALL, LARGE = 13, 12, 10, 27  # pixels in a picture 360 high
 EDGE, LINE = 10, 17  # likewise: from the border, and from line to line
 LEAST = 0.5  # of all sizes, in small pictures
@@ -141,31 +140,9 @@ WHITE, PALE, TROUGH, DIM = "#ffffff", "#ced4da", "#464c52", "#00000091"  # text 
 
 
 @cache
-def _font(size: int, weight: Weight) -> ImageFont.FreeTypeFont:
+def _font(size: int, weight: str = "normal") -> ImageFont.FreeTypeFont:
     file = findfont(FontProperties(family="DejaVu Sans", weight=weight))
     return ImageFont.truetype(file, size, layout_engine=ImageFont.Layout.BASIC)
-
-
-def width_of(text: str, size: int, weight: Weight = "normal") -> int:
-    """Returns the width of a line of text in pixels."""
-    return int(np.ceil(_font(size, weight).getlength(text)))
-
-
-class Brush:
-    """Draws on a picture."""
-
-    def __init__(self, picture: Image.Image) -> None:
-        self._draw = ImageDraw.Draw(picture, "RGBA")  # colours with an opacity are blended
-
-    def text(self, x: float, y: float, text: str, size: int, colour: str, weight: Weight = "normal") -> None:
-        """Writes one line of text from (x, y) on the baseline; text beyond the picture is cut off."""
-        self._draw.text((round(x), round(y)), text, colour, _font(size, weight), "ls")
-
-    def fill(self, x0: float, y0: float, x1: float, y1: float, colour: str) -> None:
-        """Fills a rectangle, whose right and lower border are not part of it."""
-        left, top, right, below = map(round, (x0, y0, x1, y1))
-        if left < right and top < below:
-            self._draw.rectangle((left, top, right - 1, below - 1), colour)
 
 
 View = Literal["chase", "bonnet", "both"]
@@ -222,7 +199,7 @@ class Pane:
         picture = Image.fromarray(
             self.scene.render(self.camera, pose, car=None if self.run.drive is None else car)
         )
-        brush = Brush(picture)
+        brush = ImageDraw.Draw(picture, "RGBA")  # colours with an opacity are blended
         self._title(brush)
         self._numbers(brush, self.trip.readout(now))
         if time >= self.trip.duration:
@@ -237,57 +214,52 @@ class Pane:
     def _size(self, pixels: int) -> int:
         return max(7, round(pixels * self._scale))
 
-    def _title(self, brush: Brush) -> None:
+    def _title(self, brush: ImageDraw.ImageDraw) -> None:
         u, size = self._scale, self._size(TITLE)
         rows = fitted(self.run.title, (self.camera.width - 2 * EDGE * u) / POINTS, size, True, 2).split("\n")
-        brush.fill(0, 0, self.camera.width, (9 + LINE * len(rows)) * u, DIM)
+        brush.rectangle((0, 0, self.camera.width, (9 + LINE * len(rows)) * u), DIM)
         for k, row in enumerate(rows):
-            brush.text(EDGE * u, (LINE * (k + 1)) * u, row, size, WHITE, "bold")
+            brush.text((EDGE * u, LINE * (k + 1) * u), row, WHITE, _font(size, "bold"), "ls")
 
-    def _numbers(self, brush: Brush, readout: Readout) -> None:
+    def _numbers(self, brush: ImageDraw.ImageDraw, readout: Readout) -> None:
         (metres_per_second, s, margin, outside), u = readout, self._scale
-        edge = EDGE * u
-        large, text, small = self._size(LARGE), self._size(TEXT), self._size(SMALL)
+        bold = _font(self._size(LARGE), "bold")
+        text, small = _font(self._size(TEXT)), _font(self._size(SMALL))
         wide, high = 148 * u, (78 if margin is not None else 52) * u
-        x, y = edge, self.camera.height - edge - high
-        brush.fill(x, y, x + wide, y + high, DIM)
-        brush.text(x + 8 * u, y + 45 * u, f"at {s:.0f} of {self.run.length:.0f} m", text, PALE)
+        x, y = EDGE * u, self.camera.height - EDGE * u - high
+        left, right = x + 8 * u, x + 62 * u
+        brush.rectangle((x, y, x + wide, y + high), DIM)
+        brush.text((left, y + 45 * u), f"at {s:.0f} of {self.run.length:.0f} m", PALE, text, "ls")
         if margin is None:  # the speed of the camera has no meaning
-            brush.text(x + 8 * u, y + 24 * u, "not driven", self._size(TITLE), WHITE, "bold")
+            brush.text((left, y + 24 * u), "not driven", WHITE, _font(self._size(TITLE), "bold"), "ls")
             return
-        speed = f"{metres_per_second * 3.6:.0f}"
-        right = x + 62 * u
-        brush.text(right - width_of(speed, large, "bold"), y + 29 * u, speed, large, WHITE, "bold")
-        brush.text(right + 6 * u, y + 29 * u, "km/h", text, PALE)
+        brush.text((right, y + 29 * u), f"{metres_per_second * 3.6:.0f}", WHITE, bold, "rs")
+        brush.text((right + 6 * u, y + 29 * u), "km/h", PALE, text, "ls")
         colour = SEVERE[severity(outside)] if margin > 0 else VERMILLION
         said = f"margin {margin:.1f} m" if margin > 0 else "out of its lane"
         if outside > 0 and margin > 0:
             said += f", {percent(outside)} out"
-        brush.text(x + 8 * u, y + 61 * u, said, small if outside > 0 else text, WHITE)
+        brush.text((left, y + 61 * u), said, WHITE, small if outside > 0 else text, "ls")
         share = float(np.clip(margin / WHOLE, 0.0, 1.0)) if margin > 0 else 1.0
-        left, wide = x + 8 * u, wide - 16 * u
-        brush.fill(left, y + 67 * u, left + wide, y + 71 * u, TROUGH)
-        brush.fill(left, y + 67 * u, left + wide * share, y + 71 * u, colour)
+        for part, shade in ((1.0, TROUGH), (share, colour)):
+            brush.rectangle((left, y + 67 * u, left + (wide - 16 * u) * part, y + 71 * u), shade)
 
-    def _outcome(self, brush: Brush) -> None:
-        u, text, bold = self._scale, self._size(TEXT), self._size(LARGE)
-        room = min(self.camera.width - 2 * EDGE * u, 420 * u)
-        rows = fitted(self.run.description, (room - 28 * u) / POINTS, text, lines=3).split("\n")
-        outcome = outcome_of(self.run)
-        if width_of(outcome, bold, "bold") > room - 28 * u:
-            bold = text
-        badge = width_of(outcome, bold, "bold")
+    def _outcome(self, brush: ImageDraw.ImageDraw) -> None:
+        u, size, outcome = self._scale, self._size(TEXT), outcome_of(self.run)
+        room = min(self.camera.width - 2 * EDGE * u, 420 * u) - 28 * u
+        rows = fitted(self.run.description, room / POINTS, size, lines=3).split("\n")
+        text, bold = _font(size), _font(self._size(LARGE), "bold")
+        if bold.getlength(outcome) > room:
+            bold = _font(size, "bold")
         colour = OUTCOMES.get(outcome, INK)
-        letters = LETTERS.get(colour, WHITE)
-        wide = max(badge, *(width_of(row, text) for row in rows)) + 28 * u
-        high = (52 + LINE * len(rows)) * u
-        x, y = (self.camera.width - wide) / 2, self.camera.height * 0.155
-        brush.fill(x, y, x + wide, y + high, WHITE)
-        brush.fill(x, y, x + wide, y + 38 * u, colour)
-        brush.text(x + (wide - badge) / 2, y + 29 * u, outcome, bold, letters, "bold")
+        wide = max(bold.getlength(outcome), *map(text.getlength, rows)) + 28 * u
+        middle, y = self.camera.width / 2, self.camera.height * 0.155
+        left, right = middle - wide / 2, middle + wide / 2
+        brush.rectangle((left, y, right, y + (52 + LINE * len(rows)) * u), WHITE)
+        brush.rectangle((left, y, right, y + 38 * u), colour)
+        brush.text((middle, y + 29 * u), outcome, LETTERS.get(colour, WHITE), bold, "ms")
         for k, row in enumerate(rows):
-            start = x + (wide - width_of(row, text)) / 2
-            brush.text(start, y + (38 + 5 + LINE * (k + 0.75)) * u, row, text, INK)
+            brush.text((middle, y + (38 + 5 + LINE * (k + 0.75)) * u), row, INK, text, "ms")
 
 
 @dataclass(frozen=True, eq=False)

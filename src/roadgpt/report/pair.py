@@ -13,7 +13,7 @@ from roadgpt.report.canvas import (
     INK,
     SOFT,
     VERMILLION,
-    dress,
+    add_axes,
     fitted,
     in_our_style,
     inches,
@@ -58,12 +58,12 @@ def pair(one: Run, other: Run, scale: Scale = "equal", drivers: tuple[str, str] 
         (x, y), half = (_plan(run).min(axis=0) + _plan(run).max(axis=0)) / 2, side / 2 + MARGIN
         frame = THESIS if scale == "thesis" else Frame(x - half, x + half, y - half, y + half)
         assert run.road is not None
-        above = _axes(figure, LEFT, foot, SIDE)
+        over = SIZE[1] - foot - SIDE
+        above = add_axes(figure, LEFT, foot, WIDTH - LEFT - SIDE, over)
         draw_plan(above, run.road, run.world, frame, frame.width / SIDE)
         if not all(frame.holds(x, y) for x, y in _plan(run)):
             note(above, CORNER, "goes on beyond these axes", 9, zorder=13)
-        wide = WIDTH - LEFT - SIDE - BETWEEN - RIGHT
-        beside = _axes(figure, LEFT + SIDE + BETWEEN, foot, wide)
+        beside = add_axes(figure, LEFT + SIDE + BETWEEN, foot, RIGHT, over)
         seed = f"seed {run.request.seed}, road {run.index}, " if run.words else ""
         if drivers is None:
             name, said = f"Road {number + 1}", run.outcome.lower()
@@ -96,12 +96,6 @@ def _outside(above: Axes, beside: Axes, run: Run, long: float) -> None:
     beside.set(xlim=(0, long), ylim=(0, 105), xlabel="distance along the road, m")
     beside.set_ylabel("share of the car outside its lane, %")
     beside.grid(color=FAINT, lw=0.8)
-
-
-def _axes(figure: Figure, left: float, foot: float, wide: float) -> Axes:
-    across, high = figure.get_size_inches()
-    axes: Axes = figure.add_axes((left / across, foot / high, wide / across, SIDE / high))
-    return dress(axes)
 
 
 def _plan(run: Run) -> Array:

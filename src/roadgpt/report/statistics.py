@@ -7,7 +7,6 @@ Ratings are arrays ``(people, columns)`` of numbers; NaN marks a missing rating,
 rows leave out incomplete rows. If the data cannot answer the question (one column, no variation, no people),
 a test returns p = 1 and an effect of 0 or NaN; it never raises an error."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import nan
 from typing import NamedTuple
@@ -23,7 +22,6 @@ CONFIDENCE = 0.95  # of all intervals
 FEW = 5.0  # Cochran (1954): an expected count below this is small
 MOST_SMALL = 0.2  # share of small expected counts that the chi-squared test tolerates, if none is below 1
 FEW_SIGNS = 50  # differing pairs up to which Wilcoxon's test counts every way to sign their ranks
-RESAMPLES = 10_000
 
 
 class Interval(NamedTuple):
@@ -84,28 +82,6 @@ def wilson(k: int, n: int) -> Interval:
 def clopper_pearson(k: int, n: int) -> Interval:
     """Returns Clopper and Pearson's exact 95 % interval of the proportion k / n; 0 to 1 if n is 0."""
     return Interval(*stats.binomtest(k, n).proportion_ci(CONFIDENCE, "exact")) if n else Interval(0.0, 1.0)
-
-
-def bootstrap(groups: Sequence[Sequence[float]]) -> tuple[float, Interval]:
-    """Returns the mean of all values, with its 95 % percentile interval from a bootstrap that resamples
-    groups; empty groups are left out.
-
-    Roads of one prompt are alike, so whole prompts are resampled. The random seed is fixed."""
-    sums, sizes = (np.array([size(group) for group in groups if len(group)], float) for size in (sum, len))
-    if not len(sums):
-        return nan, Interval(nan, nan)
-    value = float(sums.sum() / sizes.sum())
-    if len(sums) == 1:
-        return value, Interval(value, value)
-
-    def mean(sums: Array, sizes: Array, axis: int) -> Array:
-        return np.asarray(sums.sum(axis) / sizes.sum(axis))
-
-    found = stats.bootstrap(
-        (sums, sizes), mean, n_resamples=RESAMPLES, paired=True, vectorized=True, method="percentile",
-        confidence_level=CONFIDENCE, rng=np.random.default_rng(0),
-    )  # fmt: skip
-    return value, Interval(*map(float, found.confidence_interval))
 
 
 def chi_squared(table: ArrayLike) -> ChiSquared:
