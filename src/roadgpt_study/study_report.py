@@ -13,7 +13,7 @@ from roadgpt.report.chapters.roads import overview
 from roadgpt.report.chapters.wording import decimal, row
 from roadgpt.report.page import write
 from roadgpt.report.page.model import Page, Table, TableCell
-from roadgpt.report.road_record import StudyPartRecord, read_part
+from roadgpt.report.road_record import RoadGroup, read_group
 from roadgpt.report.run_report import card_of, comparisons_of, sentences_of
 from roadgpt.report.similarity import similarity
 from roadgpt.run.atomic import json_text, write_whole
@@ -41,7 +41,17 @@ def write_study(folder: Path) -> Path:
     plan = read_plan(folder)
     problems = _problems(folder)
     parts = [
-        read_part(folder / part.name, part, part.name, problems.get(part.name, ""), plan.roads)
+        read_group(
+            folder / part.name,
+            part.designer,
+            part.prompt.prompt,
+            part.prompt.truth,
+            number=part.number,
+            id=part.prompt.id,
+            home=part.name,
+            problem=problems.get(part.name, ""),
+            wanted=plan.roads,
+        )
         for part in plan.parts()
     ]
     return write(page_of(plan, parts), folder)
@@ -55,7 +65,7 @@ def _problems(folder: Path) -> Mapping[str, str]:
     return {str(key): str(value) for key, value in found.items()} if isinstance(found, dict) else {}
 
 
-def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> Page:
+def page_of(plan: StudyPlan, parts: Sequence[RoadGroup]) -> Page:
     """Returns the page with the report of a study."""
     is_thesis = plan.kind == "thesis"
     valid, left = (make(parts, plan.designers, has_baseline=is_thesis) for make in (validity, departures))
@@ -73,7 +83,7 @@ def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> Page:
     )
 
 
-def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> list[str]:
+def _summary(plan: StudyPlan, parts: Sequence[RoadGroup]) -> list[str]:
     lines = []
     for designer in plan.designers:
         own = [part for part in parts if part.designer == designer]
@@ -89,7 +99,7 @@ def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> list[str]:
     return lines
 
 
-def _between(parts: Sequence[StudyPartRecord]) -> Table:
+def _between(parts: Sequence[RoadGroup]) -> Table:
     rows: list[list[TableCell]] = []
     for designer in dict.fromkeys(part.designer for part in parts):
         own = [part for part in parts if part.designer == designer and part.roads][:6]

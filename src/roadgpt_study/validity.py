@@ -7,7 +7,7 @@ from roadgpt.report.chapters import validity as chapter
 from roadgpt.report.chapters.validity import KINDS, LEFT, Count, Kind, Parts, Source, source_of
 from roadgpt.report.chapters.wording import decimal, p_value, row
 from roadgpt.report.page.model import Block, Details, Section, Table, TableCell, cell
-from roadgpt.report.road_record import StudyPartRecord
+from roadgpt.report.road_record import RoadGroup
 from roadgpt.report.statistics import LEVEL, ChiSquared, chi_squared
 from roadgpt_study.statistics import exact, trend
 
@@ -27,7 +27,7 @@ THESIS_LEFT = Source(
 )
 
 
-def of_thesis(parts: Parts) -> list[StudyPartRecord]:
+def of_thesis(parts: Parts) -> list[RoadGroup]:
     """Returns the study parts with prompts for which the thesis gives results."""
     return [part for part in parts if part.words in THESIS]
 

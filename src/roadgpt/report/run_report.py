@@ -26,7 +26,7 @@ from roadgpt.report.chapters.wording import decimal, near_and_far, percent, row,
 from roadgpt.report.page import write
 from roadgpt.report.page.charts import AxisRange, heat, is_map
 from roadgpt.report.page.model import Block, Details, Figure, Page, Section, Table, cell, linked
-from roadgpt.report.road_record import Prompt, RoadRecord, StudyPart, StudyPartRecord, read_part
+from roadgpt.report.road_record import RoadGroup, RoadRecord, read_group
 from roadgpt.road import World
 from roadgpt.road.world import oracle_in_words
 from roadgpt.run import Setup
@@ -48,7 +48,7 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
     card = read_card(folder)
     request, setup = card.request, card.request.setup
     words, world = request.words or "roads that were given", request.world
-    part = read_part(folder, StudyPart(setup.designer, 1, Prompt(id="1", prompt=words)))
+    part = read_group(folder, setup.designer, words)
     if not part.roads:
         raise UsageError(f"{folder} holds no finished road yet; say first: {command}")
     parts, failed = [part], faults_in(folder)
@@ -78,7 +78,7 @@ def _least(roads: Sequence[RoadRecord], outcome: str) -> tuple[float, str] | Non
 
 
 def card_of(
-    command: str, roads: int, seed: int, setup: Setup, world: World, parts: Sequence[StudyPartRecord]
+    command: str, roads: int, seed: int, setup: Setup, world: World, parts: Sequence[RoadGroup]
 ) -> dict[str, str]:
     """Returns how a report can be reproduced, as labels with texts in the order of the page."""
     out = {"command": command} if command else {}
@@ -108,7 +108,7 @@ def _said(name: str, value: float | str) -> str:
     return f"{name.replace('_', ' ')} {shown}"
 
 
-def _versions(parts: Sequence[StudyPartRecord]) -> str:
+def _versions(parts: Sequence[RoadGroup]) -> str:
     found: dict[str, dict[str, None]] = {}
     for part in parts:
         for road in part.roads:
@@ -118,10 +118,10 @@ def _versions(parts: Sequence[StudyPartRecord]) -> str:
 
 
 def sentences_of(
-    parts: Sequence[StudyPartRecord],
+    parts: Sequence[RoadGroup],
     world: World,
     near: Sequence[str] = (),
-    counted: Sequence[StudyPartRecord] | None = None,
+    counted: Sequence[RoadGroup] | None = None,
     beside: tuple[str, str] = ("", ""),
 ) -> list[str]:
     """Returns sentences on the roads of one designer, among them the given ones on the drives that came
@@ -147,7 +147,7 @@ def sentences_of(
     return [*lines, _different(parts)]
 
 
-def _different(parts: Sequence[StudyPartRecord]) -> str:
+def _different(parts: Sequence[RoadGroup]) -> str:
     nearest = [float(part.spread.nearest.min()) for part in parts if len(part.compared) > 1]
     twins = sum(len(part.spread.duplicates) for part in parts)
     if not nearest:
@@ -159,9 +159,7 @@ def _different(parts: Sequence[StudyPartRecord]) -> str:
     )
 
 
-def comparisons_of(
-    parts: Sequence[StudyPartRecord], world: World, between: Sequence[Table] = ()
-) -> list[Section]:
+def comparisons_of(parts: Sequence[RoadGroup], world: World, between: Sequence[Table] = ()) -> list[Section]:
     """Returns the sections in which roads of one description are compared, and that with every road. The
     tables ``between`` compare roads of different descriptions."""
     covered = coverage(parts)
@@ -176,7 +174,7 @@ MOST_NAMED = 50
 MOST_DRAWN = 30  # parts whose distances are drawn
 
 
-def diversity(parts: Sequence[StudyPartRecord], between: Sequence[Table] = ()) -> Section:
+def diversity(parts: Sequence[RoadGroup], between: Sequence[Table] = ()) -> Section:
     """Returns the section on diversity: how much the roads of one description differ, which of them are
     near duplicates, and the tables ``between`` descriptions."""
     blocks: list[Block] = [
@@ -199,7 +197,7 @@ def diversity(parts: Sequence[StudyPartRecord], between: Sequence[Table] = ()) -
     return Section("Diversity", blocks)
 
 
-def _within(parts: Sequence[StudyPartRecord]) -> Table:
+def _within(parts: Sequence[RoadGroup]) -> Table:
     rows = []
     for part in parts:
         roads, own = part.compared, part.spread
@@ -232,10 +230,10 @@ def _within(parts: Sequence[StudyPartRecord]) -> Table:
     return Table("diversity", "Roads of the same description", heads, rows, note)
 
 
-def _twins(parts: Sequence[StudyPartRecord]) -> list[Block]:
+def _twins(parts: Sequence[RoadGroup]) -> list[Block]:
     return [
         [
-            f"{part.part.name}: roads ",
+            f"{part.name}: roads ",
             linked(str(part.compared[i].index), part.href(part.compared[i])),
             " and ",
             linked(str(part.compared[j].index), part.href(part.compared[j])),
@@ -246,7 +244,7 @@ def _twins(parts: Sequence[StudyPartRecord]) -> list[Block]:
     ]
 
 
-def _matrix(part: StudyPartRecord) -> Figure | None:
+def _matrix(part: RoadGroup) -> Figure | None:
     n = len(part.compared)
     lower = np.where(np.tri(n, k=-1, dtype=bool), part.spread.metres, np.nan)
     if n < 3 or not is_map(lower):
@@ -256,4 +254,4 @@ def _matrix(part: StudyPartRecord) -> Figure | None:
         f"{part.designer}, “{part.words}”: distance between every two roads, metres; "
         "the fainter, the more similar."
     )
-    return Figure(f"distances-{part.part.number}", caption, heat(lower, axis, axis, "metres", caption, True))
+    return Figure(f"distances-{part.number}", caption, heat(lower, axis, axis, "metres", caption, True))

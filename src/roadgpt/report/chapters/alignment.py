@@ -7,10 +7,10 @@ from roadgpt.report.chapters.roads import named_roads
 from roadgpt.report.chapters.wording import drawn_share, folded, interval_cell, row, share_cell
 from roadgpt.report.page.charts import forest
 from roadgpt.report.page.model import Block, Figure, Section, Table, TableCell, cell
-from roadgpt.report.road_record import RoadRecord, StudyPartRecord
+from roadgpt.report.road_record import RoadGroup, RoadRecord
 from roadgpt.report.statistics import Interval, wilson
 
-Parts = Sequence[StudyPartRecord]
+Parts = Sequence[RoadGroup]
 OfPrompts = Callable[[Sequence[Sequence[bool]]], Interval]
 """Returns an interval for other prompts like these, of each of which it is told which roads are kept."""
 
@@ -19,8 +19,8 @@ def alignment(parts: Parts, designers: Sequence[str], of_prompts: OfPrompts | No
     """Returns the section on alignment: the percentage of roads that meet each criterion, in total and by
     prompt, and a list of roads that miss a requirement. Several prompts need ``of_prompts``."""
     some = [designer for designer in designers if any(part.roads for part in _of(parts, designer))]
-    prompts = [part.part.prompt for part in _of(parts, designers[0])]
-    known = sum(prompt.truth is not None for prompt in prompts)
+    prompts = [part.truth for part in _of(parts, designers[0])]
+    known = sum(truth is not None for truth in prompts)
     truth = (
         "The truth of every prompt was written down by people."
         if known == len(prompts)
@@ -40,7 +40,7 @@ def alignment(parts: Parts, designers: Sequence[str], of_prompts: OfPrompts | No
     return Section("Alignment with the words", [*blocks, *broken])
 
 
-def _of(parts: Parts, designer: str) -> list[StudyPartRecord]:
+def _of(parts: Parts, designer: str) -> list[RoadGroup]:
     return [part for part in parts if part.designer == designer]
 
 
@@ -91,7 +91,7 @@ def _by_prompt(parts: Parts, designer: str) -> Table:
             for good in every
         ]
         words = cell(part.words, href=part.overview if part.roads else "")
-        rows.append(row(part.part.prompt.id, words, *shares, part.problem or ""))
+        rows.append(row(part.id, words, *shares, part.problem or ""))
     caption = f"{designer}: roads that keep the words, prompt by prompt"
     return Table(f"alignment-{designer}", caption, ["id", "prompt", *CRITERIA, "remark"], rows)
 

@@ -20,7 +20,7 @@ from roadgpt.report.chapters.wording import (
 )
 from roadgpt.report.page.charts import forest
 from roadgpt.report.page.model import Block, Figure, Section, Table, TableCell
-from roadgpt.report.road_record import RoadRecord, StudyPartRecord
+from roadgpt.report.road_record import RoadGroup, RoadRecord
 from roadgpt.road import World
 from roadgpt.verdict import SEVERITIES, Severity, percent
 from roadgpt.verdict.verdict import MOSTLY, PARTLY
@@ -37,7 +37,7 @@ class Passed(NamedTuple):
 
 
 def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
-    """Groups the passed roads of a study by how far outside its lane the car was."""
+    """Groups the passed roads by how far outside its lane the car was."""
     kept = [road.verdict for road in roads if road.outcome == "PASS" and road.verdict is not None]
     found = []
     for name in SEVERITIES:
@@ -102,7 +102,7 @@ MOST_DRAWN = 12  # prompts in a figure; if there are more, they are shown as one
 ALL = "all prompts"
 LONGEST = 66  # letters of a prompt in a figure
 
-Parts = Sequence[StudyPartRecord]
+Parts = Sequence[RoadGroup]
 
 
 class Count(NamedTuple):
