@@ -22,7 +22,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-import roadgpt.gym  # noqa: F401  makes the environment known to Gymnasium
+import roadgpt_gym  # noqa: F401  makes the environment known to Gymnasium
 from roadgpt.drive import Drive, simulate
 from roadgpt.drive.loading import load_driver
 from roadgpt.road import ORACLES, Limits, Road, World

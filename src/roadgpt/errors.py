@@ -58,13 +58,6 @@ class GivenUpError(RoadGPTError):
 
     exit_status = 5
 
-    def __init__(self, why: str, again: str) -> None:
-        super().__init__(why, again)
-        self.why, self.again = why, again
-
-    def __str__(self) -> str:
-        return f"{self.why}; {self.again}"
-
 
 class GateError(RoadGPTError):
     """The results do not meet what the user demands with ``--fail-on`` or ``--baseline``."""

@@ -15,8 +15,7 @@ from roadgpt.errors import ChatError, command_line
 from roadgpt_study.survey import command as survey
 
 if TYPE_CHECKING:
-    from roadgpt.report.road_record import Prompt
-    from roadgpt_study.plan import Kind, StudyPlan
+    from roadgpt_study.plan import Kind, Prompt, StudyPlan
 
 NOT_ASKED = ChatError.exit_status
 SHOWN = ("reader", "driver", "simulator", "keep_driving", "geometry")

@@ -13,11 +13,10 @@ from roadgpt.campaign.run_folder import RunFolder, work_in
 from roadgpt.chat import ChatError, Meter, ReplyError
 from roadgpt.design.room import world_for, world_remarks
 from roadgpt.errors import BriefError
-from roadgpt.report.road_record import StudyPart
 from roadgpt.run import Request, brief_of, check_parts
 from roadgpt.run.atomic import alone_in
 from roadgpt.run.folder import Draw, finished
-from roadgpt_study.plan import StudyPlan
+from roadgpt_study.plan import StudyPart, StudyPlan
 
 AT_ONCE = 100  # parts whose folders are locked together: macOS lets a process open 256 files
 

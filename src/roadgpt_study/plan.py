@@ -3,16 +3,17 @@ definition. Prompts are read from JSON lines with the keys ``id``, ``prompt`` an
 
 from importlib.resources import files
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from pydantic import Field, ValidationError
 
 from roadgpt import plugins
 from roadgpt.brief.model import Frozen
 from roadgpt.chat import asks_a_model
+from roadgpt.check.truth import Truth
 from roadgpt.errors import UsageError, explained
 from roadgpt.reading import json_of, read_model, read_text
-from roadgpt.report.road_record import Prompt, StudyPart
+from roadgpt.report.road_record import name_of
 from roadgpt.road import ORACLES, Limits, World
 from roadgpt.run import Setup
 from roadgpt.run.atomic import is_new, json_text, write_whole
@@ -21,6 +22,29 @@ CARD = "study.json"
 MOST = 10_000  # prompts in a file
 
 Kind = Literal["thesis", "alignment"]
+
+
+class Prompt(Frozen):
+    """A description of a road, with the requirements that people wrote down for it, if any."""
+
+    id: str = Field(min_length=1, max_length=80)
+    prompt: str = Field(min_length=1, max_length=10_000)
+    truth: Truth | None = None
+    """The requirements that people wrote down; None: roads are checked against the requirements that the
+    reader finds."""
+
+
+class StudyPart(NamedTuple):
+    """One part of a study: the roads that one designer makes from one description."""
+
+    designer: str
+    number: int  # number of the prompt in the study, counted from 1
+    prompt: Prompt
+
+    @property
+    def name(self) -> str:
+        """The path of the folder of this part, relative to the study's folder, with forward slashes."""
+        return name_of(self.designer, self.number, self.prompt.prompt)
 
 
 class StudyPlan(Frozen):

@@ -10,22 +10,17 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from roadgpt.report import statistics
 from roadgpt.report.statistics import (
-    bootstrap,
     chi_squared,
     clopper_pearson,
-    conover,
-    exact,
     friedman,
     holm,
-    krippendorff,
     mcnemar,
-    spearman,
-    trend,
     wilcoxon,
     wilson,
 )
+from roadgpt_study import statistics
+from roadgpt_study.statistics import bootstrap, conover, exact, krippendorff, spearman, trend
 
 THESIS = [[88, 12], [57, 43], [37, 63]]
 LEFT = [[1, 87], [2, 55], [5, 32]]

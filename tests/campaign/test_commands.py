@@ -139,8 +139,6 @@ def test_status_and_top_tell_of_a_finished_campaign(driven: Path) -> None:
     assert told["is_finished"]
     assert sum(told["outcomes"].values()) == told["done"] == told["total"] == 3
     assert told["cells"][0]["name"] == "c01"
-    shown = roadgpt("show", "--watch", driven).output
-    assert "3 of 3 tests" in " ".join(shown.split())  # the line of a long folder name is wrapped
     assert f"roadgpt show {driven}/c01/1" in roadgpt("show", driven).output
     again = roadgpt("resume", driven, "--json")
     assert json.loads(again.output)["done"] == 3
@@ -245,8 +243,9 @@ def test_a_folder_of_roadgpt_run_is_resumed_as_a_campaign_is(tmp_path: Path) -> 
     card = json.loads((broken / "campaign.json").read_text())
     (broken / "campaign.json").write_text(json.dumps(card | {"is_finished": False}))
     with alone_in(broken):
-        assert "at work, 1 of 3 tests" in " ".join(roadgpt("show", "--watch", broken).stdout.split())
-    assert "interrupted, 1 of 3 tests" in " ".join(roadgpt("show", "--watch", broken).stdout.split())
+        assert status_of(broken).is_running
+    assert not status_of(broken).is_running
+    assert roadgpt("show", broken).stdout.endswith("2 of 3 still to be made\n")
     done = roadgpt("resume", broken, "--json", "--junit", tmp_path / "tests.xml")
     assert done.exit_code == 0, done.output
     told = json.loads(done.stdout)
@@ -256,8 +255,7 @@ def test_a_folder_of_roadgpt_run_is_resumed_as_a_campaign_is(tmp_path: Path) -> 
     assert {*first} == {*second}
     assert {"runs/0002/road.xodr", "runs/0002/birds_eye.svg"} <= {*second}
     assert [name for name in first if first[name] != second[name]] == []
-    status = " ".join(roadgpt("show", "--watch", broken).stdout.split())
-    assert "finished, 3 of 3 tests" in status
+    assert roadgpt("show", broken).stdout.endswith("3 PASS\n")
 
 
 def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:

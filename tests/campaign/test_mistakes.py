@@ -52,17 +52,6 @@ def test_a_description_takes_one_line_whatever_is_in_it(hostile: Path) -> None:
     assert "\x1b" not in said.output
 
 
-@pytest.mark.parametrize("width", [12, 30, 44, 60, 80, 200])
-def test_top_fits_every_screen_and_takes_no_word_for_markup(hostile: Path, width: int) -> None:
-    said = CliRunner(env={"COLUMNS": str(width)}).invoke(app, ["show", str(hostile), "--watch"])
-    assert said.exit_code == 0, said.output
-    lines = said.output.splitlines()
-    assert max(map(len, lines)) <= width
-    (line,) = [line for line in lines if line.startswith("c01")]
-    assert line.split()[1] == "5"
-    assert ("a road [/re" in line) == (width >= 60)
-
-
 def journal(folder: Path) -> str:
     with closing(sqlite3.connect(folder / STORE)) as db:
         return str(db.execute("PRAGMA journal_mode").fetchone()[0])

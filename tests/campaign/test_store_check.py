@@ -17,7 +17,6 @@ from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
 
 COMMANDS = (
-    ("show", "c", "--watch"),
     ("show", "c"),
     ("report", "c"),
     ("faults", "c", "--repeat", "1", "--no-plot"),
@@ -96,7 +95,7 @@ def test_a_store_that_is_not_as_we_wrote_it_is_told_by_its_name(campaign: Path, 
 )
 def test_designs_and_sentences_are_checked_as_they_are_read(campaign: Path, sql: str) -> None:
     change(campaign, sql + "; UPDATE tests SET outcome = 'FAIL'")
-    for words in (COMMANDS[3], COMMANDS[4]):
+    for words in COMMANDS[2:4]:
         result = invoke(*words)
         assert result.exit_code == 2, (words, result.output)
         assert "campaign.sqlite is damaged" in result.stderr
@@ -113,7 +112,7 @@ def test_flipped_bytes_end_in_a_sentence(campaign: Path) -> None:
         store.unlink()
         store.write_bytes(spoilt)
         record._checked.clear()
-        for words in (COMMANDS[0], COMMANDS[4], COMMANDS[5]):
+        for words in (COMMANDS[0], *COMMANDS[3:]):
             result = invoke(*words)
             assert result.exit_code in (0, 1, 2), (trial, words, result.output)
             assert "should not happen" not in result.stderr, (trial, words, result.stderr)

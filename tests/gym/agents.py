@@ -5,7 +5,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from roadgpt.gym.observation import LABELS, SCALES
+from roadgpt_gym.observation import LABELS, SCALES
 
 LOCK = 0.62  # rad
 WHEELBASE = 2.83  # m

@@ -1,6 +1,8 @@
 """The environment beside Gymnasium's own checker, the simulator as a second path, and the rules of roads."""
 
 import math
+import subprocess
+import sys
 from typing import Any
 
 import gymnasium
@@ -28,6 +30,13 @@ class RepeatsActions:
         self.step += 1
         turn, pedal = min(max(turn, -1.0), 1.0), min(max(pedal, -1.0), 1.0)
         return Command(turn * LOCK, max(pedal, 0.0), max(-pedal, 0.0))
+
+
+def test_a_program_that_can_only_give_a_name_gets_the_environment() -> None:
+    """In a process of its own, since it is registered here already."""
+    code = "import gymnasium; print(gymnasium.make('roadgpt_gym:roadgpt/LaneKeeping-v0').spec.id)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["roadgpt/LaneKeeping-v0"]
 
 
 @pytest.mark.parametrize("arguments", [{}, {"observation": "camera", "camera": SMALL}])
@@ -75,7 +84,7 @@ def test_an_episode_is_the_drive_that_simulate_makes_of_its_commands() -> None:
 
 
 def test_the_numbers_are_those_of_the_road_and_the_car() -> None:
-    from roadgpt.gym.observation import AHEAD, LABELS, SCALES
+    from roadgpt_gym.observation import AHEAD, LABELS, SCALES
 
     env = made("a hilly road with 3 turns", world={"friction": 0.6, "speed_limit": 15})
     rows = episode(env, good, most=260, seed=2)
@@ -97,7 +106,7 @@ def test_the_numbers_are_those_of_the_road_and_the_car() -> None:
     ("world", "middle"), [({"lane_width": 3.0}, -1.5), ({"lanes": "2+1", "lane_width": 3.5}, -5.25)]
 )
 def test_offset_and_reward_are_those_of_the_driven_lane(world: dict[str, Any], middle: float) -> None:
-    from roadgpt.gym.observation import LABELS, SCALES
+    from roadgpt_gym.observation import LABELS, SCALES
 
     env = made(world=world)
     seen, info = env.reset(seed=3)
@@ -203,7 +212,7 @@ def test_actions_beyond_the_ends_are_cut() -> None:
     ],
 )
 def test_wrong_arguments_are_refused_in_a_sentence(arguments: dict[str, Any], kind: type, said: str) -> None:
-    from roadgpt.gym.lane_keeping import LaneKeeping
+    from roadgpt_gym.lane_keeping import LaneKeeping
 
     with pytest.raises(kind, match=said) as caught:
         LaneKeeping(**arguments)

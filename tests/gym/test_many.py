@@ -8,7 +8,7 @@ import pytest
 
 from gym.agents import made
 from roadgpt.errors import UsageError
-from roadgpt.gym.curriculum import Curriculum
+from roadgpt_gym.curriculum import Curriculum
 
 
 @pytest.mark.parametrize("mode", ["sync", "async"])

@@ -17,7 +17,7 @@ from scipy.interpolate import interp1d
 from road_parts import design_of, named
 from roadgpt.cli import app
 from roadgpt.errors import RoadGPTError, UsageError
-from roadgpt.report.film import HOLD, SEAM, TURN_LAG, Film, Settings, Trip, film_of, split_film, write_film
+from roadgpt.report.film import HOLD, SEAM, TURN_LAG, Film, Settings, Trip, write, write_film
 from roadgpt.road import Design
 from roadgpt.run import Run, Setup, prove, write_run
 
@@ -51,7 +51,7 @@ def read(path: Path) -> tuple[list[np.ndarray], av.VideoStream, float]:
 
 
 def test_a_film_has_its_frames_its_duration_and_its_size(driven: Run, tmp_path: Path) -> None:
-    path = film_of(driven, tmp_path / "new" / "film.mp4", "chase", SMALL)
+    path = write([driven], tmp_path / "new" / "film.mp4", "chase", SMALL)
     frames, stream, duration = read(path)
     assert driven.drive is not None
     expected = int(driven.drive.duration * 10 + 1e-6) + HOLD * 10
@@ -87,7 +87,7 @@ def test_two_drives_stand_side_by_side_and_two_views_one_above_the_other(
     driven: Run, other: Run, tmp_path: Path
 ) -> None:
     settings = replace(SMALL, seconds=0.3)
-    frames, _, _ = read(split_film(driven, other, tmp_path / "split.mp4", "bonnet", settings))
+    frames, _, _ = read(write([driven, other], tmp_path / "split.mp4", "bonnet", settings))
     assert len(frames) == 3
     assert frames[0].shape == (96, 2 * 160 + SEAM, 3)
     single = [Film.of([run], "bonnet", settings).frame(2) for run in (driven, other)]
@@ -135,19 +135,19 @@ def test_along_a_road_that_nobody_drove_the_camera_rides_alone(alone: Run) -> No
 
 def test_what_cannot_be_filmed_is_told(driven: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(UsageError, match="chase, bonnet, both"):
-        film_of(driven, tmp_path / "a.mp4", "roof")
+        write([driven], tmp_path / "a.mp4", "roof")
     with pytest.raises(UsageError, match="3 are given"):
         Film.of([driven] * 3)
     with pytest.raises(UsageError, match="no road to film"):
-        film_of(replace(driven, road=None), tmp_path / "a.mp4")
+        write([replace(driven, road=None)], tmp_path / "a.mp4")
     with pytest.raises(UsageError, match="over after"):
-        film_of(driven, tmp_path / "a.mp4", settings=replace(SMALL, begin=1000.0))
+        write([driven], tmp_path / "a.mp4", settings=replace(SMALL, begin=1000.0))
     (tmp_path / "file").touch()
     with pytest.raises(RoadGPTError, match="cannot write"):
-        film_of(driven, tmp_path / "file" / "a.mp4", settings=replace(SMALL, seconds=0.1))
+        write([driven], tmp_path / "file" / "a.mp4", settings=replace(SMALL, seconds=0.1))
     monkeypatch.setitem(sys.modules, "av", None)
     with pytest.raises(UsageError, match=r"pip install (-e '\.|'roadgpt)\[film\]'"):
-        film_of(driven, tmp_path / "a.mp4")
+        write([driven], tmp_path / "a.mp4")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file"]
 
 

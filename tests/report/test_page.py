@@ -292,10 +292,10 @@ def test_the_site_of_a_failure_shows_the_markings_of_the_road_s_own_lanes() -> N
     """A road with 2+1 lanes: a solid line between the directions, a broken one 3 m to its right."""
     road = Road.through([(20, 60), (80, 60), (140, 60), (200, 60)])
     site = site_of(road, World(section=CrossSection(lanes="2+1", lane_width=3.0)), None, 90.0)
-    assert [is_broken for _, is_broken in site.lines] == [False, True]
-    assert [float(line[:, 1].mean()) for line, _ in site.lines] == pytest.approx([60.0, 57.0])
-    assert (site.left[:, 1].mean(), site.right[:, 1].mean()) == pytest.approx((63.0, 54.0))
+    assert [is_broken for _, is_broken in site.lines] == [False, False, True, False]
+    assert [float(line[:, 1].mean()) for line, _ in site.lines] == pytest.approx([63.0, 60.0, 57.0, 54.0])
+    assert np.ptp(site.rings[0][:, 1]) == pytest.approx(9.0)
     usual = site_of(road, World(), None, 90.0)
-    assert [is_broken for _, is_broken in usual.lines] == [True]
+    assert [is_broken for _, is_broken in usual.lines] == [False, True, False]
     for each in (site, usual):
         assert draw_site(each, "x").count("stroke-dasharray") == 1

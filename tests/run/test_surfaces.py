@@ -22,9 +22,9 @@ from roadgpt.campaign.run_folder import campaign
 from roadgpt.cli import app
 from roadgpt.cli.options import WORLD
 from roadgpt.errors import UsageError
-from roadgpt.gym.lane_keeping import LaneKeeping
 from roadgpt.road import Limits, Road, Site, World
 from roadgpt.run import Setup, perform, prove, read_run
+from roadgpt_gym.lane_keeping import LaneKeeping
 from roadgpt_sbft import RoadGPTTestGenerator
 
 WET, ICE, DRY = "turn x2 | beside(wet)", "turn x2 | beside(wet, ice)", "turn x2"

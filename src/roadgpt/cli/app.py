@@ -27,7 +27,7 @@ HEADINGS = {
         "drive": "Drive roads from files, or repeat tests of a campaign.",
     },
     "Look": {
-        "show": "Summarise a run, a folder of runs or a campaign; watch a campaign.",
+        "show": "Summarise a run, a folder of runs or a campaign.",
         "view": "View a road in 3-D with a replay of its drive, or draw pictures.",
         "film": "Film drives: from behind the car, from its hood, or two side by side.",
         "compare": "Measure how similar two roads are, and draw both.",

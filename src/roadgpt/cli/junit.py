@@ -61,16 +61,17 @@ def suites_of(folder: Path, worse: Mapping[str, str]) -> Iterator[Suite]:
                     own |= {"origin": result.proposal.origin if cell.name else None}
                     own |= {"name": Path(file).name or test, "worse": worse.get(f"{place}/{test}", "")}
                     rows.append(row_of(result, file, **own))
-                name = cell.request.words[:LONGEST] or UNKNOWN
-                of_cell = {"cell": cell.name, "generator": cell.generator, "goal": cell.goal}
-                properties = {**properties_of(cell.request), **(of_cell if cell.name else {})}
+                name, properties, _ = suite_of(cell.request, rows)
+                if cell.name:
+                    of_cell = {"cell": cell.name, "generator": cell.generator, "goal": cell.goal}
+                    properties = {**properties, **of_cell}
                 yield name if len(cells) == 1 else f"{cell.name}: {name}", properties, rows
 
 
-def properties_of(request: Request) -> Properties:
-    """Returns the settings of a suite."""
+def suite_of(request: Request, rows: Sequence[Row]) -> Suite:
+    """Returns the tests of one request, with its settings."""
     setup, world = request.setup, request.world
-    return {
+    properties: Properties = {
         "words": request.words or None,
         "seed": request.seed,
         "designer": setup.designer,
@@ -82,6 +83,7 @@ def properties_of(request: Request) -> Properties:
         "speed_limit_kmh": round(world.limits.speed_limit * 3.6, 6),
         "friction": world.site.friction,
     }
+    return request.words[:LONGEST] or UNKNOWN, properties, rows
 
 
 def write_junit(path: Path, suites: Sequence[Suite]) -> None:

@@ -6,7 +6,7 @@ import logging
 import math
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
@@ -215,7 +215,6 @@ class Screen:
         self.total, self.as_json, self.quiet, self.verbose = total, as_json, quiet, verbose
         self.request: Request | None = None
         """That of the roads, if there is one; the table of outcomes names its driver and oracle."""
-        self.junit: Callable[[Sequence[Row]], None] | None = None
         self.gate: Gate | None = None
         self.rows: list[Row] = []
         if quiet:
@@ -284,9 +283,7 @@ class Screen:
                 self.detail(f"  {run.description}")
 
     def close(self) -> None:
-        """Calls ``junit`` with the rows, if it is set, and prints the table of outcomes."""
-        if self.junit is not None:
-            self.junit(self.rows)
+        """Prints what the gate says, and the table of outcomes."""
         if self.gate and self.gate.remark:
             self.say(self.gate.remark)
         if self.quiet or self.as_json or not self.rows:

@@ -1,13 +1,10 @@
-"""Tells, as lines of text or as JSON, of a Run, a folder of runs or a campaign; shows a campaign at work."""
+"""Tells, as lines of text or as JSON, of a Run, a folder of runs or a campaign; runs a campaign."""
 
 import json
-import sys
-import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import accumulate, islice
+from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 import numpy as np
@@ -33,17 +30,11 @@ from roadgpt.run.folder import read_run, run_folder
 from roadgpt.run.model import Run, permissions
 from roadgpt.verdict.verdict import percent
 
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
 COMPARED = 500  # largest number of failures, evenly spread, that are grouped (if untested): under a second
 MOST_CELLS = 40  # largest number of cells that are shown one by one
 MOST_TESTS = 40  # of a cell, one by one
 HEAD, SIDES = ("cell", "done", "pass", "fail", "other", "least margin", "what"), "<>>>>><"
-GAP = "  "  # between columns
-LEAST = 12  # letters of the last column, below which it is left out
 LONGEST, WIDEST_TEXT = 60, 300  # letters of a description, and of other texts, in a line of a table
-MOST_WATCHED, MOST_WORKERS = 12, 16  # rows of the screen
 
 
 def watch(folder: Path, steps: Iterator[Progress], as_json: bool, quiet: bool, gate: Gate) -> None:
@@ -134,17 +125,10 @@ def _headline(status: Status) -> str:
     return f"{status.folder}: {state}, {status.done:,}{of} tests in {duration(status.seconds)}{pace}{more}"
 
 
-def cell_lines(cells: Sequence[CellStatus], width: int = 10_000) -> list[str]:
-    """Returns a table with a line for each cell; a column that ends beyond ``width`` is left out.
-
-    A cell is one combination of the campaign's descriptions, designers, drivers and other settings. The
-    last column counts as ``LEAST`` characters wide, so longer texts of this column extend beyond ``width``.
-    """
-    rows = [HEAD, *map(_columns, cells)]
-    columns = [*zip(*rows, strict=True)]
-    wide = [*(max(map(len, column)) for column in columns[:-1]), LEAST]
-    shown = sum(end <= width for end in accumulate(wide, lambda end, own: end + len(GAP) + own))
-    return aligned([row[:shown] for row in rows], SIDES[:shown], GAP)
+def cell_lines(cells: Sequence[CellStatus]) -> list[str]:
+    """Returns a table with a line for each cell: one combination of the campaign's descriptions, designers,
+    drivers and other settings."""
+    return aligned([HEAD, *map(_columns, cells)], SIDES)
 
 
 def _columns(cell: CellStatus) -> tuple[str, ...]:
@@ -156,43 +140,6 @@ def _columns(cell: CellStatus) -> tuple[str, ...]:
     why = f"; {plain(cell.closed, WIDEST_TEXT)}" if cell.closed else ""
     counts = (cell.done, passed, failed, cell.done - passed - failed)
     return (cell.name or "-", *(f"{count:,}" for count in counts), margin, what + why)
-
-
-def watch_campaign(campaign: Path) -> None:
-    """Shows the progress of a campaign until it ends or the user presses Ctrl-C; without a terminal, shows it
-    once."""
-    from rich.console import Console
-    from rich.live import Live
-
-    console = Console(file=sys.stdout)
-    if not sys.stdout.isatty():
-        console.print(_picture(status_of(campaign), console.width))
-        return
-    with Live(console=console, auto_refresh=False, screen=False) as live:
-        while not (status := status_of(campaign)).is_finished:
-            live.update(_picture(status, console.width), refresh=True)
-            time.sleep(1.0)
-        live.update(_picture(status, console.width), refresh=True)
-
-
-def _picture(status: Status, width: int) -> "RenderableType":
-    from rich.console import Group
-    from rich.padding import Padding
-    from rich.progress_bar import ProgressBar
-    from rich.text import Text
-
-    bar = ProgressBar(total=status.total or max(status.done, 1), completed=status.done)
-    workers = [
-        f"{lease.worker}  test {lease.number} of {lease.cell}" for lease in status.under_way[:MOST_WORKERS]
-    ]
-    busy = {lease.cell for lease in status.under_way}  # these cells come first, then those with most failures
-    cells = sorted(
-        status.cells, key=lambda cell: (cell.name not in busy, -cell.outcomes.get("FAIL", 0), cell.name)
-    )
-    lines = [outcomes_line(status.outcomes), "", *cell_lines(cells[:MOST_WATCHED], width), "", *workers]
-    table = Text("\n".join(lines), no_wrap=True, overflow="ellipsis")
-    # without colours a bar does not fill its line, so that the next line would follow it
-    return Group(Text(_headline(status), style="bold"), Padding(bar), table)
 
 
 def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:

@@ -77,15 +77,11 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def add_axes(figure: Figure, left: float, bottom: float, right: float, top: float) -> Axes:
-    """Adds axes to a figure; the arguments are the distances in inches from the borders of the figure."""
+    """Adds axes with the grey frame and ticks that all pictures have to a figure; the arguments are the
+    distances in inches from the borders of the figure."""
     wide, high = figure.get_size_inches()
     box = (left / wide, bottom / high, (wide - left - right) / wide, (high - bottom - top) / high)
     axes: Axes = figure.add_axes(box)
-    return dress(axes)
-
-
-def dress(axes: Axes) -> Axes:
-    """Gives axes the grey frame and ticks that all pictures have, and returns the axes."""
     for side in axes.spines.values():
         side.set_color("#9aa1ab")
         side.set_linewidth(0.8)

@@ -1,4 +1,4 @@
-"""Makes films of one or two drives, from behind the car or from a hood camera. Main function: ``film_of``.
+"""Makes films of one or two drives, from behind the car or from a hood camera. Main function: ``write``.
 
 The frames depend only on the Run and the settings. Threads draw the frames, and PyAV encodes them."""
 
@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 import numpy as np
-from matplotlib.colors import to_rgb
-from matplotlib.font_manager import FontProperties, findfont, get_font
+from matplotlib.font_manager import FontProperties, findfont
 from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
 from scipy.signal import lfilter
 
 from roadgpt.errors import RoadGPTError, UsageError, explained, to_install
@@ -132,75 +132,17 @@ def _ride(road: Road, world: World) -> tuple[Array, dict[str, Array], Array]:
 
 
 Frame = NDArray[np.uint8]
-Weight = Literal["normal", "bold"]
 TITLE, TEXT, SMALL, LARGE = 13, 12, 10, 27  # pixels in a picture 360 high
 EDGE, LINE = 10, 17  # likewise: from the border, and from line to line
 LEAST = 0.5  # of all sizes, in small pictures
 WHOLE = 2.0  # m of margin that fill its bar
-WHITE, PALE = (255, 255, 255), (206, 212, 218)
-
-
-Glyph = tuple[NDArray[np.uint8], int, int, float]
-"""The image of a letter: the coverage of each pixel, ``(height, width)``, 0 to 255; the pixels from the
-baseline up to its first row, and from the start of the letter to its first column; and those from the start
-of the letter to the start of the next one."""
+WHITE, PALE, TROUGH, DIM = "#ffffff", "#ced4da", "#464c52", "#00000091"  # text can be read on what is dimmed
 
 
 @cache
-def glyph(letter: str, size: int, weight: Weight) -> Glyph:
-    """Returns the raster image of a letter; ``size`` is the font size in pixels."""
-    font = get_font(findfont(FontProperties(family="DejaVu Sans", weight=weight)))
-    font.set_size(float(size), POINTS)
-    advance = float(font.load_char(ord(letter)).linearHoriAdvance) / 65536
-    font.set_text(letter)
-    font.draw_glyphs_to_bitmap(antialiased=True)
-    cover = np.array(font.get_image())
-    left, _ = font.get_bitmap_offset()
-    top = len(cover) - 1 - int(np.ceil(font.get_descent() / 64))  # its last row is empty
-    return cover, top, int(np.floor(left / 64)), advance
-
-
-def width_of(text: str, size: int, weight: Weight = "normal") -> int:
-    """Returns the width of a line of text in pixels."""
-    return int(np.ceil(sum(glyph(letter, size, weight)[3] for letter in text)))
-
-
-def write_text(
-    frame: Frame, x: float, y: float, text: str, size: int, colour: tuple[int, int, int] = (255, 255, 255),
-    weight: Weight = "normal",
-) -> None:  # fmt: skip
-    """Writes one line of text into a frame from (x, y) on the baseline; text beyond the frame is cut off."""
-    for letter in text:
-        cover, top, left, advance = glyph(letter, size, weight)
-        _blend(frame, round(x) + left, round(y) - top, cover, colour)
-        x += advance
-
-
-def _blend(frame: Frame, x: int, y: int, cover: NDArray[np.uint8], colour: tuple[int, int, int]) -> None:
-    x0, y0 = max(x, 0), max(y, 0)
-    x1, y1 = min(x + cover.shape[1], frame.shape[1]), min(y + cover.shape[0], frame.shape[0])
-    if x0 >= x1 or y0 >= y1:
-        return
-    part = frame[y0:y1, x0:x1].astype(np.int32)
-    share = cover[y0 - y : y1 - y, x0 - x : x1 - x, None].astype(np.int32)
-    part += ((np.array(colour) - part) * share + 127) // 255
-    frame[y0:y1, x0:x1] = part
-
-
-def shade(frame: Frame, x0: float, y0: float, x1: float, y1: float, left: int = 110) -> None:
-    """Multiplies the brightness of a rectangle by ``left`` / 256, so that text on it can be read."""
-    part = frame[max(round(y0), 0) : max(round(y1), 0), max(round(x0), 0) : max(round(x1), 0)]
-    part[:] = (part.astype(np.uint16) * left) >> 8
-
-
-def fill(frame: Frame, x0: float, y0: float, x1: float, y1: float, colour: tuple[int, int, int]) -> None:
-    """Fills a rectangle of a frame with a colour."""
-    frame[max(round(y0), 0) : max(round(y1), 0), max(round(x0), 0) : max(round(x1), 0)] = colour
-
-
-def _rgb(colour: str) -> tuple[int, int, int]:
-    r, g, b = (round(255 * part) for part in to_rgb(colour))
-    return r, g, b
+def _font(size: int, weight: str = "normal") -> ImageFont.FreeTypeFont:
+    file = findfont(FontProperties(family="DejaVu Sans", weight=weight))
+    return ImageFont.truetype(file, size, layout_engine=ImageFont.Layout.BASIC)
 
 
 View = Literal["chase", "bonnet", "both"]
@@ -254,12 +196,15 @@ class Pane:
         now = min(time, self.trip.duration)
         car = self.trip.car(now)
         pose = self.trip.follower(now) if self.camera.mount == "chase" else car
-        frame = self.scene.render(self.camera, pose, car=None if self.run.drive is None else car)
-        self._title(frame)
-        self._numbers(frame, self.trip.readout(now))
+        picture = Image.fromarray(
+            self.scene.render(self.camera, pose, car=None if self.run.drive is None else car)
+        )
+        brush = ImageDraw.Draw(picture, "RGBA")  # colours with an opacity are blended
+        self._title(brush)
+        self._numbers(brush, self.trip.readout(now))
         if time >= self.trip.duration:
-            self._outcome(frame)
-        return frame
+            self._outcome(brush)
+        return np.array(picture)
 
     @property
     def _scale(self) -> float:
@@ -269,57 +214,52 @@ class Pane:
     def _size(self, pixels: int) -> int:
         return max(7, round(pixels * self._scale))
 
-    def _title(self, frame: Frame) -> None:
+    def _title(self, brush: ImageDraw.ImageDraw) -> None:
         u, size = self._scale, self._size(TITLE)
         rows = fitted(self.run.title, (self.camera.width - 2 * EDGE * u) / POINTS, size, True, 2).split("\n")
-        shade(frame, 0, 0, self.camera.width, (9 + LINE * len(rows)) * u)
+        brush.rectangle((0, 0, self.camera.width, (9 + LINE * len(rows)) * u), DIM)
         for k, row in enumerate(rows):
-            write_text(frame, EDGE * u, (LINE * (k + 1)) * u, row, size, WHITE, "bold")
+            brush.text((EDGE * u, LINE * (k + 1) * u), row, WHITE, _font(size, "bold"), "ls")
 
-    def _numbers(self, frame: Frame, readout: Readout) -> None:
+    def _numbers(self, brush: ImageDraw.ImageDraw, readout: Readout) -> None:
         (metres_per_second, s, margin, outside), u = readout, self._scale
-        edge = EDGE * u
-        large, text, small = self._size(LARGE), self._size(TEXT), self._size(SMALL)
+        bold = _font(self._size(LARGE), "bold")
+        text, small = _font(self._size(TEXT)), _font(self._size(SMALL))
         wide, high = 148 * u, (78 if margin is not None else 52) * u
-        x, y = edge, self.camera.height - edge - high
-        shade(frame, x, y, x + wide, y + high)
-        write_text(frame, x + 8 * u, y + 45 * u, f"at {s:.0f} of {self.run.length:.0f} m", text, PALE)
+        x, y = EDGE * u, self.camera.height - EDGE * u - high
+        left, right = x + 8 * u, x + 62 * u
+        brush.rectangle((x, y, x + wide, y + high), DIM)
+        brush.text((left, y + 45 * u), f"at {s:.0f} of {self.run.length:.0f} m", PALE, text, "ls")
         if margin is None:  # the speed of the camera has no meaning
-            write_text(frame, x + 8 * u, y + 24 * u, "not driven", self._size(TITLE), WHITE, "bold")
+            brush.text((left, y + 24 * u), "not driven", WHITE, _font(self._size(TITLE), "bold"), "ls")
             return
-        speed = f"{metres_per_second * 3.6:.0f}"
-        right = x + 62 * u
-        write_text(frame, right - width_of(speed, large, "bold"), y + 29 * u, speed, large, WHITE, "bold")
-        write_text(frame, right + 6 * u, y + 29 * u, "km/h", text, PALE)
-        colour = _rgb(SEVERE[severity(outside)] if margin > 0 else VERMILLION)
+        brush.text((right, y + 29 * u), f"{metres_per_second * 3.6:.0f}", WHITE, bold, "rs")
+        brush.text((right + 6 * u, y + 29 * u), "km/h", PALE, text, "ls")
+        colour = SEVERE[severity(outside)] if margin > 0 else VERMILLION
         said = f"margin {margin:.1f} m" if margin > 0 else "out of its lane"
         if outside > 0 and margin > 0:
             said += f", {percent(outside)} out"
-        write_text(frame, x + 8 * u, y + 61 * u, said, small if outside > 0 else text, WHITE)
+        brush.text((left, y + 61 * u), said, WHITE, small if outside > 0 else text, "ls")
         share = float(np.clip(margin / WHOLE, 0.0, 1.0)) if margin > 0 else 1.0
-        left, wide = x + 8 * u, wide - 16 * u
-        fill(frame, left, y + 67 * u, left + wide, y + 71 * u, (70, 76, 82))
-        fill(frame, left, y + 67 * u, left + wide * share, y + 71 * u, colour)
+        for part, shade in ((1.0, TROUGH), (share, colour)):
+            brush.rectangle((left, y + 67 * u, left + (wide - 16 * u) * part, y + 71 * u), shade)
 
-    def _outcome(self, frame: Frame) -> None:
-        u, text, bold = self._scale, self._size(TEXT), self._size(LARGE)
-        room = min(self.camera.width - 2 * EDGE * u, 420 * u)
-        rows = fitted(self.run.description, (room - 28 * u) / POINTS, text, lines=3).split("\n")
-        outcome = outcome_of(self.run)
-        if width_of(outcome, bold, "bold") > room - 28 * u:
-            bold = text
-        badge = width_of(outcome, bold, "bold")
+    def _outcome(self, brush: ImageDraw.ImageDraw) -> None:
+        u, size, outcome = self._scale, self._size(TEXT), outcome_of(self.run)
+        room = min(self.camera.width - 2 * EDGE * u, 420 * u) - 28 * u
+        rows = fitted(self.run.description, room / POINTS, size, lines=3).split("\n")
+        text, bold = _font(size), _font(self._size(LARGE), "bold")
+        if bold.getlength(outcome) > room:
+            bold = _font(size, "bold")
         colour = OUTCOMES.get(outcome, INK)
-        letters = _rgb(LETTERS[colour]) if colour in LETTERS else WHITE
-        wide = max(badge, *(width_of(row, text) for row in rows)) + 28 * u
-        high = (52 + LINE * len(rows)) * u
-        x, y = (self.camera.width - wide) / 2, self.camera.height * 0.155
-        fill(frame, x, y, x + wide, y + high, (255, 255, 255))
-        fill(frame, x, y, x + wide, y + 38 * u, _rgb(colour))
-        write_text(frame, x + (wide - badge) / 2, y + 29 * u, outcome, bold, letters, "bold")
+        wide = max(bold.getlength(outcome), *map(text.getlength, rows)) + 28 * u
+        middle, y = self.camera.width / 2, self.camera.height * 0.155
+        left, right = middle - wide / 2, middle + wide / 2
+        brush.rectangle((left, y, right, y + (52 + LINE * len(rows)) * u), WHITE)
+        brush.rectangle((left, y, right, y + 38 * u), colour)
+        brush.text((middle, y + 29 * u), outcome, LETTERS.get(colour, WHITE), bold, "ms")
         for k, row in enumerate(rows):
-            start = x + (wide - width_of(row, text)) / 2
-            write_text(frame, start, y + (38 + 5 + LINE * (k + 0.75)) * u, row, text, _rgb(INK))
+            brush.text((middle, y + (38 + 5 + LINE * (k + 0.75)) * u), row, INK, text, "ms")
 
 
 @dataclass(frozen=True, eq=False)
@@ -379,24 +319,13 @@ class Film:
                     future.cancel()
 
 
-def film_of(run: Run, path: Path | str, view: View | str = "chase", settings: Settings | None = None) -> Path:
-    """Films one drive into an MP4 file, and returns the path. Without a drive, the camera moves along the
-    road at a calm speed. ``view`` is "chase" (from behind), "bonnet" (from the hood camera) or "both"."""
-    return write([run], path, view, settings)
-
-
-def split_film(
-    run_a: Run, run_b: Run, path: Path | str, view: View | str = "chase", settings: Settings | None = None
-) -> Path:
-    """Films two drives side by side, each frame at the same time after the start; see ``film_of``."""
-    return write([run_a, run_b], path, view, settings)
-
-
 def write(
     runs: Sequence[Run], path: Path | str, view: View | str = "chase", settings: Settings | None = None,
     watch: Watch | None = None,
 ) -> Path:  # fmt: skip
-    """Films one or two Runs, and returns the path; ``watch`` may wrap the iterator of frames."""
+    """Films one drive, or two side by side, into an MP4 file, and returns the path; each frame is at the same
+    time after the start. Without a drive, the camera moves along the road at a calm speed. ``view`` is
+    "chase" (from behind), "bonnet" (from the hood camera) or "both"; ``watch`` may wrap the frames."""
     encoder()  # before anything is drawn
     for road in (run.road for run in runs if run.road is not None):
         refuse_without_route(road, "filmed")

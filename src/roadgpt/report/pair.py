@@ -5,7 +5,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from roadgpt.geometry.curve import Array
 from roadgpt.report.birds_eye import SHARE, THESIS, Scale, driven_path, mark, places_of
 from roadgpt.report.canvas import (
     FAINT,
@@ -13,7 +12,7 @@ from roadgpt.report.canvas import (
     INK,
     SOFT,
     VERMILLION,
-    dress,
+    add_axes,
     fitted,
     in_our_style,
     inches,
@@ -49,25 +48,26 @@ def pair(one: Run, other: Run, scale: Scale = "equal", drivers: tuple[str, str] 
     """Returns a figure that shows two roads, one above the other, on the same scales: axes that fit both
     ("equal"), or the fixed axes of RoadGPT's thesis. If ``drivers`` names two drivers, the figure shows how
     they drove, and how far outside its lane the car was instead of the heights."""
-    runs = (one, other)
     figure = new_figure(*SIZE)
-    side = max(LEAST, *((1 + 2 * SHARE) * float(np.ptp(_plan(run), axis=0).max()) for run in runs))
-    shown = max(run.length for run in runs), max(float(np.ptp(_heights(run))) for run in runs)
-    for number, run in enumerate(runs):
+    runs = [(run, run.road) for run in (one, other) if run.road is not None]
+    plans = [plan_points(road) for _, road in runs]
+    half = max(LEAST, *((1 + 2 * SHARE) * float(np.ptp(plan, axis=0).max()) for plan in plans)) / 2 + MARGIN
+    spans = [float(np.ptp(road.at(stations_of(road))[:, 2])) for _, road in runs]
+    shown = max(one.length, other.length), max(spans)
+    for number, ((run, road), plan) in enumerate(zip(runs, plans, strict=True)):
         foot = (1 - number) * ROW + BOTTOM
-        (x, y), half = (_plan(run).min(axis=0) + _plan(run).max(axis=0)) / 2, side / 2 + MARGIN
+        x, y = (plan.min(axis=0) + plan.max(axis=0)) / 2
         frame = THESIS if scale == "thesis" else Frame(x - half, x + half, y - half, y + half)
-        assert run.road is not None
-        above = _axes(figure, LEFT, foot, SIDE)
-        draw_plan(above, run.road, run.world, frame, frame.width / SIDE)
-        if not all(frame.holds(x, y) for x, y in _plan(run)):
+        over = SIZE[1] - foot - SIDE
+        above = add_axes(figure, LEFT, foot, WIDTH - LEFT - SIDE, over)
+        draw_plan(above, road, run.world, frame, frame.width / SIDE)
+        if not all(frame.holds(x, y) for x, y in plan):
             note(above, CORNER, "goes on beyond these axes", 9, zorder=13)
-        wide = WIDTH - LEFT - SIDE - BETWEEN - RIGHT
-        beside = _axes(figure, LEFT + SIDE + BETWEEN, foot, wide)
+        beside = add_axes(figure, LEFT + SIDE + BETWEEN, foot, RIGHT, over)
         seed = f"seed {run.request.seed}, road {run.index}, " if run.words else ""
         if drivers is None:
             name, said = f"Road {number + 1}", run.outcome.lower()
-            _beside(beside, run, shown, scale)
+            _beside(beside, road, shown, scale)
         else:
             name, said = f"{drivers[number]}: {run.outcome}", run.description
             _outside(above, beside, run, shown[0])
@@ -98,22 +98,6 @@ def _outside(above: Axes, beside: Axes, run: Run, long: float) -> None:
     beside.grid(color=FAINT, lw=0.8)
 
 
-def _axes(figure: Figure, left: float, foot: float, wide: float) -> Axes:
-    across, high = figure.get_size_inches()
-    axes: Axes = figure.add_axes((left / across, foot / high, wide / across, SIDE / high))
-    return dress(axes)
-
-
-def _plan(run: Run) -> Array:
-    assert run.road is not None
-    return plan_points(run.road)
-
-
-def _heights(run: Run) -> Array:
-    assert run.road is not None
-    return np.asarray(run.road.at(stations_of(run.road))[:, 2])
-
-
 def draw_plan(axes: Axes, road: Road, world: World, frame: Frame, per_inch: float) -> None:
     """Draws a road from above, its ends named, on axes that show ``frame``, ``per_inch`` metres per inch."""
     show_from_above(axes, frame, 7)
@@ -126,10 +110,9 @@ def draw_plan(axes: Axes, road: Road, world: World, frame: Frame, per_inch: floa
         labels.put((x, y), text, INK, sign * np.array([np.cos(heading), np.sin(heading)]))
 
 
-def _beside(axes: Axes, run: Run, shown: tuple[float, float], scale: Scale) -> None:
-    assert run.road is not None
-    s, z = stations_of(run.road), _heights(run)
-    long, span = shown
+def _beside(axes: Axes, road: Road, shown: tuple[float, float], scale: Scale) -> None:
+    s, (long, span) = stations_of(road), shown
+    z = road.at(s)[:, 2]
     if scale == "thesis":
         z = z - min(float(z.min()), 0.0)
         axes.set(xlim=(0, THESIS_X), ylim=(0, THESIS_Z))
@@ -140,6 +123,6 @@ def _beside(axes: Axes, run: Run, shown: tuple[float, float], scale: Scale) -> N
         axes.set(xlim=(0, long), ylim=(middle - high / 2, middle + high / 2))
         axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
     draw_heights(axes, s, z)
-    label_heights(axes, s, z, run.road.grade(s))
-    if scale == "thesis" and (run.length > THESIS_X or z.max() > THESIS_Z):
-        note(axes, CORNER, f"goes on to {run.length:.0f} m, {z.max():.0f} m high", 9, zorder=13)
+    label_heights(axes, s, z, road.grade(s))
+    if scale == "thesis" and (road.length > THESIS_X or z.max() > THESIS_Z):
+        note(axes, CORNER, f"goes on to {road.length:.0f} m, {z.max():.0f} m high", 9, zorder=13)

@@ -94,12 +94,10 @@ def _fill(axes: Axes, area: Area, colour: str, layer: float) -> None:
 def path_of(area: Area) -> Outline:
     """Returns an area as a matplotlib path; the holes in the area stay empty."""
     import shapely
-    from shapely.geometry.polygon import orient
 
     rings = []
-    for part in shapely.get_parts(area):
-        whole = orient(part)
-        rings += [np.asarray(ring.coords, float)[:, :2] for ring in (whole.exterior, *whole.interiors)]
+    for part in shapely.get_parts(shapely.orient_polygons(area)):
+        rings += [np.asarray(ring.coords, float)[:, :2] for ring in (part.exterior, *part.interiors)]
     codes = []
     for ring in rings:
         codes += [Outline.MOVETO, *[Outline.LINETO] * (len(ring) - 2), Outline.CLOSEPOLY]

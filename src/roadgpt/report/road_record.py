@@ -5,13 +5,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
-from roadgpt.brief.model import Frozen
 from roadgpt.brief.outline import outline
 from roadgpt.check import inspect
 from roadgpt.check.measures import measure
@@ -32,29 +30,6 @@ LETTERS = 32  # of a description, in the name of its folder
 STRAIGHT = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)
 """Points of a straight of 30 m. If there is no road, this straight is measured instead of the road, to learn
 which criteria a description mentions."""
-
-
-class Prompt(Frozen):
-    """A description of a road, with the requirements that people wrote down for it, if any."""
-
-    id: str = Field(min_length=1, max_length=80)
-    prompt: str = Field(min_length=1, max_length=10_000)
-    truth: Truth | None = None
-    """The requirements that people wrote down; None: roads are checked against the requirements that the
-    reader finds."""
-
-
-class StudyPart(NamedTuple):
-    """One part of a study: the roads that one designer makes from one description."""
-
-    designer: str
-    number: int  # number of the prompt in the study, counted from 1
-    prompt: Prompt
-
-    @property
-    def name(self) -> str:
-        """The path of the folder of this part, relative to the study's folder, with forward slashes."""
-        return f"{slug(self.designer)}/{self.number:02d}-{slug(self.prompt.prompt)[:LETTERS].strip('-')}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,25 +71,26 @@ class RoadRecord:
 
 
 @dataclass(frozen=True, eq=False)
-class StudyPartRecord:
+class RoadGroup:
     """All roads that one designer made from one description."""
 
-    part: StudyPart
+    designer: str
+    words: str  # the description
     roads: tuple[RoadRecord, ...]
-    home: str = ""  # part's folder, relative to the report's folder; empty if both folders are the same
+    truth: Truth | None = None
+    """The requirements that people wrote down; None: roads are checked against those that the reader
+    finds."""
+    number: int = 1  # of the description, counted from 1
+    id: str = "1"  # of the description
+    home: str = ""  # group's folder, relative to the report's folder; empty if both folders are the same
     problem: str = ""  # the reason why roads are missing; empty if none is missing
     picture_format: str = ""  # format of the roads' pictures, such as "png"; empty if there are no pictures
     wanted: int = 1  # number of roads that the user requested
 
     @property
-    def words(self) -> str:
-        """The description."""
-        return self.part.prompt.prompt
-
-    @property
-    def designer(self) -> str:
-        """The name of the designer."""
-        return self.part.designer
+    def name(self) -> str:
+        """The name of the group, as of ``name_of``."""
+        return name_of(self.designer, self.number, self.words)
 
     def count(self, which: str) -> int:
         """Returns the number of roads with a property of RoadRecord, such as "is_valid" or "has_left"."""
@@ -149,24 +125,28 @@ class StudyPartRecord:
 
     @property
     def overview(self) -> str:
-        """The address of the picture of all roads in this part, or of the table of roads."""
+        """The address of the picture of all roads of the group, or of the table of roads."""
         name = f"overview.{self.picture_format}" if self.picture_format else "generation_stats.csv"
         return f"{self.home}/{name}".lstrip("/")
 
 
-def read_part(
-    place: Path, part: StudyPart, home: str = "", problem: str = "", wanted: int = 1
-) -> StudyPartRecord:
-    """Returns all roads of the folder of runs ``place``; the other arguments are the fields of the record."""
+def name_of(designer: str, number: int, words: str) -> str:
+    """Returns the name of the roads that a designer makes from the description with this number, a path with
+    forward slashes."""
+    return f"{slug(designer)}/{number:02d}-{slug(words)[:LETTERS].strip('-')}"
+
+
+def read_group(place: Path, designer: str, words: str, truth: Truth | None = None, **more: Any) -> RoadGroup:
+    """Returns all roads of the folder of runs ``place``; ``more`` are further fields of the group."""
     roads = tuple(
-        _record_of(finished_run_in(place, n), part, _features(place, n))
+        _record_of(finished_run_in(place, n), truth, _features(place, n))
         for n in (finished(place) if place.is_dir() else [])
     )
     drawn = next((kind for kind in FORMATS if (place / f"overview.{kind}").is_file()), "")
-    return StudyPartRecord(part, roads, home, problem, drawn, wanted)
+    return RoadGroup(designer, words, roads, truth, picture_format=drawn, **more)
 
 
-def _record_of(run: Run, part: StudyPart, features: Mapping[str, float]) -> RoadRecord:
+def _record_of(run: Run, truth: Truth | None, features: Mapping[str, float]) -> RoadRecord:
     road = run.road
     sbft = inspect(road, None, run.world, "sbft") if road is not None else ()
     return RoadRecord(
@@ -179,7 +159,7 @@ def _record_of(run: Run, part: StudyPart, features: Mapping[str, float]) -> Road
         sbft_says=sbft[0].sentence if sbft else "" if road is not None else "no road",
         verdict=run.verdict,
         points=road.centreline(2.0)[:, :2] if road is not None else np.empty((0, 2)),
-        kept=kept_of(run, part.prompt.truth),
+        kept=kept_of(run, truth),
         likeness=_likeness(road),
         features=features,
         versions=run.versions,

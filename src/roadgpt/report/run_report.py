@@ -1,7 +1,6 @@
 """Writes the report of a folder of runs, from the files in it."""
 
 from collections.abc import Sequence
-from itertools import combinations, product
 from pathlib import Path
 
 import numpy as np
@@ -13,14 +12,11 @@ from roadgpt.report.chapters.alignment import alignment
 from roadgpt.report.chapters.faults import Steps, fault_summaries, faults, headline, what_to_try
 from roadgpt.report.chapters.roads import coverage, every_road, overview
 from roadgpt.report.chapters.validity import (
+    KINDS,
     LEFT,
-    NAME,
     SBFT,
     STRICT,
-    THESIS_LEFT,
-    THESIS_VALID,
     departures,
-    of_thesis,
     outside_sentences,
     passed_roads,
     source_of,
@@ -29,9 +25,8 @@ from roadgpt.report.chapters.validity import (
 from roadgpt.report.chapters.wording import decimal, near_and_far, percent, row, share_of
 from roadgpt.report.page import write
 from roadgpt.report.page.charts import AxisRange, heat, is_map
-from roadgpt.report.page.model import Block, Details, Figure, Page, Section, Table, TableCell, cell, linked
-from roadgpt.report.road_record import Prompt, RoadRecord, StudyPart, StudyPartRecord, read_part
-from roadgpt.report.similarity import similarity
+from roadgpt.report.page.model import Block, Details, Figure, Page, Section, Table, cell, linked
+from roadgpt.report.road_record import RoadGroup, RoadRecord, read_group
 from roadgpt.road import World
 from roadgpt.road.world import oracle_in_words
 from roadgpt.run import Setup
@@ -53,18 +48,20 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
     card = read_card(folder)
     request, setup = card.request, card.request.setup
     words, world = request.words or "roads that were given", request.world
-    part = read_part(folder, StudyPart(setup.designer, 1, Prompt(id="1", prompt=words)))
+    part = read_group(folder, setup.designer, words)
     if not part.roads:
         raise UsageError(f"{folder} holds no finished road yet; say first: {command}")
     parts, failed = [part], faults_in(folder)
     summaries = fault_summaries(folder, failed)
     opening = [overview(parts, world.site.map_size), faults(folder, failed, summaries)]
     sections = [*filter(None, opening), *what_to_try(next_steps)]
-    sections += [validity(parts, [setup.designer])]
-    sections += [departures(parts, [setup.designer])] if setup.drives else []
+    sections += [validity(parts, [source_of(setup.designer, parts, kind) for kind in KINDS])]
+    if setup.drives:
+        left = source_of(setup.designer, parts, LEFT)
+        sections += [departures(parts, [left] if left.total else [])]
     sections += [alignment(parts, [setup.designer])] if request.words else []
     far = _least(part.roads, "FAIL") if setup.keep_driving else None
-    sentences = sentences_of(parts, world, False, near_and_far(_least(part.roads, "PASS"), far))
+    sentences = sentences_of(parts, world, near_and_far(_least(part.roads, "PASS"), far))
     page = Page(
         words,
         [*(headline(failed, summaries) if summaries else []), *sentences],
@@ -81,7 +78,7 @@ def _least(roads: Sequence[RoadRecord], outcome: str) -> tuple[float, str] | Non
 
 
 def card_of(
-    command: str, roads: int, seed: int, setup: Setup, world: World, parts: Sequence[StudyPartRecord]
+    command: str, roads: int, seed: int, setup: Setup, world: World, parts: Sequence[RoadGroup]
 ) -> dict[str, str]:
     """Returns how a report can be reproduced, as labels with texts in the order of the page."""
     out = {"command": command} if command else {}
@@ -111,7 +108,7 @@ def _said(name: str, value: float | str) -> str:
     return f"{name.replace('_', ' ')} {shown}"
 
 
-def _versions(parts: Sequence[StudyPartRecord]) -> str:
+def _versions(parts: Sequence[RoadGroup]) -> str:
     found: dict[str, dict[str, None]] = {}
     for part in parts:
         for road in part.roads:
@@ -121,23 +118,27 @@ def _versions(parts: Sequence[StudyPartRecord]) -> str:
 
 
 def sentences_of(
-    parts: Sequence[StudyPartRecord], world: World, is_thesis: bool, near: Sequence[str] = ()
+    parts: Sequence[RoadGroup],
+    world: World,
+    near: Sequence[str] = (),
+    counted: Sequence[RoadGroup] | None = None,
+    beside: tuple[str, str] = ("", ""),
 ) -> list[str]:
     """Returns sentences on the roads of one designer, among them the given ones on the drives that came
-    ``near`` to failing. If ``is_thesis``, only the thesis' prompts are counted, beside the thesis' counts."""
+    ``near`` to failing. If ``counted`` are given, only of them the valid roads and the lane departures are
+    told, each with its text of ``beside``."""
     designer = parts[0].designer
-    counted = of_thesis(parts) if is_thesis else parts
-    strict, sbft = (source_of(designer, counted, kind) for kind in (STRICT, SBFT))
-    left, lines = source_of(designer, counted, LEFT), []
+    strict, sbft, left = (
+        source_of(designer, parts if counted is None else counted, kind) for kind in (STRICT, SBFT, LEFT)
+    )
+    lines = list[str]()
     if strict.total:
-        beside = f"; {NAME} had {THESIS_VALID.share} by its own checks" if is_thesis else ""
         lines.append(
             f"{strict.share} roads are valid by strict rules, words included, "
-            f"and {sbft.share} by the SBFT competition's{beside}."
+            f"and {sbft.share} by the SBFT competition's{beside[0]}."
         )
     if left.total:
-        beside = f"; in the thesis on {THESIS_LEFT.share}" if is_thesis else ""
-        lines.append(f"The car left its lane on {left.share} driven roads{beside}.")
+        lines.append(f"The car left its lane on {left.share} driven roads{beside[1]}.")
     lines += [*outside_sentences(passed_roads([road for part in parts for road in part.roads]), world), *near]
     good, turns = ([kept for part in parts for kept in part.kept(name)] for name in ("general", "turns"))
     if good:
@@ -146,7 +147,7 @@ def sentences_of(
     return [*lines, _different(parts)]
 
 
-def _different(parts: Sequence[StudyPartRecord]) -> str:
+def _different(parts: Sequence[RoadGroup]) -> str:
     nearest = [float(part.spread.nearest.min()) for part in parts if len(part.compared) > 1]
     twins = sum(len(part.spread.duplicates) for part in parts)
     if not nearest:
@@ -158,20 +159,24 @@ def _different(parts: Sequence[StudyPartRecord]) -> str:
     )
 
 
-def comparisons_of(parts: Sequence[StudyPartRecord], world: World) -> list[Section]:
-    """Returns the sections in which roads of one description are compared, and that with every road."""
+def comparisons_of(parts: Sequence[RoadGroup], world: World, between: Sequence[Table] = ()) -> list[Section]:
+    """Returns the sections in which roads of one description are compared, and that with every road. The
+    tables ``between`` compare roads of different descriptions."""
     covered = coverage(parts)
-    return [diversity(parts), *([covered] if covered else []), every_road(parts, world.site.map_size)]
+    return [
+        diversity(parts, between),
+        *([covered] if covered else []),
+        every_road(parts, world.site.map_size),
+    ]
 
 
-MOST_BETWEEN = 40  # roads of a study part that are compared with those of another part
 MOST_NAMED = 50
 MOST_DRAWN = 30  # parts whose distances are drawn
 
 
-def diversity(parts: Sequence[StudyPartRecord]) -> Section:
+def diversity(parts: Sequence[RoadGroup], between: Sequence[Table] = ()) -> Section:
     """Returns the section on diversity: how much the roads of one description differ, which of them are
-    near duplicates, and how much the roads of different descriptions differ."""
+    near duplicates, and the tables ``between`` descriptions."""
     blocks: list[Block] = [
         "Two plans are superimposed by the best shift, turn and mirroring and compared at equal "
         "shares of their lengths. Their distance is the root mean square in metres. Near duplicates are "
@@ -179,7 +184,7 @@ def diversity(parts: Sequence[StudyPartRecord]) -> Section:
         "Similarity, from 0 to 1, is the mean of number, sequence and direction of turns, length, incline "
         "and shape.",
     ]
-    blocks += [table for table in (_within(parts), _between(parts)) if table.rows]
+    blocks += [table for table in (_within(parts), *between) if table.rows]
     twins = _twins(parts)
     if twins:
         blocks.append(Details(f"Near duplicates ({plural(len(twins), 'pair')})", twins[:MOST_NAMED]))
@@ -192,7 +197,7 @@ def diversity(parts: Sequence[StudyPartRecord]) -> Section:
     return Section("Diversity", blocks)
 
 
-def _within(parts: Sequence[StudyPartRecord]) -> Table:
+def _within(parts: Sequence[RoadGroup]) -> Table:
     rows = []
     for part in parts:
         roads, own = part.compared, part.spread
@@ -225,26 +230,10 @@ def _within(parts: Sequence[StudyPartRecord]) -> Table:
     return Table("diversity", "Roads of the same description", heads, rows, note)
 
 
-def _between(parts: Sequence[StudyPartRecord]) -> Table:
-    rows: list[list[TableCell]] = []
-    for designer in dict.fromkeys(part.designer for part in parts):
-        own = [part for part in parts if part.designer == designer and part.roads][:6]
-        for one, other in combinations(own, 2):
-            compared = product(one.likenesses[:MOST_BETWEEN], other.likenesses[:MOST_BETWEEN])
-            found = [similarity(*pair, mirror=True) for pair in compared]
-            general = decimal(float(np.mean([each.general for each in found])) if found else None)
-            nearest = decimal(min((each.metres for each in found), default=None), 1)
-            duplicates = sum(each.is_duplicate for each in found)
-            rows.append(row(one.words, other.words, designer, general, nearest, duplicates))
-    heads = ["prompt", "and", "made by", "mean similarity", "nearest pair, m", "near duplicates"]
-    note = f"The first {MOST_BETWEEN} roads of either, each with each."
-    return Table("diversity-between", "Roads of different descriptions", heads, rows, note)
-
-
-def _twins(parts: Sequence[StudyPartRecord]) -> list[Block]:
+def _twins(parts: Sequence[RoadGroup]) -> list[Block]:
     return [
         [
-            f"{part.part.name}: roads ",
+            f"{part.name}: roads ",
             linked(str(part.compared[i].index), part.href(part.compared[i])),
             " and ",
             linked(str(part.compared[j].index), part.href(part.compared[j])),
@@ -255,7 +244,7 @@ def _twins(parts: Sequence[StudyPartRecord]) -> list[Block]:
     ]
 
 
-def _matrix(part: StudyPartRecord) -> Figure | None:
+def _matrix(part: RoadGroup) -> Figure | None:
     n = len(part.compared)
     lower = np.where(np.tri(n, k=-1, dtype=bool), part.spread.metres, np.nan)
     if n < 3 or not is_map(lower):
@@ -265,4 +254,4 @@ def _matrix(part: StudyPartRecord) -> Figure | None:
         f"{part.designer}, “{part.words}”: distance between every two roads, metres; "
         "the fainter, the more similar."
     )
-    return Figure(f"distances-{part.part.number}", caption, heat(lower, axis, axis, "metres", caption, True))
+    return Figure(f"distances-{part.number}", caption, heat(lower, axis, axis, "metres", caption, True))

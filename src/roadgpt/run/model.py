@@ -205,4 +205,4 @@ class LostDrives(Generic[Key]):
     def given_up(reason: str, again: str) -> GivenUpError:
         """Returns the error to raise: with the message of the last drive, and how the rest can be driven
         later."""
-        return GivenUpError(f"the simulator failed {MOST} times in a row and is given up ({reason})", again)
+        return GivenUpError(f"the simulator failed {MOST} times in a row and is given up ({reason}); {again}")

@@ -13,8 +13,9 @@ from roadgpt.errors import RoadGPTError, UsageError, command_line, explained
 from roadgpt.report.chapters.wording import row
 from roadgpt.report.page import unformulated, write
 from roadgpt.report.page.model import Block, Details, Figure, Page, Section, Table, TableCell, cell
-from roadgpt.report.statistics import LEVEL, conover, friedman, spearman, wilcoxon, wilson
+from roadgpt.report.statistics import LEVEL, friedman, wilcoxon, wilson
 from roadgpt.run.atomic import csv_text, write_whole
+from roadgpt_study.statistics import conover, spearman
 from roadgpt_study.survey.answers import (
     AnswerRow,
     Answers,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.errors import UsageError
-from roadgpt.report.statistics import krippendorff
+from roadgpt_study.statistics import krippendorff
 from roadgpt_study.survey.store import code_of
 from roadgpt_study.survey.survey import CHECK, MATCHES, OVERALL, Item, Part, Question, Rated, Survey
 

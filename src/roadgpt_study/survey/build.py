@@ -19,9 +19,9 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from roadgpt.errors import RoadGPTError, UsageError, explained
+from roadgpt.report import film
 from roadgpt.report.birds_eye import THESIS
 from roadgpt.report.canvas import SOFT, add_axes, in_our_style, new_figure, save
-from roadgpt.report.film import Settings, encoder, film_of, split_film
 from roadgpt.report.height import THESIS_X, THESIS_Z, draw_heights
 from roadgpt.report.pair import draw_plan
 from roadgpt.report.plan_view import Frame, plan_points, stations_of
@@ -146,7 +146,7 @@ def draw_plots(road: Road, world: World, axes: Axes, folder: Path, name: str) ->
 def can_film() -> bool:
     """Returns whether the library that encodes films is installed."""
     try:
-        encoder()
+        film.encoder()
     except UsageError:
         return False
     return True
@@ -155,11 +155,8 @@ def can_film() -> bool:
 def make_film(runs: Sequence[Run], path: Path, view: str) -> None:
     """Writes a film of one drive, or of two in a split screen, which ends before the outcome is visible."""
     longest = max(run.drive.duration for run in runs if run.drive is not None)
-    settings = Settings(seconds=max(longest - BEFORE_THE_END, BEFORE_THE_END))
-    if len(runs) == 1:
-        film_of(runs[0], path, view, settings)
-    else:
-        split_film(runs[0], runs[1], path, view, settings)
+    settings = film.Settings(seconds=max(longest - BEFORE_THE_END, BEFORE_THE_END))
+    film.write(runs, path, view, settings)
 
 
 def write_view(runs: Sequence[Run], titles: Sequence[str], path: Path) -> None:

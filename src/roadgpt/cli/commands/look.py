@@ -23,13 +23,12 @@ MOST = 2  # roads side by side
 SHOW_OPTIONS = (
     Argument("folders...", "RUN...", "Name the folder of a run, a folder of runs, or a campaign."),
     *options.CHOICES,
-    Option("--watch", "Show the progress of a campaign until it ends.", bool),
     options.json_option("Print one JSON object for each campaign or road.", heading=Heading.OUTPUT),
 )
 
 
 @click.command(cls=GroupedCommand, params=[*SHOW_OPTIONS])
-def show(folders: tuple[str, ...], watch: bool, as_json: bool, **rest: Any) -> None:
+def show(folders: tuple[str, ...], as_json: bool, **rest: Any) -> None:
     """Summarise a run, a folder of runs or a campaign, and print the command that repeats it.
 
     RUN is a run, such as DIR/runs/0001 or DIR/test.0001.json; the folder DIR that holds the runs; a campaign;
@@ -37,20 +36,10 @@ def show(folders: tuple[str, ...], watch: bool, as_json: bool, **rest: Any) -> N
 
     \b
     roadgpt show roadgpt-runs/hairpins-7
-    roadgpt show CAMPAIGN --failures
-    roadgpt show CAMPAIGN --watch"""
-    from roadgpt.cli.summary import json_lines, text_lines, watch_campaign
+    roadgpt show CAMPAIGN --failures"""
+    from roadgpt.cli.summary import json_lines, text_lines
 
     choice = options.choice_of(rest)
-    if watch and choice is not None:
-        raise UsageError(
-            f"--{choice} selects roads, but --watch shows a whole campaign; leave one of them out"
-        )
-    if watch and (as_json or len(folders) > 1):
-        raise UsageError("--watch shows one campaign on the screen; leave out --json and other folders")
-    if watch:
-        watch_campaign(Path(folders[0]))
-        return
     for folder in folders:
         for line in (json_lines if as_json else text_lines)(folder, choice):
             click.echo(line)

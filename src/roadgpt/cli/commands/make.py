@@ -3,7 +3,7 @@
 import json
 import secrets
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from roadgpt.report import Format, Scale
     from roadgpt.road import Design, Road, World
     from roadgpt.run.folder import Draw
-    from roadgpt.run.model import Request, Run
+    from roadgpt.run.model import Run
 
 SEEDS = 1_000_000  # random seeds are below this number, so that they are short enough to type again
 
@@ -103,7 +103,7 @@ def carry_out(
         seed = secrets.randbelow(SEEDS)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         work = campaign(brief, roads, seed, world, setup, out, draw, meter, again)
-    screen.request, screen.junit = work.request, _junit(junit, work.request)
+    screen.request = work.request
     screen.say(understood(brief, work.request.world, world))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
@@ -112,16 +112,8 @@ def carry_out(
         screen.say(f"all {work.roads} roads are there")
     elif work.kept:
         screen.say(f"{len(work.kept)} roads were finished before; continuing")
-    _watch(work, pictures, screen)
+    _watch(work, pictures, screen, junit)
     gate.close()
-
-
-def _junit(path: Path | None, request: "Request") -> "Callable[[Sequence[Row]], None] | None":
-    """Returns a function that writes rows as JUnit XML; None without a path."""
-    from roadgpt.cli.junit import LONGEST, UNKNOWN, properties_of, write_junit
-
-    suite = request.words[:LONGEST] or UNKNOWN, properties_of(request)
-    return (lambda rows: write_junit(path, [(*suite, rows)])) if path else None
 
 
 UNSURE = "perhaps not understood as meant ({:.0f} % sure), so check it or say it in other words"
@@ -155,7 +147,8 @@ def reading(brief: Brief) -> str:
     return told
 
 
-def _watch(work: "Campaign", pictures: "tuple[Format, ...]", screen: Screen) -> None:
+def _watch(work: "Campaign", pictures: "tuple[Format, ...]", screen: Screen, junit: Path | None) -> None:
+    from roadgpt.cli.junit import suite_of, write_junit
     from roadgpt.cli.repeat_commands import lines, of_rows, to_resume
 
     try:
@@ -164,6 +157,8 @@ def _watch(work: "Campaign", pictures: "tuple[Format, ...]", screen: Screen) -> 
         warn(f"continue with: {to_resume(work.folder)}")
         raise
     finally:
+        if junit is not None:
+            write_junit(junit, [suite_of(work.request, screen.rows)])
         screen.close()
         screen.spent(work.meter.spent)
         if screen.rows:
@@ -432,6 +427,7 @@ def drive(
         drivers = [rest["driver"]] if "driver" in options.typed(ctx) else []
         drive_again(files, choice, out, drivers, axes, pictures, gate)
         return 0
+    from roadgpt.cli.junit import suite_of, write_junit
     from roadgpt.run import Request, Setup, check_parts, prove, write_run
     from roadgpt.run.editing import reject_used
     from roadgpt.run.model import LostDrives
@@ -444,8 +440,8 @@ def drive(
         check_parts(setup, world)  # reports a missing driver before any road is read
     roads = roads_in(files)
     screen = Screen(len(roads), as_json, quiet, verbose)
-    screen.request, screen.gate = Request(seed=seed, world=world, setup=setup), gate
-    screen.junit = _junit(junit, screen.request)
+    request = Request(seed=seed, world=world, setup=setup)
+    screen.request, screen.gate = request, gate
     losses: LostDrives[str] = LostDrives()
 
     def driven(file: str, blueprint: "Design | Road", world: "World") -> "tuple[Row, Run]":
@@ -463,6 +459,8 @@ def drive(
         return row_of(run, file), run
 
     each_road(roads, screen, world, driven)
+    if junit is not None:
+        write_junit(junit, [suite_of(request, screen.rows)])
     gate.close()
     return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0
 

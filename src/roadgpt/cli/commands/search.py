@@ -286,7 +286,7 @@ def campaign(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **
     roadgpt campaign --on routes --drivers lane_centring,pure_pursuit --paired
     roadgpt campaign "an uphill road with 3 turns" --goal failures -n 200 -j 2 --seed 7
     roadgpt campaign study.toml -j 16 --out study
-    roadgpt show study --watch"""
+    roadgpt show study"""
     from roadgpt import plugins
     from roadgpt.campaign.lifecycle import begin
     from roadgpt.run.atomic import to_bytes

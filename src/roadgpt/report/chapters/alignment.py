@@ -1,24 +1,26 @@
 """Makes the section on alignment: how many roads meet their descriptions, criterion by criterion."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from roadgpt.check.truth import ASKED, CRITERIA
 from roadgpt.report.chapters.roads import named_roads
 from roadgpt.report.chapters.wording import drawn_share, folded, interval_cell, row, share_cell
 from roadgpt.report.page.charts import forest
 from roadgpt.report.page.model import Block, Figure, Section, Table, TableCell, cell
-from roadgpt.report.road_record import RoadRecord, StudyPartRecord
-from roadgpt.report.statistics import bootstrap, wilson
+from roadgpt.report.road_record import RoadGroup, RoadRecord
+from roadgpt.report.statistics import Interval, wilson
 
-Parts = Sequence[StudyPartRecord]
+Parts = Sequence[RoadGroup]
+OfPrompts = Callable[[Sequence[Sequence[bool]]], Interval]
+"""Returns an interval for other prompts like these, of each of which it is told which roads are kept."""
 
 
-def alignment(parts: Parts, designers: Sequence[str]) -> Section:
+def alignment(parts: Parts, designers: Sequence[str], of_prompts: OfPrompts | None = None) -> Section:
     """Returns the section on alignment: the percentage of roads that meet each criterion, in total and by
-    prompt, and a list of roads that miss a requirement."""
+    prompt, and a list of roads that miss a requirement. Several prompts need ``of_prompts``."""
     some = [designer for designer in designers if any(part.roads for part in _of(parts, designer))]
-    prompts = [part.part.prompt for part in _of(parts, designers[0])]
-    known = sum(prompt.truth is not None for prompt in prompts)
+    prompts = [part.truth for part in _of(parts, designers[0])]
+    known = sum(truth is not None for truth in prompts)
     truth = (
         "The truth of every prompt was written down by people."
         if known == len(prompts)
@@ -32,13 +34,13 @@ def alignment(parts: Parts, designers: Sequence[str]) -> Section:
         f"line. {truth}"
     ]
     if some:
-        blocks += [_by_criterion(parts, some), _pooled(parts, some)]
+        blocks += [_by_criterion(parts, some), _pooled(parts, some, of_prompts)]
     blocks += [_by_prompt(_of(parts, designer), designer) for designer in some]
     broken = folded("Roads that break a requirement", named_roads(parts, _broken))
     return Section("Alignment with the words", [*blocks, *broken])
 
 
-def _of(parts: Parts, designer: str) -> list[StudyPartRecord]:
+def _of(parts: Parts, designer: str) -> list[RoadGroup]:
     return [part for part in parts if part.designer == designer]
 
 
@@ -56,7 +58,7 @@ def _by_criterion(parts: Parts, designers: Sequence[str]) -> Figure:
     return Figure("alignment", caption, forest(groups, list(designers), caption))
 
 
-def _pooled(parts: Parts, designers: Sequence[str]) -> Table:
+def _pooled(parts: Parts, designers: Sequence[str], of_prompts: OfPrompts | None) -> Table:
     rows: list[list[TableCell]] = []
     for designer in designers:
         for criterion in CRITERIA:
@@ -64,9 +66,10 @@ def _pooled(parts: Parts, designers: Sequence[str]) -> Table:
             if not asking:
                 continue
             good, every = sum(map(sum, asking)), sum(map(len, asking))
-            mean, resampled = bootstrap(asking)
-            by_prompt = interval_cell(resampled) if 0 < good < every and len(asking) > 1 else None
-            shares = [share_cell(mean), interval_cell(wilson(good, every)), by_prompt]
+            by_prompt = None
+            if of_prompts and 0 < good < every and len(asking) > 1:
+                by_prompt = interval_cell(of_prompts(asking))
+            shares = [share_cell(good / every), interval_cell(wilson(good, every)), by_prompt]
             rows.append(row(designer, ASKED[criterion], len(asking), good, every, *shares))
     heads = [
         "made by", "criterion", "prompts", "kept", "roads", "share", "Wilson 95 %", "by prompt 95 %",
@@ -88,7 +91,7 @@ def _by_prompt(parts: Parts, designer: str) -> Table:
             for good in every
         ]
         words = cell(part.words, href=part.overview if part.roads else "")
-        rows.append(row(part.part.prompt.id, words, *shares, part.problem or ""))
+        rows.append(row(part.id, words, *shares, part.problem or ""))
     caption = f"{designer}: roads that keep the words, prompt by prompt"
     return Table(f"alignment-{designer}", caption, ["id", "prompt", *CRITERIA, "remark"], rows)
 

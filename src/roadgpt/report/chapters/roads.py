@@ -22,7 +22,7 @@ from roadgpt.report.page.model import (
     cell,
     linked,
 )
-from roadgpt.report.road_record import RoadRecord, StudyPartRecord
+from roadgpt.report.road_record import RoadGroup, RoadRecord
 
 SHOWN = 3  # pictures of the first section
 SIDE = 3  # roads along each side of such a picture
@@ -41,8 +41,8 @@ BOUNDS = {"MAX_CURV": (0.0, 0.07), "DIR_COV": (0.0, 1.0), "STD_SA": (0.0, 200.0)
 """Smallest and largest value of each feature on the maps of studies; values beyond count at the edge."""
 
 
-def overview(parts: Sequence[StudyPartRecord], size: float) -> Section | None:
-    """Returns the section at the start of a report: a table of all study parts that have roads, and one
+def overview(parts: Sequence[RoadGroup], size: float) -> Section | None:
+    """Returns the section at the start of a report: a table of all groups that have roads, and one
     picture with some roads for each of the first three; ``size`` is the side of the square map in metres."""
     made = [part for part in parts if part.roads]
     if not made:
@@ -59,7 +59,7 @@ def overview(parts: Sequence[StudyPartRecord], size: float) -> Section | None:
     return Section("At a glance", [Cards([_card(part, size) for part in made[:SHOWN]]), table])
 
 
-def _card(part: StudyPartRecord, size: float) -> FigureCard:
+def _card(part: RoadGroup, size: float) -> FigureCard:
     first = sorted(part.roads, key=lambda road: (not road.has_left, road.index))[: SIDE * SIDE]
     chosen = sorted(first, key=lambda road: road.index)
     label = f"{plural(len(chosen), 'road')} of “{part.words}”"
@@ -69,7 +69,7 @@ def _card(part: StudyPartRecord, size: float) -> FigureCard:
     return FigureCard(part.words, picture, [f"{plural(len(part.roads), 'road')} by {part.designer}. {said}"])
 
 
-def _row(part: StudyPartRecord) -> list[TableCell]:
+def _row(part: RoadGroup) -> list[TableCell]:
     good, driven, several = part.kept("general"), part.count("is_driven"), len(part.compared) > 1
     return row(
         cell(part.words, href=part.overview),
@@ -84,15 +84,15 @@ def _row(part: StudyPartRecord) -> list[TableCell]:
     )
 
 
-def _thumbnail(part: StudyPartRecord, road: RoadRecord) -> Thumbnail:
+def _thumbnail(part: RoadGroup, road: RoadRecord) -> Thumbnail:
     verdict = road.verdict
     left_at = verdict.at_xy if verdict is not None and road.has_left else None
     max_oob = verdict.max_oob if verdict is not None else None
     return Thumbnail(road.index, road.outcome, road.points, left_at, part.href(road), max_oob)
 
 
-def every_road(parts: Sequence[StudyPartRecord], size: float) -> Section:
-    """Returns a section with thumbnails of the first roads of the first study parts, which link to the roads'
+def every_road(parts: Sequence[RoadGroup], size: float) -> Section:
+    """Returns a section with thumbnails of the first roads of the first groups, which link to the roads'
     bird's-eye views; ``size`` is the side of the square map in metres."""
     blocks: list[Block] = [
         "A dot is where a road starts, a cross where the car left it; “62 %” is a PASS with so much of "
@@ -105,21 +105,21 @@ def every_road(parts: Sequence[StudyPartRecord], size: float) -> Section:
         shown = [_thumbnail(part, road) for road in part.roads[:MOST]]
         more = f" The first {MOST} of {len(part.roads)}." if len(part.roads) > MOST else ""
         caption = f"{part.designer}, “{part.words}”.{more}"
-        blocks.append(Figure(f"roads-{part.part.number}", caption, gallery(shown, size, caption)))
+        blocks.append(Figure(f"roads-{part.number}", caption, gallery(shown, size, caption)))
     return Section("Roads", blocks)
 
 
-def named_roads(parts: Sequence[StudyPartRecord], says: Callable[[RoadRecord], str]) -> list[Block]:
+def named_roads(parts: Sequence[RoadGroup], says: Callable[[RoadRecord], str]) -> list[Block]:
     """Returns a line with a link for each road for which ``says`` returns a sentence."""
     return [
-        [linked(f"{part.part.name}, road {road.index}", part.href(road)), f": {sentence}"]
+        [linked(f"{part.name}, road {road.index}", part.href(road)), f": {sentence}"]
         for part in parts
         for road in part.roads
         if (sentence := says(road))
     ]
 
 
-def coverage(parts: Sequence[StudyPartRecord]) -> Section | None:
+def coverage(parts: Sequence[RoadGroup]) -> Section | None:
     """Returns feature maps of all roads of each designer; None if no road has features."""
     blocks: list[Block] = []
     for designer in dict.fromkeys(part.designer for part in parts):

@@ -13,16 +13,14 @@ from roadgpt.report.chapters.wording import (
     decimal,
     drawn_share,
     folded,
-    p_value,
     row,
     share_cell,
     share_cells,
     share_of,
 )
 from roadgpt.report.page.charts import forest
-from roadgpt.report.page.model import Block, Details, Figure, Section, Table, TableCell, cell
-from roadgpt.report.road_record import RoadRecord, StudyPartRecord
-from roadgpt.report.statistics import LEVEL, ChiSquared, chi_squared, exact, trend
+from roadgpt.report.page.model import Block, Figure, Section, Table, TableCell
+from roadgpt.report.road_record import RoadGroup, RoadRecord
 from roadgpt.road import World
 from roadgpt.verdict import SEVERITIES, Severity, percent
 from roadgpt.verdict.verdict import MOSTLY, PARTLY
@@ -39,7 +37,7 @@ class Passed(NamedTuple):
 
 
 def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
-    """Groups the passed roads of a study by how far outside its lane the car was."""
+    """Groups the passed roads by how far outside its lane the car was."""
     kept = [road.verdict for road in roads if road.outcome == "PASS" and road.verdict is not None]
     found = []
     for name in SEVERITIES:
@@ -104,7 +102,7 @@ MOST_DRAWN = 12  # prompts in a figure; if there are more, they are shown as one
 ALL = "all prompts"
 LONGEST = 66  # letters of a prompt in a figure
 
-Parts = Sequence[StudyPartRecord]
+Parts = Sequence[RoadGroup]
 
 
 class Count(NamedTuple):
@@ -138,10 +136,6 @@ class Source(NamedTuple):
         """The number of roads that have the property and their share, as text."""
         return share_of(self.hits, self.total)
 
-    def table(self) -> list[list[int]]:
-        """Returns the contingency table ``(prompts, 2)``: roads with the property, and without it."""
-        return [[count.hits, count.total - count.hits] for count in self.counts]
-
 
 class Kind(NamedTuple):
     """What is counted: a property of RoadRecord, such as "is_valid", and its name in files and in reports."""
@@ -157,79 +151,7 @@ SOUND = Kind("is_sound", "sound", "strict rules but for the words")
 SBFT = Kind("is_sbft", "sbft", "SBFT rules")
 KINDS = (STRICT, SOUND, SBFT)
 LEFT = Kind("has_left", of="is_driven")
-
-NAME = "RoadGPT's thesis"
-ROADS = 100  # of every prompt
-LONG = "a road going uphill for 2 turns, followed by a straight downhill segment, ending in a left turn"
-THESIS = {"a road": (88, 1), "an uphill road with 3 turns": (57, 2), LONG: (37, 5)}
-"""For each prompt, in the order of the thesis' table 6.1: the number of valid roads among 100, and the number
-of these valid roads on which the car left its lane."""
-THESIS_VALID = Source(
-    f"{NAME}, its own checks",
-    tuple(Count(prompt, valid, ROADS) for prompt, (valid, _) in THESIS.items()),
-    "thesis",
-)
-THESIS_LEFT = Source(
-    NAME, tuple(Count(prompt, left, valid) for prompt, (valid, left) in THESIS.items()), "thesis"
-)
-
-
-def chi_squared_blocks(source: Source, hit: str, miss: str, name: str) -> list[Block]:
-    """Returns a table and a paragraph with the test results. The table has the counts in the columns ``hit``
-    and ``miss``, the expected counts, and the chi-squared terms."""
-    found = chi_squared(source.table())
-    return [_table(source, found, hit, miss, name), _verdict(source, found, hit, miss)]
-
-
-def _table(source: Source, found: ChiSquared, hit: str, miss: str, name: str) -> Table:
-    heads = ["prompt", hit, miss, "total"]
-    heads += [f"expected {each}" for each in (hit, miss)] + [f"(o − e)²/e {each}" for each in (hit, miss)]
-    rows: list[Sequence[TableCell]] = []
-    for count, expected, terms in zip(source.counts, found.expected, found.terms, strict=True):
-        own = row(cell(count.hits, href=count.href), count.total - count.hits, count.total)
-        rows.append(row(count.prompt, *own, *map(decimal, (*expected.tolist(), *terms.tolist()))))
-    sums = [source.hits, source.total - source.hits, source.total]
-    blank = cell(None, "")
-    rows.append(row("total", *sums, blank, blank, cell(None, "χ² ="), decimal(found.statistic)))
-    return Table(name, f"{source.name}: {hit} by prompt, and chi-squared term by term", heads, rows, "", True)
-
-
-def _verdict(source: Source, found: ChiSquared, hit: str, miss: str) -> str:
-    if not source.total:
-        return f"{source.name}: no roads to count."
-    if not found.freedom and 0 < source.hits < source.total:
-        return f"{source.name}: only one prompt has roads to count, so there is nothing to compare it with."
-    if not found.freedom:
-        every = f"all roads are {hit if source.hits else miss}"
-        return (
-            f"{source.name}: {every}, so no prompt differs from another: chi-squared is 0 with no degrees of "
-            "freedom, Cramér's V is 0, and the exact test gives p = 1. The "
-            "intervals show what the true shares may be."
-        )
-    counted = exact(source.table())
-    how = f"drawn {counted.tables:,} times from a seed" if counted.is_drawn else "counted out"
-    z, p_of_trend = trend([count.hits for count in source.counts], [count.total for count in source.counts])
-    against = "exceeds" if found.statistic > found.critical else "does not exceed"
-    sound = (
-        "Cochran's rule on expected counts holds."
-        if found.is_sound
-        else f"Expected counts are small (least {found.expected[found.expected > 0].min():.2f}): Cochran's "
-        "rule is broken, and the exact test decides."
-    )
-    p = found.p if found.is_sound else counted.p
-    end = "the prompt makes a difference" if p < LEVEL else "no difference between prompts is shown"
-    return (
-        f"{source.name}: χ² = {found.statistic:.2f} with {found.freedom} degrees of freedom {against} the "
-        f"critical value {found.critical:.2f} at the {100 * LEVEL:.0f} % level ({p_value(found.p)}); "
-        f"Cramér's V = {found.cramers_v:.2f}. Exact test ({how}): {p_value(counted.p)}. "
-        f"Trend in the order of the table (Cochran-Armitage): z = {z:.2f}, {p_value(p_of_trend)}. "
-        f"{sound} So {end}."
-    ).replace("z = -", "z = −")
-
-
-def of_thesis(parts: Parts) -> list[StudyPartRecord]:
-    """Returns the study parts with prompts for which the thesis gives results."""
-    return [part for part in parts if part.words in THESIS]
+NOT_DRIVEN = "These roads were not driven."
 
 
 def source_of(designer: str, parts: Parts, kind: Kind) -> Source:
@@ -244,12 +166,9 @@ def source_of(designer: str, parts: Parts, kind: Kind) -> Source:
     return Source(name, tuple(counts), slug)
 
 
-def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
-    """Returns the section on validity by each rule set. With ``has_baseline``, only prompts of the thesis are
-    counted, beside the thesis' numbers."""
-    told = of_thesis(parts) if has_baseline else list(parts)
-    every = [source_of(designer, told, kind) for designer in designers for kind in KINDS]
-    every = [source for source in every if source.counts] + ([THESIS_VALID] if has_baseline else [])
+def validity(parts: Parts, every: Sequence[Source], compared: Sequence[Block] = ()) -> Section:
+    """Returns the section on validity by each rule set: the shares of the sources, why roads are missing, the
+    blocks that compare them, and a list of invalid roads."""
     blocks: list[Block] = [
         "Strict rules: inside the map, no overlap, radius and slope within limits, and every requirement of "
         "the words kept. But for the words: the same without these requirements, which the thesis did not "
@@ -258,34 +177,18 @@ def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False)
     blocks += [_forest("validity", "valid", every), _shares("validity", "valid", every)]
     missing = dict.fromkeys(f"{part.designer}: {part.problem}" for part in parts if part.problem)
     blocks += [f"Roads are missing: {sentence}." for sentence in missing]
-    if has_baseline:
-        blocks += [_beside(source) for source in every if source.slug.endswith("-strict")]
-    others: list[Block] = []
-    for source in every:
-        if len(source.counts) > 1:
-            into = others if source.slug.endswith(("-sound", "-sbft")) else blocks
-            into += chi_squared_blocks(source, "valid", "invalid", f"validity-{source.slug}")
-    blocks += [Details("The same by the other rules", others)] if others else []
-    return Section("Validity", [*blocks, *folded("Invalid roads", named_roads(parts, _why))])
+    return Section("Validity", [*blocks, *compared, *folded("Invalid roads", named_roads(parts, _why))])
 
 
-def departures(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
-    """Returns the section on lane departures on valid roads; ``has_baseline`` is as in ``validity``."""
-    told = of_thesis(parts) if has_baseline else list(parts)
-    every = [source_of(designer, told, LEFT) for designer in designers]
-    every = [source for source in every if source.total]
-    blocks: list[Block] = [] if every else ["These roads were not driven."]
-    every += [THESIS_LEFT] if has_baseline else []
+def departures(
+    parts: Parts, every: Sequence[Source], compared: Sequence[Block] = (), aside: str = ""
+) -> Section:
+    """Returns the section on lane departures on valid roads, as ``validity`` does; ``aside`` says by which
+    other rules some of these roads are valid."""
+    blocks: list[Block] = [NOT_DRIVEN]
     if every:
-        blocks += [
-            "Drives on which the car left its lane, on roads that are valid by the strict rules"
-            f"{' (in the thesis: by its own checks)' if has_baseline else ''}.",
-            _forest("departures", "left", every),
-            _shares("departures", "left", every),
-        ]
-    for source in every:
-        if len(source.counts) > 1:
-            blocks += chi_squared_blocks(source, "left", "kept", f"departures-{source.slug}")
+        said = f"Drives on which the car left its lane, on roads that are valid by the strict rules{aside}."
+        blocks = [said, _forest("departures", "left", every), _shares("departures", "left", every), *compared]
     blocks += outside_table(passed_roads([road for part in parts for road in part.roads]))
     left = named_roads(parts, lambda road: road.says if road.has_left else "")
     return Section("Leaving the lane", [*blocks, *folded("Drives that left", left)])
@@ -294,14 +197,6 @@ def departures(parts: Parts, designers: Sequence[str], has_baseline: bool = Fals
 def _why(road: RoadRecord) -> str:
     sbft = f"; SBFT: {road.sbft_says}" if road.sbft_says else ""
     return "" if road.is_valid else road.says + sbft
-
-
-def _beside(source: Source) -> str:
-    table = [[each.hits, each.total - each.hits] for each in (source, THESIS_VALID)]
-    return (
-        f"{source.name}: {source.share} against {THESIS_VALID.share} of {NAME}; Fisher's exact test "
-        f"{p_value(exact(table).p)}. The rules differ, and ours are stricter."
-    )
 
 
 def _forest(name: str, hit: str, every: Sequence[Source]) -> Figure:

@@ -22,15 +22,8 @@ from roadgpt.run.atomic import csv_text, refuse_links, write_whole
 HERE = Path(__file__).parent
 PAGE, TABLES = "report.html", "tables"
 STYLE = HERE / "style.css"
-LATEX = {
+LATEX = {letter: f"\\{letter}" for letter in "&%$#_{}"} | {
     "\\": r"\textbackslash{}",
-    "&": r"\&",
-    "%": r"\%",
-    "$": r"\$",
-    "#": r"\#",
-    "_": r"\_",
-    "{": r"\{",
-    "}": r"\}",
     "~": r"\textasciitilde{}",
     "^": r"\textasciicircum{}",
     "<": r"\textless{}",

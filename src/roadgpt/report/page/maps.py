@@ -121,19 +121,15 @@ class FailureSite:
     """The lines of the picture that shows where a car failed, each as points of shape ``(n, 2)`` in
     metres."""
 
-    left: Array  # points of the left edge of the road
+    rings: tuple[Array, ...]  # outlines of the paved area, and, the other way round, of the holes in it
     lines: tuple[tuple[Array, bool], ...]
-    """Markings between the lanes: the points of each, and whether it is a broken line."""
-    right: Array
+    """Edges of the road, and markings: the points of each, and whether it is a broken line."""
     path: Array  # path of the car's centre of gravity up to the failure; empty if there is no drive
     car: Array | None  # four corners of the car at the failure; None if there is no drive
     at: Array  # position ``(2,)`` of the middle of the driven lane at the station of the failure
     heading: float
     """Heading, in radians, of the road shortly before the place of the failure; this direction points up in
     the picture."""
-    rings: tuple[Array, ...] = ()
-    """The outlines of the paved area of a network, and of the holes in this area; empty for a road without
-    junctions. For a network, ``left`` and ``right`` are empty instead."""
     arrows: tuple[Array, ...] = ()
     """The outlines of the arrows that are painted before the junctions of a network."""
 
@@ -151,21 +147,21 @@ def site_of(road: Road, world: World, drive: Drive | None, station: float) -> Fa
     profile = world.profile_of(road)
     at = road.at(station, profile.middle(station))[:2]
     if only_road(road, world) is None:
-        network, none = network_of(road, world), np.empty((0, 2))
-        rings, lines = _network_around(network, at)
+        network = network_of(road, world)
         painted = _near([arrow.points[:, :2] for arrow in arrows(network)], at)
-        return FailureSite(none, lines, none, path, car, at, heading, rings, painted)
+        return FailureSite(*_network_around(network, at), path, car, at, heading, painted)
     s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
     (_, left), *inner, (_, right) = [(mark, road.at(s, t)[:, :2]) for mark, t in profile.boundaries(s)]
-    lines = tuple((line, mark == "broken") for mark, line in inner if mark != "none")
-    return FailureSite(left, lines, right, path, car, at, heading)
+    marked = [(line, mark == "broken") for mark, line in inner if mark != "none"]
+    lines = ((left, False), *marked, (right, False))
+    return FailureSite((np.concatenate([left, right[::-1]]),), lines, path, car, at, heading)
 
 
 def _network_around(network: Network, at: Array) -> tuple[tuple[Array, ...], tuple[tuple[Array, bool], ...]]:
     import shapely
 
     box = shapely.box(*(at - ACROSS), *(at + ACROSS))
-    parts = shapely.get_parts(shapely.intersection(network.paved, box))
+    parts = shapely.get_parts(shapely.orient_polygons(shapely.intersection(network.paved, box)))
     rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
     lines = _near([stroke.points[:, :2] for stroke in strokes(network)], at)
     outlines = tuple(np.asarray(ring.coords, float)[:, :2] for ring in rings)
@@ -186,15 +182,10 @@ def draw_site(of: FailureSite, label: str) -> str:
         there = (points - of.at) @ turn.T * size
         return np.asarray([SIDE / 2, SIDE / 2 - BEHIND * size] + there * [1, -1])
 
-    left, right = placed(of.left), placed(of.right)
-    road = _points(np.concatenate([left, right[::-1]]))
     outline = "".join(f"M{_points(placed(ring))}z" for ring in of.rings)
     out = [
         tag("rect", width=SIDE, height=SIDE, fill="var(--wash)"),
-        tag("path", d=outline, fill="var(--road)", fill_rule="evenodd")
-        if of.rings
-        else tag("polygon", points=road, fill="var(--road)"),
-        *(_line(edge, "var(--edge)", 1.4) for edge in (left, right) if len(edge)),
+        tag("path", d=outline, fill="var(--road)"),
         *(
             _line(placed(each), "var(--edge)", 1.2, **({"stroke_dasharray": "9 7"} if is_broken else {}))
             for each, is_broken in of.lines

@@ -18,9 +18,9 @@ from roadgpt.drive.simulators.mujoco.car import ETK_LIKE
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle
 from roadgpt.drive.view import CameraSpec
 from roadgpt.errors import DesignError, UsageError, advice_on
-from roadgpt.gym.observation import LABELS, MOST, Preview
 from roadgpt.road import Road, World
 from roadgpt.run import Setup, brief_of, perform
+from roadgpt_gym.observation import LABELS, MOST, Preview
 
 OBSERVATIONS = ("state", "camera")
 RENDER_MODES = ("rgb_array",)
@@ -42,7 +42,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
     Action: two numbers from -1 to 1. The first is the angle of the front wheels as a share of full lock (0.62
     rad), left positive; the second is throttle above 0 and brake below.
 
-    Observation ``state``: 24 numbers, see ``roadgpt.gym.observation.LABELS``, each divided by a typical
+    Observation ``state``: 24 numbers, see ``roadgpt_gym.observation.LABELS``, each divided by a typical
     value.
     Observation ``camera``: an image (height, width, 3) from behind the windscreen.
 
