@@ -304,7 +304,7 @@ class FolderStore(Record):
         for number in ended if numbers is None else numbers:
             made = ended[number].result.proposal if number in ended else Proposal(None, seed, "draft")
             self.add_batch(cell, number - 1, number, [made])
-        super().keep([(cell, one) for one in ended.values()], None, (), {})
+        super().keep([(cell, one) for one in ended.values()])
 
     def to_resume(self, *more: object) -> str:
         """Returns the command that continues the tests, with further options."""

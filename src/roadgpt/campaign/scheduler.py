@@ -427,7 +427,7 @@ class Scheduler:
             number = self._store.next_trace()
             trace = number, write_traces(self._store.folder, number, drives)
         taken = {schedule.cell.name: now - self._looked for schedule in self._schedules}
-        self._store.keep(self._pending, trace, self._leases(), taken)
+        self._store.keep(self._pending, trace, taken)
         self._may_write = True
         for schedule in self._schedules:
             schedule.seconds += now - self._looked
@@ -435,14 +435,6 @@ class Scheduler:
         self._pending = []
         self._has_news = True
         self._schedules = [schedule for schedule in self._schedules if not schedule.is_done]
-
-    def _leases(self) -> list[tuple[str, int, str, float]]:
-        patience = self._staff.patience
-        return [
-            (out.schedule.cell.name, out.task.number, worker, getattr(future, "begun", 0.0) + patience)
-            for future, out in self._out.items()
-            if (worker := getattr(future, "worker", ""))
-        ]
 
 
 def _run_with(function: Callable[..., T], task: Task, *shared: Shared[Any]) -> T:

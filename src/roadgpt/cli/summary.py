@@ -19,11 +19,11 @@ from roadgpt.campaign.gate import Gate
 from roadgpt.campaign.model import GIVEN, NumberedTest
 from roadgpt.campaign.scheduler import Progress
 from roadgpt.campaign.selection import Choice, Selection, selection_of
-from roadgpt.campaign.status import CellStatus, Status, status_of
+from roadgpt.campaign.status import CellStatus, Status, no_failure, status_of
 from roadgpt.chat import Spent
 from roadgpt.chat.answer import plain
 from roadgpt.check.measures import ups_and_downs
-from roadgpt.cli.repeat_commands import lines, of_status, replay_lines, to_resume
+from roadgpt.cli.repeat_commands import replay_lines, to_resume
 from roadgpt.cli.roads import NamedRoad, roads_named
 from roadgpt.cli.screen import COLOURS, WIDEST, Row, driver_and_oracle, metres, row_of, spending
 from roadgpt.cli.streams import aligned, apart, duration, progress, resumable
@@ -43,7 +43,7 @@ HEAD, SIDES = ("cell", "done", "pass", "fail", "other", "least margin", "what"),
 GAP = "  "  # between columns
 LEAST = 12  # letters of the last column, below which it is left out
 LONGEST, WIDEST_TEXT = 60, 300  # letters of a description, and of other texts, in a line of a table
-MOST_WATCHED, MOST_WORKERS = 12, 16  # rows of the screen
+MOST_WATCHED = 12  # rows of the screen
 
 
 def watch(folder: Path, steps: Iterator[Progress], as_json: bool, quiet: bool, gate: Gate) -> None:
@@ -119,7 +119,7 @@ def _told(status: Status) -> Iterator[str]:
             f"outside their lane, within the tolerance: at most {percent(share)} of the car, {beyond:.2f} m "
             "beyond the marking"
         )
-    yield from lines(of_status(status))
+    yield from () if status.is_running else no_failure(status.outcomes)
     yield from [cell.remark for cell in cells[:MOST_CELLS] if cell.remark]
 
 
@@ -182,14 +182,11 @@ def _picture(status: Status, width: int) -> "RenderableType":
     from rich.text import Text
 
     bar = ProgressBar(total=status.total or max(status.done, 1), completed=status.done)
-    workers = [
-        f"{lease.worker}  test {lease.number} of {lease.cell}" for lease in status.under_way[:MOST_WORKERS]
-    ]
-    busy = {lease.cell for lease in status.under_way}  # these cells come first, then those with most failures
+    # the unfinished cells come first, then those with most failures
     cells = sorted(
-        status.cells, key=lambda cell: (cell.name not in busy, -cell.outcomes.get("FAIL", 0), cell.name)
+        status.cells, key=lambda cell: (cell.done == cell.asked, -cell.outcomes.get("FAIL", 0), cell.name)
     )
-    lines = [outcomes_line(status.outcomes), "", *cell_lines(cells[:MOST_WATCHED], width), "", *workers]
+    lines = [outcomes_line(status.outcomes), "", *cell_lines(cells[:MOST_WATCHED], width)]
     table = Text("\n".join(lines), no_wrap=True, overflow="ellipsis")
     # without colours a bar does not fill its line, so that the next line would follow it
     return Group(Text(_headline(status), style="bold"), Padding(bar), table)

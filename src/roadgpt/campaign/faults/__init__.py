@@ -10,7 +10,6 @@ _MODULES = {
     "reason_of": "failures",
     "repeated": "stability",
     "simplest": "minimise",
-    "smallest_change": "minimise",
 }
 """The functions for users, which are imported when they are first used."""
 

@@ -3,6 +3,7 @@
 import json
 import secrets
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import redirect_stdout
 from pathlib import Path
@@ -156,7 +157,8 @@ def reading(brief: Brief) -> str:
 
 
 def _watch(work: "Campaign", pictures: "tuple[Format, ...]", screen: Screen) -> None:
-    from roadgpt.cli.repeat_commands import lines, of_rows, to_resume
+    from roadgpt.campaign.status import no_failure
+    from roadgpt.cli.repeat_commands import to_resume
 
     try:
         screen.runs(work.all_runs(), work.folder)
@@ -169,7 +171,7 @@ def _watch(work: "Campaign", pictures: "tuple[Format, ...]", screen: Screen) -> 
         if screen.rows:
             screen.say(f"tests and tables: {work.folder}")
             if len(screen.rows) == work.roads:
-                for line in lines(of_rows(work.request, work.brief, work.roads, screen.rows)):
+                for line in no_failure(Counter(row.outcome for row in screen.rows)):
                     screen.say(line)
             for kind in pictures[:1]:
                 overview = work.folder / f"overview.{kind}"

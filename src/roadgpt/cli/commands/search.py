@@ -66,7 +66,6 @@ class AnalysisOptions(NamedTuple):
     quiet: bool
     groups: bool
     formats: tuple[str, ...] = ("png",)  # without any, no pictures are drawn
-    top: int | None = None  # failures that are written into a folder for a paper
     is_apart: bool = False  # standard output is reserved for JSON
 
     def say(self, text: str, is_news: bool = False) -> None:
@@ -78,7 +77,7 @@ class AnalysisOptions(NamedTuple):
 def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     """Finds and prints the distinct faults of a folder of runs or a campaign, with an analysis of each."""
     from roadgpt.campaign.faults.fault import faults_in
-    from roadgpt.campaign.faults.fault_log import FAILURES, instructive, write_tables, write_top
+    from roadgpt.campaign.faults.fault_log import FAILURES, write_tables
     from roadgpt.campaign.faults.remedy import FOLDER, stored_remedies
     from roadgpt.campaign.folder_record import open_record, setups_of
     from roadgpt.cli.repeat_commands import typed_words
@@ -97,8 +96,6 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
         found = _tested(place, found, look)
         look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
         looked = _analysed(place, [(each.number, each.names) for each in found.them], look)
-        top = instructive(found.them, looked, look.top or 0)
-        tops = _analysed(place, [(at, (name,)) for at, (_, name) in enumerate(top)], look)
     table = write_tables(found, looked, place)
     look.say("\n".join(_summary(place, found, looked)))
     every = [each for fault in (*found.them, *found.alone) for each in fault.members]
@@ -116,11 +113,6 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
         cells = sorted({fault.typical[0].name.cell for fault in found.them})
         drawn = (f"{place / FOLDER / cell}/*.{kind}" for cell in cells for kind in look.formats)
         look.say(f"pictures: {', '.join(drawn)}")
-    if top:
-        from roadgpt.report.birds_eye import draw_fault
-
-        folder = write_top(place, [(fault, tops[at]) for at, (fault, _) in enumerate(top)], draw_fault)
-        look.say(f"the {len(top)} most instructive failures, for a paper: {folder}")
 
 
 def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
@@ -195,8 +187,6 @@ FAULTS_OPTIONS = (
     Option("--repeat", f"{DISTURB}.", DRIVES, REPEAT),
     Option("--minimise", f"{MINIMISE}.", bool),
     Option("--groups", GROUPS, bool),
-    Option("--top", "Also write the N most instructive failures into a folder for a paper: different faults "
-           "first, then different places.", whole(1, 100, "failures")),
     Option("-j workers", "Number of failures analysed in parallel.", whole(1, 256, "processes"), 1),
     *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
 )
