@@ -181,7 +181,7 @@ def main() -> None:
     if not (folder / STORE).exists():
         lifecycle.begin(plan(tests, seconds=seconds), folder)
     for progress in lifecycle.work(folder, workers):
-        print(progress.done, flush=True)
+        print(progress.total(), flush=True)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@
     details   one row per test with its long columns: design, sentences, features
     traces    the names of the files with the drives
     sittings  the sessions: when each began and was last active, and the cost of language models outside tests
-    features  names of all features that occur
 
 ``results.csv`` and ``cells.csv`` are made from the deterministic columns of ``tests`` and ``details``. The
 column ``ended`` and all columns after it depend on the clock.
@@ -169,7 +168,6 @@ CREATE TABLE details(cell TEXT, number INTEGER, origin TEXT NOT NULL, design TEX
 CREATE TABLE traces(trace INTEGER PRIMARY KEY, file TEXT NOT NULL);
 CREATE TABLE sittings(begun REAL NOT NULL, seen REAL NOT NULL, workers INTEGER NOT NULL,
   is_over INTEGER NOT NULL DEFAULT 0, tokens INTEGER NOT NULL DEFAULT 0, cost REAL NOT NULL DEFAULT 0);
-CREATE TABLE features(name TEXT PRIMARY KEY) WITHOUT ROWID;
 CREATE INDEX waiting ON tests(cell, number) WHERE outcome IS NULL;
 """
 
@@ -385,11 +383,6 @@ class Record:
         """Returns the driver's seed in a test."""
         return seed_of_driver(result.number, result.proposal)
 
-    def file(self, number: int) -> str:
-        """Returns the empty text, because the tests in a store have no file ``test.NNNN.json``."""
-        del number
-        return ""
-
     def tests(self, cell: str = "", which: str | None = None) -> list[NumberedTest]:
         """Returns the names of the ended tests whose Runs can be read, of one cell or (empty) of all cells:
         all of them in order, the "failures", or the "worst", which are those that failed and then those that
@@ -415,7 +408,8 @@ class Record:
 
     def feature_names(self) -> list[str]:
         """Returns the names of all features that occur in the results, sorted."""
-        return [name for (name,) in self.query("SELECT name FROM features ORDER BY name")]
+        sql = "SELECT DISTINCT key FROM details, json_each(features) WHERE features IS NOT NULL ORDER BY key"
+        return [name for (name,) in self.query(sql)]
 
     def close(self) -> None:
         """Closes the database."""
@@ -604,7 +598,6 @@ class Record:
         and name of the file with their drives, and the seconds that each cell has worked since."""
         now = time.time()
         left = Counter((cell, one.result.batch) for cell, one in ended)
-        names = {name for _, one in ended for name in one.result.features}
         tests, details = list[tuple[Any, ...]](), list[tuple[Any, ...]]()
         for cell, one in ended:
             its, took, spent, where = one.result, one.seconds, one.spent, (cell, one.result.number)
@@ -633,7 +626,6 @@ class Record:
                 "UPDATE batches SET left = left - ? WHERE cell = ? AND batch = ?",
                 [(count, cell, batch) for (cell, batch), count in left.items()],
             )
-            db.executemany("INSERT OR IGNORE INTO features VALUES (?)", [(name,) for name in sorted(names)])
             db.executemany(
                 "UPDATE cells SET seconds = seconds + ? WHERE name = ?",
                 [(taken, cell) for cell, taken in seconds.items()],

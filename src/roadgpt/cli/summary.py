@@ -17,7 +17,6 @@ from roadgpt.campaign.faults.fault import Faults, faults_in
 from roadgpt.campaign.folder_record import is_store, open_record, setups_of
 from roadgpt.campaign.gate import Gate
 from roadgpt.campaign.model import GIVEN, NumberedTest
-from roadgpt.campaign.scheduler import Progress
 from roadgpt.campaign.selection import Choice, Selection, selection_of
 from roadgpt.campaign.status import CellStatus, Status, no_failure, status_of
 from roadgpt.chat import Spent
@@ -46,12 +45,14 @@ LONGEST, WIDEST_TEXT = 60, 300  # letters of a description, and of other texts, 
 MOST_WATCHED = 12  # rows of the screen
 
 
-def watch(folder: Path, steps: Iterator[Progress], as_json: bool, quiet: bool, gate: Gate) -> None:
+def watch(folder: Path, steps: Iterator[Counter[str]], as_json: bool, quiet: bool, gate: Gate) -> None:
     """Runs a campaign, shows its progress and prints its results; after Ctrl-C, prints how to resume it."""
     advice = f"finished tests are kept; continue with: {to_resume(folder)}"
+    with open_record(folder) as record:
+        total = record.total()
     with resumable(advice), progress("tests", None, quiet, has_lines=False) as tell:
-        for step in apart(steps):
-            tell(step.done, total=step.total, rate=outcomes_line(step.outcomes))
+        for outcomes in apart(steps):
+            tell(outcomes.total(), total=total, rate=outcomes_line(outcomes))
     status = status_of(folder)
     gate.add_folder(folder)
     if as_json:

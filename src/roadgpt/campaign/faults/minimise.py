@@ -8,7 +8,6 @@ IEEE Transactions on Software Engineering 28 (2002). Unless the drives run out, 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from roadgpt.brief.model import Brief
 from roadgpt.check import inspect
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.road import Design, Segment, build
@@ -55,14 +54,14 @@ class Simplest:
 class Trial:
     """Drives simplified versions of one failing road, each at most once, and counts the drives."""
 
-    def __init__(self, failure: Run, brief: Brief | None, most: int) -> None:
+    def __init__(self, failure: Run, most: int) -> None:
         """Begins without a drive; raises UsageError if the Run did not fail or has no Design."""
         if failure.verdict is None or failure.verdict.kept or failure.plain_design is None:
             raise UsageError(
                 f"road {failure.index} did not fail, or has no design without junctions; "
                 "only failing roads with such designs are simplified"
             )
-        self.failure, self.brief, self.most = failure, brief, most
+        self.failure, self.most = failure, most
         self.kind = (failure.verdict.cause, failure.verdict.side)
         self.drives = 0
         self.is_exhausted = False  # true if a drive was refused because all drives were used up
@@ -82,7 +81,7 @@ class Trial:
         request, failure = self.failure.request, self.failure
         for placed in (design, *_moved(design, failure)):
             road = build(placed, request.setup.geometry)
-            if not inspect(road, self.brief, request.world, request.setup.rules):
+            if not inspect(road, None, request.world, request.setup.rules):
                 break
         else:
             return None
@@ -92,7 +91,7 @@ class Trial:
         self.drives += 1
         run = prove(placed, failure.seed, request.world, request.setup, failure.index)
         same = run.verdict is not None and (run.verdict.cause, run.verdict.side) == self.kind
-        return replace(run, request=request, brief=self.brief) if same and run.outcome == "FAIL" else None
+        return replace(run, request=request) if same and run.outcome == "FAIL" else None
 
 
 def _moved(design: Design, failure: Run) -> list[Design]:
@@ -109,10 +108,10 @@ def _moved(design: Design, failure: Run) -> list[Design]:
     return [design.model_copy(update={"starting_point": (x + dx, y + dy, z)})]
 
 
-def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) -> Simplest:
+def simplest(failure: Run, most: int = MOST_DRIVES) -> Simplest:
     """Simplifies the road of a failing Run with a Design such that the car still fails for the same cause and
-    to the same side; every road keeps ``brief``, and there are at most ``most`` drives."""
-    trial = Trial(failure, brief, most)
+    to the same side; there are at most ``most`` drives."""
+    trial = Trial(failure, most)
     assert failure.plain_design is not None
     design, before = failure.plain_design, None
     while design != before:
