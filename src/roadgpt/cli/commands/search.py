@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Set
 from contextlib import redirect_stdout
 from functools import partial
 from itertools import chain
@@ -33,7 +33,6 @@ from roadgpt.plural import plural
 if TYPE_CHECKING:
     from roadgpt.campaign.faults.fault import Faults
     from roadgpt.campaign.faults.fault_log import FailureAnalysis, FailureDrawing
-    from roadgpt.campaign.model import NumberedTest
     from roadgpt.campaign.plan import Plan
     from roadgpt.chat import ChatSettings
     from roadgpt.report import Scale
@@ -95,7 +94,7 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     with resumable(f"finished work is kept; continue with: {go_on}"):
         found = _tested(place, found, look)
         look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
-        looked = _analysed(place, [(each.number, each.names) for each in found.them], look)
+        looked = _analysed(place, found, look)
     table = write_tables(found, looked, place)
     look.say("\n".join(_summary(place, found, looked)))
     every = [each for fault in (*found.them, *found.alone) for each in fault.members]
@@ -137,10 +136,8 @@ def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
     return found
 
 
-def _analysed(
-    place: Path, what: "Sequence[tuple[int, Sequence[NumberedTest]]]", look: AnalysisOptions
-) -> "dict[int, FailureAnalysis]":
-    """Analyses one of the named failures under each number; returns the analyses by number."""
+def _analysed(place: Path, found: "Faults", look: AnalysisOptions) -> "dict[int, FailureAnalysis]":
+    """Analyses a typical failure of each fault; returns the analyses by the faults' numbers."""
     from roadgpt.campaign.executors.processes import unordered_map
     from roadgpt.campaign.faults.fault_log import AnalysisTask, analyse
     from roadgpt.campaign.workers import LOG
@@ -149,8 +146,8 @@ def _analysed(
     if look.formats:
         from roadgpt.report.birds_eye import draw_fault as draw
     tasks = [
-        AnalysisTask(place, number, tuple(names), look.repeat, look.minimise, draw, look.formats)
-        for number, names in what
+        AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw, look.formats)
+        for each in found.them
     ]
     steps = unordered_map(analyse, tasks, look.workers, place / LOG)
     return dict(watched(steps, len(tasks), "faults", look.quiet))
