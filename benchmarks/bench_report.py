@@ -45,7 +45,7 @@ def store_of(folder: Path, tests: int) -> None:
     with Store.new(folder, plan.model_dump_json(), [cell], {"any": {"roadgpt": "bench"}}) as store:
         store.begin_session(1)
         store.add_batch("c01", 0, 1, [result.proposal for result in made])
-        store.keep([("c01", FinishedTest(result)) for result in made], None, [], {"c01": 1.0})
+        store.keep([("c01", FinishedTest(result)) for result in made], None, {"c01": 1.0})
         store.finish()
     db = sqlite3.connect(folder / "campaign.sqlite")
     db.execute(

@@ -129,8 +129,8 @@ def overhead() -> None:
             begin(plan, folder)
             cpu, began, at = 0.0, 0.0, 0
             for progress in work(folder, workers):
-                if progress.done and not at:  # workers have started
-                    cpu, began, at = time.process_time(), time.perf_counter(), progress.done
+                if progress.total() and not at:  # workers have started
+                    cpu, began, at = time.process_time(), time.perf_counter(), progress.total()
             spent, busy = (time.perf_counter() - began), time.process_time() - cpu
         each = spent / (tests - at)
         print(
@@ -185,10 +185,10 @@ def curve(steps: Iterator[Any], tests: int, points: int = 8) -> None:
     print("|---|---|---|")
     nexts = [tests * (at + 1) // points for at in range(points)]
     for progress in steps:
-        if nexts and progress.done >= nexts[0]:
+        if nexts and progress.total() >= nexts[0]:
             largest = max((memory_of(pid) for pid in children()), default=0.0)
-            print(f"| {progress.done:,} | {memory_of(os.getpid()):.0f} | {largest:.0f} |", flush=True)
-            nexts = [at for at in nexts if at > progress.done]
+            print(f"| {progress.total():,} | {memory_of(os.getpid()):.0f} | {largest:.0f} |", flush=True)
+            nexts = [at for at in nexts if at > progress.total()]
 
 
 def leaks() -> None:

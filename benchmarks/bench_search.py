@@ -24,7 +24,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -39,7 +39,7 @@ from roadgpt.campaign.single_test import Task, execute, features_in, result_of
 from roadgpt.check import sbft_verdict
 from roadgpt.road import Limits, Road, Site, World, build
 from roadgpt.run import Request, Setup, brief_of, prove
-from roadgpt.run.sparseness import Sparseness, segment_around
+from roadgpt.run.sparseness import Sparseness, departure
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "explanation" / "search.md"
 BEGIN, END = "<!-- measured by benchmarks/bench_search.py -->", "<!-- end of what was measured -->"
@@ -224,9 +224,11 @@ def figures(
     spread = Sparseness()
     failures = [(result, road) for result, road in tried if result.outcome == "FAIL"]
     for result, road in failures:
-        segment = segment_around(road.control_points(), road.at(result.at_s)[:2].tolist())
-        if segment is not None:
-            spread.add(result.number, segment)
+        begin, end = (road.at(s)[:2].tolist() for s in (0.0, result.at_s))
+        records = SimpleNamespace(pos=begin, is_oob=False), SimpleNamespace(pos=end, is_oob=True)
+        left = departure(road.control_points(), records)
+        if left is not None and left.segment is not None:
+            spread.add(result.number, left.segment)
     judge = judge_of(referee) if referee else None
     valid = sum(result.outcome in ("PASS", "FAIL") for result, _ in tried)
     out = {

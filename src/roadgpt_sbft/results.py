@@ -7,7 +7,7 @@ results/MODULE_CLASS_STAMP/
 
 import os
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,13 +15,13 @@ import numpy as np
 from pydantic import Field
 
 from roadgpt.brief.model import Frozen
-from roadgpt.campaign.run_folder import RunFolder, finished_run
+from roadgpt.campaign.run_folder import Campaign, finished_run
 from roadgpt.errors import UsageError, explained
 from roadgpt.geometry import interpolate
 from roadgpt.run import Run
 from roadgpt.run.atomic import json_text, missing
 from roadgpt.run.execution import features_of, records_of
-from roadgpt.run.folder import RUNS, Draw, write_run_folder
+from roadgpt.run.folder import RUNS, write_run_folder
 from roadgpt.run.tables import SETTINGS, TallyEntry, write_settings
 
 HOME = Path("results")
@@ -71,12 +71,8 @@ def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, t
     return folder, made
 
 
-@dataclass
-class Results(RunFolder):
+class Results(Campaign):
     """Writes the result files after each test, so that they are complete at any time."""
-
-    draw: Draw | None = None
-    """Draws pictures of each test; None: no pictures."""
 
     def write(self, run: Run) -> dict[str, Any]:
         """Writes the files of a test; returns the content of its ``test.NNNN.json``."""

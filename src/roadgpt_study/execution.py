@@ -9,7 +9,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import NamedTuple
 
-from roadgpt.campaign.run_folder import RunFolder, work_in
+from roadgpt.campaign.run_folder import Campaign, work_in
 from roadgpt.chat import ChatError, Meter, ReplyError
 from roadgpt.design.room import world_for, world_remarks
 from roadgpt.errors import BriefError
@@ -68,7 +68,7 @@ class _Session:
 
     def make(self, parts: Iterable[StudyPart], workers: int, meter: Meter | None = None) -> None:
         """Makes the roads of all parts together; raises ChatError if a language model cannot be asked."""
-        plan, folders = self.plan, dict[str, RunFolder]()
+        plan, folders = self.plan, dict[str, Campaign]()
         for part in parts:
             setup = plan.setup_of(part.designer)
             try:
@@ -83,9 +83,7 @@ class _Session:
             request = Request(words=brief.words, seed=plan.seed, world=world, setup=setup)
             place = self.folder / part.name
             place.parent.mkdir(parents=True, exist_ok=True)
-            folders[part.name] = runs = RunFolder.opened(request, brief, plan.roads, place)
-            if meter is not None:
-                meter.add(runs.spent)
+            folders[part.name] = runs = Campaign.opened(request, brief, plan.roads, place, meter=meter)
         several = workers if workers > 1 else 0
         with closing(work_in(self.folder, folders, self.draw, meter, several)) as tests:
             for name, _ in tests:

@@ -2,17 +2,15 @@
 
 import atexit
 import os
-import re
 import subprocess
 import sys
 import time
-from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
 from roadgpt import children
 from roadgpt.campaign.executors import Shared, WorkerConfig
-from roadgpt.campaign.executors.processes import Processes
+from roadgpt.campaign.executors.processes import Process, Processes
 from roadgpt.errors import UsageError
 
 TESTS = Path(__file__).resolve().parents[1]
@@ -126,16 +124,17 @@ def is_alive(pid: int) -> bool:
     return state != "Z"
 
 
-def pid_of(doing: "Future[Any]") -> int:
-    """The process that is at work on a job; 0 if there is none."""
-    found = re.search(r"\((\d+)\)", getattr(doing, "worker", ""))
-    return int(found[1]) if found else 0
+def at_work(workers: Processes) -> list[int]:
+    """The processes that are at work on a job."""
+    busy = [each for each in workers._workers if each.is_ready and each.is_busy]
+    return [each.process.pid for each in busy if isinstance(each, Process)]
 
 
 def main() -> None:
     workers = Processes(WorkerConfig(2, nothing, 1000.0, Path(os.devnull)))
-    doing = [workers.submit(sleeps, 1000.0) for _ in range(2)]
-    while not all(pids := [pid_of(each) for each in doing]):
+    for _ in range(2):
+        workers.submit(sleeps, 1000.0)
+    while len(pids := at_work(workers)) < 2:
         time.sleep(0.05)
     print(*pids, flush=True)
     time.sleep(1000)

@@ -103,8 +103,6 @@ class Search:
 class InlineJob(Future[Any]):
     """A job of the executor below."""
 
-    worker, begun = "", 0.0
-
     def __init__(self, executor: "Inline", number: int, call: Callable[[], Any]) -> None:
         super().__init__()
         self.executor, self.number, self.call = executor, number, call
@@ -125,23 +123,16 @@ class Inline(Executor):
         self.submitted += 1
         job = InlineJob(self, self.submitted, partial(fn, *args, **kwargs))
         self.jobs.append(job)
-        self.begin()
         return job
 
     def map(self, fn: Callable[..., Any], *iterables: Any, **_: Any) -> Iterator[Any]:
         return map(fn, *iterables)
-
-    def begin(self) -> None:
-        """As many jobs run as there are workers."""
-        for job in self.jobs[: self.staff.workers]:
-            job.worker = "me"
 
     def some(self) -> None:
         """A few jobs end."""
         for _ in range(min(len(self.jobs), int(self.rng.integers(1, 4)))):
             near = min(len(self.jobs), 3 * self.staff.workers)
             self.end(self.jobs.pop(int(self.rng.integers(near))))
-        self.begin()
 
     def end(self, job: InlineJob) -> None:
         """One of them."""
@@ -190,7 +181,7 @@ def main() -> None:
     if not (folder / STORE).exists():
         lifecycle.begin(plan(tests, seconds=seconds), folder)
     for progress in lifecycle.work(folder, workers):
-        print(progress.done, flush=True)
+        print(progress.total(), flush=True)
 
 
 if __name__ == "__main__":

@@ -225,8 +225,8 @@ def test_time_closes_a_cell_and_what_is_asked_is_finished(tmp_path: Path) -> Non
     assert closed == "its time limit was reached"
     assert seconds >= 0.05
     assert waiting == [(0,)]
-    assert steps[-1].done % 5 == 0
-    assert steps[-1].done > 0
+    assert steps[-1].total() % 5 == 0
+    assert steps[-1].total() > 0
 
 
 def test_another_plan_in_the_same_folder_is_refused_and_the_same_goes_on(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from click.testing import CliRunner, Result
 
 from campaign.jobs import TESTS, is_alive
 from campaign.quick import Inline, InlineJob, plan, put_on_shelves
-from roadgpt.campaign.folder_record import read_trace
+from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.status import status_of
 from roadgpt.cli import app
@@ -76,7 +76,7 @@ def test_kill_9_again_and_again_gives_the_same_table(tmp_path: Path) -> None:
             gone(pids)
             assert kept < done_in(tmp_path / "c") < 60
             kept = done_in(tmp_path / "c")
-        assert [*work(tmp_path / "c", 1, "inline")][-1].done == 60
+        assert [*work(tmp_path / "c", 1, "inline")][-1].total() == 60
     for name in ("results.csv", "cells.csv"):
         assert (tmp_path / "c" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
 
@@ -154,8 +154,9 @@ def test_a_test_is_driven_again_to_the_same_bytes(driven: Path, tmp_path: Path) 
     assert "drive.npz" in files
     for name in files:
         assert (one / name).read_bytes() == (other / name).read_bytes()
-    run, kept = read_run(one), read_trace(driven, "c01", 2)
+    run, kept = read_run(one), kept_run(driven, "c01", 2).drive
     assert run.drive is not None
+    assert kept is not None
     assert run.words == "turn x2"
     assert len(kept) == len(run.drive)
     assert np.abs(kept["x"] - run.drive["x"]).max() < 0.00051

@@ -23,7 +23,7 @@ from roadgpt import children
 from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.campaign import campaign
 from roadgpt.campaign.folder_record import open_record, write_runs
-from roadgpt.campaign.run_folder import RunFolder, work_in
+from roadgpt.campaign.run_folder import Campaign, work_in
 from roadgpt.campaign.scheduler import GIVE_UP
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design, Road, World
@@ -464,7 +464,7 @@ def made_of(home: Path, workers: int, roads: int = 4) -> dict[str, bytes]:
     words = {"one": "turn x2", "other": "hairpin; straight"}
     briefs = {name: brief_of(text, setup=setup) for name, text in words.items()}
     folders = {
-        name: RunFolder.opened(Request(words=text, seed=3, setup=setup), briefs[name], roads, home / name)
+        name: Campaign.opened(Request(words=text, seed=3, setup=setup), briefs[name], roads, home / name)
         for name, text in words.items()
     }
     seen, before = [], {*children._running}
@@ -492,7 +492,7 @@ def test_a_folder_that_no_road_fits_is_removed_and_the_others_are_made(
 ) -> None:
     put_on_shelf(monkeypatch, double=Unable(lambda seed: seed in {seed_of(7, n) for n in range(1, 5)}))
     folders = {
-        name: RunFolder.opened(
+        name: Campaign.opened(
             Request(words=name, seed=seed, setup=NO_DRIVE), Brief(words=name), 4, tmp_path / name
         )
         for name, seed in (("able", 7), ("unable", 8))
@@ -511,7 +511,7 @@ def test_workers_that_die_over_a_road_leave_one_error(
     monkeypatch.setattr("roadgpt.campaign.workers.MOST_DEATHS", 1)
     setup = Setup(reader="plan", drives=False)
     request = Request(words="straight | turns=0", seed=1, setup=setup)
-    folder = RunFolder.opened(request, brief_of(request.words, setup=setup), 2, tmp_path / "c")
+    folder = Campaign.opened(request, brief_of(request.words, setup=setup), 2, tmp_path / "c")
     ended = [one.result for _, one in work_in(tmp_path, {"c": folder}, Deadly(), workers=1)]
     assert [one.outcome for one in ended] == ["VALID", "ERROR"]
     assert "given up: 1 workers ended over it" in ended[1].description

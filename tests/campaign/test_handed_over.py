@@ -56,7 +56,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with Store.new(folder, plan.model_dump_json(), [cell], {"any": {"roadgpt": "1"}}) as store:
         store.begin_session(1)
         store.add_batch("c01", 0, 1, [each.proposal for each in RESULTS])
-        store.keep([("c01", FinishedTest(each)) for each in RESULTS], None, [], {})
+        store.keep([("c01", FinishedTest(each)) for each in RESULTS])
         store.finish()
         write_tables(store, folder)
     return folder

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from campaign import jobs
-from campaign.jobs import TESTS, is_alive, pid_of
+from campaign.jobs import TESTS, at_work, is_alive
 from roadgpt import children
 from roadgpt.campaign.executors import LostWorkerError, Shared, WorkerConfig
 from roadgpt.campaign.executors import processes as shelf
@@ -137,10 +137,8 @@ def test_every_job_ends_once_while_workers_are_killed(tmp_path: Path) -> None:
     for _ in range(3):
         begun += [patient.submit(jobs.sleeps, 0.02) for _ in range(40)]
         time.sleep(0.3)
-        for doing in begun:
-            if pid := pid_of(doing):
-                os.kill(pid, signal.SIGKILL)
-                break
+        for pid in at_work(patient)[:1]:
+            os.kill(pid, signal.SIGKILL)
     assert [each.result(SOON) for each in begun] == [0.02] * 120
     for worker in [*patient._workers]:
         assert isinstance(worker, shelf.Process)
@@ -181,7 +179,7 @@ def test_workers_that_the_system_cannot_start_are_told(
     workers = Processes(WorkerConfig(2, jobs.nothing, SOON, tmp_path / "log"))
     with pytest.raises(
         RoadGPTError,
-        match=r"worker \d cannot be started \(Resource temporarily unavailable\); ask for fewer with -j",
+        match=r"a worker cannot be started \(Resource temporarily unavailable\); ask for fewer with -j",
     ):
         workers.submit(jobs.square, 1).result(SOON)
     workers.shutdown()

@@ -96,8 +96,8 @@ def test_a_node_is_killed_in_the_middle_and_the_table_is_that_of_one_process(
         address = cluster.address if second else ""
         counts = []
         for progress in work(folder, 3, executor, address):
-            counts.append(progress.done)
-            if second and progress.done >= 10:
+            counts.append(progress.total())
+            if second and progress.total() >= 10:
                 cluster.remove_node(second, allow_graceful=False)
                 second = None
         assert counts[-1] == 40

@@ -73,7 +73,7 @@ def test_results_cells_and_proposals_come_out_as_they_went_in(data: st.DataObjec
         store.begin_session(1)
         store.add_batch("c01", 0, 1, asked)
         assert [task.proposal for task in store.waiting("c01")] == asked
-        store.keep([("c01", FinishedTest(result)) for result in done[:kept]], None, [], {"c01": 1.5})
+        store.keep([("c01", FinishedTest(result)) for result in done[:kept]], None, {"c01": 1.5})
         with Record.opened(Path(name)) as record:
             assert [*record.results("c01")] == done[:kept]
             assert [task.number for task in record.waiting("c01")] == [*range(kept + 1, len(done) + 1)]
@@ -104,17 +104,31 @@ def test_numbers_that_are_none_are_left_out(tmp_path: Path) -> None:
     with a_store(tmp_path) as store:
         store.begin_session(1)
         store.add_batch("c01", 0, 1, [made])
-        store.keep(
-            [("c01", FinishedTest(broken, spent=Spent(usage=Usage(prompt=3, completion=4), cost=0.5)))],
-            None,
-            [],
-            {},
-        )
+        spent = Spent(usage=Usage(prompt=3, completion=4), cost=0.5)
+        store.keep([("c01", FinishedTest(broken, spent=spent))])
         store.spend(Spent(usage=Usage(prompt=1), cost=0.25))
         found = store.result("c01", 1)
         assert found.margin is None
         assert found.features == {"C": 1.0}
         assert store.spent() == (8, 0.75)
+
+
+def test_a_store_that_also_says_who_is_at_work_is_continued(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As those of earlier versions did, in a table of their own."""
+    a_store(tmp_path).close()
+    with sqlite3.connect(tmp_path / STORE) as db:
+        db.execute("CREATE TABLE leases(cell TEXT, number INTEGER, worker TEXT, until REAL) ")
+        db.execute("INSERT INTO leases VALUES ('c01', 1, 'worker 1 (4711)', 9e9)")
+    db.close()
+    monkeypatch.setattr("roadgpt.campaign.record._checked", set())
+    with Store.opened(tmp_path) as store:
+        store.begin_session(1)
+        store.add_batch("c01", 0, 1, [made := Proposal(None, 1, "draft")])
+        store.keep([("c01", FinishedTest(Result(1, 0, made, "VALID", "valid, not driven")))])
+    with Record.opened(tmp_path) as there:
+        assert [one.outcome for one in there.results("c01")] == ["VALID"]
 
 
 def test_what_is_no_store_is_told(tmp_path: Path) -> None:

@@ -38,7 +38,7 @@ def test_the_table_is_that_of_a_slow_writer(data: st.DataObject) -> None:
     with TemporaryDirectory() as name, a_store(Path(name)) as store:
         store.begin_session(1)
         store.add_batch("c01", 0, 1, asked)
-        store.keep([("c01", FinishedTest(result)) for result in done], None, [], {})
+        store.keep([("c01", FinishedTest(result)) for result in done])
         write_tables(store, Path(name))
         assert (Path(name) / "results.csv").read_bytes().decode() == slowly(store)
 
@@ -69,7 +69,7 @@ def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
     with a_store(tmp_path) as store:
         store.begin_session(1)
         store.add_batch("c01", 0, 1, made)
-        store.keep([("c01", FinishedTest(result)) for result in done], None, [], {})
+        store.keep([("c01", FinishedTest(result)) for result in done])
         write_tables(store, tmp_path)
     (row,) = csv.DictReader((tmp_path / "cells.csv").open())
     request = plan(99).cells(BRIEFS)[0].request

@@ -86,9 +86,7 @@ def folder_of(
     (patch or (lambda name, value: setattr(run_folder, name.rpartition(".")[2], value)))(
         "roadgpt.campaign.run_folder.run_test", run_test
     )
-    made = Campaign.opened(request, Brief(words=request.words), roads, out)
-    made.draw = draw
-    return made
+    return Campaign.opened(request, Brief(words=request.words), roads, out, draw=draw)
 
 
 def put_on_shelf(monkeypatch: pytest.MonkeyPatch, **parts: Any) -> None:

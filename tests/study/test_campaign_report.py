@@ -71,7 +71,7 @@ def written(folder: Path, goes_on: bool = False) -> Path:
             proposals = [result.proposal for name, result in results if name == cell]
             store.add_batch(cell, 0, 1, proposals)
         ended = [(cell, FinishedTest(result, seconds=Seconds(0.01, 0.1))) for cell, result in results]
-        store.keep(ended, None, [], {"c01": 3.0, "c02": 4.0})
+        store.keep(ended, None, {"c01": 3.0, "c02": 4.0})
         store.finish()
     return folder
 
@@ -185,7 +185,7 @@ def test_the_nearest_pairs_of_a_search_for_the_boundary_are_listed(tmp_path: Pat
                 number, 0, proposals[number], outcome, outcome, design, 120.0, margin,  # type: ignore[arg-type]
                 at_s=52.0 if outcome == "FAIL" else None, cause="out of lane" if outcome == "FAIL" else None,
             )  # fmt: skip
-            store.keep([("c01", FinishedTest(result, seconds=Seconds(0.01, 0.1)))], None, [], {"c01": 1.0})
+            store.keep([("c01", FinishedTest(result, seconds=Seconds(0.01, 0.1)))], None, {"c01": 1.0})
         store.finish()
     write_store_report(tmp_path)
     assert [[*row.values()] for row in rows(tmp_path, "pairs")] == [

@@ -1,15 +1,12 @@
 """Drivers on the same roads: every figure of the table from statsmodels and scipy, and a real campaign."""
 
 import csv
-import shlex
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from click import Context
 from click.testing import CliRunner
 from scipy import stats
 
@@ -18,10 +15,8 @@ from roadgpt.campaign.model import Cell, CellBudget, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Record, Store
 from roadgpt.campaign.single_test import FinishedTest
-from roadgpt.campaign.status import status_of
 from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
-from roadgpt.cli.repeat_commands import next_steps, of_status
 from roadgpt.report import campaign_report
 from roadgpt.report.page import write
 from roadgpt.report.page.model import Figure, Page
@@ -64,7 +59,7 @@ def stored(folder: Path, result_of: Callable[[int, int], Result]) -> Path:
             results = [result_of(driver, road) for road in range(1, ROADS + 1 - (driver == 2))]
             store.add_batch(cell.name, 0, 1, [result.proposal for result in results])
             ended = [(cell.name, FinishedTest(result, seconds=Seconds(0.0, 0.1))) for result in results]
-            store.keep(ended, None, [], {})
+            store.keep(ended)
         store.finish()
     return folder
 
@@ -132,21 +127,6 @@ def test_every_figure_is_that_of_others(
     latex = (tmp_path / "tables" / "pairs-of-drivers.tex").read_text(encoding="utf-8")
     assert "oracle half: FAIL when more than half of the car is outside its lane" in latex
     assert "/srv" not in latex + "".join(said) + str(rows)
-
-
-def test_what_is_proposed_has_all_drivers(tmp_path: Path) -> None:
-    def passed(driver: int, road: int) -> Result:
-        return replace(result_of(driver, road), outcome="PASS", margin=1.0)
-
-    found = next_steps(of_status(status_of(stored(tmp_path, passed))))
-    assert [why.split(" ")[0] for why, _ in found] == ["fail", "a", "a"]  # no search, whose roads differ
-    for _, command in found:
-        _, verb, *words = shlex.split(command)
-        assert verb == "campaign"
-        campaign = app.get_command(Context(app), verb)
-        assert campaign is not None
-        with campaign.make_context(verb, [*words, "--out", str(tmp_path)]) as context:
-            assert (context.params["paired"], context.params["drivers"]) == (True, DRIVERS)
 
 
 def test_a_campaign_of_pairs_goes_on_and_ends_with_its_report(

@@ -8,8 +8,8 @@ A cell is one combination of a description, a designer, a driver, a simulator, a
 
 Campaigns have two kinds of plug-ins: ``generators/`` propose tests, and ``executors/`` provide the workers
 that run them. ``begin`` makes a campaign's folder. ``work`` runs the remaining tests; after an interruption
-it resumes the campaign. ``status_of`` returns the progress. For one test, ``read_trace`` returns the stored
-drive, ``kept_run`` returns the stored Run, and ``run_again`` drives the road again.
+it resumes the campaign. ``status_of`` returns the progress. For one test, ``kept_run`` returns the stored
+Run, with its drive, and ``run_again`` drives the road again.
 """
 
 import sys
@@ -33,7 +33,6 @@ _MODULES = {
     "campaign": "run_folder",
     "read_plan": "plan",
     "kept_run": "folder_record",
-    "read_trace": "folder_record",
     "run_again": "folder_record",
     "status_of": "status",
     "work": "lifecycle",

@@ -12,13 +12,11 @@ from typing import Any
 
 from roadgpt.campaign.model import Cell, NumberedTest, Result
 from roadgpt.campaign.record import STORE, Record, no_road, no_tests
-from roadgpt.campaign.run_folder import FolderStore, RunFolder, finished_run, writing
-from roadgpt.drive import Drive
+from roadgpt.campaign.run_folder import Campaign, FolderStore, finished_run, writing
 from roadgpt.errors import UsageError
 from roadgpt.road import Road
 from roadgpt.run import Request, Run, Setup, prove, read_run, store, write_run
 from roadgpt.run.atomic import alone_in, is_locked
-from roadgpt.run.execution import test_name
 from roadgpt.run.folder import (
     CARD,
     RUNS,
@@ -81,7 +79,7 @@ class FolderRecord(FolderStore):
                 if request is None:
                     raise
         roads = card.roads if card else max(len(self._places), 1)
-        runs = RunFolder(folder, request or Request(), brief, roads)
+        runs = Campaign(folder, request or Request(), brief, roads)
         super().__init__(folder, {}, [runs.cell("")])
         self._db.execute("INSERT INTO meta VALUES ('versions', ?)", (json.dumps({**(versions or {})}),))
         if card is None or card.is_finished:
@@ -135,20 +133,6 @@ class FolderRecord(FolderStore):
         """Returns the driver's seed in a test."""
         return result.proposal.seed
 
-    def file(self, number: int) -> str:
-        """Returns the path of a test's ``test.NNNN.json``."""
-        return str(self.folder / test_name(number))
-
-
-def read_trace(folder: Path, cell: str, number: int) -> Drive:
-    """Returns the stored drive of a test: every column at 50 Hz, positions exact to half a millimetre."""
-    with Record.opened(folder) as record:
-        record.result(cell, number)
-        found = record.drive(cell, number)
-    if found is None:
-        raise UsageError(f"test {number} of {cell} in {folder} was not driven")
-    return found
-
 
 def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Run:
     """Returns the stored Run of a test; no road is driven, and no driver's file is loaded.
@@ -183,7 +167,7 @@ def write_runs(folder: Path, out: Path) -> Iterator[Path]:
             place = out / cell.name
             names, versions = record.tests(cell.name), record.versions(cell.request.setup.driver)
             roads = cell.budget.tests or len(names)
-            runs = RunFolder(place, cell.request, cell.brief, roads, versions=versions)
+            runs = Campaign(place, cell.request, cell.brief, roads, versions=versions)
             is_again = place.exists() and place.samefile(folder)
             if is_again and not store.is_kept(folder):
                 raise UsageError(

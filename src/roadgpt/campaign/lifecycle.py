@@ -20,7 +20,7 @@ from roadgpt.campaign.given import changes, content_of, given_roads, write_roads
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE, Record, Store, no_tests, refusals
 from roadgpt.campaign.run_folder import campaign
-from roadgpt.campaign.scheduler import Progress, Scheduler
+from roadgpt.campaign.scheduler import Scheduler
 from roadgpt.campaign.single_test import WorkerSetup
 from roadgpt.campaign.traces import SUFFIX, TRACES
 from roadgpt.campaign.workers import LOG, WorkerConfig
@@ -138,9 +138,9 @@ def work(
     chat: ChatSettings | None = None,
     draw: Draw | None = None,
     again: bool = False,
-) -> Iterator[Progress]:
+) -> Iterator[Counter[str]]:
     """Runs the remaining tests of a campaign, or of a folder that ``roadgpt run`` made, lazily: they run
-    while the caller iterates. Yields the progress after every group of results.
+    while the caller iterates. Yields the number of tests with each outcome after every group of results.
 
     ``chat`` replaces the stored settings of the language model, whose limits may differ. The roads of a
     folder of runs are made one after another, and ``draw`` draws them. With ``again``, the results are set
@@ -167,14 +167,16 @@ def work(
                 _sweep(folder, store)
                 setups = tuple(dict.fromkeys(request.setup for request, _ in plan.requests()))
                 staff = WorkerConfig(workers, WorkerSetup(setups), plan.patience, folder / LOG, address)
-                yield from Scheduler(store, staff, kind, plan.budget.tests, plan.chat).run()
+                yield from Scheduler(store, staff, kind, plan.chat).run()
         if not is_finished or not all((folder / name).is_file() for name in (RESULTS, CELLS)):
             with refusals(folder, store):
                 write_tables(store, folder)
                 store.finish()
 
 
-def _make_runs(folder: Path, chat: ChatSettings | None, draw: Draw | None, again: bool) -> Iterator[Progress]:
+def _make_runs(
+    folder: Path, chat: ChatSettings | None, draw: Draw | None, again: bool
+) -> Iterator[Counter[str]]:
     if not has_tests(folder):
         raise no_tests(folder)
     card = read_card(folder)
@@ -189,10 +191,10 @@ def _make_runs(folder: Path, chat: ChatSettings | None, draw: Draw | None, again
     setup = request.setup if chat is None else request.setup.model_copy(update={"chat": chat})
     require_permission(setup.driver)
     made = campaign(words, card.roads, request.seed, request.world, setup, folder, draw, again=again)
-    progress = Progress(card.roads, Counter(one.result.outcome for one in made.tests.values()))
+    outcomes = Counter[str](one.result.outcome for one in made.tests.values())
     for run in made:
-        progress.outcomes[run.outcome] += 1
-        yield progress
+        outcomes[run.outcome] += 1
+        yield outcomes
 
 
 def _sweep(folder: Path, store: Store) -> None:

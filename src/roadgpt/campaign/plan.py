@@ -14,7 +14,7 @@ from itertools import product
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationError
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief, Frozen
@@ -44,29 +44,43 @@ Names = Annotated[tuple[str, ...], Field(min_length=1)]
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
 
-class Plan(Frozen):
-    """The settings of a campaign."""
+def _listed(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list | tuple) else (value,)
+
+
+Words = Annotated[str, Field(min_length=1)]
+Texts = Annotated[tuple[Words, ...], BeforeValidator(_listed), Field(min_length=1)]
+Seeds = Annotated[tuple[Seed, ...], BeforeValidator(_listed), Field(min_length=1)]
+
+
+class PlanChoices(Frozen):
+    """The settings that a plan and its file have alike."""
 
     prompts: Names = ("",)
     """Descriptions of roads; an empty text if the generator needs no description."""
-    designers: Names = ("planner",)
-    drivers: Names = ("lane_centring",)
+    designers: Texts = ("planner",)
+    drivers: Texts = ("lane_centring",)
     """Names of installed drivers, or ``FILE.py:CLASS``."""
-    simulators: Names = ("mujoco",)
+    simulators: Texts = ("mujoco",)
     generators: Names = (WITHOUT_GOAL,)
-    seeds: Annotated[tuple[Seed, ...], Field(min_length=1)] = (0,)
+    seeds: Seeds = (0,)
     goal: Goal | None = None
-    settings: Mapping[str, Any] = Field(default_factory=dict)
+    settings: dict[str, Any] = Field(default_factory=dict)
     """Settings of the generators: the value of each setting, by its name."""
-    budget: CellBudget = UNLIMITED
-    """The limits of each cell."""
-    reader: str = "model"
+    reader: Words = "model"
     rules: Literal["strict", "sbft"] = "strict"
     geometry: Geometry = "arcs"
     keep_driving: bool = False
-    drives: bool = True
     paired: bool = False
     """Whether the drivers are compared on the same roads at the end."""
+
+
+class Plan(PlanChoices):
+    """The settings of a campaign."""
+
+    budget: CellBudget = UNLIMITED
+    """The limits of each cell."""
+    drives: bool = True
     world: World = World()
     chat: ChatSettings | None = None
     patience: Annotated[float, Field(gt=0, allow_inf_nan=False)] = PATIENCE
@@ -189,25 +203,12 @@ OF_DESIGN = {"prompts", "designers", "generators", "goal", "reader", "chat", "se
 """Keys that mean nothing for roads that are there."""
 
 
-def _listed(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else (value,)
-
-
-Words = Annotated[str, Field(min_length=1)]
-Texts = Annotated[tuple[Words, ...], BeforeValidator(_listed), Field(min_length=1)]
-Seeds = Annotated[tuple[Seed, ...], BeforeValidator(_listed), Field(min_length=1)]
-
-
 Percentage = Annotated[
     str | float, AfterValidator(partial(bank_in, most=100 * STEEPEST, unit="a percentage"))
 ]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
-
-
-class WorldTable(_Strict):
+class WorldTable(Frozen, strict=True):
     """The table ``[world]`` of a plan file, in the units of the command line."""
 
     map_size: Annotated[float, Field(ge=SMALLEST_MAP, le=LARGEST_MAP)] = USUAL_MAP
@@ -234,29 +235,18 @@ class WorldTable(_Strict):
         return World().changed(**values | {"speed_limit": self.speed_limit_kmh / 3.6, "bank": bank})
 
 
-class PlanTable(_Strict):
+class PlanTable(PlanChoices, strict=True):
     """The keys of a plan file at its top level."""
 
     prompts: Texts = ()
-    designers: Texts = ("planner",)
-    drivers: Texts = ("lane_centring",)
-    simulators: Texts = ("mujoco",)
     generators: Texts = ()
-    seeds: Seeds = (0,)
-    goal: Goal | None = None
     tests: Annotated[int, Field(ge=1, le=MOST_TESTS)] | None = None
     seconds: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
     test_seconds: Annotated[float, Field(gt=0, allow_inf_nan=False)] = PATIENCE
-    reader: Words = "model"
-    rules: Literal["strict", "sbft"] = "strict"
-    geometry: Geometry = "arcs"
-    keep_driving: bool = False
     drive: bool = True
-    paired: bool = False
     on: Words | None = None
     world: WorldTable = WorldTable()
-    chat: dict[str, Any] = {}
-    settings: dict[str, Any] = {}
+    chat: dict[str, Any] = Field(default_factory=dict)
 
 
 class PlanFile(BaseModel):

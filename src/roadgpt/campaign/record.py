@@ -8,9 +8,7 @@
               a test without an outcome has not ended
     details   one row per test with its long columns: design, sentences, features
     traces    the names of the files with the drives
-    leases    which worker runs which test now; deleted at the start of the next session
     sittings  the sessions: when each began and was last active, and the cost of language models outside tests
-    features  names of all features that occur
 
 ``results.csv`` and ``cells.csv`` are made from the deterministic columns of ``tests`` and ``details``. The
 column ``ended`` and all columns after it depend on the clock.
@@ -168,11 +166,8 @@ CREATE TABLE tests(cell TEXT, number INTEGER, batch INTEGER NOT NULL, seed INTEG
 CREATE TABLE details(cell TEXT, number INTEGER, origin TEXT NOT NULL, design TEXT, description TEXT,
   features TEXT, error TEXT, PRIMARY KEY(cell, number));
 CREATE TABLE traces(trace INTEGER PRIMARY KEY, file TEXT NOT NULL);
-CREATE TABLE leases(cell TEXT, number INTEGER, worker TEXT NOT NULL, until REAL NOT NULL,
-  PRIMARY KEY(cell, number)) WITHOUT ROWID;
 CREATE TABLE sittings(begun REAL NOT NULL, seen REAL NOT NULL, workers INTEGER NOT NULL,
   is_over INTEGER NOT NULL DEFAULT 0, tokens INTEGER NOT NULL DEFAULT 0, cost REAL NOT NULL DEFAULT 0);
-CREATE TABLE features(name TEXT PRIMARY KEY) WITHOUT ROWID;
 CREATE INDEX waiting ON tests(cell, number) WHERE outcome IS NULL;
 """
 
@@ -185,9 +180,9 @@ OF_TYPE = {
 }
 """The SQL condition that the values of the columns of each type must satisfy."""
 OF_COLUMN = {
-    **dict.fromkeys(("cells.name", "batches.cell", "leases.cell"), NAME),
+    **dict.fromkeys(("cells.name", "batches.cell"), NAME),
     "tests.cell": NAME + " AND {0} IN (SELECT name FROM cells)",  # noqa: S608 - our own words
-    **{f"{table}.number": "{0} <= 10000000" for table in ("tests", "leases")},
+    "tests.number": "{0} <= 10000000",
     **{f"batches.{name}": "{0} <= 10000000" for name in ("batch", "first", "n", "left")},
     "tests.batch": "{0} <= 10000000",
     "tests.outcome": "{0} IN ('PASS', 'FAIL', 'INVALID', 'ERROR', 'VALID')",
@@ -388,11 +383,6 @@ class Record:
         """Returns the driver's seed in a test."""
         return seed_of_driver(result.number, result.proposal)
 
-    def file(self, number: int) -> str:
-        """Returns the empty text, because the tests in a store have no file ``test.NNNN.json``."""
-        del number
-        return ""
-
     def tests(self, cell: str = "", which: str | None = None) -> list[NumberedTest]:
         """Returns the names of the ended tests whose Runs can be read, of one cell or (empty) of all cells:
         all of them in order, the "failures", or the "worst", which are those that failed and then those that
@@ -418,7 +408,8 @@ class Record:
 
     def feature_names(self) -> list[str]:
         """Returns the names of all features that occur in the results, sorted."""
-        return [name for (name,) in self.query("SELECT name FROM features ORDER BY name")]
+        sql = "SELECT DISTINCT key FROM details, json_each(features) WHERE features IS NOT NULL ORDER BY key"
+        return [name for (name,) in self.query(sql)]
 
     def close(self) -> None:
         """Closes the database."""
@@ -542,9 +533,8 @@ class Record:
             return db.execute(sql, values).lastrowid or 0
 
     def begin_session(self, workers: int) -> None:
-        """Begins a session, and deletes the leases of earlier sessions."""
+        """Begins a session."""
         now = time.time()
-        self._change("DELETE FROM leases")
         sql = "INSERT INTO sittings(begun, seen, workers) VALUES (?, ?, ?)"
         self._session = self._change(sql, now, now, workers)
 
@@ -601,16 +591,13 @@ class Record:
     def keep(
         self,
         ended: Sequence[tuple[str, FinishedTest]],
-        trace: tuple[int, str] | None,
-        leases: Sequence[tuple[str, int, str, float]],
-        seconds: Mapping[str, float],
+        trace: tuple[int, str] | None = None,
+        seconds: Mapping[str, float] = {},
     ) -> None:
         """Stores a group of results, each with the name of its cell, in one transaction; with them the number
-        and name of the file with their drives, the running tests (cell, number, worker, until when), and the
-        seconds that each cell has worked since."""
+        and name of the file with their drives, and the seconds that each cell has worked since."""
         now = time.time()
         left = Counter((cell, one.result.batch) for cell, one in ended)
-        names = {name for _, one in ended for name in one.result.features}
         tests, details = list[tuple[Any, ...]](), list[tuple[Any, ...]]()
         for cell, one in ended:
             its, took, spent, where = one.result, one.seconds, one.spent, (cell, one.result.number)
@@ -639,9 +626,6 @@ class Record:
                 "UPDATE batches SET left = left - ? WHERE cell = ? AND batch = ?",
                 [(count, cell, batch) for (cell, batch), count in left.items()],
             )
-            db.executemany("INSERT OR IGNORE INTO features VALUES (?)", [(name,) for name in sorted(names)])
-            db.execute("DELETE FROM leases")
-            db.executemany("INSERT OR REPLACE INTO leases VALUES (?, ?, ?, ?)", leases)
             db.executemany(
                 "UPDATE cells SET seconds = seconds + ? WHERE name = ?",
                 [(taken, cell) for cell, taken in seconds.items()],

@@ -80,9 +80,10 @@ def writing(folder: Path) -> AbstractContextManager[None]:
     return explained(RoadGPTError, f"cannot write into {folder}", advice)
 
 
-@dataclass
-class RunFolder:
-    """A folder with the Runs of one request; it may be new or from an earlier session."""
+@dataclass(repr=False, eq=False)
+class Campaign:
+    """A folder with the Runs of one request; it may be new or from an earlier session. Iterating over the
+    Campaign makes the missing Runs; each Run is on disk when it is yielded."""
 
     folder: Path
     request: Request
@@ -93,19 +94,22 @@ class RunFolder:
     if no road can be designed.
     """
     tests: dict[int, FinishedTest] = field(default_factory=dict)  # the tests that have ended, by number
-    spent: Spent = field(default_factory=Spent)
-    """Tokens and money that language models used for the tests of earlier sessions."""
     failure: str = ""
     """Why no road could be designed; empty if a road was designed or none has been tried yet."""
     versions: Versions = field(default_factory=dict)
     """What decides the results of the tests besides the request."""
+    draw: Draw | None = None
+    """Draws pictures into the folders of Runs; None: no pictures."""
+    meter: Meter = field(default_factory=Meter)
+    """Counts the tokens and cost of language models, including those of earlier sessions in the folder."""
     _tally: Tally = field(default_factory=Tally)
     _held_back: list[FinishedTest] = field(default_factory=list)
 
     @classmethod
     def opened(
-        cls, request: Request, brief: Brief, roads: int, out: Path | str | None, again: bool = False
-    ) -> Self:
+        cls, request: Request, brief: Brief, roads: int, out: Path | str | None, again: bool = False,
+        draw: Draw | None = None, meter: Meter | None = None,
+    ) -> Self:  # fmt: skip
         """Opens a new folder, or one that holds tests of the same request, which ``again`` sets aside."""
         if roads < 1:
             raise UsageError(f"{roads} roads cannot be made; ask for 1 or more")
@@ -115,7 +119,7 @@ class RunFolder:
         if out is None:
             made = missing(HOME)
             path = new_folder(request.words, request.seed)
-            return cls(path, request, brief, roads, (path, *made), versions=now)
+            return cls(path, request, brief, roads, (path, *made), {}, "", now, draw, meter or Meter())
         path = Path(out)
         with explained(UsageError, f"cannot use {path}", "name another folder"):
             made = missing(path)
@@ -123,7 +127,7 @@ class RunFolder:
             if again:
                 atomic.set_aside(path, CARD)
             holds_tests = not atomic.is_new(path, CARD)
-        folder = cls(path, request, brief, roads, made, versions=now)
+        folder = cls(path, request, brief, roads, made, {}, "", now, draw, meter or Meter())
         if holds_tests:
             folder.take_up()
         return folder
@@ -170,7 +174,7 @@ class RunFolder:
             return
         if run.index == index:
             self.count(replace(finished_run(run), entry=TallyEntry.of(run)))
-            self.spent += run.spent or Spent()
+            self.meter.add(run.spent or Spent())
 
     def cell(self, name: str) -> Cell:
         """Returns the cell whose tests this folder holds."""
@@ -269,6 +273,41 @@ class RunFolder:
         if ended.entry is not None:
             self._tally.add(ended.entry)
 
+    def __repr__(self) -> str:
+        done = f"{len(self.tests)} of {self.roads} roads"
+        return f"Campaign({self.request.words!r}, seed {self.request.seed}, {done}, in {str(self.folder)!r})"
+
+    @property
+    def kept(self) -> tuple[int, ...]:
+        """Numbers of the finished roads."""
+        return tuple(sorted(self.tests))
+
+    def __iter__(self) -> Iterator[Run]:
+        """Makes the missing Runs and yields them one by one; raises the same errors as ``all_runs``."""
+        return self._runs(with_earlier=False)
+
+    def all_runs(self) -> Iterator[Run]:
+        """Yields the Runs that exist, read from disk, then makes the missing ones and yields them.
+
+        Raises:
+            DesignError: no road could be designed; the folder is removed, unless it was there before.
+            ChatError: a language model cannot be reached, or a token or cost limit is reached; the
+                roads finished before this are saved.
+            GivenUpError: the simulator failed three times in a row; the three roads have to be made again.
+            UsageError: a plug-in is not installed, or another process is using the folder.
+            RoadGPTError: a file cannot be written.
+        """
+        return self._runs(with_earlier=True)
+
+    def _runs(self, with_earlier: bool) -> Iterator[Run]:
+        tests = work_in(self.folder, {"": self}, self.draw, self.meter, with_earlier=with_earlier)
+        with closing(tests):
+            for _, ended in tests:
+                assert ended.run is not None
+                yield ended.run
+        if self.failure:
+            raise DesignError(self.failure)
+
     def write_card(self, is_finished: bool) -> None:
         """Writes ``campaign.json``; raises OSError."""
         card = Card(request=self.request, roads=self.roads, is_finished=is_finished, versions=self.versions)
@@ -281,7 +320,7 @@ class FolderStore(Record):
 
     group_seconds = 0.0
 
-    def __init__(self, home: Path, folders: Mapping[str, RunFolder], cells: Sequence[Cell]) -> None:
+    def __init__(self, home: Path, folders: Mapping[str, Campaign], cells: Sequence[Cell]) -> None:
         """Builds the tables from the tests in the folder of each cell; messages name the folder ``home``."""
         super().__init__(home / CARD, sqlite3.connect(":memory:", isolation_level=None))
         self._folders = folders
@@ -304,7 +343,7 @@ class FolderStore(Record):
         for number in ended if numbers is None else numbers:
             made = ended[number].result.proposal if number in ended else Proposal(None, seed, "draft")
             self.add_batch(cell, number - 1, number, [made])
-        super().keep([(cell, one) for one in ended.values()], None, (), {})
+        super().keep([(cell, one) for one in ended.values()])
 
     def to_resume(self, *more: object) -> str:
         """Returns the command that continues the tests, with further options."""
@@ -325,7 +364,7 @@ class FolderStore(Record):
         return self._cells[name] if name in self._cells else super().cell(name)
 
     def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
-        """Enters tests that have ended into the tables, and writes their files; see ``RunFolder.add``."""
+        """Enters tests that have ended into the tables, and writes their files; see ``Campaign.add``."""
         super().keep(ended, *rest)
         for name, one in ended:
             if one.entry is None:  # its workers died, perhaps while they drew pictures
@@ -342,7 +381,7 @@ class FolderStore(Record):
 
 def work_in(
     home: Path,
-    folders: Mapping[str, RunFolder],
+    folders: Mapping[str, Campaign],
     draw: Draw | None = None,
     meter: Meter | None = None,
     workers: int = 0,
@@ -351,7 +390,7 @@ def work_in(
     """Runs the remaining tests of folders of runs, lazily: each test runs while the caller iterates. Yields
     the name of the folder and the test, as soon as the files of the test are complete.
 
-    If no road can be designed for a folder, ``RunFolder.failure`` gives the reason, and the folder stays
+    If no road can be designed for a folder, ``Campaign.failure`` gives the reason, and the folder stays
     without tests. Messages refer to ``home``, in which ``workers`` processes write their log; with 0, the
     tests run in this process, where ``meter`` counts the use of language models. ``with_earlier``: the tests
     of earlier sessions are yielded first.
@@ -388,53 +427,6 @@ def work_in(
             raise
         for folder in left.values():
             folder.drop_held_back()
-
-
-@dataclass(repr=False, eq=False)
-class Campaign(RunFolder):
-    """The Runs of one description. Iterating over the Campaign makes the missing Runs; each Run is on disk
-    when it is yielded.
-    """
-
-    draw: Draw | None = None
-    """Draws pictures into the folders of Runs; None: no pictures."""
-    meter: Meter = field(default_factory=Meter)
-    """Counts the tokens and cost of language models, including those of earlier sessions in the folder."""
-
-    def __repr__(self) -> str:
-        done = f"{len(self.tests)} of {self.roads} roads"
-        return f"Campaign({self.request.words!r}, seed {self.request.seed}, {done}, in {str(self.folder)!r})"
-
-    @property
-    def kept(self) -> tuple[int, ...]:
-        """Numbers of the finished roads."""
-        return tuple(sorted(self.tests))
-
-    def __iter__(self) -> Iterator[Run]:
-        """Makes the missing Runs and yields them one by one; raises the same errors as ``all_runs``."""
-        return self._runs(with_earlier=False)
-
-    def all_runs(self) -> Iterator[Run]:
-        """Yields the Runs that exist, read from disk, then makes the missing ones and yields them.
-
-        Raises:
-            DesignError: no road could be designed; the folder is removed, unless it was there before.
-            ChatError: a language model cannot be reached, or a token or cost limit is reached; the
-                roads finished before this are saved.
-            GivenUpError: the simulator failed three times in a row; the three roads have to be made again.
-            UsageError: a plug-in is not installed, or another process is using the folder.
-            RoadGPTError: a file cannot be written.
-        """
-        return self._runs(with_earlier=True)
-
-    def _runs(self, with_earlier: bool) -> Iterator[Run]:
-        tests = work_in(self.folder, {"": self}, self.draw, self.meter, with_earlier=with_earlier)
-        with closing(tests):
-            for _, ended in tests:
-                assert ended.run is not None
-                yield ended.run
-        if self.failure:
-            raise DesignError(self.failure)
 
 
 def campaign(
@@ -476,7 +468,4 @@ def campaign(
     request = Request(words=brief.words, seed=seed, world=world_for(brief, world), setup=setup)
     designer_of(setup.designer, setup.chat)
     check_parts(setup, request.world)
-    made = Campaign.opened(request, brief, n, out, again)
-    made.draw, made.meter = draw, meter
-    meter.add(made.spent)
-    return made
+    return Campaign.opened(request, brief, n, out, again, draw, meter)

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any, NamedTuple, TypeVar
 
 from roadgpt import plugins
@@ -169,19 +169,6 @@ PER_WORKER = 2  # tests per worker, running or queued; with fewer, the next cell
 PARTS = 4  # per worker, of the items of a generator: few messages, no long wait for the last
 
 
-@dataclass
-class Progress:
-    """The progress of a campaign."""
-
-    total: int | None  # number of tests; None if the campaign has a time limit but no limit on tests
-    outcomes: Counter[str] = field(default_factory=Counter)
-
-    @property
-    def done(self) -> int:
-        """Number of tests that have ended."""
-        return self.outcomes.total()
-
-
 class _Out(NamedTuple):
     schedule: BatchScheduler
     task: Task
@@ -195,13 +182,12 @@ class Scheduler:
         store: Record,
         staff: WorkerConfig,
         kind: Callable[[WorkerConfig], Executor],
-        tests: int | None = None,
         chat: ChatSettings | None = None,
         run_test: Callable[..., FinishedTest | OutOfAllowance] | None = None,
     ) -> None:
-        """Prepares the session, with executors of a ``kind`` and ``tests`` tests of each cell (None: only
-        time limits them). The limits of ``chat`` hold for all tests together; None stands for the settings of
-        each cell. ``run_test`` runs a test on a worker, by default ``single_test.execute``."""
+        """Prepares the session, with executors of a ``kind``. The limits of ``chat`` hold for all tests
+        together; None stands for the settings of each cell. ``run_test`` runs a test on a worker, by default
+        ``single_test.execute``."""
         self._store = store
         self._staff = staff
         self._names = store.names()
@@ -209,8 +195,7 @@ class Scheduler:
         self._chat = chat
         self._run_test = run_test or execute
         counts = store.query("SELECT outcome, count(*) FROM tests WHERE outcome IS NOT NULL GROUP BY outcome")
-        total = tests and tests * len(self._names)
-        self.progress = Progress(total, Counter(dict(counts)))
+        self._outcomes = Counter(dict(counts))
         self._unopened = iter(self._names)
         self._schedules: list[BatchScheduler] = []
         self._out: dict[Future[FinishedTest | OutOfAllowance], _Out] = {}
@@ -223,9 +208,9 @@ class Scheduler:
         self._has_news = False
         self.executor = kind(staff)
 
-    def run(self) -> Generator[Progress, None, None]:
-        """Runs tests until none is left; yields the progress after every group of results. However the
-        session ends, the results so far are stored and the workers are stopped."""
+    def run(self) -> Generator[Counter[str], None, None]:
+        """Runs tests until none is left; yields the number of tests with each outcome after every group of
+        results. However the session ends, the results so far are stored and the workers are stopped."""
         try:
             yield from self._run()
         except BaseException:
@@ -240,7 +225,7 @@ class Scheduler:
         finally:
             self.executor.shutdown(cancel_futures=True)
 
-    def _run(self) -> Iterator[Progress]:
+    def _run(self) -> Iterator[Counter[str]]:
         self._store.begin_session(self._staff.workers)
         while self._error is None:
             look()
@@ -253,11 +238,11 @@ class Scheduler:
                 self._keep()
             if self._has_news:
                 self._has_news = False
-                yield self.progress
+                yield self._outcomes
         if self._error is not None:
             raise self._error
         self._keep()
-        yield self.progress
+        yield self._outcomes
 
     # Handing out
 
@@ -378,7 +363,7 @@ class Scheduler:
                 self._underfunded.append(out)
                 continue
             self._pending.append((out.schedule.cell.name, value))
-            self.progress.outcomes[value.result.outcome] += 1
+            self._outcomes[value.result.outcome] += 1
             out.schedule.ended(out.task.batch)
             if value.is_lost:
                 self._lost[self._place(out)] = out, value.result.description
@@ -402,7 +387,7 @@ class Scheduler:
         again = [out for place, (out, _) in self._lost.items() if place >= first]
         for out in again:
             self._store.reopen(out.schedule.cell.name, out.task.number, out.task.batch)
-        self.progress.outcomes["ERROR"] -= len(again)
+        self._outcomes["ERROR"] -= len(again)
         self._error = LostDrives.given_up(self._lost[row[-1]][1], "fix it and continue")
 
     def _place(self, out: _Out) -> tuple[int, int]:
@@ -427,7 +412,7 @@ class Scheduler:
             number = self._store.next_trace()
             trace = number, write_traces(self._store.folder, number, drives)
         taken = {schedule.cell.name: now - self._looked for schedule in self._schedules}
-        self._store.keep(self._pending, trace, self._leases(), taken)
+        self._store.keep(self._pending, trace, taken)
         self._may_write = True
         for schedule in self._schedules:
             schedule.seconds += now - self._looked
@@ -435,14 +420,6 @@ class Scheduler:
         self._pending = []
         self._has_news = True
         self._schedules = [schedule for schedule in self._schedules if not schedule.is_done]
-
-    def _leases(self) -> list[tuple[str, int, str, float]]:
-        patience = self._staff.patience
-        return [
-            (out.schedule.cell.name, out.task.number, worker, getattr(future, "begun", 0.0) + patience)
-            for future, out in self._out.items()
-            if (worker := getattr(future, "worker", ""))
-        ]
 
 
 def _run_with(function: Callable[..., T], task: Task, *shared: Shared[Any]) -> T:

@@ -1,7 +1,7 @@
 """What the generators that search share: their settings, and the class that they inherit from."""
 
 from collections.abc import Sequence
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field, ValidationError, field_validator
@@ -32,11 +32,8 @@ class SearchSettings(Frozen):
     count the same. Empty: there is no second map. None: MAX_CURV and DIR_COV if ``axes`` has its default
     value, otherwise no second map.
     """
-    archive: Literal["grid", "cvt"] = "grid"
-    """Kind of feature map: its cells are those of a grid ("grid"), or the neighbourhoods of evenly spread
-    centroids ("cvt")."""
     cells: Annotated[int, Field(ge=2, le=10_000)] = 25
-    """Number of cells along each axis of a grid, or number of centroids."""
+    """Number of cells along each axis of a map."""
     candidates: Annotated[int, Field(ge=1, le=1000)] = 40
     """Number of sketches for each road that is driven; the surrogate predicts the outcome on each."""
     apart: Annotated[float, Field(ge=0, le=1000)] = 5.5

@@ -16,6 +16,8 @@ FRESH = 15.0  # s since the store was last written; a working process writes it 
 LATELY = 60.0  # s over which the current rate is averaged
 ONE_SIDED = 0.05  # share of driven roads; if fewer passed, or fewer failed, there is hardly a boundary
 NOTHING = (None, 0, 0, None, None)  # of a cell in which no test passed
+FEWEST = 5  # passed tests; if there are fewer, it is no surprise that none failed
+NO_FAILURE = "No road failed: `roadgpt campaign --goal failures` searches for one."
 
 
 @dataclass(frozen=True)
@@ -72,15 +74,6 @@ class CellStatus:
 
 
 @dataclass(frozen=True)
-class Lease:
-    """A test that is running, and the worker that runs it."""
-
-    cell: str
-    number: int
-    worker: str
-
-
-@dataclass(frozen=True)
 class Status:
     """The state of a campaign."""
 
@@ -94,7 +87,6 @@ class Status:
     tokens: int
     cost_usd: float
     cells: tuple[CellStatus, ...]
-    under_way: tuple[Lease, ...]
 
     @property
     def done(self) -> int:
@@ -118,6 +110,11 @@ class Status:
             "done": self.done,
             "seconds_left": self.seconds_left,
         }
+
+
+def no_failure(outcomes: Mapping[str, int]) -> list[str]:
+    """Returns the sentence for tests of which none failed and five or more passed; nothing for others."""
+    return [] if outcomes.get("FAIL") or outcomes.get("PASS", 0) < FEWEST else [NO_FAILURE]
 
 
 def cell_statuses(record: Record) -> tuple[CellStatus, ...]:
@@ -169,7 +166,6 @@ def status_of(folder: Path) -> Status:
         )
         is_finished = bool(record.meta("finished"))
         is_running = not is_finished and time.time() - seen < FRESH
-        leases = record.query("SELECT cell, number, worker FROM leases ORDER BY worker")
         tokens, cost = record.spent()
         return Status(
             folder=str(folder),
@@ -182,7 +178,6 @@ def status_of(folder: Path) -> Status:
             tokens=tokens,
             cost_usd=cost,
             cells=cells,
-            under_way=tuple(Lease(*lease) for lease in leases) if is_running else (),
         )
 
 

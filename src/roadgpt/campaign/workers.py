@@ -14,7 +14,6 @@ import os
 import pickle
 import sys
 import threading
-import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
@@ -125,8 +124,6 @@ class Job(Future[Any]):
         self.call = call  # the function, its arguments and its keyword arguments
         self.place = urgency, number  # jobs begin in this order; a job that runs again keeps its place
         self.deaths = 0
-        self.worker = ""  # name of the worker that runs the job; empty if none does
-        self.begun = 0.0  # when the worker began, seconds since 1970
 
     def __lt__(self, other: "Job") -> bool:
         return self.place < other.place
@@ -135,9 +132,7 @@ class Job(Future[Any]):
 class Worker(ABC):
     """A worker, as the campaign's process sees it."""
 
-    def __init__(self, name: str) -> None:
-        self.name = name  # shown to people
-        self.is_ready = self.is_busy = False
+    is_ready = is_busy = False
 
     @abstractmethod
     def begin(self, prepare: Callable[[], object]) -> None:
@@ -169,12 +164,12 @@ class WorkerPool(Executor, ABC):
         self._workers: list[Worker] = []
         self._broken: Exception | None = None
         self._in_vain = 0  # workers that ended before they were ready, since one last became ready
-        self._jobs, self._started = count(1), count(1)
+        self._jobs = count(1)
         self._own = threading.local()  # its ``worker`` is that of this thread
         self._threads = ThreadPoolExecutor(staff.workers, initializer=self._hire)
 
     @abstractmethod
-    def _start(self, name: str) -> Worker:
+    def _start(self) -> Worker:
         """Starts a worker; raises RoadGPTError if this is impossible."""
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
@@ -218,7 +213,7 @@ class WorkerPool(Executor, ABC):
         while self._broken is None:
             worker = None
             try:
-                worker = self._start(f"worker {next(self._started)}")
+                worker = self._start()
                 self._workers.append(worker)
                 worker.is_busy = True
                 if self._broken is not None:  # the executor was stopped meanwhile
@@ -257,18 +252,16 @@ class WorkerPool(Executor, ABC):
         if worker is None or self._broken is not None:
             job.set_exception(self._broken or CancelledError())
             return
-        job.worker, job.begun = worker.name, time.time()
         try:
             data = worker.run(pickled(job.call))
         except GoneError as ended:
-            job.worker = ""
             self._dismiss(worker)
             self._give_again(job, ended)
             self._hire()
             return
         except Exception as error:  # the call cannot be pickled, for example
             data = portable(error)
-        job.worker, worker.is_busy = "", False
+        worker.is_busy = False
         try:
             job.set_result(value_in(data))
         except Exception as error:  # that of the job, or its value cannot be read

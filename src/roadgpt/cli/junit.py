@@ -13,12 +13,13 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from roadgpt.campaign.folder_record import has_tests, open_record
+from roadgpt.campaign.folder_record import has_tests, is_store, open_record
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.cli.screen import Row, row_of
 from roadgpt.errors import RoadGPTError, explained
 from roadgpt.export.markup import XmlElement, escaped
 from roadgpt.run.atomic import write_whole
+from roadgpt.run.execution import test_name
 from roadgpt.run.folder import is_run
 from roadgpt.run.model import Request
 
@@ -54,7 +55,8 @@ def suites_of(folder: Path, worse: Mapping[str, str]) -> Iterator[Suite]:
                 times = dict(record.query(TIMES, (cell.name,)))
                 errors = dict(record.query(ERRORS, (cell.name,)))
                 for result in record.results(cell.name):
-                    number, file = result.number, record.file(result.number)
+                    number = result.number
+                    file = "" if is_store(place) else str(place / test_name(number))
                     test = str(NumberedTest(cell.name, number))
                     own = {"words": cell.request.words, "seed": record.seed(result)}
                     own |= {"seconds": times.get(number, 0.0), "trace": str(errors.get(number, ""))}

@@ -14,13 +14,12 @@ from roadgpt.campaign.faults.fault import Faults, faults_in
 from roadgpt.campaign.folder_record import is_store, open_record, setups_of
 from roadgpt.campaign.gate import Gate
 from roadgpt.campaign.model import GIVEN, NumberedTest
-from roadgpt.campaign.scheduler import Progress
 from roadgpt.campaign.selection import Choice, Selection, selection_of
-from roadgpt.campaign.status import CellStatus, Status, status_of
+from roadgpt.campaign.status import CellStatus, Status, no_failure, status_of
 from roadgpt.chat import Spent
 from roadgpt.chat.answer import plain
 from roadgpt.check.measures import ups_and_downs
-from roadgpt.cli.repeat_commands import lines, of_status, replay_lines, to_resume
+from roadgpt.cli.repeat_commands import replay_lines, to_resume
 from roadgpt.cli.roads import NamedRoad, roads_named
 from roadgpt.cli.screen import COLOURS, WIDEST, Row, driver_and_oracle, metres, row_of, spending
 from roadgpt.cli.streams import aligned, apart, duration, progress, resumable
@@ -37,12 +36,14 @@ HEAD, SIDES = ("cell", "done", "pass", "fail", "other", "least margin", "what"),
 LONGEST, WIDEST_TEXT = 60, 300  # letters of a description, and of other texts, in a line of a table
 
 
-def watch(folder: Path, steps: Iterator[Progress], as_json: bool, quiet: bool, gate: Gate) -> None:
+def watch(folder: Path, steps: Iterator[Counter[str]], as_json: bool, quiet: bool, gate: Gate) -> None:
     """Runs a campaign, shows its progress and prints its results; after Ctrl-C, prints how to resume it."""
     advice = f"finished tests are kept; continue with: {to_resume(folder)}"
+    with open_record(folder) as record:
+        total = record.total()
     with resumable(advice), progress("tests", None, quiet, has_lines=False) as tell:
-        for step in apart(steps):
-            tell(step.done, total=step.total, rate=outcomes_line(step.outcomes))
+        for outcomes in apart(steps):
+            tell(outcomes.total(), total=total, rate=outcomes_line(outcomes))
     status = status_of(folder)
     gate.add_folder(folder)
     if as_json:
@@ -110,7 +111,7 @@ def _told(status: Status) -> Iterator[str]:
             f"outside their lane, within the tolerance: at most {percent(share)} of the car, {beyond:.2f} m "
             "beyond the marking"
         )
-    yield from lines(of_status(status))
+    yield from () if status.is_running else no_failure(status.outcomes)
     yield from [cell.remark for cell in cells[:MOST_CELLS] if cell.remark]
 
 

@@ -23,7 +23,7 @@ from roadgpt.design.elements import elements_of
 from roadgpt.errors import RoadGPTError, command_line, explained
 from roadgpt.plural import plural
 from roadgpt.report.canvas import save_all
-from roadgpt.report.chapters.faults import Steps, fault_summaries, faults, headline, what_to_try
+from roadgpt.report.chapters.faults import fault_summaries, faults, headline
 from roadgpt.report.chapters.roads import CELLS, MAPS, feature_map
 from roadgpt.report.chapters.validity import outside_sentences, outside_table, passed_tests
 from roadgpt.report.chapters.wording import (
@@ -70,16 +70,16 @@ EXPLAINED = (
 )
 
 
-def write_store_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
+def write_store_report(folder: Path, command: str = "") -> Path:
     """Writes the report of a campaign into its folder and returns the path of the HTML page. It shows
-    ``command``, which repeats the campaign, and ``next_steps``, what to try if no test failed."""
+    ``command``, which repeats the campaign."""
     status = status_of(folder)
     with Record.opened(folder) as record:
-        page = _page(folder, record, status, command, next_steps)
+        page = _page(folder, record, status, command)
     return write(page, folder)
 
 
-def _page(folder: Path, record: Record, status: Status, command: str, next_steps: Steps) -> Page:
+def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     first, is_paired = record.cell(record.names()[0]).request, record.plan().paired
     goes_on = first.setup.keep_driving  # whether cars drive on after they have left their lane
     fields = [c for c in status.cells if c.done]
@@ -94,7 +94,6 @@ def _page(folder: Path, record: Record, status: Status, command: str, next_steps
     sections = [same_roads(folder, record)] if is_paired else []
     sections += [gallery] if gallery else []
     sections += [Section("Feature map", covered)] if covered else []
-    sections += what_to_try(next_steps)
     sections.append(Section("Outcomes", _outcomes(record, status, fields, is_paired)))
     if any(_driven(each)[1] for each in fields):
         sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS], goes_on)))
@@ -102,7 +101,7 @@ def _page(folder: Path, record: Record, status: Status, command: str, next_steps
         sections.append(Section("How near to failing", near))
     sections += [Section("At the boundary", boundary(folder, pairs))] if pairs else []
     summary = compared(record) if is_paired else []
-    summary += headline(found, summaries) if _driven(status)[1] else []
+    summary += headline(found, summaries, status.outcomes) if _driven(status)[1] else []
     summary += [*_summary(record, first, status, fields), *nearest_sentence(pairs)]
     return Page(title, summary, sections, _card(command, record, status), lead)
 

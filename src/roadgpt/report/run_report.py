@@ -1,15 +1,17 @@
 """Writes the report of a folder of runs, from the files in it."""
 
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from roadgpt.campaign.faults.fault import faults_in
+from roadgpt.campaign.status import no_failure
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
 from roadgpt.report.chapters.alignment import alignment
-from roadgpt.report.chapters.faults import Steps, fault_summaries, faults, headline, what_to_try
+from roadgpt.report.chapters.faults import fault_summaries, faults, headline
 from roadgpt.report.chapters.roads import coverage, every_road, overview
 from roadgpt.report.chapters.validity import (
     KINDS,
@@ -42,9 +44,9 @@ UNITS = {
 """Factor and unit with which a field of the World is shown; fields that are not listed are in metres."""
 
 
-def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
+def write_run_report(folder: Path, command: str = "") -> Path:
     """Writes the report of runs made by ``roadgpt run`` into their folder; returns the path of the HTML page.
-    It shows ``command``, which repeats the runs, and ``next_steps``, what to try if no road failed."""
+    It shows ``command``, which repeats the runs."""
     card = read_card(folder)
     request, setup = card.request, card.request.setup
     words, world = request.words or "roads that were given", request.world
@@ -53,18 +55,22 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
         raise UsageError(f"{folder} holds no finished road yet; say first: {command}")
     parts, failed = [part], faults_in(folder)
     summaries = fault_summaries(folder, failed)
+    kinds = [source_of(setup.designer, parts, kind) for kind in KINDS]
     opening = [overview(parts, world.site.map_size), faults(folder, failed, summaries)]
-    sections = [*filter(None, opening), *what_to_try(next_steps)]
-    sections += [validity(parts, [source_of(setup.designer, parts, kind) for kind in KINDS])]
+    sections = [
+        *filter(None, opening),
+        validity(parts, [source_of(setup.designer, parts, kind) for kind in KINDS]),
+    ]
     if setup.drives:
         left = source_of(setup.designer, parts, LEFT)
         sections += [departures(parts, [left] if left.total else [])]
     sections += [alignment(parts, [setup.designer])] if request.words else []
+    outcomes = Counter(road.outcome for road in part.roads)
     far = _least(part.roads, "FAIL") if setup.keep_driving else None
     sentences = sentences_of(parts, world, near_and_far(_least(part.roads, "PASS"), far))
     page = Page(
         words,
-        [*(headline(failed, summaries) if summaries else []), *sentences],
+        [*(headline(failed, summaries, outcomes) if summaries else no_failure(outcomes)), *sentences],
         [*sections, *comparisons_of(parts, world)],
         card_of(command, card.roads, request.seed, setup, world, parts),
         f"{plural(len(part.roads), 'road')} of {card.roads:,}, seed {request.seed}",

@@ -81,14 +81,6 @@ def departure(
     return Departure(side, number, first, *found)
 
 
-def segment_around(points: ArrayLike, place: Sequence[float]) -> Array | None:
-    """Returns points ``(n, 2)`` of a road from 30 m before to 30 m after a place; None if the segment
-    cannot be cut out."""
-    line = _interpolated(points)
-    found = None if line is None else _cut_out(line, place, AROUND, AROUND)
-    return None if found is None else np.concatenate(found)
-
-
 def _interpolated(points: ArrayLike) -> Array | None:
     plan = np.asarray(points, float)[:, :2]
     if len(plan) < FEWEST_POINTS:

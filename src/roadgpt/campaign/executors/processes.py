@@ -27,13 +27,12 @@ START = 60.0  # s, at least, for a process to start on a busy machine, and to pr
 class Process(Child, Worker):
     """A worker that is a process of its own."""
 
-    def __init__(self, name: str, staff: WorkerConfig) -> None:
+    def __init__(self, staff: WorkerConfig) -> None:
         """Starts the process, which prints into the log. Raises OSError."""
         # every worker has one core, so libraries in it must not start threads of their own
         alone = {name: "1" for name in ONE_THREAD if name not in os.environ}
         with staff.log.open("ab") as file:
             Child.__init__(self, "roadgpt.campaign.workers", stderr=file, env=alone)
-        Worker.__init__(self, f"{name} ({self.process.pid})")
         self._staff = staff
 
     def begin(self, prepare: Callable[[], object]) -> None:
@@ -64,12 +63,12 @@ class Processes(WorkerPool):
         super().shutdown(wait, cancel_futures=cancel_futures)
         shorten(self._staff.log)
 
-    def _start(self, name: str) -> Process:
+    def _start(self) -> Process:
         try:
-            return Process(name, self._staff)
+            return Process(self._staff)
         except OSError as error:
             raise RoadGPTError(
-                f"{name} cannot be started ({error.strerror or error}); ask for fewer with -j"
+                f"a worker cannot be started ({error.strerror or error}); ask for fewer with -j"
             ) from error
 
 

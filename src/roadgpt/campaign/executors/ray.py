@@ -50,15 +50,14 @@ class Ray(WorkerPool):
             self._ray.shutdown()
             self._is_ours = False
 
-    def _start(self, name: str) -> "Actor":
-        return Actor(name, self._ray, self._staff.patience, self._workers)
+    def _start(self) -> "Actor":
+        return Actor(self._ray, self._staff.patience, self._workers)
 
 
 class Actor(Worker):
     """A worker, which Ray runs on some machine."""
 
-    def __init__(self, name: str, ray: Any, patience: float, workers: Sequence[Worker]) -> None:
-        super().__init__(name)
+    def __init__(self, ray: Any, patience: float, workers: Sequence[Worker]) -> None:
         self._ray, self._patience, self._workers = ray, patience, workers
         self._actor = ray.remote(num_cpus=1, max_restarts=0, max_task_retries=0)(RayActor).remote()
         self._node = ""
@@ -71,8 +70,7 @@ class Actor(Worker):
                 raise RoadGPTError(
                     f"Ray found no free core for a worker in {PATIENCE:g} s; see ray status, or ask later"
                 )
-        self._node, where = value_in(self._got(begun))
-        self.name += f" ({where})"
+        self._node = value_in(self._got(begun))
 
     def run(self, call: bytes) -> bytes:
         """Runs a job, and returns its value or error."""
@@ -136,8 +134,7 @@ class RayActor:
     """A worker's end of the connection; it runs in a process of its own."""
 
     def begin(self, version: str, prepare: bytes) -> bytes:
-        """Prepares the worker. Returns the id of the Ray node and a text with host name and process id, or an
-        error, for ``value_in``."""
+        """Prepares the worker. Returns the id of the Ray node, or an error, for ``value_in``."""
         import ray
 
         os.environ.setdefault("MPLBACKEND", "Agg")
@@ -151,7 +148,7 @@ class RayActor:
             unpickled(prepare)()
         except Exception as error:  # whatever it is, the campaign has to hear of it
             return portable(error)
-        return pickled((VALUE, (ray.get_runtime_context().get_node_id(), f"{here}, {os.getpid()}")))
+        return pickled((VALUE, ray.get_runtime_context().get_node_id()))
 
     def work(self, call: bytes) -> bytes:
         """Runs a job; returns its value or error for ``value_in``."""

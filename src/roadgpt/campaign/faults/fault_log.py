@@ -10,36 +10,33 @@ DIR/faults/
                    (``removed_by`` is empty), one line per group of similar failures
   remedies/        which small changes remove a failure (see ``remedy``)
   failures.csv     one line per failure, with the fault that it belongs to, if any
-  top/             for a paper: road, picture and sentence of the most instructive failures, and top.csv
 
 For a folder of runs, the level c01/ is left out.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from roadgpt.campaign.faults.failures import FailureReason, between, reason_of
+from roadgpt.campaign.faults.failures import FailureReason, reason_of
 from roadgpt.campaign.faults.fault import Fault, Faults
 from roadgpt.campaign.faults.minimise import simplest
 from roadgpt.campaign.faults.remedy import FOLDER, made_folder, page_of, stored
 from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
-from roadgpt.export import save
 from roadgpt.reading import strictly
 from roadgpt.run import Run, write_run
-from roadgpt.run.atomic import csv_text, json_text, remove_numbered, write_whole
+from roadgpt.run.atomic import csv_text, json_text, write_whole
 from roadgpt.run.folder import is_run, run_folder
 
-SIMPLEST, TOP = "simplest", "top"
+SIMPLEST = "simplest"
 TABLE, FAILURES = "faults.csv", "failures.csv"
 HEAD = (
     "fault", "failures", "test", "failed_again", "drives", "share", "way", "side", "radius_m",
     "entered_kmh", "needed_g", "grade", "station_m", "reason", "simplest", "removed_by",
 )  # fmt: skip
-HEAD_OF_SYSTEM = ("driver", "simulator", "oracle")
 HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "max_oob", "beyond_m")
 
 
@@ -124,39 +121,6 @@ def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
     found = [its for name, run in runs if (its := _read(page_of(folder / FOLDER, name), run, name))]
     # of equal ones max returns the first, which is the most typical
     return max(found, key=lambda its: its.stability.is_stable or its.stability.share, default=None)
-
-
-def instructive(
-    faults: Sequence[Fault], looked: Mapping[int, FailureAnalysis], most: int
-) -> list[tuple[Fault, NumberedTest]]:
-    """Returns up to ``most`` failures: the one that was analysed of each fault, then those that differ most
-    from the earlier ones in the bends and grades around them, or else in their station."""
-    there = {each.name: (fault, each) for fault in faults for each in fault.members}
-    chosen = [looked[fault.number].name for fault in faults][:most]
-    while len(chosen) < min(most, len(there)):
-        left = [name for name in there if name not in chosen]
-        apart = between(*([there[name][1].around for name in some] for some in (left, chosen))).min(axis=1)
-        metres = [min(abs(there[a][1].station - there[b][1].station) for b in chosen) for a in left]
-        chosen.append(left[max(range(len(left)), key=lambda at: (apart[at], metres[at]))])
-    return [(there[name][0], name) for name in chosen]
-
-
-def write_top(folder: Path, top: Sequence[tuple[Fault, FailureAnalysis]], draw: FailureDrawing) -> Path:
-    """Writes the road, the picture and the sentence of each failure, and a table, into ``faults/top``."""
-    place, rows = made_folder(folder / FOLDER / TOP), []
-    remove_numbered(place)
-    for number, (fault, looked) in enumerate(top, 1):
-        run, path = kept_run(folder, *looked.name), place / f"{number}.txt"
-        assert run.road is not None
-        save(run.road, place, ["opendrive"], run.world, path.stem)
-        for suffix in (".png", ".pdf"):
-            draw(run, looked.reason, looked.stability.sentence, path.with_suffix(suffix))
-        gone = f"; disappears with {fault.removed_by}" if fault.remedy else ""
-        write_whole(path, f"{looked.reason.sentence}; {looked.stability.sentence}{gone}.\n")
-        setup, limits = run.request.setup, run.world.limits
-        rows.append([number, *_line(fault, looked), Path(setup.driver).name, setup.simulator, limits.oracle])
-    write_whole(place / f"{TOP}.csv", csv_text(("number", *HEAD, *HEAD_OF_SYSTEM), rows))
-    return place
 
 
 def write_tables(found: Faults, looked: Mapping[int, FailureAnalysis], folder: Path) -> Path:

@@ -1,18 +1,13 @@
-"""Simplifies a road on which the car fails, and finds the smallest change that turns a road on which the car
-passed into one on which it fails.
+"""Simplifies a road on which the car fails.
 
 The method is delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing Input,
 IEEE Transactions on Software Engineering 28 (2002). Unless the drives run out, the simplified road is
-1-minimal: any single further simplification makes the failure disappear. The smallest change is a set of
-changed fields from which none can be left out; bisection finds the smallest fraction of it that still makes
-the car fail.
+1-minimal: any single further simplification makes the failure disappear.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
-from roadgpt.brief.model import Brief
 from roadgpt.check import inspect
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.road import Design, Segment, build
@@ -59,14 +54,14 @@ class Simplest:
 class Trial:
     """Drives simplified versions of one failing road, each at most once, and counts the drives."""
 
-    def __init__(self, failure: Run, brief: Brief | None, most: int) -> None:
+    def __init__(self, failure: Run, most: int) -> None:
         """Begins without a drive; raises UsageError if the Run did not fail or has no Design."""
         if failure.verdict is None or failure.verdict.kept or failure.plain_design is None:
             raise UsageError(
                 f"road {failure.index} did not fail, or has no design without junctions; "
                 "only failing roads with such designs are simplified"
             )
-        self.failure, self.brief, self.most = failure, brief, most
+        self.failure, self.most = failure, most
         self.kind = (failure.verdict.cause, failure.verdict.side)
         self.drives = 0
         self.is_exhausted = False  # true if a drive was refused because all drives were used up
@@ -86,7 +81,7 @@ class Trial:
         request, failure = self.failure.request, self.failure
         for placed in (design, *_moved(design, failure)):
             road = build(placed, request.setup.geometry)
-            if not inspect(road, self.brief, request.world, request.setup.rules):
+            if not inspect(road, None, request.world, request.setup.rules):
                 break
         else:
             return None
@@ -96,7 +91,7 @@ class Trial:
         self.drives += 1
         run = prove(placed, failure.seed, request.world, request.setup, failure.index)
         same = run.verdict is not None and (run.verdict.cause, run.verdict.side) == self.kind
-        return replace(run, request=request, brief=self.brief) if same and run.outcome == "FAIL" else None
+        return replace(run, request=request) if same and run.outcome == "FAIL" else None
 
 
 def _moved(design: Design, failure: Run) -> list[Design]:
@@ -113,10 +108,10 @@ def _moved(design: Design, failure: Run) -> list[Design]:
     return [design.model_copy(update={"starting_point": (x + dx, y + dy, z)})]
 
 
-def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) -> Simplest:
+def simplest(failure: Run, most: int = MOST_DRIVES) -> Simplest:
     """Simplifies the road of a failing Run with a Design such that the car still fails for the same cause and
-    to the same side; every road keeps ``brief``, and there are at most ``most`` drives."""
-    trial = Trial(failure, brief, most)
+    to the same side; there are at most ``most`` drives."""
+    trial = Trial(failure, most)
     assert failure.plain_design is not None
     design, before = failure.plain_design, None
     while design != before:
@@ -196,124 +191,3 @@ SIMPLIFIERS: tuple[Callable[[Design], list[Simplification]], ...] = (
     ),
 )
 """The types of simplification; those that simplify the road most come first."""
-
-
-FINEST = 1 / 64  # of the change
-TOLD = {
-    "distance": ("length", " m"),
-    "turn_degrees": ("turn", " degrees"),
-    "radius": ("radius", " m"),
-    "transition": ("clothoid", " m"),
-    "incline": ("grade", " %"),
-    "vertical_radius": ("vertical radius", " m"),
-}
-"""The name and the unit of a field of a segment in texts."""
-
-
-@dataclass(frozen=True)
-class Difference:
-    """One changed field of one segment: its value on the road that passed and on the road that failed."""
-
-    segment: int  # index of the segment, from 0
-    field: str
-    kept: Any
-    failing: Any
-
-    @property
-    def sentence(self) -> str:
-        """The difference as text for users."""
-        name, unit = TOLD.get(self.field, (self.field, ""))
-        before, after = (_value_text(value, unit) for value in (self.kept, self.failing))
-        return f"segment {self.segment + 1}: {name} {before} -> {after}"
-
-
-def _value_text(value: Any, unit: str) -> str:
-    if value is None:
-        return "as it comes"
-    return f"{value:.4g}{unit}" if isinstance(value, float) else str(value)
-
-
-@dataclass(frozen=True)
-class SmallestChange:
-    """The smallest change found, and the Run of the failing road that results from this change."""
-
-    run: Run
-    differences: tuple[Difference, ...]
-    drives: int  # number of drives that the search took
-
-
-def smallest_change(
-    kept: Run, failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES
-) -> SmallestChange:
-    """Finds, among the differences between a Run that passed and a Run that failed, on roads of equally many
-    segments, the smallest change that makes the car fail. Every road that is driven keeps ``brief``, and
-    there are at most ``most`` drives."""
-    if kept.plain_design is None or failure.plain_design is None:
-        raise UsageError("only roads with designs without junctions can be compared segment by segment")
-    counts = len(kept.plain_design.segments), len(failure.plain_design.segments)
-    if counts[0] != counts[1]:
-        raise UsageError(
-            f"the roads have {counts[0]} and {counts[1]} segments; "
-            "a smallest change is looked for between roads of equally many"
-        )
-    trial = Trial(failure, brief, most)
-    # from the start of the failing road; the car drives the same anywhere on the map
-    base = failure.plain_design.model_copy(update={"segments": kept.plain_design.segments})
-    every = _differences(base, failure.plain_design)
-    needed = _fewest(base, every, trial)
-    least = _least(base, needed, trial)
-    run = trial.fails(_changed(base, least))
-    return SmallestChange(run or failure, tuple(least), trial.drives)
-
-
-def _differences(kept: Design, failing: Design) -> list[Difference]:
-    return [
-        Difference(index, field, getattr(old, field), getattr(new, field))
-        for index, (old, new) in enumerate(zip(kept.segments, failing.segments, strict=True))
-        for field in Segment.model_fields
-        if getattr(old, field) != getattr(new, field)
-    ]
-
-
-def _changed(design: Design, differences: Sequence[Difference]) -> Design:
-    segments = list(design.segments)
-    for each in differences:
-        segments[each.segment] = segments[each.segment].model_copy(update={each.field: each.failing})
-    return design.model_copy(update={"segments": tuple(segments)})
-
-
-def _fewest(base: Design, every: Sequence[Difference], trial: Trial) -> list[Difference]:
-    """Returns some of the differences: with these the car still fails, and none can be left out."""
-    left = [*every]
-    size = max(1, len(left) // 2)
-    while True:
-        for at in range(0, len(left), size):
-            fewer = left[:at] + left[at + size :]
-            if fewer and trial.fails(_changed(base, fewer)) is not None:
-                left = fewer
-                break
-        else:
-            if size == 1:
-                return left
-            size = max(1, size // 2)
-
-
-def _least(base: Design, differences: Sequence[Difference], trial: Trial) -> list[Difference]:
-    """Returns the differences, all scaled by the smallest common fraction with which the car still fails."""
-    low, high = 0.0, 1.0
-    while high - low > FINEST:
-        middle = (low + high) / 2
-        if trial.fails(_changed(base, _scaled(differences, middle))) is not None:
-            high = middle
-        else:
-            low = middle
-    return _scaled(differences, high)
-
-
-def _scaled(differences: Sequence[Difference], share: float) -> list[Difference]:
-    return [
-        replace(each, failing=each.kept + share * (each.failing - each.kept))
-        if isinstance(each.kept, float) and isinstance(each.failing, float)
-        else each
-        for each in differences
-    ]

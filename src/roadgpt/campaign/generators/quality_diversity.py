@@ -69,7 +69,7 @@ class QualityDiversity(SearchGenerator):
         super().__init__(cell)
         self._setting = self._setting._replace(is_interpolated=is_interpolated)
         self._goal: Goal = cell.goal or "failures"
-        self._maps = [Archive(axes, self._wanted.cells, self._wanted.archive) for axes in self._wanted.maps]
+        self._maps = [Archive(axes, self._wanted.cells) for axes in self._wanted.maps]
         self._driven = [axis for axis in self._setting.axes if axis in DRIVEN]
         self._results: dict[int, Result] = {}
         self._looks: dict[int, tuple[Sketch, PlanShape]] = {}

@@ -82,8 +82,6 @@ def write_report(folder: Path) -> Path:
 
     A plug-in called ``reports`` is named after the file of the folders for which it writes the report."""
     from roadgpt.campaign.folder_record import is_store
-    from roadgpt.campaign.status import status_of
-    from roadgpt.cli.repeat_commands import next_steps, of_status
     from roadgpt.report.campaign_report import write_store_report
     from roadgpt.report.run_report import write_run_report
 
@@ -91,9 +89,8 @@ def write_report(folder: Path) -> Path:
         if (folder / card).is_file():
             made: Path = plugins.find("reports", card)(folder)
             return made
-    steps = next_steps(of_status(status_of(folder)))
     write = write_store_report if is_store(folder) else write_run_report
-    return write(folder, command_of(folder), steps)
+    return write(folder, command_of(folder))
 
 
 def command_of(folder: Path) -> str:

@@ -3,6 +3,7 @@
 import json
 import secrets
 import sys
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import redirect_stdout
 from pathlib import Path
@@ -148,8 +149,9 @@ def reading(brief: Brief) -> str:
 
 
 def _watch(work: "Campaign", pictures: "tuple[Format, ...]", screen: Screen, junit: Path | None) -> None:
+    from roadgpt.campaign.status import no_failure
     from roadgpt.cli.junit import suite_of, write_junit
-    from roadgpt.cli.repeat_commands import lines, of_rows, to_resume
+    from roadgpt.cli.repeat_commands import to_resume
 
     try:
         screen.runs(work.all_runs(), work.folder)
@@ -164,7 +166,7 @@ def _watch(work: "Campaign", pictures: "tuple[Format, ...]", screen: Screen, jun
         if screen.rows:
             screen.say(f"tests and tables: {work.folder}")
             if len(screen.rows) == work.roads:
-                for line in lines(of_rows(work.request, work.brief, work.roads, screen.rows)):
+                for line in no_failure(Counter(row.outcome for row in screen.rows)):
                     screen.say(line)
             for kind in pictures[:1]:
                 overview = work.folder / f"overview.{kind}"

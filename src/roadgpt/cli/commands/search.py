@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Set
 from contextlib import redirect_stdout
 from functools import partial
 from itertools import chain
@@ -33,7 +33,6 @@ from roadgpt.plural import plural
 if TYPE_CHECKING:
     from roadgpt.campaign.faults.fault import Faults
     from roadgpt.campaign.faults.fault_log import FailureAnalysis, FailureDrawing
-    from roadgpt.campaign.model import NumberedTest
     from roadgpt.campaign.plan import Plan
     from roadgpt.chat import ChatSettings
     from roadgpt.report import Scale
@@ -66,7 +65,6 @@ class AnalysisOptions(NamedTuple):
     quiet: bool
     groups: bool
     formats: tuple[str, ...] = ("png",)  # without any, no pictures are drawn
-    top: int | None = None  # failures that are written into a folder for a paper
     is_apart: bool = False  # standard output is reserved for JSON
 
     def say(self, text: str, is_news: bool = False) -> None:
@@ -78,7 +76,7 @@ class AnalysisOptions(NamedTuple):
 def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     """Finds and prints the distinct faults of a folder of runs or a campaign, with an analysis of each."""
     from roadgpt.campaign.faults.fault import faults_in
-    from roadgpt.campaign.faults.fault_log import FAILURES, instructive, write_tables, write_top
+    from roadgpt.campaign.faults.fault_log import FAILURES, write_tables
     from roadgpt.campaign.faults.remedy import FOLDER, stored_remedies
     from roadgpt.campaign.folder_record import open_record, setups_of
     from roadgpt.cli.repeat_commands import typed_words
@@ -96,9 +94,7 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     with resumable(f"finished work is kept; continue with: {go_on}"):
         found = _tested(place, found, look)
         look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
-        looked = _analysed(place, [(each.number, each.names) for each in found.them], look)
-        top = instructive(found.them, looked, look.top or 0)
-        tops = _analysed(place, [(at, (name,)) for at, (_, name) in enumerate(top)], look)
+        looked = _analysed(place, found, look)
     table = write_tables(found, looked, place)
     look.say("\n".join(_summary(place, found, looked)))
     every = [each for fault in (*found.them, *found.alone) for each in fault.members]
@@ -116,11 +112,6 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
         cells = sorted({fault.typical[0].name.cell for fault in found.them})
         drawn = (f"{place / FOLDER / cell}/*.{kind}" for cell in cells for kind in look.formats)
         look.say(f"pictures: {', '.join(drawn)}")
-    if top:
-        from roadgpt.report.birds_eye import draw_fault
-
-        folder = write_top(place, [(fault, tops[at]) for at, (fault, _) in enumerate(top)], draw_fault)
-        look.say(f"the {len(top)} most instructive failures, for a paper: {folder}")
 
 
 def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
@@ -145,10 +136,8 @@ def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
     return found
 
 
-def _analysed(
-    place: Path, what: "Sequence[tuple[int, Sequence[NumberedTest]]]", look: AnalysisOptions
-) -> "dict[int, FailureAnalysis]":
-    """Analyses one of the named failures under each number; returns the analyses by number."""
+def _analysed(place: Path, found: "Faults", look: AnalysisOptions) -> "dict[int, FailureAnalysis]":
+    """Analyses a typical failure of each fault; returns the analyses by the faults' numbers."""
     from roadgpt.campaign.executors.processes import unordered_map
     from roadgpt.campaign.faults.fault_log import AnalysisTask, analyse
     from roadgpt.campaign.workers import LOG
@@ -157,8 +146,8 @@ def _analysed(
     if look.formats:
         from roadgpt.report.birds_eye import draw_fault as draw
     tasks = [
-        AnalysisTask(place, number, tuple(names), look.repeat, look.minimise, draw, look.formats)
-        for number, names in what
+        AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw, look.formats)
+        for each in found.them
     ]
     steps = unordered_map(analyse, tasks, look.workers, place / LOG)
     return dict(watched(steps, len(tasks), "faults", look.quiet))
@@ -195,8 +184,6 @@ FAULTS_OPTIONS = (
     Option("--repeat", f"{DISTURB}.", DRIVES, REPEAT),
     Option("--minimise", f"{MINIMISE}.", bool),
     Option("--groups", GROUPS, bool),
-    Option("--top", "Also write the N most instructive failures into a folder for a paper: different faults "
-           "first, then different places.", whole(1, 100, "failures")),
     Option("-j workers", "Number of failures analysed in parallel.", whole(1, 256, "processes"), 1),
     *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
 )

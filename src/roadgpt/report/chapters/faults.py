@@ -1,7 +1,6 @@
-"""Makes the section on distinct faults and, if no road failed, a section on what to try next. No simulations
-are run."""
+"""Makes the section on distinct faults. No simulations are run."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,6 +10,7 @@ from roadgpt.campaign.faults.fault_log import TABLE, FailureAnalysis, kept_analy
 from roadgpt.campaign.faults.remedy import FOLDER
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
+from roadgpt.campaign.status import no_failure
 from roadgpt.errors import UsageError, command_line
 from roadgpt.plural import plural
 from roadgpt.report.canvas import FORMATS
@@ -38,10 +38,6 @@ DRAWN = (
     "Each picture is of a typical failure: up is the way that the road led there, blue the way of the car, "
     "orange the car where it failed."
 )
-
-
-Steps = Sequence[tuple[str, str]]
-"""What to try next: pairs of a description and a command."""
 
 
 class FaultSummary(NamedTuple):
@@ -75,11 +71,12 @@ def fault_summaries(folder: Path, found: Faults) -> list[FaultSummary]:
     return summaries
 
 
-def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
+def headline(found: Faults, summaries: Sequence[FaultSummary], outcomes: Mapping[str, int]) -> list[str]:
     """Returns the first sentences of a report: the number of faults and, if ``roadgpt faults`` has repeated
-    tests, the number of faults whose repeated test failed in at least half of the drives."""
+    tests, the number of faults whose repeated test failed in at least half of the drives. ``outcomes`` has
+    the number of tests with each outcome."""
     if not found.failures:
-        return ["No road failed."]
+        return no_failure(outcomes) or ["No road failed."]
     measured = [each.looked.stability.is_stable for each in summaries if each.looked]
     sure = f"{sum(measured)} of {len(measured)} that were driven again" if measured else ""
     what = "faults" if found.distinct else "groups"
@@ -162,12 +159,3 @@ def _all(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Bloc
     if (folder / FOLDER / TABLE).is_file():
         beside.append(["As roadgpt faults last wrote them: ", linked(TABLE, f"{FOLDER}/{TABLE}"), "."])
     return Details("All as a table", [table, *beside])
-
-
-def what_to_try(steps: Steps) -> list[Section]:
-    """Returns a section with the commands to try if no road failed; empty if no commands are given."""
-    if not steps:
-        return []
-    caption = "No road failed; what may find one that does"
-    table = Table("next", caption, ["what", "command"], [row(*step) for step in steps])
-    return [Section("What to try next", [table])]
