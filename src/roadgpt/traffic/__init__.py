@@ -1,10 +1,21 @@
 """Moves the others on the road: everybody besides the tested car. Main function: ``begin``."""
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from roadgpt.traffic.actor import STEP, Actor, Size, Tracks
 
-__all__ = ["STEP", "Actor", "Size", "TestedCar", "Tracks"]
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+__all__ = ["STEP", "Actor", "Size", "Stage", "TestedCar", "Tracks"]
+
+
+class Stage(NamedTuple):
+    """What a mover is made with."""
+
+    road: "Road"
+    world: "World"
+    seed: int
 
 
 class TestedCar(NamedTuple):
