@@ -172,8 +172,8 @@ def test_who_gives_way_lets_the_tested_car_pass_and_then_goes():
     mover.enter(waits, s, 8.0)
     crossing = own.road.passages[0]
     entered = None
-    for tick in range(400):
-        car = tested(min(station + 13.0 * tick * STEP, own.road.length))
+    for tick in range(int((own.road.length - station) / 13.0 / STEP)):
+        car = tested(station + 13.0 * tick * STEP)
         states = mover.move(tick * STEP, car, NOBODY)
         lane_now = mover._ways[mover._rows[0], mover._whole[mover._rows[0], 0]] if len(mover._rows) else -1
         if entered is None and lane_now >= 0 and mover.lanes.junction[lane_now] >= 0:
