@@ -101,7 +101,9 @@ def announce() -> None:
 
 
 SOURCES = "-".join(
-    digest(Path(__file__).parent / each, "*.py") for each in ("drive", "scene", "road/profile.py") if COMPILES
+    digest(Path(__file__).parent / each, "*.py")
+    for each in ("drive", "scene", "traffic", "road/profile.py")
+    if COMPILES
 )
 """Stands for all that becomes part of machine code."""
 

@@ -1,0 +1,105 @@
+"""Defines the Actor, somebody or something else on the road, and Tracks, how actors moved."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.brief.scene import ActorKind
+
+FloatArray = NDArray[np.float64]
+STEP = 0.1  # s, from one sample of a track to the next; UN R157's simulations use the same step
+X, Y, Z, HEADING, SPEED = range(5)
+"""The columns of a state: the middle of the actor's box on the ground in metres, its heading in radians, and
+its speed along its heading in m/s, negative when it reverses."""
+
+
+class Size(NamedTuple):
+    """The box of an actor in metres."""
+
+    length: float
+    width: float
+    height: float
+
+
+SIZES: Mapping[ActorKind, Size] = {
+    "car": Size(4.7, 1.8, 1.5),
+    "van": Size(6.5, 2.16, 2.86),
+    "truck": Size(12.0, 2.5, 3.6),
+    "bus": Size(12.0, 2.5, 3.4),
+    "motorcycle": Size(2.2, 0.9, 1.5),
+    "bicycle": Size(1.9, 0.65, 1.86),
+    "adult": Size(0.6, 0.5, 1.8),
+    "child": Size(0.5, 0.4, 1.15),
+    "animal": Size(1.5, 0.5, 1.2),
+    "cones": Size(0.4, 0.4, 0.75),
+    "barrier": Size(0.5, 2.0, 1.0),
+    "lost_load": Size(0.8, 0.6, 0.4),
+}
+"""Van, bus and motorcycle: SUMO, vehicle type parameter defaults (delivery, bus, motorcycle). Truck: the
+longest single vehicle of Directive 96/53/EC, Annex I; car: between the 4.3 and 5.0 m of the vehicles in UN
+R157's simulations. Bicycle, adult, child: Euro NCAP's targets EBT, EPTa and EPTc. The animal is a roe
+deer."""
+
+
+@dataclass(frozen=True)
+class Actor:
+    """Somebody or something on the road besides the tested car."""
+
+    name: str
+    """Unique within a drive, such as "truck 1"."""
+    kind: ActorKind
+    size: Size
+    is_parked: bool = False
+    """Whether it stands beside the lanes all the time."""
+
+    @property
+    def is_vehicle(self) -> bool:
+        """Whether it is driven on the lanes; persons, animals and things are not."""
+        return self.kind in ("car", "van", "truck", "bus", "motorcycle", "bicycle")
+
+
+@dataclass(frozen=True, eq=False)
+class Tracks:
+    """How actors moved: a state for every actor every STEP seconds since the start of the drive.
+
+    Between two samples an actor moves evenly along a straight line: this is how it moved, not an
+    approximation. Positions are rounded to a millimetre, angles to 0.0001 rad and speeds to 1 mm/s, so that
+    a file holds exactly these values."""
+
+    actors: tuple[Actor, ...]
+    states: FloatArray
+    """Shape (samples, actors, 5) with the columns X, Y, Z, HEADING (unwrapped) and SPEED; NaN while an actor
+    is not there."""
+
+    def at(self, time: float) -> FloatArray:
+        """Returns the states at a time in seconds, shape (actors, 5); NaN for actors that are not there. A
+        time after the last sample counts as the last sample."""
+        place = min(max(time / STEP, 0.0), len(self.states) - 1.0)
+        first = min(int(place + 1e-9), len(self.states) - 1)
+        share = place - first
+        if share < 1e-6:
+            return np.asarray(self.states[first])
+        return np.asarray((1 - share) * self.states[first] + share * self.states[first + 1])
+
+    def __len__(self) -> int:
+        return len(self.states)
+
+
+def rounded(states: FloatArray) -> FloatArray:
+    """Returns states as Tracks hold them."""
+    out = np.round(states, 3)
+    out[..., HEADING] = np.round(states[..., HEADING], 4)
+    return out + 0.0
+
+
+def corners(state: FloatArray, size: Size) -> FloatArray:
+    """Returns the corners of an actor's box in plan, shape (4, 2), counter-clockwise from the rear right
+    one."""
+    ahead, aside = size.length / 2, size.width / 2
+    outline = np.array([[-ahead, -aside], [ahead, -aside], [ahead, aside], [-ahead, aside]])
+    c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
+    return np.asarray(outline @ np.array([[c, s], [-s, c]]) + state[[X, Y]])

@@ -1,0 +1,655 @@
+"""One step of the vehicles that drive along lanes: they follow each other, give way, and change lanes.
+
+Following: the Intelligent Driver Model (M. Treiber, A. Hennecke, D. Helbing, Congested traffic states in
+empirical observations and microscopic simulations, Phys. Rev. E 62, 2000), above the desired speed as in M.
+Treiber, A. Kesting, Traffic Flow Dynamics (2013), 11.3.7. Everybody within a vehicle's lanes ahead is a
+leader, also who only reaches into them, who comes towards it, and the tested car. Nobody brakes harder than
+HARDEST, nor drives faster than from where it can still stop behind its leader (P. G. Gipps, A behavioural
+car-following model, Transp. Res. B 15, 1981).
+
+Changes of lane: MOBIL without politeness (A. Kesting, M. Treiber, D. Helbing, General lane-changing model
+MOBIL, Transp. Res. Record 1999, 2007). A change lasts CHANGE seconds; from its first moment on the vehicle
+belongs to both
+lanes: it follows the leaders of both, and those behind it in both follow it.
+
+Junctions: a vehicle enters a junction only with a grant for its way through. A grant is given when nobody
+holds or occupies a way that meets it, and nobody to whom the vehicle gives way would arrive before it has
+left the place where the ways meet. Who has waited for PATIENCE seconds goes before those who can still stop
+without effort."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.compiled import compiled, inlined
+from roadgpt.traffic.actor import STEP, FloatArray
+from roadgpt.traffic.lane_map import PV, IntArray, LaneMap, place_on, touched
+
+S, V, LENGTH, WIDTH, FACTOR, TOP, HEADWAY, PULL, BRAKE, ASIDE, BEGAN, PROGRESS, WAIT, A_NEXT = range(14)
+"""Columns of numbers of a vehicle: the station of its middle in its lane, its speed, length and width; the
+share of speed limits and the top speed that it drives; IDM's T, a and b; its offset to the left of its
+lane's middle, that offset when its change of lane began, and the share of the change that is done (1: none
+under way); for how long it has stood first in line; and its acceleration in the next step."""
+AT, LAST, GRANTED, OLD, STATE, HAS_STOPPED = range(6)
+"""Columns of whole numbers: which lane of its way it is in, the number of lanes of its way, up to which of
+them it has a grant, the lane that it is leaving (-1: none), its state, and whether it has stood at the stop
+sign ahead."""
+ABSENT, DRIVES, STANDS_HIT, GONE = range(4)
+TESTED = 0
+"""The row of the tested car, which is not moved."""
+JAM = 2.0  # m, IDM's s0
+HARDEST = 9.0  # m/s^2, as SUMO's emergencyDecel
+EASY = 2.0  # m/s^2, with which a vehicle plans to stop
+FIRM = 3.0  # m/s^2, with which it stops for a yellow light; else it drives on
+SLOWING = 1.5  # m/s^2, before bends
+BESIDE_ME = 4.0  # m/s^2, against somebody who moves in beside
+HORIZON = 150.0  # m
+LINE = 1.0  # m, between the front of a waiting vehicle and the line
+CHANGE = 4.0  # s
+LEAST_WAY = 15.0  # m, of way that a change takes at least
+EVERY = 10  # steps, after which a vehicle considers a change again
+SLOWEST_CHANGE = 3.0  # m/s, below which nobody changes lanes without need
+GAIN = 0.3  # m/s^2, by which a change has to pay
+SAFE = 2.0  # m/s^2, that a change may cost the follower
+URGENT = 4.0  # m/s^2, the same where the lane ends
+MARGIN = 1.0  # s, between leaving a conflict and the arrival of somebody with priority
+PATIENCE = 30.0  # s
+TURN = 2.0  # s, after which the first of several waiting vehicles goes
+AGAINST_MUST = (
+    6.0  # m/s^2: a tested car that would have to brake harder before the line counts as in the junction
+)
+SOON = 4.0  # s, before which a tested car with priority has its way reserved
+STANDING = 0.3  # m/s
+AFTER_CONTACT = 6.0  # m/s^2, with which a vehicle stops that the tested car has touched
+LET_IN = 10.0  # s, that somebody stands at the end of a lane before one vehicle lets it in
+ASKS = -1e9  # stands for the speed of an entry of somebody who asks to be let in
+GREEN, YELLOW, RED = 0, 1, 2
+Marks = NDArray[np.bool_]
+
+
+@inlined
+def idm(
+    v: float, wanted: float, gap: float, leader: float, pull: float, brake: float, headway: float
+) -> float:
+    """Returns the acceleration in m/s^2 behind a leader ``gap`` metres ahead at speed ``leader``; the gap
+    may be infinite."""
+    if v <= wanted:
+        free = pull * (1.0 - (v / max(wanted, 0.1)) ** 4)
+    else:
+        free = -brake * (1.0 - (max(wanted, 0.0) / v) ** (4.0 * pull / brake))
+    if gap == math.inf:
+        return free
+    desired = JAM + max(0.0, v * headway + v * (v - leader) / (2.0 * math.sqrt(pull * brake)))
+    return free - pull * (desired / max(gap, 0.1)) ** 2
+
+
+@inlined
+def _stoppable(v: float, gap: float, leader: float) -> float:
+    """Returns the highest speed after a step from which one stops behind a leader that brakes as hard."""
+    room = max(gap - 0.5, 0.0) + max(leader, 0.0) ** 2 / (2.0 * HARDEST)
+    reach = HARDEST * STEP / 2.0
+    return -reach + math.sqrt(reach * reach + 2.0 * HARDEST * max(room - v * STEP / 2.0, 0.0))
+
+
+@inlined
+def _seen(row: FloatArray, entry: FloatArray, ahead: float, v: float, wanted: float) -> tuple[float, float]:
+    """Returns the acceleration that an entry allows whose lane begins ``ahead`` metres before the vehicle's
+    middle, and the highest next speed; both are infinite for entries behind the vehicle."""
+    low, high = ahead + entry[1], ahead + entry[2]
+    if low + high <= 0.0 or low > HORIZON:
+        return math.inf, math.inf
+    gap = low - row[LENGTH] / 2.0
+    if entry[3] == ASKS:
+        if gap < v * v / (2.0 * EASY) + JAM:
+            return math.inf, math.inf
+        return idm(v, wanted, gap, 0.0, row[PULL], row[BRAKE], row[HEADWAY]), math.inf
+    if gap <= 0.0:
+        return -BESIDE_ME, math.inf
+    return (
+        idm(v, wanted, gap, entry[3], row[PULL], row[BRAKE], row[HEADWAY]),
+        _stoppable(v, gap, entry[3]),
+    )
+
+
+@compiled
+def _leaders(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int, wanted: float, entries:
+    FloatArray,
+    count: int, lane: int, offset: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Returns the smallest acceleration and next speed that anybody ahead of vehicle ``i`` allows, in the
+    lanes of its way, or, with ``lane`` >= 0, in this lane, which begins ``offset`` metres before the
+    vehicle's middle."""
+    row, v = numbers[i], numbers[i, V]
+    least, most = math.inf, math.inf
+    k, ahead = whole[i, AT], -row[S]
+    if lane >= 0:
+        ahead = offset
+    while ahead < HORIZON and (lane >= 0 or k < whole[i, LAST]):
+        here = lane if lane >= 0 else ways[i, k]
+        for n in range(count):
+            if entries[n, 0] == here and entries[n, 4] != i:
+                a, fastest = _seen(row, entries[n], ahead, v, wanted)
+                least, most = min(least, a), min(most, fastest)
+        if lane >= 0:
+            break
+        ahead += lanes.length[here]
+        k += 1
+    return least, most
+
+
+@inlined
+def _wanted(lanes: LaneMap, row: FloatArray, lane: int) -> float:
+    return float(min(lanes.limit[lane] * row[FACTOR], row[TOP]))
+
+
+@compiled
+def _bends(lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int) -> float:
+    """Returns the speed that the bends and speed limits ahead allow now."""
+    row = numbers[i]
+    fastest = _wanted(lanes, row, ways[i, whole[i, AT]])
+    far = row[V] * row[V] / (2.0 * SLOWING) + 10.0
+    k, s, ahead = whole[i, AT], row[S], 0.0
+    while ahead < far and k < whole[i, LAST]:
+        lane = ways[i, k]
+        own = _wanted(lanes, row, lane)
+        while s <= lanes.length[lane] and ahead < far:
+            n = lanes.first[lane] + min(
+                int(s / lanes.step[lane] + 0.5), lanes.first[lane + 1] - lanes.first[lane] - 1
+            )
+            allowed = min(lanes.sample[n, PV] * row[FACTOR], own)
+            fastest = min(fastest, math.sqrt(allowed * allowed + 2.0 * SLOWING * ahead))
+            s += 2.0
+            ahead += 2.0
+        s -= lanes.length[lane]
+        k += 1
+    return fastest
+
+
+@compiled
+def _next_way(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int
+) -> tuple[int, float, int]:
+    """Returns which lane of its way is the next through a junction, the metres from the vehicle's middle to
+    its start, and the lane before it; -1 where there is none within HORIZON."""
+    k, ahead = whole[i, AT], -numbers[i, S]
+    before = -1
+    while k < whole[i, LAST] and ahead < HORIZON:
+        lane = ways[i, k]
+        if lanes.junction[lane] >= 0 and k > whole[i, GRANTED]:
+            return k, ahead, before
+        ahead += lanes.length[lane]
+        before = lane
+        k += 1
+    return -1, math.inf, -1
+
+
+@compiled
+def _holds(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, j: int, lane: int, until: float
+) -> bool:
+    """Returns whether a vehicle has a grant for a lane, and its rear has not yet passed station ``until`` of
+    it."""
+    k = whole[j, AT]
+    ahead = -numbers[j, S]
+    for q in range(k, whole[j, GRANTED] + 1):
+        if ways[j, q] == lane and -ahead - numbers[j, LENGTH] / 2.0 < until:
+            return True
+        ahead += lanes.length[ways[j, q]]
+    behind = -numbers[j, S]
+    for q in range(k - 1, max(k - 4, -1), -1):
+        behind -= lanes.length[ways[j, q]]
+        if -behind - numbers[j, LENGTH] / 2.0 > lanes.length[ways[j, q]]:
+            break
+        if ways[j, q] == lane and lanes.junction[lane] >= 0 and -behind - numbers[j, LENGTH] / 2.0 < until:
+            return True
+    return False
+
+
+@inlined
+def _time_over(v: float, way: float, top: float, pull: float) -> float:
+    """Returns the seconds that a vehicle needs for some metres when it accelerates up to a speed."""
+    if v >= top:
+        return way / max(v, 0.1)
+    rise = (top - v) / pull
+    if (v + top) / 2.0 * rise >= way:
+        return (-v + math.sqrt(v * v + 2.0 * pull * way)) / pull
+    return rise + (way - (v + top) / 2.0 * rise) / top
+
+
+@compiled
+def _slowest(lanes: LaneMap, lane: int) -> float:
+    least = lanes.limit[lane]
+    for n in range(lanes.first[lane], lanes.first[lane + 1]):
+        least = min(least, lanes.sample[n, PV])
+    return float(max(least, 2.0))
+
+
+@compiled
+def _comes_before(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int, j: int, other: int, first:
+    float,
+    leaves: float, lights: IntArray,
+) -> bool:  # fmt: skip
+    """Returns whether vehicle ``i`` has to wait for ``j``, to whom it gives way: ``j`` comes to station
+    ``first`` of lane ``other`` before ``i`` has left that place, in ``leaves`` seconds."""
+    q, away, before = _next_way(lanes, numbers, whole, ways, j)
+    if q < 0 or ways[j, q] != other or (before >= 0 and lights[before] == RED):
+        return False
+    line, v, waits = away - numbers[j, LENGTH] / 2.0, numbers[j, V], numbers[i, WAIT]
+    if j != TESTED:
+        if waits > PATIENCE and (before < 0 or line > v * v / (2.0 * EASY) + 5.0):
+            return False
+        goes_first = waits > numbers[j, WAIT] or (waits == numbers[j, WAIT] and i < j)
+        if v < STANDING and waits > TURN and goes_first:
+            return False
+    return bool((line + first) / max(v, 3.0) < leaves + MARGIN)
+
+
+@compiled
+def _has_room(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int, k: int, ahead: float,
+    entries: FloatArray, count: int,
+) -> bool:  # fmt: skip
+    """Returns whether a vehicle finds room behind lane ``k`` of its way, so that it does not stand in the
+    junction."""
+    needed, far = numbers[i, LENGTH] + JAM, 0.0
+    for q in range(k + 1, min(k + 3, whole[i, LAST])):
+        for n in range(count):
+            is_slow = entries[n, 0] == ways[i, q] and entries[n, 4] != i and entries[n, 3] < 3.0
+            if is_slow and far + entries[n, 1] <= needed:
+                return bool(ahead + lanes.length[ways[i, k]] < 0.0)
+        far += lanes.length[ways[i, q]]
+        if far > needed:
+            break
+    return True
+
+
+@compiled
+def _may_enter(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, k: int,
+    ahead: float,
+    entries: FloatArray, count: int, lights: IntArray,
+) -> bool:  # fmt: skip
+    """Returns whether vehicle ``i`` may enter lane ``k`` of its way, which begins ``ahead`` metres before
+    its middle."""
+    lane, row = ways[i, k], numbers[i]
+    begin, end = lanes.conflict_of[lane], lanes.conflict_of[lane + 1]
+    slowest = _slowest(lanes, lane)
+    for c in range(begin, end):
+        other, first, last = lanes.conflict[c, 0], lanes.conflict_at[c, 2], lanes.conflict_at[c, 3]
+        for n in range(count):  # also somebody without a grant, such as a pedestrian
+            if (
+                entries[n, 0] == other
+                and entries[n, 4] != i
+                and entries[n, 1] < last
+                and entries[n, 2] > first
+            ):
+                return False
+        until = max(ahead, 0.0) + lanes.conflict_at[c, 1] + row[LENGTH] / 2.0
+        leaves = _time_over(row[V], until, slowest, row[PULL])
+        for j in range(present):
+            if j == i or whole[j, STATE] != DRIVES:
+                continue
+            if _holds(lanes, numbers, whole, ways, j, other, last):
+                return False
+            if lanes.conflict[c, 1] == 1 and _comes_before(
+                lanes, numbers, whole, ways, i, j, other, first, leaves, lights
+            ):
+                return False
+    return begin == end or _has_room(lanes, numbers, whole, ways, i, k, ahead, entries, count)
+
+
+@compiled
+def _is_first(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, k: int,
+    entries: FloatArray, count: int,
+) -> bool:  # fmt: skip
+    """Returns whether nobody without a grant is between vehicle ``i`` and lane ``k`` of its way."""
+    ahead = -numbers[i, S]
+    for q in range(whole[i, AT], k):
+        lane = ways[i, q]
+        for j in range(present):
+            if (
+                j == i
+                or whole[j, STATE] == ABSENT
+                or whole[j, STATE] == GONE
+                or ways[j, whole[j, AT]] != lane
+            ):
+                continue
+            if ahead + numbers[j, S] > 0.0 and whole[j, GRANTED] <= whole[j, AT]:
+                return False
+        for n in range(count):
+            if (
+                entries[n, 0] == lane
+                and entries[n, 4] < 0.0
+                and ahead + entries[n, 1] > 0.0
+                and entries[n, 3] != ASKS
+            ):
+                return False
+        ahead += lanes.length[lane]
+    return True
+
+
+@compiled
+def _to_stop(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, entries:
+    FloatArray,
+    count: int, lights: IntArray,
+) -> float:  # fmt: skip
+    """Gives a vehicle a grant for the junction ahead if it may enter, and returns the metres from its front
+    to the place where it has to stop otherwise; infinite if there is none."""
+    k, ahead, before = _next_way(lanes, numbers, whole, ways, i)
+    if k < 0:
+        return math.inf
+    row = numbers[i]
+    line = ahead - row[LENGTH] / 2.0
+    if before >= 0:
+        line -= lanes.length[before] - lanes.stop[before]
+    if line > max(15.0, row[V] ** 2 / (2.0 * EASY) + row[V] + 5.0):
+        return math.inf
+    if before < 0:  # it stands in the junction already
+        whole[i, GRANTED] = k
+        return math.inf
+    if line < 5.0 and row[V] < STANDING:
+        row[WAIT] += STEP
+        whole[i, HAS_STOPPED] = 1
+    is_late = row[V] > 0.5 and line < row[V] ** 2 / (2.0 * FIRM)
+    closed = lights[before] == RED or (lights[before] == YELLOW and not is_late)
+    if closed or (lanes.has_stop_sign[before] and whole[i, HAS_STOPPED] == 0):
+        return float(line)
+    if not _is_first(lanes, numbers, whole, ways, present, i, k, entries, count):
+        return float(line)
+    if not _may_enter(lanes, numbers, whole, ways, present, i, k, ahead, entries, count, lights):
+        return float(line)
+    through = lanes.junction[ways[i, k]]
+    while k < whole[i, LAST] and lanes.junction[ways[i, k]] == through:
+        whole[i, GRANTED] = k
+        k += 1
+    row[WAIT] = 0.0
+    whole[i, HAS_STOPPED] = 0
+    return math.inf
+
+
+@compiled
+def _change(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int, side: int, own: float,
+    wanted: float,
+    entries: FloatArray, count: int, must: bool,
+) -> float:  # fmt: skip
+    """Returns by how much the acceleration of a vehicle rises if it changes to the lane on one side (0:
+    left, 1: right); minus infinity if it cannot or may not."""
+    lane, row = ways[i, whole[i, AT]], numbers[i]
+    target = lanes.beside[lane, side]
+    if target < 0:
+        return -math.inf
+    s = row[S] / lanes.length[lane] * lanes.length[target]
+    way = max(row[V] * CHANGE, LEAST_WAY)
+    if s < lanes.usable[target, 0] + row[LENGTH] or s + way > lanes.usable[target, 1]:
+        return -math.inf
+    limit, best = (
+        URGENT if must else SAFE,
+        idm(row[V], wanted, math.inf, 0.0, row[PULL], row[BRAKE], row[HEADWAY]),
+    )
+    for n in range(count):
+        entry = entries[n]
+        back, offset = False, 0.0
+        if entry[4] == i or entry[3] == ASKS:
+            continue
+        if entry[0] != target:
+            for at in range(lanes.before_of[target], lanes.before_of[target + 1]):
+                if lanes.before[at] == entry[0]:
+                    back, offset = True, -lanes.length[lanes.before[at]]
+            if not back:
+                continue
+        low, high = entry[1] + offset - s, entry[2] + offset - s
+        if low + high > 0.0 and not back:
+            gap = low - row[LENGTH] / 2.0
+            if gap < 1.0 or entry[3] < -1.0:
+                return -math.inf
+            best = min(best, idm(row[V], wanted, gap, entry[3], row[PULL], row[BRAKE], row[HEADWAY]))
+        else:
+            gap = -row[LENGTH] / 2.0 - high
+            v = max(entry[3], 0.0)
+            if gap < 1.0 or idm(v, max(v, 1.0), gap, row[V], 1.5, 2.0, 1.0) < -limit:
+                return -math.inf
+    return best - own if best > -limit else -math.inf
+
+
+@compiled
+def positions(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, out: FloatArray
+) -> None:
+    """Writes the states of the vehicles that are there into ``out``, and NaN for the others."""
+    for i in range(present):
+        out[i] = math.nan
+        if i == TESTED or whole[i, STATE] == ABSENT or whole[i, STATE] == GONE:
+            continue
+        row = numbers[i]
+        lane = ways[i, whole[i, AT]]
+        x, y, z, heading, _ = place_on(lanes, lane, row[S])
+        aside = row[ASIDE]
+        slant = 0.0
+        if row[PROGRESS] < 1.0:
+            p = row[PROGRESS]
+            slope = -row[BEGAN] * 30.0 * p * p * (1.0 - p) * (1.0 - p)
+            slant = math.atan(slope / max(row[V] * CHANGE, LEAST_WAY))
+        out[i, 0] = x - aside * math.sin(heading)
+        out[i, 1] = y + aside * math.cos(heading)
+        out[i, 2] = z
+        out[i, 3] = heading + slant
+        out[i, 4] = row[V]
+
+
+@compiled
+def _touch(one: FloatArray, size: FloatArray, other: FloatArray, others: FloatArray) -> bool:
+    """Returns whether the boxes of two vehicles overlap, by the theorem of separating axes; ``size`` and
+    ``others`` are their rows of numbers."""
+    dx, dy = other[0] - one[0], other[1] - one[1]
+    if dx * dx + dy * dy > (size[LENGTH] + others[LENGTH]) ** 2:
+        return False
+    c, s = math.cos(other[3] - one[3]), math.sin(other[3] - one[3])
+    for side in range(2):
+        heading = one[3] if side == 0 else other[3]
+        own, its = (size, others) if side == 0 else (others, size)
+        along = abs(dx * math.cos(heading) + dy * math.sin(heading))
+        aside = abs(dy * math.cos(heading) - dx * math.sin(heading))
+        if along > own[LENGTH] / 2 + (abs(c) * its[LENGTH] + abs(s) * its[WIDTH]) / 2:
+            return False
+        if aside > own[WIDTH] / 2 + (abs(s) * its[LENGTH] + abs(c) * its[WIDTH]) / 2:
+            return False
+    return True
+
+
+@inlined
+def _add(entries: FloatArray, count: int, lane: int, s: float, length: float, speed: float, body: int) -> int:
+    """Adds a row for a box whose middle is at a station of a lane; returns the number of rows then."""
+    if count < len(entries):
+        entries[count, 0], entries[count, 3], entries[count, 4] = lane, speed, body
+        entries[count, 1], entries[count, 2] = s - length / 2.0, s + length / 2.0
+        count += 1
+    return count
+
+
+@compiled
+def _boxes(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, states: FloatArray,
+    bodies: FloatArray, entries: FloatArray,
+) -> int:  # fmt: skip
+    """Writes which lanes everybody is in into ``entries``; returns the number of rows. Who changes lanes is
+    in the new one from the first moment, and who asks to be let in stands for those behind it in the lane
+    that it wants."""
+    count = 0
+    for i in range(present):
+        if whole[i, STATE] == ABSENT or whole[i, STATE] == GONE:
+            continue
+        begin, state, row = count, states[i], numbers[i]
+        count = touched(
+            lanes, state[0], state[1], state[3], row[LENGTH], row[WIDTH], row[V], float(i), entries, count
+        )
+        if i == TESTED:
+            continue
+        lane, is_there = ways[i, whole[i, AT]], row[PROGRESS] >= 1.0
+        for n in range(begin, count):
+            is_there = is_there or entries[n, 0] == lane
+        if not is_there:
+            count = _add(entries, count, lane, row[S], row[LENGTH], row[V], i)
+        if row[WAIT] > LET_IN and lanes.ends[lane]:
+            target = max(lanes.beside[lane, 0], lanes.beside[lane, 1])
+            if target >= 0:
+                s = row[S] / lanes.length[lane] * lanes.length[target]
+                count = _add(entries, count, target, s, row[LENGTH], ASKS, i)
+    for m in range(len(bodies)):
+        body = bodies[m]
+        count = touched(lanes, body[0], body[1], body[3], body[5], body[6], body[4], -1.0 - m, entries, count)
+    return count
+
+
+@compiled
+def _begin_change(
+    lanes: LaneMap,
+    numbers: FloatArray,
+    whole: IntArray,
+    ways: IntArray,
+    i: int,
+    target: int,
+    states: FloatArray,
+) -> None:
+    """Makes a vehicle change to a lane beside its own, from where on its way has to be planned anew."""
+    row, state, lane = numbers[i], states[i], ways[i, whole[i, AT]]
+    s = row[S] / lanes.length[lane] * lanes.length[target]
+    x, y, _, heading, _ = place_on(lanes, target, s)
+    row[ASIDE] = (state[1] - y) * math.cos(heading) - (state[0] - x) * math.sin(heading)
+    row[BEGAN], row[PROGRESS], row[S], row[WAIT] = row[ASIDE], 0.0, s, 0.0
+    whole[i, OLD], whole[i, LAST] = lane, whole[i, AT] + 1
+    ways[i, whole[i, AT]] = target
+
+
+@compiled
+def _decide(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, states:
+    FloatArray,
+    entries: FloatArray, count: int, lights: IntArray, may_change: bool,
+) -> int:  # fmt: skip
+    """Decides the acceleration of a vehicle, and whether it begins to change lanes; returns the number of
+    rows of ``entries``, to which its box in the new lane is added."""
+    row, v = numbers[i], numbers[i, V]
+    lane = ways[i, whole[i, AT]]
+    wanted = _bends(lanes, numbers, whole, ways, i)
+    pull, brake, headway = row[PULL], row[BRAKE], row[HEADWAY]
+    least = idm(v, wanted, math.inf, 0.0, pull, brake, headway)
+    a, fastest = _leaders(lanes, numbers, whole, ways, i, wanted, entries, count, -1, 0.0)
+    least = min(least, a)
+    if whole[i, OLD] >= 0:
+        old = whole[i, OLD]
+        offset = -row[S] / lanes.length[lane] * lanes.length[old]
+        a, also = _leaders(lanes, numbers, whole, ways, i, wanted, entries, count, old, offset)
+        least, fastest = min(least, a), min(fastest, also)
+    alone = least
+    line = _to_stop(lanes, numbers, whole, ways, present, i, entries, count, lights)
+    if line < math.inf:
+        least = min(least, idm(v, wanted, max(line + JAM - LINE, 0.1), 0.0, pull, brake, headway))
+        if line > 0.0:
+            fastest = min(fastest, _stoppable(v, line + 0.5, 0.0))
+    ends = lanes.ends[lane]
+    if ends:
+        left = lanes.usable[lane, 1] - row[S] - row[LENGTH] / 2.0
+        least = min(least, idm(v, wanted, max(left, 0.1), 0.0, pull, brake, headway))
+        fastest = min(fastest, _stoppable(v, max(left, 0.0) + 0.5, 0.0))
+        row[WAIT] += STEP * (v < STANDING)
+    if may_change and row[PROGRESS] >= 1.0 and lanes.junction[lane] < 0 and (v > SLOWEST_CHANGE or ends):
+        best, side = (-math.inf, -1) if ends else (GAIN, -1)
+        for each in range(2):
+            gain = _change(lanes, numbers, whole, ways, i, each, alone, wanted, entries, count, ends)
+            if gain > best:
+                best, side = gain, each
+        if side >= 0:
+            target = lanes.beside[lane, side]
+            _begin_change(lanes, numbers, whole, ways, i, target, states)
+            count = _add(entries, count, target, row[S], row[LENGTH], v, i)
+    after = min(v + max(least, -HARDEST) * STEP, max(fastest, v - HARDEST * STEP))
+    row[A_NEXT] = (max(after, 0.0) - v) / STEP
+    return count
+
+
+@compiled
+def _move(lanes: LaneMap, row: FloatArray, whole: IntArray, way: IntArray) -> None:
+    """Moves one vehicle by STEP with its decided acceleration, along its lanes and sideways."""
+    v, a = row[V], row[A_NEXT]
+    after = max(v + a * STEP, 0.0)
+    driven = (v + after) / 2.0 * STEP if v + a * STEP >= 0.0 else v * v / (-2.0 * a)
+    row[V] = after
+    row[S] += driven
+    if row[PROGRESS] < 1.0:
+        p = min(row[PROGRESS] + driven / max(CHANGE * after, LEAST_WAY), 1.0)
+        row[PROGRESS], row[ASIDE] = p, row[BEGAN] * (1.0 - p * p * p * (10.0 - 15.0 * p + 6.0 * p * p))
+        if p >= 1.0:
+            whole[OLD] = -1
+    while row[S] > lanes.length[way[whole[AT]]]:
+        if whole[AT] + 1 >= whole[LAST]:
+            whole[STATE] = GONE
+            break
+        row[S] -= lanes.length[way[whole[AT]]]
+        whole[AT] += 1
+        whole[OLD] = -1
+
+
+@compiled
+def step(
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, states: FloatArray,
+    bodies: FloatArray, lights: IntArray, entries: FloatArray, room: FloatArray, tick: int,
+) -> None:  # fmt: skip
+    """Moves everybody by STEP.
+
+    Args:
+        lanes: The lanes.
+        numbers: Numbers of the vehicles, changed in place; row TESTED is the tested car.
+        whole: Whole numbers of the vehicles, changed in place.
+        ways: The lanes of each vehicle's way, changed in place where it changes lanes.
+        present: The number of rows in use.
+        states: Where the vehicles are, ``(present, 5)``; that of the tested car is in row TESTED.
+        bodies: Others whom this step does not move: states, length and width, ``(m, 7)``.
+        lights: GREEN, YELLOW or RED for each lane.
+        entries: Room for the boxes in lanes: lane, first and last station, speed along it, and whose.
+        room: Gets the metres at the start of each lane that are free.
+        tick: The number of the step."""
+    count = _boxes(lanes, numbers, whole, ways, present, states, bodies, entries)
+    room[:] = math.inf
+    for n in range(count):
+        lane = int(entries[n, 0])
+        room[lane] = min(room[lane], entries[n, 1])
+    if whole[TESTED, STATE] == DRIVES:
+        _reserve(lanes, numbers, whole, ways)
+    order = np.argsort(-numbers[:present, WAIT], kind="mergesort")
+    for at in range(present):
+        i = order[at]
+        if i == TESTED or whole[i, STATE] == ABSENT or whole[i, STATE] == GONE:
+            continue
+        if whole[TESTED, STATE] == DRIVES and _touch(states[i], numbers[i], states[TESTED], numbers[TESTED]):
+            whole[i, STATE] = STANDS_HIT
+        if whole[i, STATE] == STANDS_HIT:
+            numbers[i, A_NEXT] = max(-AFTER_CONTACT, -numbers[i, V] / STEP)
+        else:
+            turn = (tick + i) % EVERY == 0
+            count = _decide(lanes, numbers, whole, ways, present, i, states, entries, count, lights, turn)
+    for i in range(present):
+        if i != TESTED and (whole[i, STATE] == DRIVES or whole[i, STATE] == STANDS_HIT):
+            _move(lanes, numbers[i], whole[i], ways[i])
+
+
+@compiled
+def _reserve(lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray) -> None:
+    """Gives the tested car the grants for the ways through junctions that it cannot or need not stop
+    before."""
+    k, ahead, before = _next_way(lanes, numbers, whole, ways, TESTED)
+    if k < 0:
+        return
+    row = numbers[TESTED]
+    line = ahead - row[LENGTH] / 2.0
+    has_priority = True
+    for c in range(lanes.conflict_of[ways[TESTED, k]], lanes.conflict_of[ways[TESTED, k] + 1]):
+        has_priority = has_priority and lanes.conflict[c, 1] == 0
+    soon = line < SOON * row[V] and has_priority
+    if before < 0 or line < 0.0 or line < row[V] ** 2 / (2.0 * AGAINST_MUST) or soon:
+        whole[TESTED, GRANTED] = k

@@ -1,0 +1,301 @@
+"""The driving lanes near a road as arrays, for compiled code: their middles, what continues them, what lies
+beside them, where they meet, and which lanes a box touches."""
+
+import math
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.compiled import compiled, inlined
+from roadgpt.network.lanes import Lane, Lanes
+from roadgpt.network.network import Leg
+from roadgpt.traffic.actor import FloatArray
+
+IntArray = NDArray[np.int64]
+STEP = 1.0  # m, desired distance between the samples of a lane
+CELL = 2.0  # m, side of the cells in which samples are looked up
+LEAST = 2.4  # m, width of a lane from which on vehicles use it
+TOUCH = 0.15  # m by which a box has to reach into a lane to count as being in it
+APART = 0.8  # m, most between the points of a box that are looked up
+PX, PY, PZ, PH, PW, PV = range(6)
+"""Columns of a sample: place in metres, heading in radians (unwrapped along its lane), half the lane's width
+in metres, and the highest speed in m/s of its bend."""
+WIDEST = 2.5  # m, width of the widest vehicles
+OVER = 0.2  # m, by which the corner of a vehicle may reach over the edge of its lane in a bend
+ACROSS = 2.0  # m/s^2, lateral acceleration of others in bends; ISO 11270 allows lane keeping 3
+
+
+class LaneMap(NamedTuple):
+    """The lanes as arrays; a lane is its number in ``ids``, the ids of the network's lanes."""
+
+    sample: FloatArray
+    """Shape (samples, 6), lane after lane, see PX."""
+    first: IntArray
+    """The first sample of each lane and, as the last entry, the number of samples."""
+    step: FloatArray
+    """The distance in metres between the samples of each lane."""
+    length: FloatArray
+    usable: FloatArray
+    """Shape (lanes, 2): the stations in metres between which a lane is wide enough to be driven."""
+    limit: FloatArray
+    """The speed limit of each lane in m/s."""
+    beside: IntArray
+    """Shape (lanes, 2): the lanes to the left and to the right into which one may change; -1 for none."""
+    junction: IntArray
+    """The id of the junction through which a lane leads; -1 for the others."""
+    onward: IntArray
+    """The lanes that continue the lanes, one lane after another; ``onward_of`` has where each lane begins
+    there."""
+    onward_of: IntArray
+    before: IntArray
+    """The lanes that lead into the lanes; ``before_of`` has where each lane begins."""
+    before_of: IntArray
+    stop: FloatArray
+    """The station at which traffic waits that may not enter the junction at the lane's end."""
+    has_stop_sign: NDArray[np.bool_]
+    ends: NDArray[np.bool_]
+    """Whether a lane ends while its road goes on in the lanes beside it."""
+    begins: NDArray[np.bool_]
+    """Whether vehicles come onto the map at the start of a lane."""
+    longest: FloatArray
+    """The length in metres of the longest vehicle that keeps within the lane in its bends."""
+    conflict: IntArray
+    """Shape (conflicts, 2): the other lane, and 1 if the own lane gives way to it; ``conflict_of`` has where
+    each lane begins."""
+    conflict_at: FloatArray
+    """Shape (conflicts, 4): between which stations of the own and of the other lane they meet."""
+    conflict_of: IntArray
+    cells: IntArray
+    """The samples in each cell of the grid, one cell after another; ``cell_of`` has where each cell
+    begins."""
+    cell_of: IntArray
+    grid: FloatArray
+    """x and y of the grid's corner, its columns and its rows."""
+
+
+def lane_map(
+    lanes: Lanes, limit: float, near: Iterable[Leg] | None = None
+) -> tuple[LaneMap, tuple[Leg, ...]]:
+    """Returns the driving lanes, and their ids in the order of the arrays. ``limit`` is the speed limit in
+    m/s of lanes that have none; ``near`` names the lanes to be used, all others do not exist then."""
+    kept = None if near is None else frozenset(near)
+    return _made(lanes, limit, kept)
+
+
+@lru_cache(maxsize=8)
+def _made(lanes: Lanes, limit: float, kept: frozenset[Leg] | None) -> tuple[LaneMap, tuple[Leg, ...]]:
+    used = [each for each in lanes if each.kind == "driving" and (kept is None or each.id in kept)]
+    number = {lane.id: n for n, lane in enumerate(used)}
+    samples, steps, usable, longest = [], [], [], []
+    for lane in used:
+        rows, step, stretch = _sampled(lane)
+        samples.append(rows)
+        steps.append(step)
+        usable.append(stretch)
+        spare = np.maximum(rows[:, PW] - WIDEST / 2 + OVER, 0.0)
+        longest.append(float(np.sqrt(8.0 * spare * (rows[:, PV] ** 2 / ACROSS)).min()))
+    first = np.cumsum([0, *map(len, samples)])
+    table = np.concatenate(samples)
+    onward, onward_of = _rows([[number[each] for each in lane.successors if each in number] for lane in used])
+    before, before_of = _rows(
+        [[number[each] for each in lane.predecessors if each in number] for lane in used]
+    )
+    met = [_conflicts(lanes, lane, number) for lane in used]
+    conflict_of = np.cumsum([0, *map(len, met)])
+    flat = [row for rows in met for row in rows]
+    cells, cell_of, grid = _grid(table, np.repeat(steps, np.diff(first)))
+    return LaneMap(
+        table,
+        first,
+        np.array(steps),
+        np.array([lane.length for lane in used]),
+        np.array(usable),
+        np.array([lane.member.profile.lanes[lane.id.lane].speed_limit or limit for lane in used]),
+        np.array([[_beside(lane, side, number) for side in ("left", "right")] for lane in used]),
+        np.array([-1 if lane.member.junction is None else lane.member.junction for lane in used]),
+        onward,
+        onward_of,
+        before,
+        before_of,
+        np.array([_stop(lane) for lane in used]),
+        np.array([lane.control == "stop" for lane in used]),
+        np.array(
+            [
+                not lane.successors and any(each.successors for each in _all_beside(lanes, lane))
+                for lane in used
+            ]
+        ),
+        np.array([_begins(lanes, lane, number) for lane in used]),
+        np.array(longest),
+        np.array([row[:2] for row in flat], np.int64).reshape(-1, 2),
+        np.array([row[2:] for row in flat], float).reshape(-1, 4),
+        conflict_of,
+        cells,
+        cell_of,
+        grid,
+    ), tuple(number)
+
+
+def _sampled(lane: Lane) -> tuple[FloatArray, float, tuple[float, float]]:
+    """Returns the samples of a lane, their distance, and between which stations it is wide enough."""
+    count = max(2, math.ceil(lane.length / STEP) + 1)
+    s = np.linspace(0.0, lane.length, count)
+    step = float(s[1])
+    place, width = lane.at(s), lane.width(s)
+    heading = np.unwrap(lane.heading(s))
+    ahead = np.diff(place[:, :2], axis=0)
+    course = np.unwrap(np.r_[heading[:1], np.arctan2(ahead[:, 1], ahead[:, 0])])[1:]
+    bend = np.zeros(count)
+    if count > 2:
+        bend[1:-1] = np.abs(np.diff(course)) / step
+        bend[[0, -1]] = bend[[1, -2]]
+    speed = np.sqrt(ACROSS / np.maximum(bend, 1e-6))
+    wide = np.flatnonzero(width >= LEAST)
+    stretch = (float(s[wide[0]]), float(s[wide[-1]])) if len(wide) else (0.0, 0.0)
+    return np.column_stack([place, heading, width / 2, speed]), step, stretch
+
+
+def _beside(lane: Lane, side: str, number: dict[Leg, int]) -> int:
+    may = lane.may_change_left if side == "left" else lane.may_change_right
+    other = lane.left if side == "left" else lane.right
+    return number.get(other, -1) if may and other is not None and lane.member.junction is None else -1
+
+
+def _stop(lane: Lane) -> float:
+    return lane.length if lane.stop is None else lane.stop
+
+
+def _all_beside(lanes: Lanes, lane: Lane) -> list[Lane]:
+    """Returns the lanes of the same direction beside a lane, to the left and to the right of it."""
+    found = list[Lane]()
+    for side in ("left", "right"):
+        key = getattr(lane, side)
+        while key is not None:
+            found.append(lanes[key])
+            key = getattr(lanes[key], side)
+    return found
+
+
+def _begins(lanes: Lanes, lane: Lane, number: dict[Leg, int]) -> bool:
+    """Returns whether vehicles come from outside: where the map begins, or where the used part of it does."""
+    if any(each in number for each in lane.predecessors) or float(lane.width(0.0)) < LEAST:
+        return False
+    return bool(lane.predecessors) or not any(each.predecessors for each in _all_beside(lanes, lane))
+
+
+def _conflicts(lanes: Lanes, lane: Lane, number: dict[Leg, int]) -> list[tuple[float, ...]]:
+    """Returns for each lane that a lane of a junction meets there: its number, whether the lane gives way to
+    it, and where they meet. Ways that begin in the same lane are followed one after another, and are no
+    conflict."""
+    if lane.member.junction is None:
+        return []
+    over = {*lanes.gives_way_to(lane.id)}
+    found = list[tuple[float, ...]]()
+    for key in lanes.met_by(lane.id):
+        other, place = lanes[key], lanes.meeting(lane.id, key)
+        is_there = other.member.junction == lane.member.junction and key in number
+        if is_there and place is not None and not {*other.predecessors} & {*lane.predecessors}:
+            found.append((number[key], float(key in over), *place.own, *place.others))
+    return found
+
+
+def _rows(rows: Sequence[Sequence[int]]) -> tuple[IntArray, IntArray]:
+    return np.array([each for row in rows for each in row], np.int64), np.cumsum([0, *map(len, rows)])
+
+
+def _grid(table: FloatArray, step: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
+    """Returns which samples each cell holds: those whose slab of lane may reach into it."""
+    reach = table[:, PW] + step
+    low = np.floor((table[:, [PX, PY]] - reach[:, None]) / CELL).astype(np.int64)
+    high = np.floor((table[:, [PX, PY]] + reach[:, None]) / CELL).astype(np.int64)
+    corner = low.min(0)
+    columns, rows = (int(each) for each in high.max(0) - corner + 1)
+    pairs = []
+    for n, ((x0, y0), (x1, y1)) in enumerate(
+        zip((low - corner).tolist(), (high - corner).tolist(), strict=True)
+    ):
+        c, s = math.cos(table[n, PH]), math.sin(table[n, PH])
+        for column in range(x0, x1 + 1):
+            for row in range(y0, y1 + 1):
+                dx = (column + corner[0] + 0.5) * CELL - table[n, PX]
+                dy = (row + corner[1] + 0.5) * CELL - table[n, PY]
+                if (
+                    abs(dy * c - dx * s) <= table[n, PW] + 0.71 * CELL
+                    and abs(dx * c + dy * s) <= step[n] + 0.71 * CELL
+                ):
+                    pairs.append((row * columns + column, n))
+    found = np.array(sorted(pairs), np.int64).reshape(-1, 2)
+    starts = np.searchsorted(found[:, 0], np.arange(columns * rows + 1))
+    grid = np.array([corner[0] * CELL, corner[1] * CELL, columns, rows], float)
+    return np.ascontiguousarray(found[:, 1]), starts, grid
+
+
+@inlined
+def place_on(lanes: LaneMap, lane: int, s: float) -> tuple[float, float, float, float, float]:
+    """Returns x, y, z, the heading, and the highest speed of the bend at a station of a lane. Beyond its
+    ends the lane counts as going straight on."""
+    first = lanes.first[lane]
+    at = s / lanes.step[lane]
+    i = min(max(int(at), 0), lanes.first[lane + 1] - first - 2)
+    u, k = at - i, first + i
+    one, two = lanes.sample[k], lanes.sample[k + 1]
+    return (
+        one[PX] + u * (two[PX] - one[PX]),
+        one[PY] + u * (two[PY] - one[PY]),
+        one[PZ] + u * (two[PZ] - one[PZ]),
+        one[PH] + min(max(u, 0.0), 1.0) * (two[PH] - one[PH]),
+        min(one[PV], two[PV]),
+    )
+
+
+@compiled
+def touched(
+    lanes: LaneMap, x: float, y: float, heading: float, length: float, width: float, speed: float, body:
+    float,
+    entries: FloatArray, count: int,
+) -> int:  # fmt: skip
+    """Adds a row to ``entries`` for each lane that a box touches: the lane, the first and the last station
+    that the box touches, its speed along the lane, and the number of the body. Returns the number of rows
+    then."""
+    begin = count
+    c, s = math.cos(heading), math.sin(heading)
+    along = max(2, math.ceil(length / APART) + 1)
+    aside = max(width / 2 - TOUCH, 0.0)
+    for i in range(along):
+        u = length * (i / (along - 1) - 0.5)
+        for side in range(-1, 2):
+            px, py = x + u * c - side * aside * s, y + u * s + side * aside * c
+            column = math.floor((px - lanes.grid[0]) / CELL)
+            row = math.floor((py - lanes.grid[1]) / CELL)
+            if column < 0 or row < 0 or column >= lanes.grid[2] or row >= lanes.grid[3]:
+                continue
+            cell = row * int(lanes.grid[2]) + column
+            for at in range(lanes.cell_of[cell], lanes.cell_of[cell + 1]):
+                k = lanes.cells[at]
+                one = lanes.sample[k]
+                dx, dy = px - one[PX], py - one[PY]
+                ch, sh = math.cos(one[PH]), math.sin(one[PH])
+                if abs(dy * ch - dx * sh) > one[PW]:
+                    continue
+                lane = np.searchsorted(lanes.first, k, side="right") - 1
+                ahead = dx * ch + dy * sh
+                if abs(ahead) > 0.51 * lanes.step[lane]:
+                    continue
+                station = (k - lanes.first[lane]) * lanes.step[lane] + ahead
+                found = -1
+                for n in range(begin, count):
+                    if entries[n, 0] == lane:
+                        found = n
+                if found < 0:
+                    if count == len(entries):
+                        return count
+                    found = count
+                    entries[found, 0], entries[found, 1], entries[found, 2] = lane, station, station
+                    entries[found, 3], entries[found, 4] = speed * math.cos(heading - one[PH]), body
+                    count += 1
+                entries[found, 1] = min(entries[found, 1], station)
+                entries[found, 2] = max(entries[found, 2], station)
+    return count

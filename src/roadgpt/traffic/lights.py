@@ -1,0 +1,60 @@
+"""Traffic lights that run: which lanes see green, yellow or red at a time.
+
+Opposite arms of a junction have green together, the pairs one after another, each for GREEN_FOR seconds,
+then yellow for YELLOW_FOR and red for everybody for CLEARING. Source: FHWA, Traffic Signal Timing Manual
+(2008), sections 5.3 and 5.4: yellow 3 to 5 s, red clearance 1 to 2 s, and at least 15 s of green for an arm
+of a larger road."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from roadgpt.geometry import wrap_angle
+from roadgpt.network.network import Leg, Network, RoadEnd
+from roadgpt.traffic.following import GREEN, RED, YELLOW
+from roadgpt.traffic.lane_map import IntArray
+
+GREEN_FOR, YELLOW_FOR, CLEARING = 15.0, 3.0, 2.0  # s
+PHASE = GREEN_FOR + YELLOW_FOR + CLEARING
+OPPOSITE = math.radians(135.0)  # arms whose directions differ by more have green together
+
+
+class Lights:
+    """The lights of a network, which begin at a moment of their cycle that the seed decides."""
+
+    def __init__(self, network: Network, seed: int) -> None:
+        rng = np.random.default_rng([seed, len(network.junctions)])
+        self.phases: dict[RoadEnd, tuple[int, int, float]] = {}
+        """For each arm with lights its phase, the number of phases, and the moment at which the cycle
+        begins."""
+        for junction in network.junctions:
+            arms = [arm for arm in junction.arms if arm.control == "lights"]
+            groups: list[list[RoadEnd]] = []
+            directions: list[float] = []
+            for arm in arms:
+                for group, direction in zip(groups, directions, strict=True):
+                    if len(group) == 1 and abs(wrap_angle(arm.direction - direction)) > OPPOSITE:
+                        group.append(arm.end)
+                        break
+                else:
+                    groups.append([arm.end])
+                    directions.append(arm.direction)
+            begin = float(rng.uniform(0.0, PHASE * max(len(groups), 1)))
+            for n, group in enumerate(groups):
+                self.phases |= dict.fromkeys(group, (n, len(groups), begin))
+
+    def shown(self, end: RoadEnd, time: float) -> int:
+        """Returns GREEN, YELLOW or RED for the traffic that comes from the end of a road at a time in
+        seconds; GREEN if it has no lights."""
+        if end not in self.phases:
+            return GREEN
+        phase, count, begin = self.phases[end]
+        since = (time + begin) % (PHASE * count) - phase * PHASE
+        if not 0.0 <= since < GREEN_FOR + YELLOW_FOR:
+            return RED
+        return GREEN if since < GREEN_FOR else YELLOW
+
+    def of_lanes(self, ids: Mapping[Leg, RoadEnd], time: float) -> IntArray:
+        """Returns what traffic in lanes sees; ``ids`` has the end of the road to which each lane leads."""
+        return np.array([self.shown(end, time) for end in ids.values()])

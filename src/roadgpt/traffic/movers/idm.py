@@ -1,0 +1,311 @@
+"""Vehicles that drive along the lanes of the map and react to each other and to the tested car: the flow of
+a scene.
+
+The density is 5, 12 or 25 vehicles for each km and lane (light, medium, dense). It is there from the start,
+and held by vehicles that come in where the map's lanes begin; who finds no room waits outside."""
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roadgpt.brief.scene import ActorKind, Flow
+from roadgpt.network import legs_of, network_of
+from roadgpt.network.lanes import Lanes, lanes_of
+from roadgpt.network.network import Leg, RoadEnd
+from roadgpt.traffic import following as f
+from roadgpt.traffic.actor import SIZES, STEP, Actor, FloatArray
+from roadgpt.traffic.lane_map import PV, PX, PY, LaneMap, lane_map, place_on
+from roadgpt.traffic.lights import Lights
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road
+    from roadgpt.traffic import Stage, TestedCar
+
+DENSITY: Mapping[Flow, float] = {"light": 5.0, "medium": 12.0, "dense": 25.0}
+"""Vehicles for each km and lane; the bounds between the levels are 7 and 20."""
+SHARES: Mapping[ActorKind, float] = {"car": 0.87, "van": 0.06, "truck": 0.04, "bus": 0.01, "motorcycle": 0.02}
+"""Close to the vehicle kilometres of German federal roads, of which heavy goods vehicles drive 5 to 9 %
+(BASt, automatic counts)."""
+DRIVERS: Mapping[ActorKind, tuple[float, float, float, float]] = {
+    "car": (1.5, 1.5, 2.0, 50.0),
+    "van": (1.5, 1.3, 2.0, 44.0),
+    "truck": (1.7, 0.8, 2.0, 25.0),
+    "bus": (1.7, 0.9, 2.0, 27.8),
+    "motorcycle": (1.5, 2.0, 2.5, 50.0),
+}
+"""T in s, a and b in m/s^2, and the top speed in m/s, which is limited to 90 and 100 km/h for trucks and
+buses (Directives 92/6/EEC and 2002/85/EC). Cars: M. Treiber, A. Hennecke, D. Helbing (2000) with T 1.5 s;
+trucks and buses accelerate as in M. Treiber, A. Kesting, Traffic Flow Dynamics (2013), table 11.2."""
+SPREAD, SLOWEST, FASTEST = 0.1, 0.8, 1.2  # of the share of the limit that drivers choose: SUMO's speedDev
+REACH = 500.0  # m: lanes that come nowhere as near to the driven road are left out
+LONGEST_WAY = 64  # lanes that are planned ahead
+KEPT = 4  # lanes behind a vehicle that are remembered, and ahead of it that are always planned
+NEVER = 1e6  # s
+AHEAD, BEHIND = (
+    30.0,
+    15.0,
+)  # m before and behind the tested car where nobody is at the start, and 2 s of its way
+
+
+class IdmMover:
+    """The flow of a scene. ``actors`` grows as vehicles come in."""
+
+    def __init__(self, stage: "Stage", flow: Flow | None = None, is_filled: bool = True) -> None:
+        """Prepares the flow of the stage's scene, or another one; ``is_filled`` is whether it is there at
+        the start."""
+        self.actors: list[Actor] = []
+        self.waiting = 0
+        """How many vehicles wait outside for room."""
+        self.flow, self._seed, self._is_filled = (
+            flow or stage.world.scene.flow or "light",
+            stage.seed,
+            is_filled,
+        )
+        self.comes_in = True
+        road, network = stage.road, network_of(stage.road, stage.world)
+        lanes = lanes_of(network)
+        self.lanes, self.ids = lane_map(lanes, stage.world.limits.speed_limit, _near(lanes, road))
+        self._lights = Lights(network, stage.seed)
+        self._ends = {key: RoadEnd(key.road, "end" if lanes[key].is_along else "start") for key in self.ids}
+        self._number = {key: n for n, key in enumerate(self.ids)}
+        self._path = _path(road, legs_of(road, stage.world), self._number)
+        self._rng = np.random.default_rng([self._seed, 0])
+        self._exits = _steps_to_exit(self.lanes)
+        size = 64
+        self._numbers = np.zeros((size, 14))
+        self._whole = np.zeros((size, 6), np.int64)
+        self._ways = np.full((size, LONGEST_WAY), -1, np.int64)
+        self._states = np.full((size, 5), math.nan)
+        self._who, self._rows = np.zeros(0, np.int64), np.zeros(0, np.int64)
+        """The actors that are there, and the row of each."""
+        self._present = 1
+        self._free = list(range(size - 1, 0, -1))
+        self._entries = np.zeros((size * 12, 5))
+        self._room = np.full(len(self.ids), math.inf)
+        self._waits = dict.fromkeys(np.flatnonzero(self.lanes.begins).tolist(), 0)
+        self._metres = float(self.lanes.length.sum())
+        self._tick = 0
+        self._goes_on = np.diff(self.lanes.onward_of) > 0
+
+    def start(self, car: "TestedCar | None") -> FloatArray:
+        """Places the vehicles that are there at the start, and returns their states."""
+        self._see(car)
+        per_metre = DENSITY[self.flow] / 1000.0
+        for n in range(len(self.ids)) if self._is_filled else ():
+            begin, end = self.lanes.usable[n]
+            if self.lanes.junction[n] >= 0 or end - begin < 20.0 or self.lanes.ends[n]:
+                continue
+            count = int(self._rng.poisson((end - begin) * per_metre))
+            count = min(count, int((end - begin) / 15.0))
+            if not count:
+                continue
+            part = (end - begin) / count
+            for k in range(count):
+                s = begin + part * (k + float(self._rng.uniform(0.3, 0.7)))
+                first = self.lanes.first[n]
+                here = self.lanes.sample[
+                    first + min(int(s / self.lanes.step[n]), self.lanes.first[n + 1] - first - 1)
+                ]
+                if car is not None and _is_close(car, here):
+                    continue
+                left = max(self.lanes.stop[n] - s - 8.0, 0.0)
+                far = max(part * 0.4 - 8.0, 0.0)
+                most = min(
+                    float(here[PV]), far / 1.5, math.sqrt(2 * f.EASY * left) if self._goes_on[n] else math.inf
+                )
+                self.enter(n, s, most)
+        return self._shown()
+
+    def move(self, time: float, car: "TestedCar | None", bodies: FloatArray) -> FloatArray:
+        """Returns the states of all actors, shape ``(actors, 5)``, STEP after ``time``."""
+        self._see(car)
+        f.step(
+            self.lanes, self._numbers, self._whole, self._ways, self._present, self._states, bodies,
+            self._lights.of_lanes(self._ends, time), self._entries, self._room, self._tick,
+        )  # fmt: skip
+        self._tick += 1
+        if self.comes_in:
+            self._let_in()
+        self._tidy()
+        return self._shown()
+
+    @property
+    def vehicles(self) -> int:
+        """The number of vehicles on the map now."""
+        return len(self._rows)
+
+    def _see(self, car: "TestedCar | None") -> None:
+        """Enters the tested car into its row."""
+        row, whole = self._numbers[f.TESTED], self._whole[f.TESTED]
+        if car is None:
+            whole[f.STATE] = f.ABSENT
+            return
+        self._states[f.TESTED] = car.x, car.y, 0.0, car.heading, car.speed
+        row[[f.V, f.LENGTH, f.WIDTH, f.PULL, f.FACTOR]] = car.speed, car.length, car.width, 1.5, 1.0
+        row[f.PROGRESS] = 1.0
+        starts, lanes = self._path
+        k = int(np.searchsorted(starts, car.s, side="right")) - 1
+        k = min(max(k, 0), len(lanes) - 1)
+        if whole[f.STATE] == f.ABSENT:
+            self._ways[f.TESTED, : min(len(lanes), LONGEST_WAY)] = lanes[:LONGEST_WAY]
+            whole[:] = 0, min(len(lanes), LONGEST_WAY), -1, -1, f.DRIVES, 0
+        share = (car.s - starts[k]) / max(starts[k + 1] - starts[k], 1e-6)
+        whole[f.AT] = min(k, LONGEST_WAY - 1)
+        row[f.S] = share * self.lanes.length[lanes[k]]
+
+    def enter(self, lane: int, s: float, most: float) -> None:
+        """Adds a vehicle at a station of a lane, with a speed of at most ``most`` m/s."""
+        number = len(self.actors) + 1
+        rng = np.random.default_rng([self._seed, number])
+        way = self._way_from(lane, rng)
+        longest = float(self.lanes.longest[way].min())
+        kind: ActorKind = list(SHARES)[int(rng.choice(len(SHARES), p=list(SHARES.values())))]
+        if SIZES[kind].length > longest:
+            kind = "car"
+        size = SIZES[kind]
+        row = self._row()
+        headway, pull, brake, top = DRIVERS[kind]
+        factor = float(np.clip(rng.normal(1.0, SPREAD), SLOWEST, FASTEST))
+        speed = min(most, float(self.lanes.limit[lane]) * factor, top)
+        self._numbers[row] = 0.0
+        self._numbers[row, : f.BRAKE + 1] = (
+            s, speed, size.length, size.width, factor, top, headway, pull, brake,
+        )  # fmt: skip
+        self._numbers[row, f.PROGRESS] = 1.0
+        self._whole[row] = 0, len(way), -1, -1, f.DRIVES, 0
+        self._ways[row, : len(way)] = way
+        *place, heading, _ = place_on(self.lanes, lane, s)
+        self._states[row] = *place, heading, speed
+        self.actors.append(Actor(f"{kind} {sum(each.kind == kind for each in self.actors) + 1}", kind, size))
+        self._who, self._rows = np.append(self._who, number - 1), np.append(self._rows, row)
+        self._present = max(self._present, row + 1)
+
+    def _row(self) -> int:
+        if not self._free:
+            size = len(self._numbers)
+            for name in ("_numbers", "_whole", "_ways", "_states"):
+                old = getattr(self, name)
+                setattr(self, name, np.concatenate([old, np.zeros_like(old)]))
+            self._entries = np.zeros((size * 24, 5))
+            self._free = list(range(2 * size - 1, size - 1, -1))
+        return self._free.pop()
+
+    def _way_from(self, lane: int, rng: np.random.Generator) -> list[int]:
+        """Draws the lanes that a vehicle drives through: at each junction one of the ways on, of those that
+        lead off the map if there is one, and not to where it has been."""
+        way = [lane]
+        while len(way) < LONGEST_WAY:
+            here = way[-1]
+            onward = self.lanes.onward[self.lanes.onward_of[here] : self.lanes.onward_of[here + 1]]
+            good = [each for each in onward.tolist() if self._exits[each] < NEVER and each not in way]
+            if not good and len(onward):
+                good = [min(onward.tolist(), key=lambda each: self._exits[each])]
+            if not good:
+                break
+            way.append(int(good[int(rng.integers(len(good)))]))
+        return way
+
+    def _let_in(self) -> None:
+        """Lets vehicles in: the flow is the density times the speed that is driven now, more if there are
+        fewer on the map than there should be, and less if there are more."""
+        if not self._waits:
+            return
+        speeds = self._numbers[self._rows, f.V]
+        wanted = DENSITY[self.flow] / 1000.0 * self._metres
+        pace = float(speeds.mean()) if len(speeds) else float(self.lanes.limit.mean())
+        rate = DENSITY[self.flow] / 1000.0 * pace * min(max(2.0 - len(speeds) / max(wanted, 1.0), 0.0), 2.0)
+        for lane in self._waits:
+            self._waits[lane] += int(self._rng.random() < rate * STEP)
+            if not self._waits[lane]:
+                continue
+            gap = self._room[lane] - 5.0 - f.JAM
+            speed = min(float(self.lanes.limit[lane]), gap / 1.5)
+            if gap > 8.0 and speed >= min(4.0, float(self.lanes.limit[lane])):
+                self.enter(lane, 0.0, speed)
+                self._waits[lane] -= 1
+        self.waiting = sum(self._waits.values())
+
+    def _tidy(self) -> None:
+        """Takes out who has left, and plans on for who needs it."""
+        whole, ways, rows = self._whole, self._ways, self._rows
+        at, last = whole[rows, f.AT], whole[rows, f.LAST]
+        has_left = whole[rows, f.STATE] == f.GONE
+        is_long = at > LONGEST_WAY // 2
+        for row in rows[is_long].tolist():
+            begin = int(whole[row, f.AT]) - KEPT
+            kept = ways[row, begin : whole[row, f.LAST]].copy()
+            ways[row, : len(kept)] = kept
+            whole[row, [f.AT, f.LAST, f.GRANTED]] -= begin
+        is_short = ((last - at < KEPT) | is_long) & self._goes_on[ways[rows, last - 1]] & ~has_left
+        for n in np.flatnonzero(is_short).tolist():
+            row, end = rows[n], whole[rows[n], f.LAST]
+            rng = np.random.default_rng([self._seed, int(self._who[n]) + 1, self._tick])
+            more = self._way_from(int(ways[row, end - 1]), rng)[1 : LONGEST_WAY - end + 1]
+            ways[row, end : end + len(more)] = more
+            whole[row, f.LAST] = end + len(more)
+        if has_left.any():
+            whole[rows[has_left], f.STATE] = f.ABSENT
+            self._free += rows[has_left].tolist()
+            self._rows, self._who = rows[~has_left], self._who[~has_left]
+            self._present = int(self._rows.max(initial=0)) + 1
+
+    def _shown(self) -> FloatArray:
+        f.positions(self.lanes, self._numbers, self._whole, self._ways, self._present, self._states)
+        out = np.full((len(self.actors), 5), math.nan)
+        out[self._who] = self._states[self._rows]
+        return out
+
+
+def _is_close(car: "TestedCar", sample: FloatArray) -> bool:
+    dx, dy = sample[PX] - car.x, sample[PY] - car.y
+    along = dx * math.cos(car.heading) + dy * math.sin(car.heading)
+    near = AHEAD + 2.0 * car.speed
+    return bool(-BEHIND - 2.0 * car.speed < along < near and math.hypot(dx, dy) < near)
+
+
+def _near(lanes: Lanes, road: "Road") -> frozenset[Leg] | None:
+    """Returns the lanes that come within REACH of a road; None if all do."""
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(road.at(np.linspace(0.0, road.length, max(2, int(road.length / 10.0))))[:, :2])
+    found = set()
+    for lane in lanes:
+        points = lane.at(np.linspace(0.0, lane.length, max(2, int(lane.length / 25.0))))[:, :2]
+        if float(np.min(tree.query(points)[0])) < REACH:
+            found.add(lane.id)
+    return None if len(found) == len(lanes) else frozenset(found)
+
+
+def _path(road: "Road", legs: tuple[Leg, ...], number: Mapping[Leg, int]) -> tuple[list[float], list[int]]:
+    """Returns the lanes that the tested car follows, and the stations at which they begin; where it changes
+    lanes on a road, that road's last lane."""
+    starts, lanes = [0.0], []
+    for n, (leg, end) in enumerate(zip(legs, road.starts[1:], strict=True)):
+        if n + 1 < len(legs) and legs[n + 1].road == leg.road:
+            continue
+        lanes.append(number[leg])
+        starts.append(end)
+    return starts, lanes
+
+
+def _steps_to_exit(lanes: LaneMap) -> FloatArray:
+    """Returns for each lane the least number of lanes to one where the map ends; NEVER if no way leads
+    there."""
+    count = len(lanes.length)
+    is_exit = (np.diff(lanes.onward_of) == 0) & ~lanes.ends
+    found = np.where(is_exit, 0.0, NEVER)
+    open_ = np.flatnonzero(is_exit).tolist()
+    while open_:
+        here = open_.pop(0)
+        before = lanes.before[lanes.before_of[here] : lanes.before_of[here + 1]].tolist()
+        before += [n for n in range(count) if here in lanes.beside[n]] if not is_exit[here] else []
+        for each in before:
+            if found[each] == NEVER:
+                found[each] = found[here] + 1
+                open_.append(each)
+    # a lane that ends is left for the one beside it
+    for n in np.flatnonzero(lanes.ends):
+        found[n] = min((found[b] + 1 for b in lanes.beside[n] if b >= 0), default=NEVER)
+    return found

@@ -1,0 +1,229 @@
+"""Vehicles that follow, give way and change lanes; checked by formulas, shapely, and slow counts."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+import shapely
+
+from roadgpt import traffic
+from roadgpt.network import network_of
+from roadgpt.network.lanes import lanes_of
+from roadgpt.run import Setup, perform
+from roadgpt.traffic import Size, Stage
+from roadgpt.traffic.actor import SPEED, STEP, X, Y, corners
+from roadgpt.traffic.lane_map import lane_map, touched
+from roadgpt.traffic.lights import GREEN, RED, Lights
+from roadgpt.traffic.movers.idm import DENSITY, IdmMover
+
+NOBODY = np.zeros((0, 7))
+STRAIGHT = "straight 400 | lanes=1 against=1"
+PLANS = [
+    "turn x2 | lanes=2 against=2 len=400",
+    "straight 100 // crossroads left // straight 100",
+    "straight 100 // crossroads left lights // straight 100",
+    "straight 100 // t_junction left stop // straight 100",
+    "straight 100 // roundabout exit=2 // straight 100",
+    "| lanes=2 len=200 // lane_drop // straight 150",
+    "straight 80 // roundabout exit=2 || left_hand",
+]
+
+
+@cache
+def stage(plan, seed=1):
+    run = perform(plan, seed, setup=Setup(reader="plan", drives=False))
+    assert run.is_valid, run.description
+    return Stage(run.road, run.world, seed)
+
+
+def empty(plan):
+    mover = IdmMover(stage(plan), "light", is_filled=False)
+    mover.comes_in = False
+    mover.start(None)
+    return mover
+
+
+def overlapping(mover, states):
+    there = [n for n in range(len(states)) if not math.isnan(states[n, X])]
+    boxes = [shapely.Polygon(corners(states[n], mover.actors[n].size)) for n in there]
+    one, two = shapely.STRtree(boxes).query(boxes, predicate="intersects") if boxes else ((), ())
+    return [
+        (mover.actors[there[a]].name, mover.actors[there[b]].name)
+        for a, b in zip(one, two, strict=True)
+        if a < b
+    ]
+
+
+def body(x, y, heading, speed, length=4.7, width=1.8):
+    return np.array([[x, y, 0.0, heading, speed, length, width]])
+
+
+@pytest.mark.parametrize("v", [5.0, 10.0, 15.0])
+def test_behind_an_even_leader_the_gap_is_that_of_the_published_formula(v):
+    mover = empty("straight 900 | lanes=1 against=1 map_size=1000")
+    lane = mover.lanes.begins.nonzero()[0][0]
+    limit = mover.lanes.limit[lane]
+    mover.enter(lane, 10.0, v)
+    mover._numbers[1, 4], mover._numbers[1, 6:9] = (
+        1.0,
+        (1.5, 1.5, 2.0),
+    )  # a car without a character of its own
+    one = mover.lanes.sample[mover.lanes.first[lane]]
+    x, y, heading = one[0], one[1], one[3]
+    lead, gaps = 60.0, []
+    states = mover._shown()
+    for tick in range(int(800 / v / STEP)):
+        others = body(x + lead * math.cos(heading), y + lead * math.sin(heading), heading, v)
+        states = mover.move(tick * STEP, None, others)
+        lead += v * STEP
+        along = (states[0, X] - x) * math.cos(heading) + (states[0, Y] - y) * math.sin(heading)
+        gaps.append(lead - along - 4.7)
+    # Treiber, Hennecke, Helbing (2000), equation 6
+    assert gaps[-1] == pytest.approx((2.0 + 1.5 * v) / math.sqrt(1 - (v / limit) ** 4), rel=0.01)
+
+
+@pytest.mark.parametrize("plan", PLANS)
+def test_nobody_touches_anybody(plan):
+    mover = IdmMover(stage(plan), "medium")
+    states = mover.start(None)
+    assert mover.vehicles > 2
+    for tick in range(900):
+        states = mover.move(tick * STEP, None, NOBODY)
+        assert not overlapping(mover, states)
+
+
+def test_the_same_seed_gives_the_same_tracks_and_another_seed_others():
+    def tracks(seed):
+        mover = IdmMover(stage(PLANS[1])._replace(seed=seed), "medium")
+        rows = [mover.start(None)] + [mover.move(tick * STEP, None, NOBODY) for tick in range(200)]
+        return np.concatenate([row.ravel() for row in rows])
+
+    assert tracks(3).tobytes() == tracks(3).tobytes()
+    assert tracks(3).tobytes() != tracks(4).tobytes()
+
+
+@pytest.mark.parametrize("flow", ["light", "medium", "dense"])
+def test_the_density_is_held(flow):
+    mover = IdmMover(stage("| lanes=2 against=2 len=600 map_size=700"), flow)
+    mover.start(None)
+    metres = mover.lanes.length.sum()
+    counts = []
+    for tick in range(3000):
+        mover.move(tick * STEP, None, NOBODY)
+        counts.append(mover.vehicles)
+    assert np.mean(counts) / metres * 1000 == pytest.approx(DENSITY[flow], rel=0.2)
+
+
+@pytest.mark.parametrize("plan", [PLANS[1], PLANS[2], PLANS[4]])
+def test_everybody_leaves_when_nobody_comes_any_more(plan):
+    mover = IdmMover(stage(plan), "medium")
+    mover.start(None)
+    for tick in range(12_000):
+        mover.comes_in = tick < 1200
+        mover.move(tick * STEP, None, NOBODY)
+        if tick > 1200 and not mover.vehicles:
+            return
+    pytest.fail(f"{mover.vehicles} have not left")
+
+
+def test_who_comes_upon_somebody_standing_stops_behind_them():
+    mover = empty(STRAIGHT)
+    lane = mover.lanes.begins.nonzero()[0][0]
+    mover.enter(lane, 10.0, 15.0)
+    one = mover.lanes.sample[mover.lanes.first[lane] + 150]
+    for tick in range(300):
+        states = mover.move(tick * STEP, None, body(one[0], one[1], one[3], 0.0))
+    gap = math.hypot(states[0, X] - one[0], states[0, Y] - one[1]) - 4.7 / 2 - mover.actors[0].size.length / 2
+    assert states[0, SPEED] < 0.1
+    assert 1.0 < gap < 3.0
+
+
+def test_who_is_met_head_on_in_its_own_lane_brakes():
+    mover = empty(STRAIGHT)
+    lane = mover.lanes.begins.nonzero()[0][0]
+    mover.enter(lane, 10.0, 15.0)
+    one = mover.lanes.sample[mover.lanes.first[lane] + 120]
+    for tick in range(20):
+        along = 120 - 10.0 * tick * STEP
+        there = mover.lanes.sample[mover.lanes.first[lane] + int(along)]
+        states = mover.move(tick * STEP, None, body(there[0], there[1], one[3] + math.pi, 10.0))
+    assert states[0, SPEED] < 12.0
+
+
+def test_who_gives_way_lets_the_tested_car_pass_and_then_goes():
+    """A side road with a stop sign; the tested car drives by on the road with priority."""
+    own = stage("straight 100 // t_junction straight priority // straight 100")
+    mover = IdmMover(own, "light", is_filled=False)
+    mover.comes_in = False
+    network = network_of(own.road, own.world)
+    waits = next(
+        n for n, key in enumerate(mover.ids)
+        if mover.lanes.begins[n] and lanes_of(network)[key].control in ("yield", "stop")
+    )  # fmt: skip
+    s, station = max(mover.lanes.length[waits] - 30.0, 5.0), 5.0
+    lane = own.world.profile_of(own.road).middle(0.0)
+
+    def tested(station):
+        x, y, _ = own.road.at(station, lane)
+        return traffic.TestedCar(x, y, float(own.road.heading(station)), 13.0, station, lane, 4.7, 1.86)
+
+    mover.start(tested(station))
+    mover.enter(waits, s, 8.0)
+    crossing = own.road.passages[0]
+    entered = None
+    for tick in range(int((own.road.length - station) / 13.0 / STEP)):
+        car = tested(station + 13.0 * tick * STEP)
+        states = mover.move(tick * STEP, car, NOBODY)
+        lane_now = mover._ways[mover._rows[0], mover._whole[mover._rows[0], 0]] if len(mover._rows) else -1
+        if entered is None and lane_now >= 0 and mover.lanes.junction[lane_now] >= 0:
+            entered = car.s
+        if not math.isnan(states[0, X]):
+            box = shapely.Polygon(corners(states[0], mover.actors[0].size))
+            assert not box.intersects(shapely.Point(car.x, car.y).buffer(1.0))
+    assert entered is not None
+    assert entered > crossing.start
+
+
+def test_lights_never_show_green_to_ways_that_cross_and_opposite_arms_have_it_together():
+    own = stage("straight 100 // crossroads left lights // straight 100")
+    network = network_of(own.road, own.world)
+    lights = Lights(network, 5)
+    (junction,) = network.junctions
+    arms = [(arm.end, arm.direction) for arm in junction.arms]
+    seen = {end: 0.0 for end, _ in arms}
+    for tick in range(4000):
+        open_ = [(end, way) for end, way in arms if lights.shown(end, tick * STEP) != RED]
+        for _, one in open_:
+            for _, two in open_:
+                apart = abs((one - two + math.pi) % (2 * math.pi) - math.pi)
+                assert apart < 1e-9 or apart > math.radians(135)
+        for end, _ in arms:
+            seen[end] += STEP * (lights.shown(end, tick * STEP) == GREEN)
+    assert all(share == pytest.approx(400 * 15 / 40, rel=0.15) for share in seen.values())
+
+
+@pytest.mark.parametrize("plan", [PLANS[1], PLANS[4]])
+def test_boxes_are_in_the_lanes_whose_areas_they_overlap(plan):
+    own = stage(plan)
+    lanes = lanes_of(network_of(own.road, own.world))
+    made, ids = lane_map(lanes, 20.0)
+    areas = {key: lanes[key].area for key in ids}
+    rng = np.random.default_rng(2)
+    wrong = 0
+    for _ in range(200):
+        key = ids[int(rng.integers(len(ids)))]
+        lane = lanes[key]
+        s = float(rng.uniform(0, lane.length))
+        x, y, _ = lane.at(s, float(rng.uniform(-2, 2)))
+        heading = float(lane.heading(s)) + float(rng.normal(0, 0.3))
+        entries = np.zeros((64, 5))
+        count = touched(made, x, y, heading, 4.7, 1.8, 5.0, 7.0, entries, 0)
+        found = {ids[int(entries[n, 0])] for n in range(count)}
+        state = np.array([x, y, 0.0, heading, 5.0])
+        for each, area in areas.items():
+            small = shapely.Polygon(corners(state, Size(4.7, 1.2, 1.5)))
+            large = shapely.Polygon(corners(state, Size(5.8, 2.1, 1.5)))
+            wrong += small.intersection(area).area > 0.5 and each not in found
+            wrong += large.intersection(area).area < 0.01 and each in found
+    assert not wrong
