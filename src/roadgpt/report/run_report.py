@@ -59,7 +59,7 @@ def write_run_report(folder: Path, command: str = "") -> Path:
     opening = [overview(parts, world.site.map_size), faults(folder, failed, summaries)]
     sections = [
         *filter(None, opening),
-        validity(parts, [source_of(setup.designer, parts, kind) for kind in KINDS]),
+        validity(parts, kinds),
     ]
     if setup.drives:
         left = source_of(setup.designer, parts, LEFT)
