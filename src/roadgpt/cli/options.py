@@ -23,7 +23,7 @@ from click.core import ParameterSource
 
 from roadgpt import plugins
 from roadgpt.cli.streams import warn
-from roadgpt.errors import UsageError, command_line
+from roadgpt.errors import BriefError, UsageError, command_line
 
 if TYPE_CHECKING:
     from roadgpt.campaign.gate import Gate
@@ -336,6 +336,16 @@ def bank(value: str) -> str | float:
         ) from None
 
 
+def scene(value: str) -> str:
+    """Returns a scene in its normal form."""
+    from roadgpt.brief.plan import read_scene, scene_plan
+
+    try:
+        return scene_plan(read_scene(value))
+    except BriefError as error:
+        raise click.BadParameter(str(error)) from None
+
+
 def folder(value: str) -> Path:
     """Converts the value of an option to the path of a folder that exists or can be created."""
     if not str(value).strip():
@@ -401,7 +411,7 @@ def flat(ctx: click.Context, option: click.Parameter, given: Any) -> tuple[Any, 
 picture_formats = listed(_picture_format)
 _files = partial(Option, heading=Heading.FILES)
 GUARDS: dict[str, Any] = {"reader": reader_guard, "designer": designer_guard, "driver": driver_guard}
-KINDS: dict[str, Any] = {"driver": driver, "lanes": lanes, "bank": bank}
+KINDS: dict[str, Any] = {"driver": driver, "lanes": lanes, "bank": bank, "scene": scene}
 """What refuses and what converts the values of fields, where their types do not say it all."""
 ORACLE = Option(
     "--oracle",
@@ -472,14 +482,14 @@ def _within(kind: type, field: Any, within: tuple[float, float] | None, unit: fl
 @cache
 def _of_models() -> dict[str, tuple[Option, ...]]:
     from roadgpt.chat.model import ChatSettings
-    from roadgpt.road.world import CrossSection, Limits, Parts, Site
+    from roadgpt.road.world import CrossSection, Limits, Parts, Site, World
 
     of_world = [
-        each for part in (Site, CrossSection, Limits) for each in of_model(part, Heading.SITE, "world")
+        each for part in (Site, CrossSection, Limits, World) for each in of_model(part, Heading.SITE, "world")
     ]
     order = (
-        "map_size", "speed_limit", "oracle", "oob_tolerance", "lane_departure", "lanes", "lane_width",
-        "lane_width_end", "bank", "shoulder", "friction",
+        "map_size", "scene", "speed_limit", "oracle", "oob_tolerance", "lane_departure", "lanes",
+        "lane_width", "lane_width_end", "bank", "shoulder", "friction",
     )  # fmt: skip
     world = tuple(named([ORACLE, *of_world], *order))
     names = ("reader", "designer", "driver", "simulator", "keep_driving", "geometry", "rules")
