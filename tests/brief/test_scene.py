@@ -1,5 +1,7 @@
 """Scenes in plans: what is read, written, said and refused, and what the catalogues of others need."""
 
+import re
+from pathlib import Path
 from typing import Any, get_args
 
 import pytest
@@ -13,9 +15,12 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan, read_plan, read_scene, scene_plan
 from roadgpt.brief.scene import (
     DOINGS,
+    FLOWS,
+    LIGHTS,
     NUMBERS,
     SPOTS,
     UNBUILT,
+    USUAL,
     Action,
     ActorKind,
     Flow,
@@ -36,6 +41,7 @@ from strategies import amounts, briefs, maybe
 from tables import rows
 
 KINDS = get_args(ActorKind)
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "plans.md"
 
 
 def numbers(model: type[Action] | type[Role]) -> dict[str, Any]:
@@ -220,6 +226,33 @@ def test_the_example_is_read_into_its_fields() -> None:
     )  # fmt: skip
     assert brief.scene == Scene(speed=exactly(50), actors=(truck,))
     assert brief.clauses == read_plan("straight 200; turn left 90").clauses
+
+
+def test_the_page_has_every_word_and_every_bound() -> None:
+    section = PAGE.read_text(encoding="utf-8").split("## Scenes\n")[1].split("\n## ")[0]
+    words = {*re.findall(r"[a-z_]+", section)}
+    keys = {number.key for number in NUMBERS.values()}
+    assert not {*KINDS, *SPOTS, *DOINGS, *FLOWS, *LIGHTS, *get_args(Surface), *keys} - words
+    table = [
+        line.split("|")[1:4]
+        for line in section.splitlines()
+        if re.match(r"\| `\w+`(, `\w+`)? \| [-\d]", line)
+    ]
+    said = {
+        key: tuple(float(ends.split(",")[n % (ends.count(",") + 1)]) for ends in (low, high))
+        for names, low, high in table
+        for n, key in enumerate(re.findall(r"\w+", names))
+    }
+    assert said == {each.key: each[1:3] for name, each in NUMBERS.items() if name not in USUAL}
+    starts = {
+        what: number
+        for names, number in re.findall(r"^\| (`\w+`(?:, `\w+`)*) \| *`?(\w*)`? *\| ", section, re.MULTILINE)
+        for what in re.findall(r"\w+", names)
+        if what in DOINGS
+    }
+    assert starts == {
+        what: NUMBERS[each.numbers[0]].key if each.numbers else "" for what, each in DOINGS.items()
+    }
 
 
 @given(SCENES)
