@@ -416,7 +416,7 @@ KINDS: dict[str, Any] = {"driver": driver, "lanes": lanes, "bank": bank, "scene"
 ORACLE = Option(
     "--oracle",
     "FAIL when more of the car than this is outside its lane: half, sbft (85 %), thesis (95 %), 0.7 ...; "
-    "departure: a front tyre over the marking.",
+    "departure: front tyre over the line.",
     str, "half", metavar="ORACLE", heading=Heading.DRIVE, table="world",
 )  # fmt: skip
 """Stands for the two fields of the Limits that are options of their own."""
@@ -527,7 +527,7 @@ AXES = _files(
 FORMAT = _files("--format picture_formats", "Formats of pictures: png, svg, pdf.", picture_formats, ("png",),
                 metavar="FORMAT,...", table="run")
 NO_PLOT = _files("--no-plot", "Draw no pictures.", bool)
-JUNIT = _files("--junit", "Also write the tests as JUnit XML.", file, metavar="FILE.xml")
+JUNIT = _files("--junit", "Also write the tests as JUnit XML.", file, metavar="FILE.xml", is_rare=True)
 NO_DRIVE = Option("--no-drive", "Do not drive the roads.", bool, heading=Heading.DRIVE)
 AGAIN = _files("--again", "Make all tests of the folder anew, for example with a changed driver. The earlier "
                "ones are moved into its subfolder before-1 (or 2, ...).", bool, is_rare=True)

@@ -329,9 +329,8 @@ class World(BaseModel):
     """The cross-section of roads whose own ``profile`` is None."""
     limits: Limits = Limits()
     scene: Annotated[Scene, BeforeValidator(_scene_in)] = Field(
-        Scene(), json_schema_extra=DRIVE,
-        description="Others on the road, and conditions, as in plans: medium, 'truck ahead gap=30; wet' ... "
-        "[default: nobody, or as described]",
+        Scene(), description="Others on the road, and weather: medium, 'light; wet'.",
+        json_schema_extra=DRIVE | {"open": True},
     )  # fmt: skip
     """A text is read as in ``brief.plan.read_scene``."""
 
