@@ -67,6 +67,22 @@ def test_an_option_wins_over_the_words_and_this_is_said() -> None:
     assert read_run(Path("out/runs/0001")).world.scene == read_scene("light")
 
 
+def test_a_surface_is_never_left_out_in_silence() -> None:
+    assert (
+        roadgpt(
+            "run", "--plan", PLAN, "--no-drive", "--no-plot", "--out", "out", "-q", "--friction", 0.7
+        ).exit_code
+        == 0
+    )
+    road = "out/runs/0001/road.json"
+    told = roadgpt("drive", road, "--scene", "ice", "--out", "icy")
+    assert "the surface of --scene goes before the friction 0.7 of the file" in told.output
+    assert read_run(Path("icy/runs/0001")).world.site.friction == 0.1
+    told = roadgpt("drive", road, "--scene", "ice", "--friction", 0.8, "--out", "typed")
+    assert "'ice', but friction 0.8 is set; the surface in the words is not used" in told.stderr
+    assert read_run(Path("typed/runs/0001")).world.site.friction == 0.8
+
+
 def test_words_and_a_scene_that_exclude_each_other_are_refused() -> None:
     result = roadgpt("run", "--plan", f"{PLAN} | oneway", "--scene", "oncoming light", "--no-drive")
     assert result.exit_code == 2

@@ -654,7 +654,13 @@ def world_of(values: dict[str, Any]) -> "World":
             some = {name: value for name, value in some.items() if value is not None}
             limits = oracle_limits(**some) if "oracle" in some else limits | some
         given |= limits
-    return World().changed(**{name: value for name, value in given.items() if value is not None})
+    world = World().changed(**{name: value for name, value in given.items() if value is not None})
+    if "friction" in world.site.model_fields_set:
+        from roadgpt.brief.beside import friction_of, surface_remark
+
+        if friction_of(surfaces := world.scene.surfaces) not in (None, world.site.friction):
+            warn(surface_remark(surfaces, world.site.friction))
+    return world
 
 
 def reader_of(values: dict[str, Any]) -> str:
