@@ -1,6 +1,7 @@
 """The chat reader: plans that a model writes are plans like any other, and checked like any other."""
 
-from typing import Any
+import re
+from typing import Any, get_args
 
 import pytest
 from hypothesis import given
@@ -9,8 +10,9 @@ from hypothesis import strategies as st
 from chat.stub_server import StubServer, in_order
 from fake_chat import FakeChat
 from roadgpt.brief import exactly, normal, read
-from roadgpt.brief.plan import plan
+from roadgpt.brief.plan import TESTED_CAR, plan
 from roadgpt.brief.readers.chat import EXAMPLES, RULES, ChatReader, PlanAnswer
+from roadgpt.brief.scene import DOINGS, FLOWS, LIGHTS, NUMBERS, SPOTS, USUAL, ActorKind, Surface
 from roadgpt.chat import ChatSettings, Message, Reply, Spent
 from roadgpt.errors import BriefError
 from tables import rows as table_rows
@@ -106,6 +108,43 @@ def test_routes_and_maps_are_the_plans_that_a_user_would_write(
     chat = FakeChat(PlanAnswer(along=along, road=road, unused=[]).model_dump_json())
     brief = ChatReader(ChatSettings(rounds=1), chat).read("some route")
     assert plan(brief) == plan(normal(read(line, "plan")))
+
+
+@pytest.mark.parametrize(("along", "road", "line"), table_rows(__file__, "scenes"))
+def test_a_scene_is_lines_of_its_own_or_stands_behind_the_road(
+    along: list[str], road: str, line: str
+) -> None:
+    chat = FakeChat(PlanAnswer(along=along, road=road, unused=[]).model_dump_json())
+    brief = ChatReader(ChatSettings(rounds=1), chat).read("some road")
+    assert plan(brief) == plan(normal(read(line, "plan")))
+
+
+def test_a_wrong_scene_goes_back_with_what_can_be_said_of_one() -> None:
+    answers = [
+        PlanAnswer(along=["turn left", f"scene {part}"], road="", unused=[]).model_dump_json()
+        for part in ("truck ahead: jump", "truck ahead: brake 6 ttc=2")
+    ]
+    chat = FakeChat(*answers)
+    brief = ChatReader(ChatSettings(rounds=2), chat).read("a left turn; a truck ahead brakes")
+    assert plan(brief) == "turn left && truck ahead: brake decel=6 ttc=2"
+    assert "no manoeuvre 'jump'" in chat.questions[-1]
+
+
+def test_the_model_is_told_every_word_of_scenes() -> None:
+    told = {*re.findall(r"\w+", RULES)}
+    keys = {number.key for name, number in NUMBERS.items() if name not in USUAL}
+    words = {
+        *get_args(ActorKind),
+        *SPOTS,
+        *DOINGS,
+        *FLOWS,
+        *USUAL,
+        *LIGHTS,
+        *get_args(Surface),
+        *keys,
+        TESTED_CAR,
+    }
+    assert not words - told
 
 
 def test_a_wrong_junction_goes_back_with_what_can_be_said_of_one(stub: StubServer) -> None:

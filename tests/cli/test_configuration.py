@@ -42,6 +42,7 @@ lane_width_end = 3.5
 bank = 5.0
 shoulder = 1
 friction = 0.6
+scene = "medium; wet"
 speed_limit_kmh = 50
 oracle = "departure"
 oob_tolerance = 0.5

@@ -1,4 +1,4 @@
-"""A World has three parts, and files have one flat table."""
+"""A World has four parts, and files have one flat table."""
 
 import json
 from typing import Any
@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from pydantic import BaseModel, ValidationError
 
+from roadgpt.brief.plan import read_plan, read_scene
 from roadgpt.road import CrossSection, Limits, Site, World
 
 FILE = (
@@ -54,10 +55,33 @@ def test_a_wrong_value_is_refused_in_a_file_and_in_a_change(values: dict[str, An
         World().changed(**values)
 
 
+def test_a_scene_is_one_text_of_a_file_and_absent_without_one() -> None:
+    text = "truck ahead gap=30: brake decel=6; medium; wet"
+    busy = PARTS.changed(scene="medium;wet", friction=0.6).changed(scene=text.replace("decel=6", "6"))
+    assert busy.model_dump_json() == f'{FILE[:-1]},"scene":"{text}"}}'
+    assert World.model_validate_json(busy.model_dump_json()) == busy
+    assert busy.changed(scene="").model_dump_json() == FILE
+    assert busy.changed(friction=0.3).scene == read_scene(text)
+    with pytest.raises(ValidationError, match="no manoeuvre 'jump'"):
+        World.model_validate({"scene": "truck ahead: jump"})
+
+
+def test_a_scene_of_words_counts_unless_the_world_has_one_and_its_surface_sets_the_friction() -> None:
+    brief = read_plan("turn | beside(wet) && medium; ice")
+    assert World().in_scene_of(brief).scene == brief.scene
+    assert World().in_scene_of(brief).on_surface_of(brief).site.friction == 0.1
+    for given in ("", "light", "snow"):
+        kept = World().changed(scene=given).in_scene_of(brief)
+        assert kept.scene == read_scene(given)
+        assert kept.on_surface_of(brief).site.friction == (0.35 if given == "snow" else 0.6)
+    assert World().changed(scene="rain").on_surface_of(None).site.friction == 0.6
+    assert World().changed(scene="rain", friction=1.0).on_surface_of(None).site.friction == 1.0
+
+
 def test_a_change_leaves_everything_else() -> None:
     icy = PARTS.changed(friction=0.1, shoulder=0.5)
     want = json.loads(FILE) | {"friction": 0.1, "verge": 0.5}
     assert json.loads(icy.model_dump_json()) == want
     assert PARTS.changed() == PARTS
-    earlier = [name for name in PARTS.values() if name != "centre_line"]  # which is newer
+    earlier = [name for name in PARTS.values() if name not in ("centre_line", "scene")]  # newer ones
     assert earlier == [name.replace("verge", "shoulder") for name in json.loads(FILE)]

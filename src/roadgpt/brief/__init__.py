@@ -198,7 +198,8 @@ def remarks(brief: Brief, map_size: float, friction: float | None = None) -> tup
         brief: the Brief.
         map_size: side of the square map in metres.
         friction: friction coefficient of the road; with None, a surface named in the description sets it."""
-    return (*beside.remarks(brief.beside, friction), *motorway_remarks(brief, map_size))
+    things = (*brief.beside, *brief.scene.surfaces)
+    return (*beside.remarks(things, friction), *motorway_remarks(brief, map_size))
 
 
 def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:

@@ -12,6 +12,7 @@ from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, Slope, exactl
 from roadgpt.brief.normal import BUMPS, SINGLE, STRAIGHT, clauses_turn, normal, total, turns_of
 from roadgpt.brief.outline import outline, slopes_of_bump
 from roadgpt.brief.ranges import Range, overlap
+from roadgpt.brief.scene_fit import check_scene
 from roadgpt.brief.sentence import clause_text, road_words
 from roadgpt.brief.words import (
     COUNTS,
@@ -80,6 +81,7 @@ def check(
         raise BriefError(fault)
     for stretch in brief.roads if brief.junctions else ():
         check(stretch, None, min_radius, max_grade, road_width)
+    check_scene(brief.scene, brief)
     if map_size is not None and not is_network:
         check_room(normal(brief), map_size, min_radius, road_width)
 

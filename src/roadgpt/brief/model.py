@@ -12,6 +12,7 @@ from roadgpt.brief.beside import BESIDE, friction_of
 from roadgpt.brief.design_speed import FASTEST, SLOWEST, USUAL
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, Side
 from roadgpt.brief.ranges import Range, nearest
+from roadgpt.brief.scene import Scene
 from roadgpt.brief.words import (
     LARGEST_MAP,
     MOST_LANES,
@@ -49,7 +50,7 @@ SIDE = re.compile("left(?!_hand)|right")
 OTHER_POLE = {"north": "south", "south": "north"}
 UPSIDE_DOWN = re.compile("north|south")
 CentreLine = Literal["solid", "broken", "double", "none"]
-OF_THE_WORDS = ("words", "beside", "unused", "confidence", "other", "map_size")
+OF_THE_WORDS = ("words", "beside", "unused", "confidence", "other", "map_size", "scene")
 """The fields of a Brief that require nothing of the shape of a road."""
 
 
@@ -172,6 +173,8 @@ class Brief(Frozen):
     speed: Annotated[float, Field(ge=SLOWEST, le=FASTEST)] | None = None
     """The design speed in km/h: see ``brief.design_speed``. Without a number, it is the usual one of
     ``surroundings``; that of a route holds for its roads without one."""
+    scene: Scene = Scene()
+    """Who else is on the road, and under which conditions; of a whole route, not of its roads."""
     other: str = ""
     """The plan of the second likeliest reading, if the reader is not sure of this Brief; otherwise empty."""
 
@@ -197,6 +200,8 @@ class Brief(Frozen):
             raise ValueError("traffic drives on one side on the whole route; write left_hand after ||")
         if any(stretch.map_size for stretch in self.stretches):
             raise ValueError("a route lies on one map; write map_size= after ||")
+        if any(stretch.scene != Scene() for stretch in self.stretches):
+            raise ValueError("a scene is that of the whole route, not of one of its roads")
         if any(stretch.comes_from for stretch in self.stretches):
             raise ValueError("a route comes from one direction at its start; write from= after ||")
         if self.map is not None and (self.comes_from or self.speed):
@@ -277,7 +282,7 @@ class Brief(Frozen):
     @property
     def friction(self) -> float | None:
         """The friction coefficient of the slipperiest surface in ``beside``; None if there is no surface."""
-        return friction_of(self.beside)
+        return friction_of((*self.beside, *self.scene.surfaces))
 
 
 def is_one_road(place: JunctionClause) -> bool:
@@ -313,7 +318,7 @@ def mirrored(brief: Brief) -> Brief:
     west to east, meets the mirrored Brief.
 
     The numbers of exits stay, because exits are counted in the direction in which traffic drives around a
-    roundabout. ``map`` also stays as it is."""
+    roundabout. ``map`` and ``scene`` also stay as they are."""
     names = {"clauses", "starts", "ends", "left", "right", "junctions", "stretches"}
     other = {**brief.model_dump(exclude=names), **_with_other_sides(brief.model_dump(include=names))}
     start = brief.comes_from and UPSIDE_DOWN.sub(lambda way: OTHER_POLE[way[0]], brief.comes_from)

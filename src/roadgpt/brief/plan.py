@@ -4,10 +4,12 @@ who label data, and by users who want to state requirements without words that a
     turn x3 left up; straight long down; hairpin right | len=300 hard beside(traffic, night)
     straight 80 // crossroads left lights // | up // roundabout exit=3 arms=4 || len=300
     map columns=3 rows=2 lights; junction x2 stop
+    straight 200 && truck ahead gap=30 v=50: brake 6; oncoming x3; medium; fog 60
 
 The clauses are in driving order, separated by ``;``. The requirements for the whole road follow after ``|``.
 Junctions and the roads between them alternate, separated by ``//``; a road without requirements is left out,
 and requirements for the whole route follow after ``||``. A map is a grid, or junctions joined by roads.
+Behind ``&&`` stands the scene: who else is on the road, and under which conditions.
 A number is exact (``3``), a bound (``3..`` or ``..3``) or a range (``3..5``), in the units of the Brief. The
 page docs/reference/plans.md describes the language."""
 
@@ -37,6 +39,21 @@ from roadgpt.brief.junctions import (
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Frozen, exactly, span
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.refusal import refused
+from roadgpt.brief.scene import (
+    DOINGS,
+    NUMBERS,
+    SPOTS,
+    USUAL,
+    Action,
+    ActorKind,
+    Flow,
+    Light,
+    Mark,
+    Role,
+    Scene,
+    Surface,
+    Where,
+)
 from roadgpt.brief.words import (
     LARGEST_MAP,
     SMALLEST_MAP,
@@ -54,6 +71,7 @@ KINDS = frozenset(get_args(Kind))
 JUNCTIONS: frozenset[str] = frozenset(get_args(JunctionKind))
 BETWEEN = "//"
 WHOLE = "||"
+SCENE = "&&"
 BARE: dict[str, str] = dict.fromkeys(("straight", *BUMPS), "length")
 """The field that a number without a key sets, by kind of clause; for turns, the number is their angle."""
 ONE_WAY = "oneway"
@@ -224,6 +242,24 @@ MAP_OF_ROADS = _Language(
     {ROUTE: (ROUTE, read_ways)},
     "map",
 )
+TESTED_CAR = "ego"
+AN_ACTOR = _Language(
+    {**_words(where=Where, side=Side), "opposite": ("side", "opposite")},
+    {number.key: field for field, number in NUMBERS.items() if field in Role.model_fields},
+    of="road user",
+)
+AN_ACTION = _Language(
+    _words(side=Side),
+    {number.key: field for field, number in NUMBERS.items() if field in Action.model_fields},
+    of="manoeuvre",
+)
+ITSELF = _Language({}, {"v": "speed"}, of=TESTED_CAR)
+CONDITIONS = _words(flow=Flow, light=Light, surface=Surface)
+MARK = re.compile(
+    r"\b(?:(?:after|before|in) (?:turn|junction) (?:-1|[1-9]\d?)|(?:after|with) "
+    rf"(?:{'|'.join(get_args(ActorKind))}) [1-9]\d? (?:{'|'.join(DOINGS)}))(?!\S)"
+)
+"""A part of the route, or what another actor does, as in "after turn 1" and "with truck 1 brake"."""
 
 
 def plan(brief: Brief) -> str:
@@ -238,7 +274,8 @@ def plan(brief: Brief) -> str:
         line = map_plan(brief.map)
     else:
         mark, line = "|", "; ".join(map(_clause, brief.clauses))
-    return f"{line} {mark} {' '.join(wishes)}".strip() if wishes else line
+    line = f"{line} {mark} {' '.join(wishes)}".strip() if wishes else line
+    return f"{line} {SCENE} {scene_plan(brief.scene)}".strip() if brief.scene != Scene() else line
 
 
 def _written(thing: Frozen, language: _Language) -> list[str]:
@@ -297,6 +334,9 @@ def read_plan(line: str) -> Brief:
     and junctions do not alternate, or the plan is a refusal."""
     if line.lstrip().startswith("!"):
         raise refused(line)
+    if SCENE in line:
+        line, _, scene = line.partition(SCENE)
+        return read_plan(line).model_copy(update={"scene": read_scene(scene)})
     if BETWEEN in line or is_junction(line):
         half, word = half_of_route(line), rf"\b{HALFWAY}\b"
         if re.search(word, line) and not half:
@@ -481,3 +521,95 @@ def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
     except ValidationError as error:
         problem = error.errors()[0]["msg"].removeprefix("Value error, ")
         raise BriefError(f"the plan '{text.strip()[:60]}' cannot be read: {problem}") from error
+
+
+def scene_plan(scene: Scene) -> str:
+    """Returns a scene as it stands in a plan, such as "truck ahead gap=30: brake; medium"; "" for none."""
+    line = [" ".join([TESTED_CAR, *_written(scene, ITSELF)])] if scene.speed else []
+    for role in scene.actors:
+        actor = _marked([role.kind, *_times(role.count)], role, AN_ACTOR)
+        actions = ", ".join(_marked([action.what], action, AN_ACTION) for action in role.actions)
+        line.append(f"{actor}: {actions}" if actions else actor)
+    line += [scene.flow or "", f"oncoming {scene.oncoming}" if scene.oncoming else ""]
+    line += [f"parked {side}" for side in scene.parked]
+    line += [f"{name} {amount_text(number)}" for name in USUAL if (number := getattr(scene, name))]
+    return "; ".join(filter(None, [*line, scene.light, scene.surface]))
+
+
+def _marked(head: list[str], thing: Role | Action, language: _Language) -> str:
+    return " ".join([*head, *_written(thing, language), *([str(thing.at)] if thing.at else [])])
+
+
+def read_scene(text: str) -> Scene:
+    """Returns the scene that stands in a plan behind &&. Raises BriefError if a word, key or number is not
+    part of the language, or the scene contradicts itself.
+    """
+    fields: dict[str, object] = {}
+    actors, rows = [], set[str]()
+    for part in filter(None, map(str.strip, text.split(";"))):
+        first, *words = part.replace(":", " : ").split()
+        if first == "parked":
+            if len(words) != 1 or words[0] not in {*get_args(Side)} - rows:
+                raise BriefError(
+                    f"'{part[:40]}' is no row of parked cars; write parked left or parked right, each once, "
+                    "or for a single car with numbers of its own: car parked right gap=40"
+                )
+            rows.add(words[0])
+        elif first == "oncoming" and len(words) == 1 and words[0] in (*get_args(Flow), "none"):
+            _set(fields, first, words[0])
+        elif first in (*get_args(ActorKind), *SPOTS):
+            actors.append(_read_role(part))
+        elif first == TESTED_CAR:
+            for word in words:
+                _read_word(fields, word, ITSELF)
+        elif first in USUAL and len(words) < 2:
+            _set(fields, first, read_amount(words[0]) if words else USUAL[first])
+        elif first in CONDITIONS and not words:
+            _set(fields, *CONDITIONS[first])
+        else:
+            known = (*get_args(ActorKind), TESTED_CAR, "oncoming", "parked", *USUAL, *CONDITIONS)
+            raise BriefError(
+                f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"
+            )
+    return _made(Scene, {**fields, "actors": tuple(actors), "parked": rows}, text)
+
+
+def _read_role(text: str) -> Role:
+    head, _, rest = text.partition(":")
+    fields: dict[str, object] = {}
+    kind, *words = _without_mark(head, fields)
+    if kind not in get_args(ActorKind):
+        kind, words = "car", [kind, *words]
+    for word in words:
+        if word.startswith("x") and word[1:2] in "0123456789.":
+            _set(fields, "count", read_amount(word[1:]))
+        else:
+            _read_word(fields, word, AN_ACTOR)
+    if "where" not in fields:
+        raise BriefError(
+            f"'{text[:40]}' does not say where the {kind} is at first; there are {', '.join(SPOTS)}"
+        )
+    actions = tuple(_read_action(part) for part in rest.split(",") if part.strip())
+    return _made(Role, {"kind": kind, **fields, "actions": actions}, text)
+
+
+def _read_action(text: str) -> Action:
+    fields: dict[str, object] = {}
+    what, *words = _without_mark(text, fields) or [""]
+    doing = next((doing for name, doing in DOINGS.items() if name == what), None)
+    if doing is None:
+        raise BriefError(f"a plan has no manoeuvre '{what[:40]}'; there are {', '.join(DOINGS)}")
+    for word in words:
+        if word[0] in "0123456789." and doing.numbers:
+            _set(fields, doing.numbers[0], read_amount(word))
+        else:
+            _read_word(fields, word, AN_ACTION)
+    return _made(Action, {"what": what, **fields}, text)
+
+
+def _without_mark(text: str, fields: dict[str, object]) -> list[str]:
+    """Returns the words of a text without its places and events, which are put into the fields."""
+    for found in MARK.findall(text):
+        mark = dict(zip(("word", "of", "number", "what"), found.split(), strict=False))
+        _set(fields, "at", Mark.model_validate(mark))
+    return MARK.sub(" ", text).split()

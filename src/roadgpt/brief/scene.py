@@ -1,28 +1,372 @@
-"""Defines the Scene: who else is on the road, what they do, and under which conditions."""
+"""Defines the Scene: who else is on the road, what they do, and under which conditions.
 
-from typing import Literal
+It is told in the terms of OpenSCENARIO: somebody is somewhere at first, and then does one thing after
+another, each begun by a condition. A number may be a range, from which each drive draws."""
 
-from roadgpt.brief.amount import Frozen
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Literal, NamedTuple, Self, get_args
+
+from pydantic import AfterValidator, model_validator
+
+from roadgpt.brief.amount import Amount, Frozen, exactly, span
+from roadgpt.brief.junctions import Side
+from roadgpt.brief.words import SURFACES
 
 ActorKind = Literal[
-    "car",
-    "van",
-    "truck",
-    "bus",
-    "motorcycle",
-    "bicycle",
-    "adult",
-    "child",
-    "animal",
-    "cones",
-    "barrier",
-    "lost_load",
-]
+    "car", "van", "truck", "bus", "motorcycle", "bicycle", "adult", "child", "animal",
+    "cones", "barrier", "lost_load",
+]  # fmt: skip
 Flow = Literal["light", "medium", "dense"]
+Light = Literal["night", "low_sun"]
+Surface = Literal["wet", "snow", "ice"]
+Where = Literal[
+    "ahead", "behind", "lane", "far", "oncoming", "crossing", "parked", "ramp", "junction", "crosswalk",
+    "beside", "roundabout",
+]  # fmt: skip
+What = Literal[
+    "keep", "brake", "stop", "speed", "follow", "open_gap", "swerve", "drift", "cut_in", "cut_out",
+    "change_lane", "overtake", "merge", "pull_out", "turn_off", "turn_in", "turn_across", "cross",
+    "run_light", "run_sign", "reverse", "wrong_way",
+]  # fmt: skip
+FLOWS: Mapping[Flow, int] = {"light": 5, "medium": 12, "dense": 25}
+"""How many vehicles drive on each km of a lane."""
+VEHICLES: tuple[ActorKind, ...] = ("car", "van", "truck", "bus", "motorcycle", "bicycle")
+MOVING: tuple[ActorKind, ...] = (*VEHICLES, "adult", "child", "animal")
+ANYTHING: tuple[ActorKind, ...] = get_args(ActorKind)
+SEVERAL = {"bus": "buses", "child": "children", "cones": "cones"}
+"""The plurals that are not made with an s."""
+ALONG = ("ahead", "behind", "lane", "far", "oncoming")
+ACROSS = ("crossing", "crosswalk", "junction", "beside")
+ANYWHERE = get_args(Where)
+
+
+def one_of(kind: ActorKind) -> str:
+    """Returns one of a kind in words, such as "an adult"."""
+    article = "" if kind == "cones" else "an " if kind[0] == "a" else "a "
+    return article + kind.replace("_", " ")
+
+
+class Spot(NamedTuple):
+    """Where somebody can be at first."""
+
+    said: str
+    before_side: str = ""
+    """The words before its side; empty if it has none."""
+    who: tuple[ActorKind, ...] = MOVING
+
+
+SPOTS: Mapping[Where, Spot] = {
+    "ahead": Spot("ahead", who=ANYTHING),
+    "behind": Spot("behind"),
+    "lane": Spot("in the next lane", "to the", ANYTHING),
+    "far": Spot("beyond the next lane", "to the", ANYTHING),
+    "oncoming": Spot("oncoming"),
+    "crossing": Spot("crossing", "from the"),
+    "parked": Spot("parked", "on the", VEHICLES),
+    "ramp": Spot("on the ramp", who=VEHICLES),
+    "junction": Spot("at the junction", "from the", VEHICLES),
+    "crosswalk": Spot("on the crosswalk", "from the"),
+    "beside": Spot("beside the road", "on the", ANYTHING),
+    "roundabout": Spot("in the roundabout", who=VEHICLES),
+}
+
+
+class Number(NamedTuple):
+    """A number of a scene: its key in plans, the least and the most that is possible, and its words."""
+
+    key: str
+    least: float
+    most: float
+    said: str
+    where: tuple[str, ...] = ANYWHERE
+    """Where somebody is at first who can have it."""
+
+
+NUMBERS: Mapping[str, Number] = {
+    "decel": Number("decel", 0.1, 12, "with {} m/s2"),
+    "to": Number("to", 0, 250, "to {} km/h"),
+    "lateral": Number("lat", 0.1, 5, "at {} m/s sideways"),
+    "shift": Number("shift", 0.1, 10, "by {} metres"),
+    "accel": Number("accel", -12, 12, "accelerating with {} m/s2"),
+    "duration": Number("for", 0.1, 600, "for {} seconds"),
+    "gap": Number("gap", -200, 1000, "at a gap of {} metres", (*ALONG, "parked", "beside")),
+    "headway": Number("thw", 0, 20, "at a headway of {} seconds", ("ahead", "behind")),
+    "station": Number("s", 0, 40_000, "at {} metres from the start"),
+    "time": Number("time", 0, 3600, "after {} seconds"),
+    "distance": Number("dist", 0, 40_000, "after {} metres"),
+    "ttc": Number("ttc", 0, 60, "at a time to collision of {} seconds"),
+    "speed": Number("v", 0, 250, "at {} km/h"),
+    "faster": Number("dv", -250, 250, "at {} km/h more than the tested car", (*ALONG, "ramp")),
+    "overlap": Number("overlap", 0, 100, "covering {} percent of the tested car's width", ALONG),
+    "impact": Number("impact", 0, 100, "aimed at {} percent of the tested car's width", (*ALONG, *ACROSS)),
+    "offset": Number("t", -10, 10, "{} metres left of the lane's middle", (*ALONG, "ramp", "roundabout")),
+    "away": Number("away", 0, 60, "{} metres from the tested car's path", ACROSS),
+    "fog": Number("fog", 5, 1000, "fog with a visual range of {} metres"),
+    "rain": Number("rain", 0.1, 200, "rain of {} mm/h"),
+}
+CUES = ("time", "distance", "ttc", "headway", "gap", "station", "at")
+"""The conditions on which an action begins. Time and distance are those of the tested car since its start;
+the station is that of whoever acts, along the lane of the tested car."""
+ONE_OF = (("gap", "headway", "station", "at"), ("speed", "faster"), ("overlap", "impact", "offset"), CUES)
+
+
+class Doing(NamedTuple):
+    """Something that can be done."""
+
+    said: str
+    numbers: tuple[str, ...] = ()
+    """Those that it can have; the first needs no key."""
+    starts: tuple[str, ...] = ANYWHERE
+    """Where somebody is at first who can begin with it."""
+    has_side: bool = False
+    who: tuple[ActorKind, ...] = VEHICLES
+
+
+SIDEWAYS = ("lateral", "duration", "accel")
+DOINGS: Mapping[What, Doing] = {
+    "keep": Doing("keeps its speed", ("duration",), who=MOVING),
+    "brake": Doing("brakes", ("decel", "to", "duration"), who=MOVING),
+    "stop": Doing("stops", ("decel", "duration"), who=MOVING),
+    "speed": Doing("changes its speed", ("to", "accel", "duration"), who=MOVING),
+    "follow": Doing("follows the tested car", ("duration",), ("behind",)),
+    "open_gap": Doing("opens a gap", ("duration",), ALONG),
+    "swerve": Doing("swerves within its lane", ("shift", *SIDEWAYS), ALONG),
+    "drift": Doing("drifts", ("shift", *SIDEWAYS), ALONG, has_side=True),
+    "cut_in": Doing("cuts in", SIDEWAYS, ("lane", "far")),
+    "cut_out": Doing("cuts out", SIDEWAYS, ("ahead", "behind"), has_side=True),
+    "change_lane": Doing("changes lane", SIDEWAYS, ALONG, has_side=True),
+    "overtake": Doing("overtakes", ("to", *SIDEWAYS), ("behind", "lane", "far", "oncoming")),
+    "merge": Doing("merges", SIDEWAYS, ("ramp",)),
+    "pull_out": Doing("pulls out", ("to", *SIDEWAYS), ("parked", "beside")),
+    "turn_off": Doing("turns off", ("to",), (*ALONG, "roundabout"), has_side=True),
+    "turn_in": Doing("turns in", ("to",), ACROSS),
+    "turn_across": Doing("turns across", ("to",), ("oncoming", "junction")),
+    "cross": Doing("crosses", ("to", "accel"), ACROSS, who=MOVING),
+    "run_light": Doing("runs the red light", starts=("junction",)),
+    "run_sign": Doing("does not give way", starts=("junction",)),
+    "reverse": Doing("reverses", ("to", "duration"), ("ahead", "parked", "beside")),
+    "wrong_way": Doing("drives the wrong way", ("duration",), (*ALONG, "ramp")),
+}
+
+
+class Mark(Frozen):
+    """A part of the route, as in "after turn 1", or what somebody else does: its end, as in "after truck 1
+    brake", or its begin, as in "with truck 1 brake"."""
+
+    word: Literal["after", "before", "in", "with"]
+    of: Literal["turn", "junction"] | ActorKind
+    number: int
+    """Turns, junctions and actors of each kind are counted apart, from 1; -1 is the last turn or junction."""
+    what: What | None = None
+
+    def __str__(self) -> str:
+        return " ".join(filter(None, [self.word, self.of, str(self.number), self.what]))
+
+    @property
+    def said(self) -> str:
+        """The condition in words."""
+        if self.what is None:
+            return f"{self.word} the last {self.of}" if self.number < 0 else str(self)
+        said = f"{self.of.replace('_', ' ')} {self.number} {DOINGS[self.what].said}"
+        return f"{'when' if self.word == 'with' else self.word} {said}"
+
+
+class Action(Frozen):
+    """Something that somebody does. Without one of the CUES, it begins when the one before it has ended."""
+
+    what: What
+    side: Side | None = None
+    decel: Amount | None = None
+    to: Amount | None = None
+    lateral: Amount | None = None
+    shift: Amount | None = None
+    accel: Amount | None = None
+    duration: Amount | None = None
+    time: Amount | None = None
+    distance: Amount | None = None
+    ttc: Amount | None = None
+    headway: Amount | None = None
+    gap: Amount | None = None
+    station: Amount | None = None
+    at: Mark | None = None
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        doing = DOINGS[self.what]
+        for field in _given(self, self.what):
+            if field in NUMBERS and field not in (*doing.numbers, *CUES):
+                raise ValueError(f"'{self.what}' has no {NUMBERS[field].key}=; leave it out")
+        if self.side and not doing.has_side:
+            raise ValueError(f"'{self.what}' has no side; leave '{self.side}' out")
+        return self
+
+    def __str__(self) -> str:
+        side = [f"to the {self.side}"] if self.side else []
+        return " ".join([DOINGS[self.what].said, *side, *_said(self)])
+
+
+class Role(Frozen):
+    """Somebody or something on the road besides the tested car, or several alike."""
+
+    kind: ActorKind
+    count: Amount = exactly(1)
+    where: Where
+    """Where it is at first, seen from the tested car."""
+    side: Side | Literal["opposite"] | None = None
+    gap: Amount | None = None
+    """The distance along the lanes, bumper to bumper."""
+    headway: Amount | None = None
+    station: Amount | None = None
+    speed: Amount | None = None
+    faster: Amount | None = None
+    overlap: Amount | None = None
+    """The share of the tested car's width that its box covers, seen along the lane."""
+    impact: Amount | None = None
+    """Where on the tested car's width its middle arrives if nobody reacts, counted from the side that it
+    comes from, or else from the kerb."""
+    offset: Amount | None = None
+    away: Amount | None = None
+    at: Mark | None = None
+    actions: tuple[Action, ...] = ()
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        one, spot = one_of(self.kind), SPOTS[self.where]
+        first = self.actions[0] if self.actions else Action(what="keep")
+        if self.kind not in spot.who:
+            raise ValueError(f"{one} cannot be {spot.said}; give another place")
+        if self.side and (not spot.before_side or (self.side == "opposite" and self.where != "junction")):
+            raise ValueError(f"'{self.where}' has no side '{self.side}'; leave it out")
+        if not {self.count.lo, self.count.hi} <= {None, *range(1, 51)}:
+            raise ValueError(f"1 to 50 of a kind can be in one place, not {self.count}")
+        for field in _given(self, one):
+            if field in NUMBERS and self.where not in NUMBERS[field].where:
+                raise ValueError(f"who is {spot.said} has no {NUMBERS[field].key}=; leave it out")
+        if self.at and self.at.what:
+            raise ValueError(
+                f"'{self.at}' is no place where {one} can be at first; write for example after turn 1"
+            )
+        if (self.kind not in MOVING or self.where == "parked") and (self.speed or self.faster):
+            raise ValueError(f"{one} {'parked ' * (self.kind in MOVING)}stands; leave its speed out")
+        for action in self.actions:
+            if self.kind not in DOINGS[action.what].who:
+                raise ValueError(f"{one} has no '{action.what}'; leave it out")
+        if self.where not in (starts := DOINGS[first.what].starts):
+            raise ValueError(f"who is {spot.said} cannot {first.what}; that begins from: {', '.join(starts)}")
+        if first.what == "brake" and span(first.to).lo > span(self.speed).hi:
+            raise ValueError(f"{one} cannot brake from {self.speed} to {first.to} km/h")
+        return self
+
+    def __str__(self) -> str:
+        spot = SPOTS[self.where]
+        side = f" {spot.before_side} {self.side}{' side' * (self.side == 'opposite')}" if self.side else ""
+        is_one = self.count == exactly(1)
+        many = SEVERAL.get(self.kind, f"{self.kind}s").replace("_", " ")
+        some = one_of(self.kind) if is_one else f"{self.count} {many}"
+        said = ", ".join([f"{some} {spot.said}{side}", *_said(self)])
+        who = "that" if is_one else "each of which"
+        return f"{said}, {who} {', then '.join(map(str, self.actions))}" if self.actions else said
 
 
 class Scene(Frozen):
     """The others on the road and the conditions of a drive."""
 
+    speed: Amount | None = None
+    """The speed of the tested car at its start in km/h."""
+    actors: tuple[Role, ...] = ()
     flow: Flow | None = None
     """How many vehicles drive in the lanes of the map: 5, 12 or 25 for each km and lane; None: nobody."""
+    oncoming: Flow | Literal["none"] | None = None
+    """The same for the oncoming lanes; None: as ``flow``."""
+    parked: Annotated[tuple[Side, ...], AfterValidator(lambda sides: tuple(sorted({*sides})))] = ()
+    """The sides on which cars are parked in a row."""
+    fog: Amount | None = None
+    """The visual range in metres."""
+    rain: Amount | None = None
+    """In mm/h."""
+    light: Light | None = None
+    """Night, or a sun that is low ahead of the tested car at its start; None: day."""
+    surface: Surface | None = None
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        _given(self, "a scene")
+        for role in self.actors:
+            for event in (action.at for action in role.actions if action.at and action.at.what):
+                same = [each for each in self.actors if each.kind == event.of][event.number - 1 :][:1]
+                if not same or same[0] is role or event.what not in [each.what for each in same[0].actions]:
+                    raise ValueError(f"'{event}' needs another {event.of} that does '{event.what}'; name one")
+        return self
+
+    @property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """What sets the friction: the surface that is named, or else rain."""
+        return (self.surface,) if self.surface else ("wet",) if self.rain else ()
+
+
+USUAL = {"fog": Amount(lo=50, hi=200), "rain": Amount(lo=2.5, hi=7.6)}
+"""What fog and rain are without a number: thick fog, and the moderate rain of the Glossary of Meteorology."""
+LIGHTS: Mapping[Light, str] = {"night": "night", "low_sun": "a low sun ahead"}
+
+
+def _given(thing: Frozen, name: str) -> list[str]:
+    """Returns the names of the numbers and conditions that a thing has; raises ValueError if a number is out
+    of bounds, or two of them exclude each other."""
+    names = (*NUMBERS, "at")
+    given = {each: value for each in names if (value := getattr(thing, each, None)) is not None}
+    for field, amount in given.items():
+        if isinstance(amount, Amount):
+            key, least, most, *_ = NUMBERS[field]
+            if any(end is not None and not least <= end <= most for end in (amount.lo, amount.hi)):
+                raise ValueError(f"{key} of {name} is from {least:g} to {most:g}, not {amount}")
+    for fields in ONE_OF:
+        both = [
+            NUMBERS[each].key if each in NUMBERS else str(given[each]) for each in given if each in fields
+        ]
+        if len(both) > 1:
+            raise ValueError(f"{name} has '{both[0]}' and '{both[1]}'; give one of them")
+    return [*given]
+
+
+def _said(thing: Frozen) -> list[str]:
+    amounts = [(number.said, getattr(thing, field, None)) for field, number in NUMBERS.items()]
+    mark: Mark | None = getattr(thing, "at", None)
+    return [said.format(amount) for said, amount in amounts if amount] + ([mark.said] if mark else [])
+
+
+def scene_text(scene: Scene) -> str:
+    """Returns a scene in words, such as 'a truck ahead; medium traffic'; empty for an empty one."""
+    return "; ".join(_parts(scene))
+
+
+def _parts(scene: Scene) -> Iterator[str]:
+    if scene.speed:
+        yield f"the tested car starts at {scene.speed} km/h"
+    yield from map(str, scene.actors)
+    for flow, name in ((scene.flow, "traffic"), (scene.oncoming, "oncoming traffic")):
+        if flow:
+            density = "" if flow == "none" else f" ({FLOWS[flow]} vehicles for each km of a lane)"
+            yield f"{flow.replace('none', 'no')} {name}{density}"
+    if scene.parked:
+        yield f"cars parked on {'both sides' if len(scene.parked) > 1 else f'the {scene.parked[0]}'}"
+    yield from _said(scene.model_copy(update={"speed": None}))
+    if scene.light:
+        yield LIGHTS[scene.light]
+    if scene.surface:
+        yield SURFACES[scene.surface].said
+
+
+UNBUILT = {
+    "speed": "a speed at which the tested car starts",
+    "actors": "single actors",
+    "parked": "rows of parked cars",
+    "fog": "fog",
+    "rain": "rain",
+    "light": "night and a low sun",
+}
+"""The parts of a scene that are read and told, but that no drive has yet."""
+
+
+def unbuilt(scene: Scene) -> tuple[str, ...]:
+    """Returns the names of what a scene asks for and no drive has yet."""
+    return tuple(name for field, name in UNBUILT.items() if getattr(scene, field))

@@ -15,6 +15,7 @@ from roadgpt.brief.junctions import (
 )
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import BUMPS, STRAIGHT, normal
+from roadgpt.brief.scene import scene_text
 from roadgpt.brief.words import FEATURE, KINDS, OVER, ROAD, SLOPES, SURFACES
 
 CENTRES: dict[CentreLine, str] = {
@@ -30,6 +31,11 @@ WAVY = ("serpentine", "zigzag", "winding", "slalom")
 
 def sentence(brief: Brief) -> str:
     """Returns a sentence that states the requirements of a Brief, such as 'An uphill road with 3 turns.'"""
+    said, scene = _road_sentence(brief), scene_text(brief.scene)
+    return f"{said.removesuffix('.')}; {scene}." if scene else said
+
+
+def _road_sentence(brief: Brief) -> str:
     if brief.junctions:
         return _route_sentence(brief)
     if brief.map is not None:

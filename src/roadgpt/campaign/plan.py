@@ -219,6 +219,7 @@ class WorldTable(Frozen, strict=True):
     """Superelevation of bends: ``"none"``, ``"auto"`` for the values of CD 109, or a number in percent."""
     shoulder: NotNegative = 3.0
     friction: Annotated[float, Field(gt=0, le=2)] = 1.0
+    scene: str = ""
     speed_limit_kmh: Annotated[float, Field(ge=5, le=300)] = 70.0
     oracle: Annotated[str, BeforeValidator(str)] | None = None
     oob_tolerance: Annotated[float, Field(gt=0, le=1)] | None = None
@@ -227,9 +228,9 @@ class WorldTable(Frozen, strict=True):
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
 
     def world(self) -> World:
-        """Returns the World; lanes, friction and map size stay unset if the file does not give them: prompts
-        may."""
-        open_ = {"lanes", "friction", "map_size"} - self.model_fields_set
+        """Returns the World; lanes, friction, map size and scene stay unset if the file does not give them:
+        prompts may."""
+        open_ = {"lanes", "friction", "map_size", "scene"} - self.model_fields_set
         values = self.model_dump(exclude={"speed_limit_kmh", *open_}, exclude_none=True)
         bank = self.bank / 100 if isinstance(self.bank, float) else self.bank
         return World().changed(**values | {"speed_limit": self.speed_limit_kmh / 3.6, "bank": bank})

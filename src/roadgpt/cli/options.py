@@ -23,7 +23,7 @@ from click.core import ParameterSource
 
 from roadgpt import plugins
 from roadgpt.cli.streams import warn
-from roadgpt.errors import UsageError, command_line
+from roadgpt.errors import BriefError, UsageError, command_line
 
 if TYPE_CHECKING:
     from roadgpt.campaign.gate import Gate
@@ -336,6 +336,16 @@ def bank(value: str) -> str | float:
         ) from None
 
 
+def scene(value: str) -> str:
+    """Returns a scene in its normal form."""
+    from roadgpt.brief.plan import read_scene, scene_plan
+
+    try:
+        return scene_plan(read_scene(value))
+    except BriefError as error:
+        raise click.BadParameter(str(error)) from None
+
+
 def folder(value: str) -> Path:
     """Converts the value of an option to the path of a folder that exists or can be created."""
     if not str(value).strip():
@@ -401,12 +411,12 @@ def flat(ctx: click.Context, option: click.Parameter, given: Any) -> tuple[Any, 
 picture_formats = listed(_picture_format)
 _files = partial(Option, heading=Heading.FILES)
 GUARDS: dict[str, Any] = {"reader": reader_guard, "designer": designer_guard, "driver": driver_guard}
-KINDS: dict[str, Any] = {"driver": driver, "lanes": lanes, "bank": bank}
+KINDS: dict[str, Any] = {"driver": driver, "lanes": lanes, "bank": bank, "scene": scene}
 """What refuses and what converts the values of fields, where their types do not say it all."""
 ORACLE = Option(
     "--oracle",
     "FAIL when more of the car than this is outside its lane: half, sbft (85 %), thesis (95 %), 0.7 ...; "
-    "departure: a front tyre over the marking.",
+    "departure: front tyre over the line.",
     str, "half", metavar="ORACLE", heading=Heading.DRIVE, table="world",
 )  # fmt: skip
 """Stands for the two fields of the Limits that are options of their own."""
@@ -472,14 +482,14 @@ def _within(kind: type, field: Any, within: tuple[float, float] | None, unit: fl
 @cache
 def _of_models() -> dict[str, tuple[Option, ...]]:
     from roadgpt.chat.model import ChatSettings
-    from roadgpt.road.world import CrossSection, Limits, Parts, Site
+    from roadgpt.road.world import CrossSection, Limits, Parts, Site, World
 
     of_world = [
-        each for part in (Site, CrossSection, Limits) for each in of_model(part, Heading.SITE, "world")
+        each for part in (Site, CrossSection, Limits, World) for each in of_model(part, Heading.SITE, "world")
     ]
     order = (
-        "map_size", "speed_limit", "oracle", "oob_tolerance", "lane_departure", "lanes", "lane_width",
-        "lane_width_end", "bank", "shoulder", "friction",
+        "map_size", "scene", "speed_limit", "oracle", "oob_tolerance", "lane_departure", "lanes",
+        "lane_width", "lane_width_end", "bank", "shoulder", "friction",
     )  # fmt: skip
     world = tuple(named([ORACLE, *of_world], *order))
     names = ("reader", "designer", "driver", "simulator", "keep_driving", "geometry", "rules")
@@ -517,7 +527,7 @@ AXES = _files(
 FORMAT = _files("--format picture_formats", "Formats of pictures: png, svg, pdf.", picture_formats, ("png",),
                 metavar="FORMAT,...", table="run")
 NO_PLOT = _files("--no-plot", "Draw no pictures.", bool)
-JUNIT = _files("--junit", "Also write the tests as JUnit XML.", file, metavar="FILE.xml")
+JUNIT = _files("--junit", "Also write the tests as JUnit XML.", file, metavar="FILE.xml", is_rare=True)
 NO_DRIVE = Option("--no-drive", "Do not drive the roads.", bool, heading=Heading.DRIVE)
 AGAIN = _files("--again", "Make all tests of the folder anew, for example with a changed driver. The earlier "
                "ones are moved into its subfolder before-1 (or 2, ...).", bool, is_rare=True)
@@ -644,7 +654,13 @@ def world_of(values: dict[str, Any]) -> "World":
             some = {name: value for name, value in some.items() if value is not None}
             limits = oracle_limits(**some) if "oracle" in some else limits | some
         given |= limits
-    return World().changed(**{name: value for name, value in given.items() if value is not None})
+    world = World().changed(**{name: value for name, value in given.items() if value is not None})
+    if "friction" in world.site.model_fields_set:
+        from roadgpt.brief.beside import friction_of, surface_remark
+
+        if friction_of(surfaces := world.scene.surfaces) not in (None, world.site.friction):
+            warn(surface_remark(surfaces, world.site.friction))
+    return world
 
 
 def reader_of(values: dict[str, Any]) -> str:

@@ -215,6 +215,9 @@ def source_of(
             of_file = f"the {stated[each.field] * each.unit:.6g} of the file"
             pair = (of_file, f"{each.flag} of the configuration")
             remarks += (" goes before ".join((each.flag, of_file) if each.field in told else pair),)
+    if "scene" in told and world.scene.surfaces and "friction" in stated.keys() - told:
+        remarks += (f"the surface of --scene goes before the friction {stated['friction']:g} of the file",)
+        told = told | {"friction"}
     world = world.changed(**{name: value for name, value in stated.items() if name not in told})
     if Path(file).suffix.lower() in WITHOUT_MAP and isinstance(blueprint, Road) and "map_size" not in told:
         _, size, _, more = on_a_map(blueprint, world, keep_place=True)

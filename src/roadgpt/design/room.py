@@ -5,6 +5,9 @@ from collections.abc import Iterator
 
 from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
+from roadgpt.brief.plan import scene_plan
+from roadgpt.brief.scene import Scene
+from roadgpt.brief.scene_fit import check_scene
 from roadgpt.design.road_search import sufficient_map
 from roadgpt.road import World
 from roadgpt.road.world import KMH, Limits
@@ -13,11 +16,13 @@ from roadgpt.road.world import KMH, Limits
 def world_for(brief: Brief | None, world: World) -> World:
     """Returns the World for the roads of a Brief.
 
-    The surface that the Brief names, such as a wet road, sets the friction. For a single road, the Brief also
-    sets the lanes and the centre line. The map gets the size that the Brief gives; if it gives none and roads
-    of this Brief do not fit on the usual map, a larger map is set. A value that was given to the World is
-    kept."""
-    found = world.on_surface_of(brief).with_lanes_of(brief)
+    The Brief sets the scene, and a surface that it or the scene names, such as a wet road, the friction. For
+    a single road, the Brief also sets the lanes and the centre line. The map gets the size that the Brief
+    gives; if it gives none and roads of this Brief do not fit on the usual map, a larger map is set. A value
+    that was given to the World is kept. Raises BriefError if the scene needs what the Brief excludes."""
+    found = world.in_scene_of(brief).on_surface_of(brief).with_lanes_of(brief)
+    if brief is not None:
+        check_scene(found.scene, brief)
     if brief is None or "map_size" in world.site.model_fields_set:
         return found
     if brief.map_size is not None:
@@ -34,8 +39,9 @@ def world_for(brief: Brief | None, world: World) -> World:
 def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
     """Returns sentences that say how a Brief affects a World: its friction, its lanes and its map. ``usual``
     is the World that was given, and ``found`` the one that ``world_for`` returned."""
-    surface = surface_remark(brief.beside, found.site.friction)
-    said = (surface, *lane_remarks(brief, found), speed_remark(brief, found), map_remark(brief, usual, found))
+    surface = surface_remark((*brief.beside, *brief.scene.surfaces), found.site.friction)
+    said = (surface, *lane_remarks(brief, found), speed_remark(brief, found), scene_remark(brief, found))
+    said += (map_remark(brief, usual, found),)
     return tuple(remark for remark in said if remark)
 
 
@@ -51,6 +57,13 @@ def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
         yield f"the words ask for lanes {lanes}{other}"
     if centre is not None and found.section.centre_line != centre:
         yield f"the words ask for a {centre} centre line, but another one is set and used"
+
+
+def scene_remark(brief: Brief, found: World) -> str:
+    """Returns a sentence that says that the scene of the words gives way to another; empty if it does not."""
+    if brief.scene in (Scene(), found.scene):
+        return ""
+    return f"the words have a scene, but --scene '{scene_plan(found.scene)}' is set and used"
 
 
 def speed_remark(brief: Brief, found: World) -> str:

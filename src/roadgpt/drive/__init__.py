@@ -15,6 +15,7 @@ This package has two kinds of plug-ins. A simulator (``simulators/``) is a car a
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from roadgpt import plugins
+from roadgpt.brief.scene import scene_text, unbuilt
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended, Handover, check_motion
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, View
@@ -137,8 +138,18 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -
     is_simple = getattr(simulator, "single_roads_only", False)
     if is_simple and road is not None and only_road(road, world) is None:
         raise UsageError("this simulator cannot build junctions yet; drive in the simulator mujoco")
+    if missing := unbuilt(world.scene):
+        raise UsageError(
+            f"the scene is understood as '{scene_text(world.scene)}', but no drive has "
+            f"{' and '.join(missing)} yet; leave that out, or do not drive (--no-drive)"
+        )
     values, usual = world.values(), World().values()
     ignored = getattr(simulator, "ignores", ())
+    if "scene" in ignored and values["scene"]:
+        raise UsageError(
+            "this simulator has nobody else on the road yet; leave the scene out, or drive in the simulator "
+            "mujoco"
+        )
     profile = None if road is None else road.profile
     is_banked = profile is not None and profile.superelevation_angle is not None
     if "bank" in ignored and (is_banked or values["bank"] != usual["bank"]):

@@ -1,21 +1,33 @@
-"""Defines the World, which all roads of a campaign share: a Site, a CrossSection and Limits, and the oracles
-by name: when a drive fails because the car is out of its lane.
+"""Defines the World, which all roads of a campaign share: a Site, a CrossSection, Limits and a Scene, and the
+oracles by name: when a drive fails because the car is out of its lane.
 
-Files keep the values of all three in one flat table, in the order of ``FIELDS``. Options of commands and keys
-of settings files are made from the fields that have a ``description``, also from those of ``Parts``. So that
-help texts load nothing heavy, geometry is imported when it is needed."""
+Files keep the values of the first three in one flat table, in the order of ``FIELDS``, and then the scene as
+plans have it. Options of commands and keys of settings files are made from the fields that have a
+``description``, also from those of ``Parts``. So that help texts load nothing heavy, geometry is imported
+when it is needed."""
 
 import re
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_serializer, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    model_serializer,
+    model_validator,
+)
 
 from roadgpt.brief.amount import Frozen
+from roadgpt.brief.beside import friction_of
 from roadgpt.brief.model import CentreLine
+from roadgpt.brief.plan import read_scene, scene_plan
+from roadgpt.brief.scene import Scene
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
-from roadgpt.errors import UsageError
+from roadgpt.errors import BriefError, UsageError
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
@@ -37,8 +49,8 @@ SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s, of speed limits in options and files
 LANE_WIDTHS = (2.0, 10.0)  # m, of the driven lane in options and files
 STEEPEST = 0.12  # ratio, largest superelevation of bends
 OWN = {"lanes": "1+1", "lane_width_end": None, "centre_line": None, "bank": "none"}
-"""The fields that change the usual cross-section of two equal lanes, with their defaults. Files contain
-only those that differ from their default."""
+"""The fields that change the usual cross-section of two equal lanes, with their defaults. Of them and of the
+scene, files contain only those that differ from their default."""
 OVER_LEAST_RADIUS = 1.055
 """Ratio of the smallest designed radius to ``min_radius``: a spline through control points 2 m apart is 3 %
 tighter than its turn."""
@@ -298,9 +310,17 @@ def _in_parts(values: Mapping[str, Any]) -> dict[str, Any]:
     return out | flat
 
 
+def _scene_in(given: Any) -> Any:
+    try:
+        return read_scene(given) if isinstance(given, str) else given
+    except BriefError as error:
+        raise ValueError(str(error)) from error
+
+
 class World(BaseModel):
-    """Everything that the roads of a run or a campaign share: a Site, a CrossSection and Limits. Files have
-    the fields of all three in one flat table, and ``World.model_validate`` reads such a table."""
+    """Everything that the roads of a run or a campaign share: a Site, a CrossSection, Limits and a Scene.
+    Files have the fields of the first three in one flat table, with the text of the scene if there is one,
+    and ``World.model_validate`` reads such a table."""
 
     model_config = WHOLE
 
@@ -308,6 +328,11 @@ class World(BaseModel):
     section: CrossSection = CrossSection()
     """The cross-section of roads whose own ``profile`` is None."""
     limits: Limits = Limits()
+    scene: Annotated[Scene, BeforeValidator(_scene_in)] = Field(
+        Scene(), description="Others on the road, and weather: medium, 'light; wet'.",
+        json_schema_extra=DRIVE | {"open": True},
+    )  # fmt: skip
+    """A text is read as in ``brief.plan.read_scene``."""
 
     @model_validator(mode="before")
     @classmethod
@@ -316,14 +341,15 @@ class World(BaseModel):
 
     @model_serializer
     def _to_file(self) -> dict[str, Any]:
+        usual = OWN | {"scene": ""}
         values = self.values().items()
-        return {
-            KEYS.get(name, name): value for name, value in values if name not in OWN or value != OWN[name]
-        }
+        return {KEYS.get(name, name): value for name, value in values if usual.get(name, self) != value}
 
     def values(self) -> dict[str, Any]:
-        """Returns a dictionary of the fields of all three parts, in the order of ``FIELDS``."""
-        return {name: getattr(getattr(self, part), name) for name, part in FIELDS.items()}
+        """Returns a dictionary of the fields of all three parts, in the order of ``FIELDS``, and the text of
+        the scene."""
+        fields = {name: getattr(getattr(self, part), name) for name, part in FIELDS.items()}
+        return fields | {"scene": scene_plan(self.scene)}
 
     def changed(self, **values: Any) -> "World":
         """Returns a World with other values for some fields of its parts, such as ``friction=0.6``. Raises
@@ -333,14 +359,22 @@ class World(BaseModel):
         kept = {
             name: value
             for name, value in self.values().items()
-            if name not in named and name in getattr(self, FIELDS[name]).model_fields_set
+            if name not in named
+            and name in (self if name == "scene" else getattr(self, FIELDS[name])).model_fields_set
         }
         return World.model_validate(kept | values)
 
+    def in_scene_of(self, brief: "Brief | None") -> "World":
+        """Returns the World with the scene of a Brief. A scene that was given to this World is kept, even if
+        it is empty."""
+        if brief is None or brief.scene == Scene() or "scene" in self.model_fields_set:
+            return self
+        return self.changed(scene=brief.scene)
+
     def on_surface_of(self, brief: "Brief | None") -> "World":
-        """Returns the World with the friction of the surface that a Brief names, such as a wet road. A
-        friction that was given to this World is kept, even if it equals the default."""
-        friction = brief.friction if brief is not None else None
+        """Returns the World with the friction of the surface that its scene or a Brief names, such as a wet
+        road. A friction that was given to this World is kept, even if it equals the default."""
+        friction = friction_of((*(brief.beside if brief else ()), *self.scene.surfaces))
         if friction is None or "friction" in self.site.model_fields_set:
             return self
         return self.changed(friction=friction)

@@ -144,7 +144,7 @@ def prove(
             then has both the findings and the verdict. A road that is physically impossible to drive is never
             driven.
     """
-    world = world.on_surface_of(brief)
+    world = world.in_scene_of(brief).on_surface_of(brief)
     check_parts(setup, world)
     begun = time.perf_counter()
     design = None if isinstance(blueprint, Road) else blueprint

@@ -16,7 +16,7 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.junctions import MAP, NAMES
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
-from roadgpt.brief.plan import BETWEEN, JUNCTIONS, KINDS, WHOLE, is_junction, is_map, read_plan
+from roadgpt.brief.plan import BETWEEN, JUNCTIONS, KINDS, SCENE, WHOLE, is_junction, is_map, read_plan
 from roadgpt.brief.refusal import EXAMPLE, MOST_CHARACTERS
 from roadgpt.chat import Chat, ChatSettings, Message, configured, open_chat
 from roadgpt.chat.answer import fixed_description
@@ -40,6 +40,8 @@ def told_in(path: Path) -> tuple[str, tuple[tuple[str, str], ...]]:
 RULES, EXAMPLES = told_in(Path(__file__).with_name("chat_rules.txt"))
 ROAD = "road"
 """The first word of a line of "along" that holds for a whole road."""
+OTHERS = re.compile(r"\bscene\b[\s:]*")
+"""The first word of a line of "along" that is a part of the scene."""
 ON_LINES = (
     " In your answer, what a plan has behind | is a line that begins with road, and what it has behind || is "
     'under "road"'
@@ -58,6 +60,13 @@ SAID = {
     **{name.lower().replace(" ", "_"): kind for kind, names in NAMES.items() for name in names},
     **dict.fromkeys(("traffic_light", "traffic_lights"), "lights"),
     "give_way": "yield",
+}
+SAID_OF_OTHERS = {
+    **dict.fromkeys(("pedestrian", "person", "man", "woman"), "adult"),
+    **dict.fromkeys(("cyclist", "bike"), "bicycle"),
+    **dict.fromkeys(("motorbike", "motorcyclist"), "motorcycle"),
+    **dict.fromkeys(("lorry", "trailer"), "truck"),
+    **dict.fromkeys(("deer", "dog", "boar"), "animal"),
 }
 
 
@@ -148,7 +157,14 @@ def _objection(error: RoadGPTError, answer: PlanAnswer) -> str:
 
 
 def _line(answer: PlanAnswer) -> str:
-    things, whole = [*_things(answer)], _in_our_words(answer.road)
+    whole, _, scene = answer.road.partition(SCENE)
+    scene = "; ".join([*(line for line in answer.along if OTHERS.match(line.strip())), scene])
+    said = re.sub(r"\w+", lambda word: SAID_OF_OTHERS.get(word[0].lower(), word[0]), OTHERS.sub("", scene))
+    line = _road_line([*_things(answer)], _in_our_words(whole))
+    return f"{line} {SCENE} {said}" if said.strip("; ") else line
+
+
+def _road_line(things: list[str], whole: str) -> str:
     if things and is_map(things[0]):
         return f"{'; '.join(things)} {WHOLE} {whole}"
     if not any(map(is_junction, things)):
@@ -164,6 +180,8 @@ def _line(answer: PlanAnswer) -> str:
 def _things(answer: PlanAnswer) -> Iterator[str]:
     """Yields the lines of an answer in the words of plans; several on one line are taken apart."""
     for line in answer.along:
+        if OTHERS.match(line.strip()):
+            continue
         yield from filter(None, map(_in_our_words, re.split(rf";|{BETWEEN}", line)))
 
 

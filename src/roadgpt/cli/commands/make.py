@@ -13,6 +13,7 @@ import click
 
 from roadgpt.brief import SURE, Brief, normal, remarks, sentence
 from roadgpt.brief.plan import plan, read_plan, with_route
+from roadgpt.brief.scene import scene_text
 from roadgpt.brief.sentence import clause_columns, road_words
 from roadgpt.chat import ChatSettings, Meter, counting
 from roadgpt.chat.answer import plain
@@ -133,10 +134,11 @@ def understood(brief: Brief, world: "World", given: "World") -> str:
 
 def all_remarks(brief: Brief, world: "World", given: "World") -> tuple[str, ...]:
     """Returns sentences on what is not built, or not as described; ``given`` is the World of the user."""
-    from roadgpt.design.room import lane_remarks, map_remark, speed_remark
+    from roadgpt.design.room import lane_remarks, map_remark, scene_remark, speed_remark
 
     found = (*remarks(brief, world.site.map_size, world.site.friction), *lane_remarks(brief, world))
-    return tuple(filter(None, (*found, speed_remark(brief, world), map_remark(brief, given, world))))
+    found += speed_remark(brief, world), scene_remark(brief, world), map_remark(brief, given, world)
+    return tuple(filter(None, found))
 
 
 def reading(brief: Brief) -> str:
@@ -265,6 +267,8 @@ def _table(brief: Brief) -> str:
     wishes = road_words(said)
     if wishes or not said.clauses:
         rows.append(("", "whole road", wishes or "nothing is asked of it"))
+    if scene := scene_text(brief.scene):
+        rows.append(("", "others", scene))
     return "\n".join(aligned(rows, "><<"))
 
 
