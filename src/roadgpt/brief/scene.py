@@ -5,18 +5,7 @@ from typing import Literal
 from roadgpt.brief.amount import Frozen
 
 ActorKind = Literal[
-    "car",
-    "van",
-    "truck",
-    "bus",
-    "motorcycle",
-    "bicycle",
-    "adult",
-    "child",
-    "animal",
-    "cones",
-    "barrier",
-    "lost_load",
+    "car", "van", "truck", "bus", "motorcycle", "bicycle", "adult", "child", "animal", "cones", "barrier", "lost_load"
 ]
 Flow = Literal["light", "medium", "dense"]
 
