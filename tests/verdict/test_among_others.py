@@ -56,6 +56,11 @@ def test_a_rear_end_collision_is_told_with_everything() -> None:
     assert Verdict.from_json(json.loads(json.dumps(verdict.to_json()))) == verdict
 
 
+def aside(time: Any) -> tuple[Any, Any, Any]:
+    """Sideways to the left, without turning."""
+    return 20 + 9 * time, -2 + time, np.zeros_like(time)
+
+
 @pytest.mark.parametrize(
     ("own", "kind", "other", "faces", "fault"),
     [
@@ -64,9 +69,10 @@ def test_a_rear_end_collision_is_told_with_everything() -> None:
         (straight(10, -2, 0, 9), "car", straight(60, -2, np.pi / 2, 0), ("front", "left"), True),  # it stands
         (straight(10, -2, 0, 9), "adult", straight(55, -6, np.pi / 2, 0.9), ("front", "left"), True),
         (straight(10, -2, 0, 9), "bicycle", straight(55, -12, np.pi / 2, 2.2), ("front", "left"), True),
-        # from the side into a car within its lane; and the car goes aside, with a corner outside its lane
-        (straight(20, -2, 0, 9), "car", straight(22, -5, 0.1, 9.05), ("right", "left"), False),
-        (straight(20, -2, -0.1, 9.05), "car", straight(22, -5.2, 0, 9), ("right", "left"), True),
+        # into its side, within its lane, and while it goes aside with a part outside; a corner is of the front
+        (straight(20, -2, 0, 9), "car", straight(18, -5, 0.1, 9.05), ("right", "front"), False),
+        (aside, "car", straight(22, 2.0, 0, 9), ("left", "right"), True),
+        (straight(20, -2, -0.1, 9.05), "car", straight(22, -5.2, 0, 9), ("front", "left"), True),
         (straight(60, -2, np.pi, -9), "barrier", straight(90, -2, 0, 0), ("rear", "rear"), True),  # backwards
     ],
 )  # fmt: skip

@@ -28,8 +28,7 @@ FloatArray = NDArray[np.float64]
 
 TOUCH = 1e-3  # m; positions of tracks are rounded to it
 SLACK = 1.0  # m, by which the car's way between two samples of a track may differ from a straight line
-CORNER = 0.02  # m, within which a corner belongs to the place of contact
-FACES: tuple[Face, ...] = ("front", "left", "rear", "right")  # by the quarter turns from the heading
+CORNER = 0.02  # m, within which a corner belongs to the place of contact, and a place to the front or rear
 OUTLINE = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)])
 
 
@@ -142,17 +141,6 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
         other = drive.others.at(drive["time"][step])[number]
     half = np.array([[drive.car.length, drive.car.width], actor.size[:2]]) / 2
     place, heading = np.stack([car[:2], other[[X, Y]]]), np.array([car[2], other[HEADING]])
-    apart = separation(place[1] - place[0], heading[0], heading[1], half[0], half[1])
-    # The normal of the side along which they are farthest apart, from the tested car to the other.
-    widest = int(np.argmax(apart))
-    normal = heading[widest // 2] + np.pi / 2 * (widest % 2)
-    towards = np.array([np.cos(normal), np.sin(normal)])
-    if towards @ (place[1] - place[0]) < 0:
-        normal += np.pi
-    faces = [
-        FACES[round((way - own) / (np.pi / 2)) % 4]
-        for way, own in zip((normal, normal + np.pi), heading, strict=True)
-    ]
     corners = [at + _turned(OUTLINE * size, way) for at, size, way in zip(place, half, heading, strict=True)]
     inside = [
         point
@@ -160,7 +148,10 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
         for point in corners[mine]
         if (np.abs(_turned(point - place[1 - mine], -heading[1 - mine])) <= half[1 - mine] + CORNER).all()
     ]
-    x, y = np.mean(inside, axis=0) if inside else place.mean(axis=0)
+    spot = np.mean(inside, axis=0) if inside else place.mean(axis=0)
+    faces = [
+        _face(_turned(spot - at, -way), size) for at, way, size in zip(place, heading, half, strict=True)
+    ]
     speed, its = float(abs(between(drive["speed"]))), float(other[SPEED])
     velocity = _turned(np.array([between(drive["vx"]), between(drive["vy"])]), heading[0])
     impact = velocity - its * np.array([np.cos(heading[1]), np.sin(heading[1])])
@@ -176,7 +167,7 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
         time,
         actor.name,
         Contact(
-            xy=(float(x), float(y)),
+            xy=(float(spot[0]), float(spot[1])),
             face=faces[0],
             other_face=faces[1],
             speed=speed,
@@ -186,6 +177,14 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
             at_fault=bool(fault),
         ),
     )
+
+
+def _face(spot: FloatArray, half: FloatArray) -> Face:
+    """Returns on which side of a box a place is; as with nuPlan, a corner belongs to the front or the rear."""
+    to_end, to_flank = half - np.abs(spot)
+    if to_end <= max(to_flank, CORNER):
+        return "front" if spot[0] > 0 else "rear"
+    return "left" if spot[1] > 0 else "right"
 
 
 def _turned(points: FloatArray, angle: float) -> FloatArray:
