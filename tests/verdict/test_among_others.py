@@ -8,8 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from roadgpt.campaign.faults.failures import reason_of
+from roadgpt.campaign.model import Proposal
+from roadgpt.campaign.single_test import Task, features_in, result_of
+from roadgpt.cli.screen import row_of
 from roadgpt.drive import Columns, Drive
 from roadgpt.road import Limits, Road, World
+from roadgpt.run import Request, Run, Setup
 from roadgpt.verdict import Incident, Verdict, judge
 from roadgpt.verdict.contact import contacts_of
 from staged import among, driven, straight, tracks
@@ -46,7 +51,7 @@ def test_a_rear_end_collision_is_told_with_everything() -> None:
     assert contact.overlap == pytest.approx((2.93 - 1.92) / 1.86)
     assert contact.xy == pytest.approx((10 + 15 * found.at_time + HALF, -(2.93 + 1.92) / 2), abs=1e-2)
     verdict = judge(ROAD, drive, WORLD)
-    assert (verdict.outcome, verdict.cause, verdict.at_fault) == ("FAIL", "collision", True)
+    assert (verdict.outcome, verdict.cause, verdict.first_contact) == ("FAIL", "collision", contact)
     assert verdict.description == (
         "hit van 1 after 47 m at 54 km/h: its front met the rear of van 1, at 18 km/h, with 36 km/h of "
         "difference and 54 % overlap; at fault"
@@ -69,7 +74,7 @@ def aside(time: Any) -> tuple[Any, Any, Any]:
         (straight(10, -2, 0, 9), "car", straight(60, -2, np.pi / 2, 0), ("front", "left"), True),  # it stands
         (straight(10, -2, 0, 9), "adult", straight(55, -6, np.pi / 2, 0.9), ("front", "left"), True),
         (straight(10, -2, 0, 9), "bicycle", straight(55, -12, np.pi / 2, 2.2), ("front", "left"), True),
-        # into its side, within its lane, and while it goes aside with a part outside; a corner is of the front
+        # into its side, within its lane, and while it goes aside, partly outside; a corner is of the front
         (straight(20, -2, 0, 9), "car", straight(18, -5, 0.1, 9.05), ("right", "front"), False),
         (aside, "car", straight(22, 2.0, 0, 9), ("left", "right"), True),
         (straight(20, -2, -0.1, 9.05), "car", straight(22, -5.2, 0, 9), ("front", "left"), True),
@@ -88,7 +93,7 @@ def test_faces_and_faults(own: Any, kind: str, other: Any, faces: tuple[str, str
 
 def test_a_collision_that_is_not_the_cars_fault_fails_the_test_all_the_same() -> None:
     verdict = judge(ROAD, scene(straight(50, -2, 0, 5), car_2=("car", straight(30, -2, 0, 15))), WORLD)
-    assert (verdict.outcome, verdict.cause, verdict.at_fault) == ("FAIL", "collision", False)
+    assert (verdict.outcome, verdict.cause) == ("FAIL", "collision")
     told = "was hit by car 2 after 58 m at 18 km/h: its rear met the front of car 2, "
     assert verdict.description.startswith(told)
     assert verdict.description.endswith("; not at fault")
@@ -218,3 +223,31 @@ def test_speeding_takes_five_percent_one_metre_per_second_and_a_second() -> None
         found = judge(ROAD, drive, World(limits=Limits(speed_limit=limit)))
         assert found.kept
         assert kinds(found) == ["speeding"] * expected
+
+
+def test_tables_and_reasons_say_who_was_at_fault() -> None:
+    drives = {
+        fault: scene(straight(50, -2, 0, own), car_2=("car", straight(30 if own < 9 else 90, -2, 0, its)))
+        for fault, own, its in ((True, 15, 5), (False, 5, 15))
+    }
+    for fault, drive in drives.items():
+        verdict = judge(ROAD, drive, WORLD)
+        request = Request(words="", world=WORLD, seed=1, setup=Setup())
+        run = Run(
+            request=request, index=1, seed=1, road=ROAD, drive=drive, verdict=verdict, outcome="FAIL",
+            description=verdict.description,
+        )  # fmt: skip
+        row = row_of(run)
+        assert row.outcome == ("FAIL (collision)" if fault else "FAIL (collision, not at fault)")
+        assert json.loads(row.to_json())["at_fault"] is fault
+        features = features_in(run)
+        assert (features["COLLISIONS"], features["AT_FAULT"]) == (1, fault)
+        assert features["IMPACT"] == pytest.approx(36, abs=0.05)
+        stored = result_of(run, Task(1, 0, Proposal(None, 1, "draft")), features)
+        assert row_of(stored).outcome == row.outcome
+        assert reason_of(run).sentence == verdict.description
+        alone = replace(
+            run, drive=replace(drive, others=None), verdict=judge(ROAD, driven(leaves, 8, ROAD), WORLD)
+        )
+        assert "AT_FAULT" not in features_in(alone)
+        assert "at_fault" not in row_of(alone).to_json()

@@ -180,7 +180,7 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
 
 
 def _face(spot: FloatArray, half: FloatArray) -> Face:
-    """Returns on which side of a box a place is; as with nuPlan, a corner belongs to the front or the rear."""
+    """Returns on which side of a box a place is; as with nuPlan, a corner is of the front or the rear."""
     to_end, to_flank = half - np.abs(spot)
     if to_end <= max(to_flank, CORNER):
         return "front" if spot[0] > 0 else "rear"

@@ -157,10 +157,9 @@ class Verdict:
         return dict(Counter(each.kind for each in self.incidents or ()))
 
     @property
-    def at_fault(self) -> bool | None:
-        """Whether the first collision was the tested car's fault; None if there was none."""
-        contacts = (each.contact for each in self.incidents or () if each.contact is not None)
-        return next((each.at_fault for each in contacts), None)
+    def first_contact(self) -> Contact | None:
+        """How the tested car and somebody else touched first; None if there was no collision."""
+        return next((each.contact for each in self.incidents or () if each.contact is not None), None)
 
     @property
     def severity(self) -> Severity:
