@@ -19,14 +19,14 @@ from roadgpt.run import Run
 from roadgpt.traffic.actor import HEADING, X, Y, corners
 from roadgpt.verdict import Incident
 
-WHEELS, BROWN, PINK = GREEN, "#7a4b16", "#c2408f"
+NAVY, BROWN, PINK = "#1f3763", "#7a4b16", "#c2408f"
 COLOURS: dict[ActorKind, tuple[str, str]] = {
     "car": ("car, van", BLUE),
     "van": ("car, van", BLUE),
-    "truck": ("truck, bus", "#1f3763"),
-    "bus": ("truck, bus", "#1f3763"),
-    "motorcycle": ("two wheels", WHEELS),
-    "bicycle": ("two wheels", WHEELS),
+    "truck": ("truck, bus", NAVY),
+    "bus": ("truck, bus", NAVY),
+    "motorcycle": ("two wheels", GREEN),
+    "bicycle": ("two wheels", GREEN),
     "adult": ("person", PINK),
     "child": ("person", PINK),
     "animal": ("animal", BROWN),

@@ -141,21 +141,19 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
         other = drive.others.at(drive["time"][step])[number]
     half = np.array([[drive.car.length, drive.car.width], actor.size[:2]]) / 2
     place, heading = np.stack([car[:2], other[[X, Y]]]), np.array([car[2], other[HEADING]])
-    corners = [at + _turned(OUTLINE * size, way) for at, size, way in zip(place, half, heading, strict=True)]
+    corners = [at + turned(OUTLINE * size, way) for at, size, way in zip(place, half, heading, strict=True)]
     inside = [
         point
         for mine in (0, 1)
         for point in corners[mine]
-        if (np.abs(_turned(point - place[1 - mine], -heading[1 - mine])) <= half[1 - mine] + CORNER).all()
+        if (np.abs(turned(point - place[1 - mine], -heading[1 - mine])) <= half[1 - mine] + CORNER).all()
     ]
     spot = np.mean(inside, axis=0) if inside else place.mean(axis=0)
-    faces = [
-        _face(_turned(spot - at, -way), size) for at, way, size in zip(place, heading, half, strict=True)
-    ]
+    faces = [_face(turned(spot - at, -way), size) for at, way, size in zip(place, heading, half, strict=True)]
     speed, its = float(abs(between(drive["speed"]))), float(other[SPEED])
-    velocity = _turned(np.array([between(drive["vx"]), between(drive["vy"])]), heading[0])
+    velocity = turned(np.array([between(drive["vx"]), between(drive["vy"])]), heading[0])
     impact = velocity - its * np.array([np.cos(heading[1]), np.sin(heading[1])])
-    across = np.clip(_turned(corners[1] - place[0], -heading[0])[:, 1], -half[0, 1], half[0, 1])
+    across = np.clip(turned(corners[1] - place[0], -heading[0])[:, 1], -half[0, 1], half[0, 1])
     is_aside = faces[0] in ("left", "right")
     fault = speed > STANDS and (
         abs(its) <= STANDS or faces[0] == "front" or (is_aside and drive["outside"][step] > 0)
@@ -187,6 +185,8 @@ def _face(spot: FloatArray, half: FloatArray) -> Face:
     return "left" if spot[1] > 0 else "right"
 
 
-def _turned(points: FloatArray, angle: float) -> FloatArray:
+def turned(points: FloatArray, angle: FloatArray | float) -> FloatArray:
+    """Returns points (..., 2) turned about the origin by angles that broadcast with their coordinates."""
     c, s = np.cos(angle), np.sin(angle)
-    return np.asarray(points @ np.array([[c, s], [-s, c]]))
+    x, y = points[..., 0], points[..., 1]
+    return np.stack([x * c - y * s, x * s + y * c], axis=-1)

@@ -61,7 +61,6 @@ first. The kind of the first such incident is then the cause. A tyre off the roa
 speeding fail no test.
 """
 
-STEP = -0.05  # s, longest step of a drive, within which a contact is where it ends
 SOON = 3.0  # s after the cause of a failure, within which a contact is told in the same sentence
 
 FAILED: dict[Cause, str] = {
@@ -115,7 +114,7 @@ def judge(
     step, cause = known or _first_failure(road, drive, world)
     if cause is None or drive.others is not None:
         step, cause = _first_of(incidents or (), drive, step, cause)
-    contact = _contact_at(incidents or (), drive["time"][step]) if cause else None
+    contact = _contact_of(incidents or (), cause, drive["time"][step]) if cause else None
     every = margins(road, drive, world)
     least = float(every[: drive.lane_steps].min())
     side: Side | None = None
@@ -191,10 +190,10 @@ def _first_of(
     return step, cause
 
 
-def _contact_at(incidents: Sequence[Incident], time: float) -> Incident | None:
-    """Returns the contact at the step that ends at ``time``, or else the first one within SOON after it."""
-    found = (each for each in incidents if each.kind == "collision" and STEP <= each.at_time - time <= SOON)
-    return next(found, None)
+def _contact_of(incidents: Sequence[Incident], cause: Cause | None, time: float) -> Incident | None:
+    """Returns the contact that is the cause of a failure at ``time``, or the first one soon after it."""
+    hits = [each for each in incidents if each.kind == "collision"]
+    return next((each for each in hits if cause == "collision" or 0 <= each.at_time - time <= SOON), None)
 
 
 def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
@@ -263,7 +262,7 @@ def _failed(
         fast=f"at {drive['speed'][step] * 3.6:.0f} km/h",
         how="" if contact else f": {how}",
         length=road.length,
-        contact=_touched(contact, f"after {contact.at_s:.0f} m") if contact else "",
+        contact=_touched(contact, f"after {contact.at_s:.0f} m") if contact else "hit somebody",
     )
     if contact is None or cause == "collision":
         return told

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from roadgpt.geometry import wrap_angle
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, X, Y, Z
-from roadgpt.verdict.contact import OUTLINE, middles
+from roadgpt.verdict.contact import OUTLINE, middles, separation, turned
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
@@ -266,25 +266,14 @@ def _distance(
 ) -> FloatArray:
     """Returns the distance between boxes in plan: from a corner of one to the other box, or 0."""
     least = np.full(len(away), np.inf)
-    overlap = np.full(len(away), -np.inf)
     for place, mine, its, size, sizes in (
         (away, own, other, half, halves),
         (-away, other, own, halves, half),
     ):
-        corners = place[:, None] + _turned(
-            OUTLINE * sizes[:, None], its
-        )  # of the one, seen from the other's middle
-        seen = np.abs(_turned(corners, -mine)) - size[:, None]
-        least = np.minimum(least, np.hypot(*np.moveaxis(np.maximum(seen, 0.0), -1, 0)).min(axis=1))
-        low = _turned(corners, -mine)
-        apart = np.maximum(low.min(axis=1) - size, -size - low.max(axis=1)).max(axis=1)
-        overlap = np.maximum(overlap, apart)
-    return np.where(overlap < 0, 0.0, least)
-
-
-def _turned(points: FloatArray, angle: FloatArray) -> FloatArray:
-    """Turns points (n, k, 2) by angles (n,)."""
-    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    return np.stack(
-        [points[..., 0] * c - points[..., 1] * s, points[..., 0] * s + points[..., 1] * c], axis=-1
-    )
+        corners = place[:, None] + turned(
+            OUTLINE * sizes[:, None], its[:, None]
+        )  # of the one, seen from the other
+        beyond = np.maximum(np.abs(turned(corners, -mine[:, None])) - size[:, None], 0.0)
+        least = np.minimum(least, np.hypot(beyond[..., 0], beyond[..., 1]).min(axis=1))
+    apart = separation(away, own, other, half, halves).max(axis=-1)
+    return np.where(apart < 0, 0.0, least)
