@@ -13,11 +13,16 @@ from roadgpt.campaign.model import Proposal
 from roadgpt.campaign.single_test import Task, features_in, result_of
 from roadgpt.cli.screen import row_of
 from roadgpt.drive import Columns, Drive
-from roadgpt.road import Limits, Road, World
+from roadgpt.network import Route
+from roadgpt.road import Limits, Profile, Road, World
 from roadgpt.run import Request, Run, Setup
 from roadgpt.verdict import Incident, Verdict, judge
+from roadgpt.verdict.among_others import limits_along
 from roadgpt.verdict.contact import contacts_of
 from staged import among, driven, straight, tracks
+from verdict.test_incidents import WORLD as ROUTE_WORLD
+from verdict.test_incidents import crossroads
+from verdict.test_incidents import driven as on_route
 
 ROAD = Road.through([[x, 0] for x in range(0, 301, 20)])
 WORLD = World(limits=Limits(speed_limit=30.0))
@@ -251,3 +256,45 @@ def test_tables_and_reasons_say_who_was_at_fault() -> None:
         )
         assert "AT_FAULT" not in features_in(alone)
         assert "at_fault" not in row_of(alone).to_json()
+
+
+def test_on_a_route_the_earliest_cause_is_first_and_limits_are_those_of_its_lanes() -> None:
+    route = crossroads("straight", "stop")
+    x = np.arange(20.0, 110.0, 0.2)  # 10 m/s, without a stop at the line that ends at 50 m
+    drive = on_route(route, x, -2.0, dt=0.02)
+    drive = replace(
+        drive, columns=Columns({**drive.columns, "vx": np.full(len(x), 10.0), "z": np.full(len(x), 0.56)})
+    )
+    node = float(route.network.junctions[0].node[0])
+    crosses = straight(node, 20.0, -np.pi / 2, 20 / ((node - 20) / 10))
+    verdict = judge(route, among(drive, tracks(9.0, car_1=("car", crosses))), ROUTE_WORLD)
+    assert verdict.cause == "stop line"
+    assert kinds(verdict)[:2] == ["stop line", "collision"]
+    # from the left, so that its front comes when the middle of the tested car is there
+    told = "did not stop at the stop sign after 47 m: it crossed the line at 36 km/h and was hit by car 1 "
+    assert verdict.description.startswith(told)
+    assert " s later at 36 km/h: its left side met the front of car 1, " in verdict.description
+    # somebody in the way before the line comes first
+    first = tracks(9.0, cones_1=("cones", straight(35, -2, 0, 0)), car_1=("car", crosses))
+    verdict = judge(route, among(drive, first), ROUTE_WORLD)
+    assert verdict.cause == "collision"
+    assert "; 2 times in all; no stop at a stop sign once, after 47 m" in verdict.description
+    far = among(drive, tracks(9.0, car_1=("car", straight(0, 300, 0, 0))))
+    limits = limits_along(route, far, ROUTE_WORLD)
+    assert set(limits) == {ROUTE_WORLD.limits.speed_limit}
+    last = route.legs[-1].road
+    slow = [
+        replace(each, road=each.road.with_profile(slower(each.profile))) if each.id == last else each
+        for each in route.network.roads
+    ]
+    changed = Route.along(replace(route.network, roads=tuple(slow)), route.legs)
+    limits = limits_along(changed, far, ROUTE_WORLD)
+    np.testing.assert_array_equal(limits == 5.0, far["s"] >= route.starts[-2])
+    assert "speeding" in kinds(judge(changed, far, ROUTE_WORLD))
+
+
+def slower(profile: Profile) -> Profile:
+    left, right = (
+        tuple(replace(lane, speed_limit=5.0) for lane in side) for side in (profile.left, profile.right)
+    )
+    return replace(profile, left=left, right=right)
