@@ -47,14 +47,13 @@ def moment_of(run: Run) -> float:
     """Returns the time in seconds at which the others are shown: of the first contact, else of the
     failure, of the first near miss, or the end of the drive."""
     assert run.drive is not None
-    verdict, incidents = run.verdict, (run.verdict and run.verdict.incidents) or ()
-    for kind in ("collision", "near miss"):
-        found = next((each.at_time for each in incidents if each.kind == kind), None)
-        if kind == "near miss" and verdict is not None and verdict.at_time is not None:
-            return verdict.at_time
-        if found is not None:
-            return found
-    return run.drive.duration
+    incidents = (run.verdict and run.verdict.incidents) or ()
+    hit, near = (
+        next((each.at_time for each in incidents if each.kind == kind), None)
+        for kind in ("collision", "near miss")
+    )
+    failed = run.verdict.at_time if run.verdict is not None else None
+    return next((time for time in (hit, failed, near) if time is not None), run.drive.duration)
 
 
 def first_contact(run: Run) -> Incident | None:
