@@ -16,6 +16,7 @@ from roadgpt.drive import Columns, Drive
 from roadgpt.network import Route
 from roadgpt.road import Limits, Profile, Road, World
 from roadgpt.run import Request, Run, Setup
+from roadgpt.traffic import Tracks
 from roadgpt.verdict import Incident, Verdict, judge
 from roadgpt.verdict.among_others import limits_along
 from roadgpt.verdict.contact import contacts_of
@@ -151,6 +152,12 @@ def test_others_far_away_change_nothing_but_the_list() -> None:
     with_them = judge(ROAD, among(drive, tracks(8, car_1=("car", straight(10, 2, np.pi, 5)))), WORLD)
     assert with_them.incidents == ()
     assert replace(with_them, incidents=None) == judge(ROAD, drive, WORLD)
+
+
+def test_nobody_at_all_is_nobody() -> None:
+    drive = driven(straight(10, -2, 0, 15), 8, ROAD)
+    with_none = judge(ROAD, among(drive, Tracks((), np.empty((81, 0, 5)))), WORLD)
+    assert replace(with_none, incidents=None) == judge(ROAD, drive, WORLD)
 
 
 def test_near_misses() -> None:

@@ -161,3 +161,14 @@ def test_nobody_there_gives_no_value_and_no_warning() -> None:
     assert np.isfinite(found.ttc[:8, 0]).all()
     assert np.isinf(found.ttc[8:, 0]).all()
     assert BOX.width < 2
+
+
+def test_a_car_that_slides_goes_where_it_moves_and_not_where_it_looks() -> None:
+    def slides(time: Any) -> Any:
+        return 10 + 15 * time, -2 + 0 * time, 0.1 + 0 * time
+
+    # straight on past somebody who stands on the left; with its heading it would come 1.5 m nearer in 1 s
+    found = measured(slides, 1.0, car_1=("car", straight(32, 0.7, 0, 0)))
+    assert np.isinf(found.conflict).all()
+    ahead = measured(slides, 1.0, car_1=("car", straight(32, 0.7, -np.pi / 2, 1.0)))
+    assert np.isfinite(ahead.conflict[0, 0])

@@ -50,8 +50,8 @@ def separation(
 
     ``away`` (..., 2) leads from the middle of the first to that of the second, ``own`` and ``other`` are
     their headings, ``half`` and ``halves`` (..., 2) half of their lengths and widths."""
-    turned = other - own
-    c, s = np.abs(np.cos(turned)), np.abs(np.sin(turned))
+    angle = other - own
+    c, s = np.abs(np.cos(angle)), np.abs(np.sin(angle))
     apart = []
     for heading, mine, theirs in ((own, half, halves), (other, halves, half)):
         cos, sin = np.cos(heading), np.sin(heading)

@@ -80,7 +80,11 @@ class _Boxes:
     t: FloatArray
     heading: FloatArray
     half: FloatArray  # (..., 2): half of length and width
-    speed: FloatArray
+    velocity: FloatArray  # (..., 2): along and across
+
+    def __getitem__(self, rows: NDArray[np.int64]) -> "_Boxes":
+        parts = (self.along, self.t, self.heading, self.half, self.velocity)
+        return _Boxes(*(each[rows] for each in parts))
 
     @property
     def reach(self) -> tuple[FloatArray, FloatArray]:
@@ -95,23 +99,24 @@ def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
     assert drive.others is not None
     time = np.arange(0.0, drive.duration + 1e-6, STEP)
     pose = middles(drive)
-    x, y, heading, speed, z = (
-        np.interp(time, drive["time"], column) for column in (*pose.T, np.abs(drive["speed"]), drive["z"])
+    slip = np.arctan2(drive["vy"], drive["vx"])  # of the car's motion against its heading
+    x, y, heading, z, speed, slip = (
+        np.interp(time, drive["time"], column) for column in (*pose.T, drive["z"], drive["speed"], slip)
     )
     states = drive.others.at(time)
     away = states[..., [X, Y]] - np.stack([x, y], axis=-1)[:, None]
     level = np.abs(z[:, None] - drive.car.height - states[..., Z]) < HEADROOM
     near = level & (np.hypot(away[..., 0], away[..., 1]) < NEAR)  # false for NaN
     step, who = np.nonzero(near)
-    sizes = np.array([each.size[:2] for each in drive.others.actors]) / 2
+    sizes = np.array([each.size[:2] for each in drive.others.actors]).reshape(-1, 2) / 2
     lane = _Lane(road, world)
     half = np.broadcast_to(np.array([drive.car.length, drive.car.width]) / 2, (len(time), 2))
-    car = lane.boxes(x, y, heading, half, speed)
+    car = lane.boxes(x, y, heading, half, np.abs(speed), slip)
     found = states[near]
     others = lane.boxes(found[:, X], found[:, Y], found[:, HEADING], sizes[who], found[:, SPEED])
-    own = _Boxes(*(values[step] for values in (car.along, car.t, car.heading, car.half, car.speed)))
+    own = car[step]
     (stretch, side), (stretches, sides) = own.reach, others.reach
-    rate, its = own.speed * np.cos(own.heading), others.speed * np.cos(others.heading)
+    rate, its = own.velocity[:, 0], others.velocity[:, 0]
     abreast = np.abs(others.t - own.t) < sides + side
     same = (lane.holds(others) & lane.holds(own)) | abreast
     ahead = same & (others.along > own.along)
@@ -151,10 +156,8 @@ class _Lane:
     def __init__(self, road: "Road", world: "World") -> None:
         from scipy.spatial import cKDTree
 
-        profile, s = (
-            world.profile_of(road),
-            np.linspace(0.0, road.length, max(2, int(road.length / ALONG) + 1)),
-        )
+        profile = world.profile_of(road)
+        s = np.linspace(0.0, road.length, max(2, int(road.length / ALONG) + 1))
         self.middle, self.width = road.at(s, profile.middle(s))[:, :2], profile.width(s)
         steps = np.diff(self.middle, axis=0)
         self.run = np.concatenate([[0.0], np.cumsum(np.hypot(*steps.T))])
@@ -164,7 +167,13 @@ class _Lane:
         self.tree = cKDTree(self.middle)
 
     def boxes(
-        self, x: FloatArray, y: FloatArray, heading: FloatArray, half: FloatArray, speed: FloatArray
+        self,
+        x: FloatArray,
+        y: FloatArray,
+        heading: FloatArray,
+        half: FloatArray,
+        speed: FloatArray,
+        slip: FloatArray | float = 0.0,
     ) -> _Boxes:
         _, i = self.tree.query(np.stack([x, y], axis=-1))
         cos, sin = np.cos(self.heading[i]), np.sin(self.heading[i])
@@ -172,9 +181,10 @@ class _Lane:
         ahead, t = dx * cos + dy * sin, dy * cos - dx * sin
         bend = self.curvature[i]
         along = self.run[i] + ahead / np.maximum(1 - bend * t, LEAST_STRETCH)
-        turned = wrap_angle(heading - np.interp(along, self.run, self.heading))
         t = t - bend * ahead**2 / (2 * np.maximum(1 - bend * t, LEAST_STRETCH))
-        return _Boxes(along, t, np.asarray(turned), half, speed)
+        way = np.asarray(wrap_angle(heading - np.interp(along, self.run, self.heading)))
+        velocity = speed[:, None] * np.stack([np.cos(way + slip), np.sin(way + slip)], axis=-1)
+        return _Boxes(along, t, way, half, velocity)
 
     def holds(self, boxes: _Boxes) -> BoolArray:
         """Whether a box reaches into the lane."""
@@ -197,15 +207,9 @@ def _conflict(own: _Boxes, others: _Boxes) -> FloatArray:
     """Until two boxes that move evenly, without turning, touch: the last of the times at which they begin to
     overlap along the normals of their sides, if it is before the first at which they cease to."""
     away = np.stack([others.along - own.along, others.t - own.t], axis=-1)
-    velocity = np.stack(
-        [
-            others.speed * np.cos(others.heading) - own.speed * np.cos(own.heading),
-            others.speed * np.sin(others.heading) - own.speed * np.sin(own.heading),
-        ],
-        axis=-1,
-    )
-    turned = others.heading - own.heading
-    c, s = np.abs(np.cos(turned)), np.abs(np.sin(turned))
+    velocity = others.velocity - own.velocity
+    angle = others.heading - own.heading
+    c, s = np.abs(np.cos(angle)), np.abs(np.sin(angle))
     first, last = np.zeros(len(away)), np.full(len(away), np.inf)
     for heading, mine, theirs in (
         (own.heading, own.half, others.half),
