@@ -43,7 +43,7 @@ from roadgpt.brief.scene import (
     DOINGS,
     NUMBERS,
     SPOTS,
-    USUAL,
+    WEATHER,
     Action,
     ActorKind,
     Flow,
@@ -532,7 +532,7 @@ def scene_plan(scene: Scene) -> str:
         line.append(f"{actor}: {actions}" if actions else actor)
     line += [scene.flow or "", f"oncoming {scene.oncoming}" if scene.oncoming else ""]
     line += [f"parked {side}" for side in scene.parked]
-    line += [f"{name} {amount_text(number)}" for name in USUAL if (number := getattr(scene, name))]
+    line += [f"{name} {amount_text(number)}" for name in WEATHER if (number := getattr(scene, name))]
     return "; ".join(filter(None, [*line, scene.light, scene.surface]))
 
 
@@ -562,12 +562,12 @@ def read_scene(text: str) -> Scene:
         elif first == TESTED_CAR:
             for word in words:
                 _read_word(fields, word, ITSELF)
-        elif first in USUAL and len(words) < 2:
-            _set(fields, first, read_amount(words[0]) if words else USUAL[first])
+        elif first in WEATHER and len(words) < 2:
+            _set(fields, first, read_amount(words[0]) if words else WEATHER[first])
         elif first in CONDITIONS and not words:
             _set(fields, *CONDITIONS[first])
         else:
-            known = (*get_args(ActorKind), TESTED_CAR, "oncoming", "parked", *USUAL, *CONDITIONS)
+            known = (*get_args(ActorKind), TESTED_CAR, "oncoming", "parked", *WEATHER, *CONDITIONS)
             raise BriefError(
                 f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"
             )

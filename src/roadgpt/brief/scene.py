@@ -304,7 +304,7 @@ class Scene(Frozen):
         return (self.surface,) if self.surface else ("wet",) if self.rain else ()
 
 
-USUAL = {"fog": Amount(lo=50, hi=200), "rain": Amount(lo=2.5, hi=7.6)}
+WEATHER = {"fog": Amount(lo=50, hi=200), "rain": Amount(lo=2.5, hi=7.6)}
 """What fog and rain are without a number: thick fog, and the moderate rain of the Glossary of Meteorology."""
 LIGHTS: Mapping[Light, str] = {"night": "night", "low_sun": "a low sun ahead"}
 

@@ -14,6 +14,12 @@ This module adds features of the road's geometry; all but the first come from ``
     CLIMB         height of the end above the start, m
     LENGTH        length, m
 
+and, of a drive with others on the road, what its verdict says:
+
+    COLLISIONS, NEAR_MISSES, BLOCKED, SPEEDING   numbers of these incidents
+    AT_FAULT      whether the first collision was the tested car's fault, 1 or 0
+    IMPACT        difference of the velocities in the first collision, km/h
+
 If a description states the number of turns, each turn has features of its own, in driving order: RADIUS_1,
 DEGREES_1, RADIUS_2, ...
 """
@@ -28,6 +34,7 @@ from roadgpt.check.measures import measure
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 from roadgpt.run.execution import features_of
+from roadgpt.verdict import Verdict
 
 DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP")  # the features that a road has only after a drive
 DIRECTIONS = 36  # of 10 degrees each
@@ -91,6 +98,21 @@ def behaviour_of_line(points: Array, axes: Sequence[str], brief: Brief | None) -
         heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
         found |= behaviour_of_samples(points, heading, brief)
     return {axis: found[axis] for axis in axes if axis in found}
+
+
+def among_others(verdict: Verdict) -> dict[str, float]:
+    """Returns the features of a drive with others on the road, by name."""
+    counts, first = verdict.counts, verdict.first_contact
+    names = {
+        "COLLISIONS": "collision",
+        "NEAR_MISSES": "near miss",
+        "BLOCKED": "blocked",
+        "SPEEDING": "speeding",
+    }
+    out = {name: float(counts.get(kind, 0)) for name, kind in names.items()}
+    if first is not None:
+        out |= {"AT_FAULT": float(first.at_fault), "IMPACT": round(3.6 * first.impact_speed, DECIMALS)}
+    return out
 
 
 def turns_asked(brief: Brief | None) -> int:

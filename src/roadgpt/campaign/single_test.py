@@ -156,13 +156,16 @@ def seed_of_driver(number: int, proposal: Proposal) -> int:
 
 def features_in(run: Run) -> dict[str, float]:
     """Returns the features of a valid road and its drive by name; empty for an invalid road."""
-    from roadgpt.campaign.behaviour import behaviour_of
+    from roadgpt.campaign.behaviour import among_others, behaviour_of
     from roadgpt.run.execution import PER_POINT, features_of, records_of
 
     if run.road is None or (run.findings and run.drive is None):
         return {}
     records = records_of(run.road, run.drive, run.world) if run.drive is not None else []
-    return features_of(run.road.centreline(PER_POINT), records) | behaviour_of(run.road, run.brief)
+    found = features_of(run.road.centreline(PER_POINT), records) | behaviour_of(run.road, run.brief)
+    if run.drive is not None and run.drive.others is not None and run.verdict is not None:
+        found |= among_others(run.verdict)
+    return found
 
 
 def result_of(run: Run, task: Task, features: Mapping[str, float]) -> Result:

@@ -65,8 +65,8 @@ class Row:
     findings: tuple[str, ...] = ()
     """One sentence for each broken rule; the first is also ``validation_message``."""
     cause: str | None = None
-    """Cause of a FAIL: out of lane, fell, stuck or timeout. For an ERROR: unreadable, if the file cannot
-    be read."""
+    """Cause of a FAIL: out of lane, fell, stuck, timeout or collision. For an ERROR: unreadable, if the file
+    cannot be read."""
     max_oob: float | None = None  # largest share of the car that was outside its lane, 0 to 1
     beyond_m: float | None = None  # largest distance of the car's body beyond the lane marking, m
     margin_m: float | None = None
@@ -76,6 +76,7 @@ class Row:
     own_share: float | None = None
     """Share of the way, 0 to 1, that the driver drove itself; None if it never handed over."""
     handed_to: str | None = None  # who drove where the car failed, if the driver had handed over
+    at_fault: bool | None = None  # whether the first collision was the car's fault; None without one
     seconds: float = 0.0
     name: str = ""  # a shorter name, which is printed instead of ``file``; if empty, ``file`` is printed
     spent: "Spent | None" = None  # tokens, seconds and cost of the language models used for the road
@@ -90,7 +91,8 @@ class Row:
         """The outcome with cause or qualifier, such as 'FAIL (out of lane)' or 'PASS (mostly outside)'."""
         if self.cause:
             other = f", {self.handed_to} drove" if self.handed_to else ""
-            return f"{self.test_outcome} ({self.cause}{other})"
+            fault = ", not at fault" if self.cause == "collision" and self.at_fault is False else ""
+            return f"{self.test_outcome} ({self.cause}{fault}{other})"
         from roadgpt.verdict import graded
 
         return graded(self.test_outcome, self.max_oob)
@@ -108,6 +110,8 @@ class Row:
         if self.spent is not None:
             told |= {"tokens": self.spent.usage.total, "model_seconds": _rounded(self.spent.seconds)}
             told["cost_usd"] = self.spent.cost
+        if self.at_fault is not None:
+            told["at_fault"] = self.at_fault
         if self.worse:
             told["worse"] = self.worse
         return json.dumps(told)
@@ -190,11 +194,14 @@ def row_of(run: "Run | Result", file: str = "", **more: Any) -> Row:
         found, is_valid, length = run.verdict, run.is_valid, run.length if run.road else None
         findings = tuple(finding.sentence for finding in run.findings)
         more |= {"validation_message": run.validation_message, "findings": findings, "spent": run.spent}
+        contact = run.verdict and run.verdict.first_contact
+        more["at_fault"] = contact.at_fault if contact else None
         more |= {"words": run.words, "seed": run.seed, "trace": run.trace}
         # as tables of tests hold them
         more["seconds"] = round(run.seconds.design, 4) + round(run.seconds.drive, 4)
     else:
         found, is_valid, length = run, run.outcome not in ("INVALID", "ERROR"), run.length or None
+        more["at_fault"] = bool(run.features["AT_FAULT"]) if "AT_FAULT" in run.features else None
     if found is not None:
         more |= {"max_oob": found.max_oob, "beyond_m": found.beyond, "margin_m": found.margin}
         more |= {"own_share": found.own_share, "handed_to": found.handed_to}

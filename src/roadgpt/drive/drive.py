@@ -6,13 +6,16 @@ import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, get_args
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.errors import SimulationError, UsageError
 from roadgpt.reading import check_unpacked, opened, strictly
+
+if TYPE_CHECKING:
+    from roadgpt.traffic import Tracks
 
 FloatArray = NDArray[np.float64]
 Ended = Literal["goal", "out_of_lane", "fell", "stuck", "timeout"]
@@ -124,6 +127,8 @@ class Drive:
     car: Box
     handovers: tuple[Handover, ...] = ()
     """When the driver had handed over, in order; empty if it drove all the way itself."""
+    others: "Tracks | None" = None
+    """How the others on the road moved; None if nobody else was there."""
 
     def __repr__(self) -> str:
         way = f"{self['s'][-1]:.1f} m in {self.duration:.2f} s, {len(self)} steps"

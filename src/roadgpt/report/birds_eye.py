@@ -39,6 +39,7 @@ from roadgpt.report.canvas import (
     plain,
     save,
 )
+from roadgpt.report.others import INSET, draw_contact, draw_others, first_contact, key_of, moment_of
 from roadgpt.report.plan_view import (
     GROUND,
     Frame,
@@ -95,6 +96,10 @@ WORDS = {
     "wrong way": "drove the wrong way",
     "stop line": "did not stop",
     "off road": "a wheel off the road",
+    "collision": "contact",
+    "near miss": "near miss",
+    "blocked": "stood before a free way",
+    "speeding": "too fast",
 }
 NEAR = 15.0  # m, from an incident to the next one of its kind; they share a label
 RULES = {
@@ -150,13 +155,18 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     found = severities(run.drive)
     rims = {name: {"lw": RIM, "color": SEVERE[name]} for name in OUTSIDE if name in found}
     outside: list[KeyEntry] = [(f"{name} its lane", SWATCH, style) for name, style in rims.items()]
-    rows = [row for row in (outside, _network_key(road, world, frame, per_inch)) if row]
-    foot = BOTTOM + KEY * len(rows)
+    rows = [row for row in (outside, _network_key(road, world, frame, per_inch), key_of(run)) if row]
+    contact = None if is_part else first_contact(run)
+    foot = BOTTOM + KEY * len(rows) + (INSET + GAP if contact else 0.0)
     figure = new_figure(header.width, foot + across * frame.height / frame.width + header.height)
     axes = add_axes(figure, LEFT, foot, right, header.height)
     header.write(figure)
     for number, row in enumerate(reversed(rows)):
         _draw_key(figure, FOOT + KEY * number, row)
+    if contact is not None:
+        below = FOOT + KEY * len(rows)
+        inset = add_axes(figure, LEFT, below, right, figure.get_figheight() - below - INSET)
+        draw_contact(figure, inset, run, contact)
     size = world.site.map_size
     show_from_above(axes, frame, 8)
     axes.set_facecolor("#d5d8dc")
@@ -166,6 +176,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     draw_ends(axes, road, world)
     if run.drive is not None:
         _path(figure, axes, run)
+        draw_others(axes, run, per_inch, moment_of(run))
     _mark_and_label(axes, run, frame, centre, per_inch)
     if not is_part and not all(frame.holds(x, y) for x, y in centre):
         note(axes, (0.98, 0.98), "the road goes on beyond these axes", zorder=12)
@@ -324,7 +335,7 @@ def places_of(run: Run) -> list[MarkedPlace]:
         side = f"\nto the {verdict.side}" if verdict.side else ""
         s = verdict.at_s or 0.0
         station = "" if verdict.incidents is None else f", {s:.0f} m"
-        text = f"{WORDS.get(verdict.cause, verdict.cause)}{side}{station}"
+        text = f"{WORDS.get(verdict.cause, verdict.cause)}{_with(verdict)}{side}{station}"
         return [MarkedPlace(*verdict.at_xy, s, text, _step(run, verdict.at_time))]
     if verdict is not None and verdict.kept and verdict.max_oob and run.drive is not None:
         return [_farthest(run.drive, verdict)]
@@ -346,9 +357,9 @@ def minor_places_of(run: Run) -> list[MarkedPlace]:
     for each in incidents:
         if verdict is not None and (each.kind, each.at_time) == (verdict.cause, verdict.at_time):
             continue
-        group = latest.get(each.kind)
+        group = latest.get(f"{each.kind}{each.other}")
         if group is None or math.dist(group[-1].at_xy, each.at_xy) > NEAR:
-            group = latest[each.kind] = []
+            group = latest[f"{each.kind}{each.other}"] = []
             groups.append(group)
         group.append(each)
     places = []
@@ -365,7 +376,14 @@ def _named(group: Sequence[Incident]) -> str:
     first, last = (f"{limit(each.at_s for each in group):.0f}" for limit in (min, max))
     where = f"{first} m" if first == last else f"{first} to {last} m"
     often = f"\n{len(group)} times" if len(group) > 1 else ""
-    return f"{WORDS[group[0].kind]}{often}, {where}"
+    other = f" with {group[0].other}" if group[0].other else ""
+    return f"{WORDS[group[0].kind]}{other}{often}, {where}"
+
+
+def _with(verdict: Verdict) -> str:
+    """Whom the tested car touched, if that is the cause of its failure."""
+    hit = next((each.other for each in verdict.incidents or () if each.kind == "collision"), None)
+    return f" with {hit}" if verdict.cause == "collision" and hit else ""
 
 
 def _farthest(drive: Drive, verdict: Verdict) -> MarkedPlace:

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from roadgpt.brief.scene import ActorKind
 
@@ -75,15 +75,16 @@ class Tracks:
     """Shape (samples, actors, 5) with the columns X, Y, Z, HEADING (unwrapped) and SPEED; NaN while an actor
     is not there."""
 
-    def at(self, time: float) -> FloatArray:
-        """Returns the states at a time in seconds, shape (actors, 5); NaN for actors that are not there. A
-        time after the last sample counts as the last sample."""
-        place = min(max(time / STEP, 0.0), len(self.states) - 1.0)
-        first = min(int(place + 1e-9), len(self.states) - 1)
-        share = place - first
-        if share < 1e-6:
-            return np.asarray(self.states[first])
-        return np.asarray((1 - share) * self.states[first] + share * self.states[first + 1])
+    def at(self, time: ArrayLike, who: Any = slice(None)) -> FloatArray:
+        """Returns the states at times in seconds, shape (..., actors, 5); NaN for actors that are not there.
+        A time after the last sample counts as the last sample. ``who``, indices of actors that broadcast with
+        the times, gives the state of one actor for each time, shape (..., 5)."""
+        last = len(self.states) - 1
+        place = np.clip(np.asarray(time, float) / STEP, 0.0, last)
+        first = np.minimum((place + 1e-9).astype(int), last)
+        before, after = self.states[first, who], self.states[np.minimum(first + 1, last), who]
+        share = (place - first).reshape(first.shape + (1,) * (before.ndim - first.ndim))
+        return np.asarray(np.where(share < 1e-6, before, (1 - share) * before + share * after))
 
     def __len__(self) -> int:
         return len(self.states)

@@ -10,7 +10,9 @@ marking. Every verdict states how far outside its lane the car was, on the scale
 which share of the way, and whether the driver itself drove where the car failed.
 
 On a route through junctions a verdict also lists wrong turns, driving against the direction of the lane,
-tyres off the road, and stop signs that were passed without a stop (``roadgpt.verdict.incidents``).
+tyres off the road, and stop signs that were passed without a stop (``roadgpt.verdict.incidents``). With
+others on the road it also lists collisions, each with whose fault it is, near misses, standing before a free
+way, and speeding (``roadgpt.verdict.among_others``); ``measure`` returns how critical a drive was.
 """
 
 from importlib import import_module
@@ -19,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 from roadgpt.verdict.verdict import (
     SEVERITIES,
     Cause,
+    Contact,
     Incident,
     Outcome,
     Severity,
@@ -31,12 +34,15 @@ from roadgpt.verdict.verdict import (
 
 if TYPE_CHECKING:
     from roadgpt.verdict.judging import judge, most_beyond
+    from roadgpt.verdict.measures import Measures, measure
     from roadgpt.verdict.oracle import Oracle, consult
 
 __all__ = [
     "SEVERITIES",
     "Cause",
+    "Contact",
     "Incident",
+    "Measures",
     "Oracle",
     "Outcome",
     "Severity",
@@ -45,13 +51,17 @@ __all__ = [
     "consult",
     "graded",
     "judge",
+    "measure",
     "most_beyond",
     "percent",
     "severity",
 ]
 
 # The classes and the scale load at once, for commands that only show results; judging loads when needed.
-_LATER = {"judge": "judging", "most_beyond": "judging", "Oracle": "oracle", "consult": "oracle"}
+_LATER = {
+    "judge": "judging", "most_beyond": "judging", "Oracle": "oracle", "consult": "oracle",
+    "Measures": "measures", "measure": "measures",
+}  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

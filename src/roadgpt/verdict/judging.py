@@ -10,7 +10,7 @@ from roadgpt.errors import UsageError
 from roadgpt.network import only_road
 from roadgpt.road.world import share_in_words
 from roadgpt.verdict.oracle import EPSILON, consult, has_departed, is_outside, margins
-from roadgpt.verdict.verdict import Cause, Incident, Side, Verdict, percent
+from roadgpt.verdict.verdict import STANDS, Cause, Face, Incident, Side, Verdict, percent
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
@@ -21,6 +21,7 @@ CAUSES: dict[str, Cause] = {
     "fell": "fell",
     "stuck": "stuck",
     "timeout": "timeout",
+    "collision": "collision",
 }
 
 INCIDENTS: dict[str, str] = {
@@ -29,27 +30,38 @@ INCIDENTS: dict[str, str] = {
     "wrong way": "against the direction of its lane",
     "off road": "a wheel off the road",
     "stop line": "no stop at a stop sign",
+    "collision": "a contact",
+    "near miss": "a near miss",
+    "blocked": "standing for 30 s before a free way",
+    "speeding": "above the speed limit",
 }
+
+FACES: dict[Face, str] = {"front": "front", "rear": "rear", "left": "left side", "right": "right side"}
 
 LEAST = 0.005  # m; smaller distances beyond a marking are not stated
 
 # The competition's own words, to which it adds the name of the simulation. For the competition, a car that
-# falls has left the lane. The competition has no stop signs.
+# falls has left the lane. The competition has neither stop signs nor others on the road, so the words for a
+# collision are ours.
 SBFT: dict[Cause | None, str] = {
     None: "Successful test",
     "out of lane": "Car drove out of the lane",
     "fell": "Car drove out of the lane",
     "stuck": "Car is not moving fast enough",
     "timeout": "Timeout Simulation",
+    "collision": "Car collided",
     "wrong turn": "Car drove out of the lane",
     "wrong way": "Car drove out of the lane",
     "stop line": "Successful test",
 }
 
-FAILING: tuple[Cause, ...] = ("wrong turn", "wrong way", "stop line")
-"""The kinds of incidents that fail a test if nothing else failed. The kind of the first such incident is then
-the cause. A tyre off the road fails no test.
+FAILING: tuple[Cause, ...] = ("collision", "wrong turn", "wrong way", "stop line")
+"""The kinds of incidents that fail a test: if nothing else failed, or, with others on the road, if they came
+first. The kind of the first such incident is then the cause. A tyre off the road, near misses, standing and
+speeding fail no test.
 """
+
+SOON = 3.0  # s after the cause of a failure, within which a contact is told in the same sentence
 
 FAILED: dict[Cause, str] = {
     "out of lane": "left its lane to the {side}{where} {reached} {fast}{how}",
@@ -57,6 +69,7 @@ FAILED: dict[Cause, str] = {
     "wrong turn": "took a wrong turn {reached} {fast}",
     "wrong way": "drove against the direction of its lane {reached} {fast}",
     "stop line": "did not stop at the stop sign {reached}: it crossed the line {fast}",
+    "collision": "{contact}",
     "stuck": "was stuck {reached}: it moved less than 1 m in 10 s",
     "timeout": "ran out of time {reached} of {length:.0f} m",
 }
@@ -77,20 +90,31 @@ def judge(
     ``roadgpt.verdict.incidents``. If the car kept its lane up to the goal, the first wrong turn, wrong way or
     missed stop is the failure. A tyre off the road is counted but fails no test.
 
-    ``known`` is the step that decides and the cause of failure, or None, if an earlier verdict has them.
+    With others on the road, ``incidents`` also lists what ``roadgpt.verdict.among_others`` defines. Then the
+    earliest of all failures is the cause, and a contact within 3 s is told in the same sentence.
+
+    ``known`` is the step that decides and the cause of failure, or None, if an earlier verdict has them;
+    with others on the road they are found again.
 
     Raises:
         UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``.
     """
     road = world.lay(road)
-    incidents = None
+    incidents: tuple[Incident, ...] | None = None
     if only_road(road, world) is None:
         from roadgpt.verdict.incidents import incidents_of  # a single road does not need it
 
         incidents = incidents_of(road, drive, world)
+    if drive.others is not None:
+        from roadgpt.verdict.among_others import incidents_among_others
+
+        known = None
+        more = (*(incidents or ()), *incidents_among_others(road, drive, world))
+        incidents = tuple(sorted(more, key=lambda each: each.at_time))
     step, cause = known or _first_failure(road, drive, world)
-    if cause is None:
-        step, cause = _first_of(incidents or (), drive, step)
+    if cause is None or drive.others is not None:
+        step, cause = _first_of(incidents or (), drive, step, cause)
+    contact = _contact_of(incidents or (), cause, drive["time"][step]) if cause else None
     every = margins(road, drive, world)
     least = float(every[: drive.lane_steps].min())
     side: Side | None = None
@@ -103,8 +127,12 @@ def judge(
     if cause is None:
         description = _kept(drive, world, least, beyond)
     else:
-        description = _failed(road, drive, world, step, cause, side)
-    description += _counted(incidents or (), cause) + _who_drove(drive.shares, handed_to)
+        description = _failed(road, drive, world, step, cause, side, contact)
+    untold = [each for each in incidents or () if each is not contact or cause == "collision"]
+    description += _counted(untold, cause) + _who_drove(drive.shares, handed_to)
+    s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
+    if cause == "collision" and contact is not None:
+        s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
     return Verdict(
         outcome="FAIL" if cause else "PASS",
         cause=cause,
@@ -114,9 +142,9 @@ def judge(
         margin=least,
         oob_counter=int(consult(road, drive, world).oob_counter[-1]),
         beyond=beyond,
-        at_s=float(drive["s"][step]) if cause else None,
-        at_xy=(float(drive["x"][step]), float(drive["y"][step])) if cause else None,
-        at_time=float(drive["time"][step]) if cause else None,
+        at_s=s if cause else None,
+        at_xy=(x, y) if cause else None,
+        at_time=time if cause else None,
         side=side,
         incidents=incidents,
         own_share=drive.shares.get(drive.driver),
@@ -149,13 +177,23 @@ def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, C
     return last, CAUSES.get(drive.ended)
 
 
-def _first_of(incidents: Sequence[Incident], drive: "Drive", step: int) -> tuple[int, Cause | None]:
-    """Returns the step and the cause of the first failing incident; ``step`` and None if there is none."""
+def _first_of(
+    incidents: Sequence[Incident], drive: "Drive", step: int, cause: Cause | None
+) -> tuple[int, Cause | None]:
+    """Returns the step and the cause of the first failing incident; ``step`` and ``cause`` if there is none,
+    or if they came first."""
     for each in incidents:
-        cause = next((cause for cause in FAILING if cause == each.kind), None)
-        if cause is not None:
-            return int(np.searchsorted(drive["time"], each.at_time)), cause
-    return step, None
+        found = next((name for name in FAILING if name == each.kind), None)
+        if found is not None:
+            first = min(int(np.searchsorted(drive["time"], each.at_time)), len(drive) - 1)
+            return (first, found) if cause is None or first <= step else (step, cause)
+    return step, cause
+
+
+def _contact_of(incidents: Sequence[Incident], cause: Cause | None, time: float) -> Incident | None:
+    """Returns the contact that is the cause of a failure at ``time``, or the first one soon after it."""
+    hits = [each for each in incidents if each.kind == "collision"]
+    return next((each for each in hits if cause == "collision" or 0 <= each.at_time - time <= SOON), None)
 
 
 def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
@@ -197,19 +235,51 @@ def _kept(drive: "Drive", world: "World", margin: float, beyond: float) -> str:
     return f"{kept} {reached}: {outside}, {margin:.2f} m sideways from failing"
 
 
-def _failed(road: "Road", drive: "Drive", world: "World", step: int, cause: Cause, side: Side | None) -> str:
+def _failed(
+    road: "Road",
+    drive: "Drive",
+    world: "World",
+    step: int,
+    cause: Cause,
+    side: Side | None,
+    contact: Incident | None,
+) -> str:
     profile = world.profile_of(road)
     is_beside = (
         side == ("right" if profile.left_hand else "left") and profile.driven_id != profile.along_ids[0]
     )
     has_crossed = cause == "out of lane" and has_departed(road, drive, world)[step]
-    return FAILED[cause].format(
+    how = (
+        "a front tyre passed the marking"
+        if has_crossed
+        else f"more than {share_in_words(world.limits.oob_tolerance)} was outside"
+    )
+    later = f"{contact.at_time - drive['time'][step]:.1f} s later" if contact else ""
+    told = FAILED[cause].format(
         side=side,
         where=", into the next lane of its direction," if is_beside else "",
         reached=f"after {drive['s'][step]:.0f} m",
         fast=f"at {drive['speed'][step] * 3.6:.0f} km/h",
-        how=": a front tyre passed the marking"
-        if has_crossed
-        else f": more than {share_in_words(world.limits.oob_tolerance)} was outside",
+        how="" if contact else f": {how}",
         length=road.length,
+        contact=_touched(contact, f"after {contact.at_s:.0f} m") if contact else "hit somebody",
+    )
+    if contact is None or cause == "collision":
+        return told
+    return f"{told} and {_touched(contact, later)}" + (f"; {how}" if cause == "out of lane" else "")
+
+
+def _touched(incident: Incident, where: str) -> str:
+    """Returns in words how the tested car and somebody else touched, and whose fault it was."""
+    found, name = incident.contact, incident.other
+    assert found is not None
+    is_hit = found.face == "rear" or (found.face != "front" and found.other_face == "front")
+    verb = f"was hit by {name}" if is_hit else f"hit {name}"
+    own, other = FACES[found.face], FACES[found.other_face]
+    its = f"at {abs(found.other_speed) * 3.6:.0f} km/h" if abs(found.other_speed) > STANDS else "standing"
+    overlap = "" if found.overlap is None else f" and {percent(found.overlap)} overlap"
+    fault = "at fault" if found.at_fault else "not at fault"
+    return (
+        f"{verb} {where} at {found.speed * 3.6:.0f} km/h: its {own} met the {other} of {name}, {its}, with "
+        f"{found.impact_speed * 3.6:.0f} km/h of difference{overlap}; {fault}"
     )

@@ -17,21 +17,58 @@ from roadgpt.errors import UsageError
 from roadgpt.reading import strictly
 
 Outcome = Literal["PASS", "FAIL"]
-Cause = Literal["out of lane", "fell", "stuck", "timeout", "wrong turn", "wrong way", "stop line"]
+Cause = Literal[
+    "out of lane", "fell", "stuck", "timeout", "collision", "wrong turn", "wrong way", "stop line"
+]
 Side = Literal["left", "right"]
+Face = Literal["front", "rear", "left", "right"]
 Severity = Literal["at most 10 % outside", "partly outside", "mostly outside"]
 SEVERITIES: tuple[Severity, ...] = get_args(Severity)
 """All levels, from the best to the worst."""
 PARTLY, MOSTLY = 0.1, 0.5
 """Shares of the car's bounding box outside its lane above which the level is "partly" or "mostly outside"."""
+STANDS = 0.05  # m/s, up to which nuPlan takes somebody for standing
 
 
-IncidentKind = Literal["out of lane", "wrong turn", "wrong way", "off road", "stop line"]
+IncidentKind = Literal[
+    "out of lane",
+    "wrong turn",
+    "wrong way",
+    "off road",
+    "stop line",
+    "collision",
+    "near miss",
+    "blocked",
+    "speeding",
+]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """How the tested car and somebody else on the road touched first."""
+
+    xy: tuple[float, float]
+    """Position (x, y) in metres where they touched."""
+    face: Face
+    """Side of the tested car that was touched."""
+    other_face: Face
+    """Side of the other that was touched."""
+    speed: float
+    """Speed of the tested car in m/s."""
+    other_speed: float
+    """Speed of the other in m/s, negative when it reversed."""
+    impact_speed: float
+    """Difference of the two velocities in m/s."""
+    overlap: float | None
+    """Share of the tested car's width, 0 to 1, that lay before the other; None if its front was not
+    touched."""
+    at_fault: bool
+    """Whether it is the tested car's fault, as ``roadgpt.verdict.contact`` defines it."""
 
 
 @dataclass(frozen=True)
 class Incident:
-    """One thing that the car did wrong, with the place and the time at which it began."""
+    """One thing that went wrong, with the place and the time at which it began."""
 
     kind: IncidentKind
     at_s: float
@@ -40,6 +77,18 @@ class Incident:
     """Position (x, y) of the car's centre of gravity in metres."""
     at_time: float
     """Time in seconds since the start of the drive."""
+    other: str | None = None
+    """Name of the other, of a collision or a near miss; None for other kinds."""
+    contact: Contact | None = None
+    """How they touched in a collision; None for other kinds."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Returns the fields as JSON data, ``other`` and ``contact`` only where they are not None."""
+        data = {key: value for key, value in asdict(self).items() if value is not None}
+        data["at_xy"] = list(self.at_xy)
+        if self.contact is not None:
+            data["contact"]["xy"] = list(self.contact.xy)
+        return data
 
 
 @dataclass(frozen=True)
@@ -55,7 +104,8 @@ class Verdict:
     cause: Cause | None
     """Cause of the failure; None if the car kept its lane and reached the goal.
 
-    "wrong turn", "wrong way" and "stop line" occur only on routes through junctions, if nothing else failed.
+    "wrong turn", "wrong way" and "stop line" occur only on routes through junctions, if nothing else failed,
+    or if others are on the road; "collision" only if others are.
     """
     description: str
     """The result of the drive in one sentence."""
@@ -89,7 +139,8 @@ class Verdict:
     side: Side | None = None
     """The side on which the car left its lane or fell; None for other results."""
     incidents: tuple[Incident, ...] | None = None
-    """What the car did wrong on a route through junctions, in order of time; None on a single road.
+    """What the car did wrong on a route through junctions or with others on the road, in order of time; None
+    on a single road without others.
 
     A drive that passed may have incidents, too, because a tyre off the road fails no test.
     """
@@ -104,6 +155,11 @@ class Verdict:
     def counts(self) -> dict[str, int]:
         """The number of incidents of each kind that occurred; empty if there were none."""
         return dict(Counter(each.kind for each in self.incidents or ()))
+
+    @property
+    def first_contact(self) -> Contact | None:
+        """How the tested car and somebody else touched first; None if there was no collision."""
+        return next((each.contact for each in self.incidents or () if each.contact is not None), None)
 
     @property
     def severity(self) -> Severity:
@@ -123,7 +179,7 @@ class Verdict:
         optional = {"incidents", "own_share", "handed_to"}
         data = {key: value for key, value in asdict(self).items() if value is not None or key not in optional}
         if self.incidents is not None:
-            data["incidents"] = [{**asdict(each), "at_xy": list(each.at_xy)} for each in self.incidents]
+            data["incidents"] = [each.to_json() for each in self.incidents]
         data["at_xy"] = None if self.at_xy is None else list(self.at_xy)
         return {"kept": self.kept, **data}
 

@@ -42,6 +42,7 @@ WAYS: dict[Way, str] = {
     "off": "left a straight",
     "stopped": "came to a standstill",
     "late": "ran out of time",
+    "hit": "collided with somebody",
 }
 
 

@@ -1,0 +1,197 @@
+"""Draws the others on the road from above: their boxes at one moment, how they came there, and a contact."""
+
+import math
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+from matplotlib.patheffects import withStroke
+
+from roadgpt.brief.scene import ActorKind
+from roadgpt.geometry.curve import Array
+from roadgpt.report.canvas import BLUE, GREEN, HALO, INK, POINTS, SOFT, VERMILLION
+from roadgpt.report.plan_view import Frame, draw_road
+from roadgpt.run import Run
+from roadgpt.traffic.actor import HEADING, X, Y, corners
+from roadgpt.verdict import Incident
+
+NAVY, BROWN, PINK = "#1f3763", "#7a4b16", "#c2408f"
+COLOURS: dict[ActorKind, tuple[str, str]] = {
+    "car": ("car, van", BLUE),
+    "van": ("car, van", BLUE),
+    "truck": ("truck, bus", NAVY),
+    "bus": ("truck, bus", NAVY),
+    "motorcycle": ("two wheels", GREEN),
+    "bicycle": ("two wheels", GREEN),
+    "adult": ("person", PINK),
+    "child": ("person", PINK),
+    "animal": ("animal", BROWN),
+    "cones": ("thing", SOFT),
+    "barrier": ("thing", SOFT),
+    "lost_load": ("thing", SOFT),
+}
+"""What the key calls each kind, and its colour."""
+TRAIL, STEP = 5.0, 0.2  # s of the way before the moment, and between its points
+SMALLEST = 4.5  # points, of the longer side of a box
+INSET = 2.1  # inches, the height of the inset
+ROOM = 2.5  # m around the boxes in the inset
+LEAST_MOVED = 0.3  # m/s, from which an arrow shows where somebody goes
+ARROW = 0.2  # s of the way that an arrow shows
+
+
+def moment_of(run: Run) -> float:
+    """Returns the time in seconds at which the others are shown: of the first contact, else of the
+    failure, of the first near miss, or the end of the drive."""
+    assert run.drive is not None
+    incidents = (run.verdict and run.verdict.incidents) or ()
+    hit, near = (
+        next((each.at_time for each in incidents if each.kind == kind), None)
+        for kind in ("collision", "near miss")
+    )
+    failed = run.verdict.at_time if run.verdict is not None else None
+    return next((time for time in (hit, failed, near) if time is not None), run.drive.duration)
+
+
+def first_contact(run: Run) -> Incident | None:
+    """Returns the first contact of the tested car with somebody, if there was one."""
+    incidents = (run.verdict and run.verdict.incidents) or ()
+    return next((each for each in incidents if each.kind == "collision"), None)
+
+
+def draw_others(axes: Axes, run: Run, per_inch: float, time: float) -> None:
+    """Draws everybody as a box with a trail that fades, and the tested car as a box. ``per_inch`` is the
+    number of metres per inch; boxes that would be too small to see are drawn larger."""
+    assert run.drive is not None
+    others = run.drive.others
+    if others is None:
+        return
+    least = SMALLEST / POINTS * per_inch
+    before = np.arange(max(time - TRAIL, 0.0), time + STEP / 2, STEP)
+    ways = others.at(before)[..., [X, Y]]
+    for way, state, actor in zip(ways.swapaxes(0, 1), others.at(time), others.actors, strict=True):
+        colour = COLOURS[actor.kind][1]
+        way = way[~np.isnan(way[:, 0])]
+        if len(way) > 1 and np.ptp(way, axis=0).max() > 0.5:
+            pieces = np.stack([way[:-1], way[1:]], axis=1)
+            shades = [(*to_rgb(colour), alpha) for alpha in np.linspace(0.05, 0.75, len(pieces))]
+            axes.add_collection(LineCollection(list(pieces), colors=shades, linewidths=2.0, zorder=7.6))
+        if not np.isnan(state[X]):
+            box = corners(state, actor.size)
+            larger = max(1.0, least / max(actor.size[:2]))
+            middle = state[[X, Y]]
+            axes.add_patch(_box(middle + larger * (box - middle), colour))
+    own = run.drive.corners(_step(run, time))
+    middle = own.mean(axis=0)
+    axes.add_patch(_box(middle + max(1.0, least / run.drive.car.length) * (own - middle), INK))
+
+
+def key_of(run: Run) -> list[tuple[str, float, dict[str, Any]]]:
+    """Returns the entries of the key: the tested car, and the kinds of others that are on the road."""
+    others = run.drive.others if run.drive is not None else None
+    if others is None or not others.actors:
+        return []
+    kinds = {actor.kind for actor in others.actors}
+    named = dict(look for kind, look in COLOURS.items() if kind in kinds)
+    style = {"marker": "s", "ms": 6, "mec": "white", "mew": 0.6, "ls": "none", "markevery": [0]}
+    return [(name, 0.06, {**style, "mfc": colour}) for name, colour in {"tested car": INK, **named}.items()]
+
+
+def draw_contact(figure: Figure, axes: Axes, run: Run, contact: Incident) -> None:
+    """Draws the tested car and the one that it touched first, enlarged, at the moment of contact, on axes
+    that are wider than high, with arrows for their speeds."""
+    assert run.drive is not None
+    assert run.drive.others is not None
+    assert run.road is not None
+    assert contact.contact is not None
+    found, others = contact.contact, run.drive.others
+    number = next(n for n, actor in enumerate(others.actors) if actor.name == contact.other)
+    state, actor = others.at(contact.at_time)[number], others.actors[number]
+    own = _corners_at(run, contact.at_time)
+    boxes = (own, corners(state, actor.size))
+    shown = np.concatenate(boxes)
+    low, high = shown.min(axis=0) - ROOM, shown.max(axis=0) + ROOM
+    wide, tall = (float(each) for each in _inches(figure, axes))
+    per_inch = max((high[0] - low[0]) / (0.6 * wide), (high[1] - low[1]) / tall)
+    x, y = (low + high) / 2
+    reach = np.array([wide, tall]) * per_inch / 2
+    frame = Frame(x - reach[0], x + reach[0], y - reach[1], y + reach[1])
+    axes.set(xlim=(frame.x0, frame.x1), ylim=(frame.y0, frame.y1), aspect="equal", xticks=[], yticks=[])
+    axes.set_facecolor("#eef1ea")
+    draw_road(axes, run.road, run.world, per_inch)
+    before = np.arange(max(contact.at_time - TRAIL, 0.0), contact.at_time, STEP / 4)
+    ways = (
+        np.stack([np.interp(before, run.drive["time"], run.drive[name]) for name in ("x", "y")], axis=-1),
+        others.at(before)[:, number, [X, Y]],
+    )
+    course = (float(run.drive["heading"][_step(run, contact.at_time)]), float(state[HEADING]))
+    speeds, lengths = (found.speed, found.other_speed), (run.drive.car.length, actor.size.length)
+    names = ("tested car", actor.name)
+    colours = (INK, COLOURS[actor.kind][1])
+    for box, way, ahead, speed, length, colour in zip(
+        boxes, ways, course, speeds, lengths, colours, strict=True
+    ):
+        axes.plot(way[:, 0], way[:, 1], color=colour, lw=1.6, alpha=0.35, zorder=6)
+        axes.add_patch(Polygon(box, closed=True, fc=colour, ec="white", lw=1.2, zorder=8))
+        middle = box.mean(axis=0)
+        if abs(speed) > LEAST_MOVED:
+            along = math.copysign(1.0, speed) * np.array([math.cos(ahead), math.sin(ahead)])
+            edge, tip = (middle + along * (length / 2 + way) for way in (0, min(abs(speed) * ARROW, ROOM)))
+            around = [withStroke(linewidth=3.6, foreground=colour)]
+            style = {"arrowstyle": "-|>", "color": "white", "lw": 1.3, "shrinkA": 0, "shrinkB": 0}
+            arrow = {**style, "path_effects": around}
+            axes.annotate("", tip, edge, arrowprops=arrow, zorder=9, annotation_clip=True)
+    axes.plot(*found.xy, "o", ms=5, mfc=VERMILLION, mec="white", mew=1.0, zorder=10)
+    _name(axes, frame, boxes, names, speeds, colours)
+
+
+def _name(
+    axes: Axes,
+    frame: Frame,
+    boxes: tuple[Array, Array],
+    names: tuple[str, str],
+    speeds: tuple[float, float],
+    colours: tuple[str, str],
+) -> None:
+    """Names both beside the picture of them: the left one on the left, the other on the right."""
+    left = int(boxes[1].mean(axis=0)[0] < boxes[0].mean(axis=0)[0])
+    for number, (name, speed, colour) in enumerate(zip(names, speeds, colours, strict=True)):
+        is_left = number == left
+        text = f"{name}\n{abs(speed) * 3.6:.0f} km/h" if abs(speed) > LEAST_MOVED else f"{name}\nstanding"
+        place = (frame.x0 if is_left else frame.x1, frame.y1)
+        style: dict[str, Any] = {
+            "ha": "left" if is_left else "right",
+            "va": "top",
+            "size": 9.5,
+            "weight": "bold",
+        }
+        axes.annotate(
+            text, place, (8 if is_left else -8, -6), textcoords="offset points", color=colour, zorder=11,
+            path_effects=HALO, linespacing=1.2, **style,
+        )  # fmt: skip
+
+
+def _inches(figure: Figure, axes: Axes) -> Array:
+    shape = axes.get_position()
+    return np.array([figure.get_figwidth() * shape.width, figure.get_figheight() * shape.height])
+
+
+def _box(outline: Array, colour: str) -> Polygon:
+    return Polygon(outline, closed=True, fc=colour, ec="white", lw=0.8, zorder=8.5)
+
+
+def _step(run: Run, time: float) -> int:
+    assert run.drive is not None
+    return int(np.abs(run.drive["time"] - time).argmin())
+
+
+def _corners_at(run: Run, time: float) -> Array:
+    """The corners of the tested car's box at a time between two steps."""
+    assert run.drive is not None
+    drive = run.drive
+    after = int(np.clip(np.searchsorted(drive["time"], time), 1, len(drive) - 1))
+    share = (time - drive["time"][after - 1]) / (drive["time"][after] - drive["time"][after - 1])
+    return np.asarray((1 - share) * drive.corners(after - 1) + share * drive.corners(after))

@@ -1,0 +1,192 @@
+"""Finds where the tested car touched others on the road.
+
+Both are boxes in plan. Between two steps of a drive, a box moves evenly along a straight line and turns
+evenly. A contact is the first moment at which the boxes are within TOUCH of each other; it is found by
+conservative advancement: nobody can come closer than the distance, divided by the fastest approach, allows.
+The distance is that of the separating axis theorem, which is never larger than the true one (Gottschalk, Lin
+and Manocha 1996).
+
+The fault is that of nuPlan (Karnchanachari et al. 2024, "no at-fault collisions"): the tested car's, if it
+moves and hits somebody who stands, or hits somebody with its front, or with a side while part of it is
+outside its lane. It is not the tested car's if it stands, if it is hit in its rear by somebody who moves, or
+at a side within its lane.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.network.lanes import HEADROOM
+from roadgpt.traffic.actor import HEADING, SPEED, STEP, X, Y, Z
+from roadgpt.verdict.verdict import STANDS, Contact, Face, Incident
+
+if TYPE_CHECKING:
+    from roadgpt.drive import Drive
+
+FloatArray = NDArray[np.float64]
+
+TOUCH = 1e-3  # m; positions of tracks are rounded to it
+SLACK = 1.0  # m, by which the car's way between two samples of a track may differ from a straight line
+CORNER = 0.02  # m, within which a corner belongs to the place of contact, and a place to the front or rear
+OUTLINE = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)])
+
+
+def middles(drive: "Drive") -> FloatArray:
+    """Returns the middle of the car's box (x, y) and its heading at every step, shape (n, 3)."""
+    heading = np.unwrap(drive["heading"])
+    ahead = drive.car.ahead
+    return np.stack(
+        [drive["x"] + ahead * np.cos(heading), drive["y"] + ahead * np.sin(heading), heading], axis=-1
+    )
+
+
+def separation(
+    away: FloatArray, own: FloatArray, other: FloatArray, half: FloatArray, halves: FloatArray
+) -> FloatArray:
+    """Returns by how many metres two boxes are apart along the normals of their sides, shape (..., 4): along
+    and across the first box, along and across the second. The largest of the four is negative exactly if they
+    overlap.
+
+    ``away`` (..., 2) leads from the middle of the first to that of the second, ``own`` and ``other`` are
+    their headings, ``half`` and ``halves`` (..., 2) half of their lengths and widths."""
+    angle = other - own
+    c, s = np.abs(np.cos(angle)), np.abs(np.sin(angle))
+    apart = []
+    for heading, mine, theirs in ((own, half, halves), (other, halves, half)):
+        cos, sin = np.cos(heading), np.sin(heading)
+        along = np.abs(away[..., 0] * cos + away[..., 1] * sin)
+        across = np.abs(away[..., 1] * cos - away[..., 0] * sin)
+        apart.append(along - mine[..., 0] - theirs[..., 0] * c - theirs[..., 1] * s)
+        apart.append(across - mine[..., 1] - theirs[..., 0] * s - theirs[..., 1] * c)
+    return np.stack(apart, axis=-1)
+
+
+def contacts_of(drive: "Drive") -> tuple[Incident, ...]:
+    """Returns the first contact with each of the others, in order of time."""
+    if drive.others is None or not drive.others.actors:
+        return ()
+    from_step, actor, share = _first_contacts(drive)
+    found = [
+        _described(drive, int(i), int(k), float(u)) for i, k, u in zip(from_step, actor, share, strict=True)
+    ]
+    return tuple(sorted(found, key=lambda each: each.at_time))
+
+
+def _first_contacts(drive: "Drive") -> tuple[NDArray[np.int64], NDArray[np.int64], FloatArray]:
+    """Returns step, actor and share of the way to the next step of the first contacts, one for each actor."""
+    assert drive.others is not None
+    others, time, car = drive.others, drive["time"], middles(drive)
+    half = np.array([drive.car.length, drive.car.width]) / 2
+    halves = np.array([each.size[:2] for each in others.actors]) / 2
+    reach, reaches = np.hypot(*half), np.hypot(halves[:, 0], halves[:, 1])
+    step, actor = np.nonzero(_is_near(drive, car, reach + reaches))
+    after = np.minimum(step + 1, len(time) - 1)
+    states, later = others.at(time[step], actor), others.at(time[after], actor)
+    later = np.where(np.isnan(later), states, later)  # somebody who leaves is there up to the step before
+    level = np.abs(drive["z"][step] - drive.car.height - states[:, Z]) < HEADROOM
+    away = states[:, [X, Y]] - car[step, :2]
+    change = later[:, [X, Y]] - car[after, :2] - away
+    turn, turns = car[after, 2] - car[step, 2], later[:, HEADING] - states[:, HEADING]
+    most = np.hypot(*change.T) + reach * np.abs(turn) + reaches[actor] * np.abs(turns)
+    near = np.flatnonzero(level & (np.hypot(*away.T) - reach - reaches[actor] <= most + TOUCH))
+    step, actor = step[near], actor[near]
+    away, change, most = away[near], change[near], most[near]
+    headings, turn, turns, halves = states[near, HEADING], turn[near], turns[near], halves[actor]
+    share, is_open = np.zeros(len(step)), np.ones(len(step), bool)
+    while is_open.any():
+        k = np.flatnonzero(is_open)
+        u = share[k]
+        apart = separation(
+            away[k] + u[:, None] * change[k],
+            car[step[k], 2] + u * turn[k],
+            headings[k] + u * turns[k],
+            half,
+            halves[k],
+        ).max(axis=-1)
+        is_open[k] = apart > TOUCH
+        share[k] += np.where(apart > TOUCH, apart / np.maximum(most[k], TOUCH / 2), 0.0)
+        is_open[k] &= share[k] <= 1.0
+    touched = np.flatnonzero(share <= 1.0)
+    _, first = np.unique(actor[touched], return_index=True)  # rows are in the order of time
+    chosen = touched[first]
+    return step[chosen], actor[chosen], share[chosen]
+
+
+def _is_near(drive: "Drive", car: FloatArray, reach: FloatArray) -> NDArray[np.bool_]:
+    """Returns for each step and actor whether they may touch between the samples of the track around it,
+    shape (steps, actors); ``reach`` is the sum of the radii around the boxes."""
+    assert drive.others is not None
+    states, time = drive.others.states, drive["time"]
+    sample = np.clip((time / STEP + 1e-9).astype(int), 0, len(states) - 1)
+    at = np.arange(len(states)) * STEP
+    place = np.stack([np.interp(at, time, car[:, 0]), np.interp(at, time, car[:, 1])], axis=-1)
+    away = states[..., [X, Y]] - place[:, None]
+    free = np.hypot(away[..., 0], away[..., 1]) - reach
+    moved = np.full_like(free, np.inf)  # after the last sample the others stand and the car goes on
+    moved[:-1] = np.nan_to_num(np.hypot(*np.moveaxis(np.diff(away, axis=0), -1, 0)))
+    return np.asarray((free <= moved + SLACK)[sample])
+
+
+def _described(drive: "Drive", step: int, number: int, share: float) -> Incident:
+    assert drive.others is not None
+    actor, last = drive.others.actors[number], min(step + 1, len(drive) - 1)
+
+    def between(values: FloatArray) -> FloatArray:
+        return np.asarray((1 - share) * values[step] + share * values[last])
+
+    time = float(between(drive["time"]))
+    car, other = between(middles(drive)), drive.others.at(time)[number]
+    if np.isnan(other[X]):  # it left at the step itself
+        other = drive.others.at(drive["time"][step])[number]
+    half = np.array([[drive.car.length, drive.car.width], actor.size[:2]]) / 2
+    place, heading = np.stack([car[:2], other[[X, Y]]]), np.array([car[2], other[HEADING]])
+    corners = [at + turned(OUTLINE * size, way) for at, size, way in zip(place, half, heading, strict=True)]
+    inside = [
+        point
+        for mine in (0, 1)
+        for point in corners[mine]
+        if (np.abs(turned(point - place[1 - mine], -heading[1 - mine])) <= half[1 - mine] + CORNER).all()
+    ]
+    spot = np.mean(inside, axis=0) if inside else place.mean(axis=0)
+    faces = [_face(turned(spot - at, -way), size) for at, way, size in zip(place, heading, half, strict=True)]
+    speed, its = float(abs(between(drive["speed"]))), float(other[SPEED])
+    velocity = turned(np.array([between(drive["vx"]), between(drive["vy"])]), heading[0])
+    impact = velocity - its * np.array([np.cos(heading[1]), np.sin(heading[1])])
+    across = np.clip(turned(corners[1] - place[0], -heading[0])[:, 1], -half[0, 1], half[0, 1])
+    is_aside = faces[0] in ("left", "right")
+    fault = speed > STANDS and (
+        abs(its) <= STANDS or faces[0] == "front" or (is_aside and drive["outside"][step] > 0)
+    )
+    return Incident(
+        "collision",
+        float(between(drive["s"])),
+        (float(between(drive["x"])), float(between(drive["y"]))),
+        time,
+        actor.name,
+        Contact(
+            xy=(float(spot[0]), float(spot[1])),
+            face=faces[0],
+            other_face=faces[1],
+            speed=speed,
+            other_speed=its,
+            impact_speed=float(np.hypot(*impact)),
+            overlap=float(np.ptp(across) / drive.car.width) if faces[0] == "front" else None,
+            at_fault=bool(fault),
+        ),
+    )
+
+
+def _face(spot: FloatArray, half: FloatArray) -> Face:
+    """Returns on which side of a box a place is; as with nuPlan, a corner is of the front or the rear."""
+    to_end, to_flank = half - np.abs(spot)
+    if to_end <= max(to_flank, CORNER):
+        return "front" if spot[0] > 0 else "rear"
+    return "left" if spot[1] > 0 else "right"
+
+
+def turned(points: FloatArray, angle: FloatArray | float) -> FloatArray:
+    """Returns points (..., 2) turned about the origin by angles that broadcast with their coordinates."""
+    c, s = np.cos(angle), np.sin(angle)
+    x, y = points[..., 0], points[..., 1]
+    return np.stack([x * c - y * s, x * s + y * c], axis=-1)
