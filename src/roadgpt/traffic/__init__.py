@@ -1,22 +1,26 @@
-"""Moves the others on the road: everybody besides the tested car. Main function: ``begin``."""
+"""Moves the others on the road: everybody besides the tested car. Main function: ``begin``.
 
-from typing import NamedTuple
+Movers are plug-ins (``movers/``), each of which moves some of the others:
 
-from roadgpt.traffic.actor import STEP, Actor, Size, Tracks
+    class Mover:
+        def __init__(self, stage: Stage)
+        actors: list[Actor]                       # its own; may grow
+        def start(self, car) -> states            # at time 0
+        def move(self, time, car, bodies) -> states    # at ``time + STEP``"""
 
-__all__ = ["STEP", "Actor", "Size", "TestedCar", "Tracks"]
+from roadgpt.traffic.actor import SIZES, STEP, STILL, Actor, Size, TestedCar, Tracks
+from roadgpt.traffic.traffic import Mover, Stage, Traffic, begin
 
-
-class TestedCar(NamedTuple):
-    """What the others see of the tested car."""
-
-    x: float
-    """Position in metres of the middle of its box, as ``y``."""
-    y: float
-    heading: float
-    speed: float
-    s: float
-    """Station in metres along the road that it drives, as ``t`` its offset to the left."""
-    t: float
-    length: float
-    width: float
+__all__ = [
+    "SIZES",
+    "STEP",
+    "STILL",
+    "Actor",
+    "Mover",
+    "Size",
+    "Stage",
+    "TestedCar",
+    "Tracks",
+    "Traffic",
+    "begin",
+]

@@ -1,4 +1,5 @@
-"""Defines the Actor, somebody or something else on the road, and Tracks, how actors moved."""
+"""Defines the Actor, somebody or something else on the road, Tracks, how actors moved, and what actors see of
+the tested car."""
 
 import math
 from collections.abc import Mapping
@@ -12,9 +13,11 @@ from roadgpt.brief.scene import ActorKind
 
 FloatArray = NDArray[np.float64]
 STEP = 0.1  # s, from one sample of a track to the next; UN R157's simulations use the same step
+TESTED = "Ego"  # name of the tested car in files of scenes, which no actor may have
+STILL = 0.3  # m/s, below which an actor counts as standing
 X, Y, Z, HEADING, SPEED = range(5)
-"""The columns of a state: the middle of the actor's box on the ground in metres, its heading in radians, and its
-speed along its heading in m/s, negative when it reverses."""
+"""The columns of a state: the middle of the actor's box on the ground in metres, its heading in radians, and
+its speed along its heading in m/s, negative when it reverses."""
 
 
 class Size(NamedTuple):
@@ -39,9 +42,25 @@ SIZES: Mapping[ActorKind, Size] = {
     "barrier": Size(0.5, 2.0, 1.0),
     "lost_load": Size(0.8, 0.6, 0.4),
 }
-"""Van, bus and motorcycle: SUMO, vehicle type parameter defaults (delivery, bus, motorcycle). Truck: the longest
-single vehicle of Directive 96/53/EC, Annex I; car: between the 4.3 and 5.0 m of the vehicles in UN R157's
-simulations. Bicycle, adult, child: Euro NCAP's targets EBT, EPTa and EPTc. The animal is a roe deer."""
+"""Van, bus and motorcycle: SUMO, vehicle type parameter defaults (delivery, bus, motorcycle). Truck: the
+longest single vehicle of Directive 96/53/EC, Annex I; car: between the 4.3 and 5.0 m of the vehicles in UN
+R157's simulations. Bicycle, adult, child: Euro NCAP's targets EBT, EPTa and EPTc. The animal is a roe deer.
+"""
+
+
+class TestedCar(NamedTuple):
+    """What the others see of the tested car."""
+
+    x: float
+    """Position in metres of the middle of its box, as ``y``."""
+    y: float
+    heading: float
+    speed: float
+    s: float
+    """Station in metres along the road that it drives, as ``t`` its offset to the left."""
+    t: float
+    length: float
+    width: float
 
 
 @dataclass(frozen=True)
@@ -65,24 +84,29 @@ class Actor:
 class Tracks:
     """How actors moved: a state for every actor every STEP seconds since the start of the drive.
 
-    Between two samples an actor moves evenly along a straight line: this is how it moved, not an approximation.
-    Positions are rounded to a millimetre, angles to 0.0001 rad and speeds to 1 mm/s, so that a file holds exactly
-    these values."""
+    Between two samples an actor moves evenly along a straight line: this is how it moved, not an
+    approximation. Positions are rounded to a millimetre, angles to 0.0001 rad and speeds to 1 mm/s, so that a
+    file holds exactly these values."""
 
     actors: tuple[Actor, ...]
     states: FloatArray
-    """Shape (samples, actors, 5) with the columns X, Y, Z, HEADING (unwrapped) and SPEED; NaN while an actor is not
-    there."""
+    """Shape (samples, actors, 5) with the columns X, Y, Z, HEADING (unwrapped) and SPEED; NaN while an actor
+    is not there."""
 
     def at(self, time: float) -> FloatArray:
-        """Returns the states at a time in seconds, shape (actors, 5); NaN for actors that are not there. A time
-        after the last sample counts as the last sample."""
+        """Returns the states at a time in seconds, shape (actors, 5); NaN for actors that are not there. A
+        time after the last sample counts as the last sample."""
         place = min(max(time / STEP, 0.0), len(self.states) - 1.0)
         first = min(int(place + 1e-9), len(self.states) - 1)
         share = place - first
         if share < 1e-6:
             return np.asarray(self.states[first])
         return np.asarray((1 - share) * self.states[first] + share * self.states[first + 1])
+
+    @property
+    def time(self) -> FloatArray:
+        """The times of the samples in seconds."""
+        return STEP * np.arange(len(self.states), dtype=np.float64)
 
     def __len__(self) -> int:
         return len(self.states)
@@ -96,7 +120,7 @@ def rounded(states: FloatArray) -> FloatArray:
 
 
 def corners(state: FloatArray, size: Size) -> FloatArray:
-    """Returns the corners of an actor's box in plan, shape (4, 2), counter-clockwise from the rear right one."""
+    """Returns the corners of an actor's box in plan, shape (4, 2), counter-clockwise from the rear right."""
     ahead, aside = size.length / 2, size.width / 2
     outline = np.array([[-ahead, -aside], [ahead, -aside], [ahead, aside], [-ahead, aside]])
     c, s = math.cos(state[HEADING]), math.sin(state[HEADING])

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from roadgpt.report import Format, Scale
     from roadgpt.road import Design, Road, World
     from roadgpt.run.folder import Draw
-    from roadgpt.run.model import Request, Run
+    from roadgpt.run.model import Request, Run, Setup
 
 SEEDS = 1_000_000  # random seeds are below this number, so that they are short enough to type again
 
@@ -105,6 +105,7 @@ def carry_out(
         work = campaign(brief, roads, seed, world, setup, out, draw, meter, again)
     screen.request, screen.junit = work.request, _junit(junit, work.request)
     screen.say(understood(brief, work.request.world, world))
+    tell_recording(screen, setup)
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
     screen.say(f"seed {seed}, into {work.folder}")
@@ -114,6 +115,15 @@ def carry_out(
         screen.say(f"{len(work.kept)} roads were finished before; continuing")
     _watch(work, pictures, screen)
     gate.close()
+
+
+def tell_recording(screen: Screen, setup: "Setup") -> None:
+    """Tells what of recorded tracks is not replayed."""
+    from roadgpt.run import recording_of
+
+    recording = recording_of(setup)
+    for remark in () if recording is None else recording.remarks:
+        screen.say(f"note: {remark}")
 
 
 def _junit(path: Path | None, request: "Request") -> "Callable[[Sequence[Row]], None] | None":
@@ -383,13 +393,13 @@ DRIVE_OPTIONS = (
     options.seed("Seed for the driver.", 1),
     options.out("Folder for the runs. [default: none is written, or with --again CAMPAIGN/again]"),
     *options.WORLD,
-    *named(options.SETUP, "driver", "simulator", "keep_driving", "geometry", "rules"),
+    *named(options.SETUP, "driver", "simulator", "keep_driving", "replay", "geometry", "rules"),
     Option("--again", "Drive tests of a campaign again.", bool, heading=Heading.AGAIN),
     *(each.but(heading=Heading.AGAIN) for each in OF_AGAIN),
     *(*options.GATE, options.JUNIT, *options.SCREEN),
 )
 ONLY_AGAIN = {each.field for each in OF_AGAIN}
-BOTH = {"files", "again", "driver", "out", *(each.field for each in options.GATE)}
+BOTH = {"files", "again", "driver", "replay", "out", *(each.field for each in options.GATE)}
 
 
 @click.command(cls=GroupedCommand, has_simulators=True, params=[options.ROADS, *DRIVE_OPTIONS])
@@ -446,6 +456,7 @@ def drive(
     screen = Screen(len(roads), as_json, quiet, verbose)
     screen.request, screen.gate = Request(seed=seed, world=world, setup=setup), gate
     screen.junit = _junit(junit, screen.request)
+    tell_recording(screen, setup)
     losses: LostDrives[str] = LostDrives()
 
     def driven(file: str, blueprint: "Design | Road", world: "World") -> "tuple[Row, Run]":
