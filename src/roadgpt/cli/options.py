@@ -368,7 +368,7 @@ def driver(value: str) -> str:
 
 
 def recording(value: str) -> str:
-    """Returns the value of --replay as an absolute path, and permits the file to be read."""
+    """Returns the value of --tracks as an absolute path, and permits the file to be read."""
     from roadgpt.drive.loading import RECORDINGS, permit
 
     if value and not value.endswith(RECORDINGS):
@@ -414,9 +414,9 @@ def flat(ctx: click.Context, option: click.Parameter, given: Any) -> tuple[Any, 
 picture_formats = listed(_picture_format)
 _files = partial(Option, heading=Heading.FILES)
 GUARDS: dict[str, Any] = {
-    "reader": reader_guard, "designer": designer_guard, "driver": driver_guard, "replay": path_guard,
+    "reader": reader_guard, "designer": designer_guard, "driver": driver_guard, "tracks": path_guard,
 }  # fmt: skip
-KINDS: dict[str, Any] = {"driver": driver, "replay": recording, "lanes": lanes, "bank": bank}
+KINDS: dict[str, Any] = {"driver": driver, "tracks": recording, "lanes": lanes, "bank": bank}
 """What refuses and what converts the values of fields, where their types do not say it all."""
 ORACLE = Option(
     "--oracle",
@@ -497,7 +497,7 @@ def _of_models() -> dict[str, tuple[Option, ...]]:
         "lane_width_end", "bank", "shoulder", "friction",
     )  # fmt: skip
     world = tuple(named([ORACLE, *of_world], *order))
-    names = ("reader", "designer", "driver", "simulator", "keep_driving", "replay", "geometry", "rules")
+    names = ("reader", "designer", "driver", "simulator", "keep_driving", "tracks", "geometry", "rules")
     setup = tuple(named([*of_model(Parts, Heading.DESIGN, "run")], *names))
     making = (*setup[:6], *world, *setup[6:], NO_DRIVE, NO_PLOT, AXES, FORMAT, EXPORT)
     chat = tuple(of_model(ChatSettings, Heading.MODEL))

@@ -23,7 +23,7 @@ from roadgpt.run.model import Request, Run, Setup
 from roadgpt.verdict.verdict import PARTLY
 
 # The options of ``roadgpt drive`` that set fields of the Setup; the road's file determines the geometry.
-OF_DRIVES = named(options.SETUP, "driver", "simulator", "keep_driving", "replay", "rules")
+OF_DRIVES = named(options.SETUP, "driver", "simulator", "keep_driving", "tracks", "rules")
 
 
 def replay_lines(run: Run, folder: Path | None = None) -> list[str]:

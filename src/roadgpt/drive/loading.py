@@ -64,7 +64,7 @@ def require_permission(spec: str) -> None:
         if not USER.ask(f"{file} names the recorded tracks {spec}. Read that file?"):
             raise UsageError(
                 f"{file} names the recorded tracks {spec}, which are not read because a file says so; agree "
-                f"in a terminal, or drive the road with {shlex.join(['--replay', spec])}"
+                f"in a terminal, or drive the road with {shlex.join(['--tracks', spec])}"
             )
     elif file is not None and not USER.ask(f"{file} names the driver {spec}. Run the code in that file?"):
         raise UsageError(

@@ -155,7 +155,7 @@ class Parts(Frozen):
     keep_driving: bool = Field(
         False, description="Continue to the end after the car leaves its lane.", json_schema_extra=DRIVE
     )
-    replay: str = Field(
+    tracks: str = Field(
         "", description="Recorded tracks of others on the road, FILE.csv or FILE.xosc.",
         json_schema_extra=DRIVE,
     )  # fmt: skip

@@ -170,19 +170,19 @@ def check_parts(setup: Setup, world: World = USUAL) -> None:
     """Checks that the rules, the simulator and the driver can be loaded, before the first road is made."""
     rules_of(setup.rules)
     if setup.drives:
-        refuse_ignored(plugins.find("simulators", setup.simulator), world, replays=bool(setup.replay))
+        refuse_ignored(plugins.find("simulators", setup.simulator), world, replays=bool(setup.tracks))
         driver_of(setup.driver)
         recording_of(setup)
 
 
 def recording_of(setup: Setup) -> "Recording | None":
     """Returns the recorded tracks of others that a Setup names; None if there are none."""
-    if not (setup.drives and setup.replay):
+    if not (setup.drives and setup.tracks):
         return None
     from roadgpt.traffic.recording import read_recording  # drives without others do not need it
 
-    require_permission(setup.replay)
-    return read_recording(Path(setup.replay))
+    require_permission(setup.tracks)
+    return read_recording(Path(setup.tracks))
 
 
 def _designed(run: Run, brief: Brief, earlier: Sequence[Design]) -> Run:

@@ -40,7 +40,7 @@ class Setup(Parts):
     @model_serializer(mode="wrap")
     def _to_file(self, fields: SerializerFunctionWrapHandler) -> dict[str, Any]:
         values: dict[str, Any] = fields(self)
-        return {name: value for name, value in values.items() if name != "replay" or value}
+        return {name: value for name, value in values.items() if name != "tracks" or value}
 
     def essence(self) -> Self:
         """Returns the Setup without the fields that may change when interrupted work is continued."""
@@ -50,9 +50,9 @@ class Setup(Parts):
         """Returns a copy that is marked as coming from a file of unknown origin, see ``roadgpt.provenance``:
         a driver in a Python file, recorded tracks and the language model's server are used only if the user
         names or permits them."""
-        driver, replay = (driver_from_file(each, file) for each in (self.driver, self.replay))
+        driver, tracks = (driver_from_file(each, file) for each in (self.driver, self.tracks))
         chat = self.chat and self.chat.came_with(file)
-        return self.model_copy(update={"driver": driver, "replay": replay, "chat": chat})
+        return self.model_copy(update={"driver": driver, "tracks": tracks, "chat": chat})
 
 
 def permissions(setups: Sequence[Setup], asks: bool = False, replays: bool = False) -> list[str]:
@@ -61,7 +61,7 @@ def permissions(setups: Sequence[Setup], asks: bool = False, replays: bool = Fal
     pairs = [("--driver", setup.driver) for setup in setups if split_spec(setup.driver)[0]]
     chats = [setup.chat for setup in setups if setup.chat and asks]
     pairs += [("--base-url", chat.base_url) for chat in chats if chat.base_url]
-    pairs += [("--replay", setup.replay) for setup in setups if setup.replay and replays]
+    pairs += [("--tracks", setup.tracks) for setup in setups if setup.tracks and replays]
     return [word for pair in dict.fromkeys(pairs) for word in pair]
 
 

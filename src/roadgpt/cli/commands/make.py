@@ -393,13 +393,13 @@ DRIVE_OPTIONS = (
     options.seed("Seed for the driver.", 1),
     options.out("Folder for the runs. [default: none is written, or with --again CAMPAIGN/again]"),
     *options.WORLD,
-    *named(options.SETUP, "driver", "simulator", "keep_driving", "replay", "geometry", "rules"),
+    *named(options.SETUP, "driver", "simulator", "keep_driving", "tracks", "geometry", "rules"),
     Option("--again", "Drive tests of a campaign again.", bool, heading=Heading.AGAIN),
     *(each.but(heading=Heading.AGAIN) for each in OF_AGAIN),
     *(*options.GATE, options.JUNIT, *options.SCREEN),
 )
 ONLY_AGAIN = {each.field for each in OF_AGAIN}
-BOTH = {"files", "again", "driver", "replay", "out", *(each.field for each in options.GATE)}
+BOTH = {"files", "again", "driver", "tracks", "out", *(each.field for each in options.GATE)}
 
 
 @click.command(cls=GroupedCommand, has_simulators=True, params=[options.ROADS, *DRIVE_OPTIONS])
