@@ -7,45 +7,21 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from exported import ROADS, WORLD, asam_says, drive
+from exported import LATE, LEAVES, ROADS, WORLD, among_others, asam_says, drive
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
-from roadgpt.export import Others, Poses, save
+from roadgpt.export import Poses, save
 from roadgpt.run.exporting import poses_of
-from roadgpt.traffic import SIZES, Actor, Tracks
+from roadgpt.traffic import Tracks
 from roadgpt.traffic.recording import read_recording
 
 ROAD = ROADS["arcs"]
-KINDS = (*SIZES, "car", "truck")
-MOVES, LATE, LEAVES = 0, len(SIZES), len(SIZES) + 1
-
-
-def scene() -> tuple[Poses, Tracks]:
-    """One of each kind; the first waits, drives off uphill and stops, one comes late, one leaves."""
-    poses = drive(ROAD, WORLD)
-    time = np.arange(0, poses.time[-1] + 0.1, 0.1)
-    states = np.zeros((len(time), len(KINDS), 5))
-    for number in range(len(KINDS)):
-        states[:, number, :4] = 5.0 * number, -30, 2, 0.3 * number
-    for number, aside in ((MOVES, -3.0), (LATE, 0.0), (LEAVES, 3.0)):
-        s = np.clip(30 + 5 * (time - 4), 30, 110) + 20 * (number == LATE)
-        place = ROAD.at(s, aside)
-        states[:, number] = np.column_stack([place, np.unwrap(ROAD.heading(s)), np.gradient(s, time)])
-    states[time < 7.05, LATE] = np.nan
-    states[time > 9.05, LEAVES] = np.nan
-    actors = tuple(Actor(f"{kind} {n}", kind, SIZES[kind]) for n, kind in enumerate(KINDS))
-    states[..., :3], states[..., 3] = np.round(states[..., :3], 3), np.round(states[..., 3], 4)
-    return poses, Tracks(actors, states)
 
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Tracks]:
-    folder, (poses, tracks) = tmp_path_factory.mktemp("others"), scene()
-    names, kinds = tuple(a.name for a in tracks.actors), tuple(a.kind for a in tracks.actors)
-    sizes, time = np.array([a.size for a in tracks.actors]), 0.1 * np.arange(len(tracks))
-    others = Others(names, kinds, sizes, time, tracks.states)
-    columns = {name: getattr(poses, name) for name in Poses.names()}
-    save(ROAD, folder, ["openscenario"], WORLD, "scene", Poses.of(columns, others))
-    save(ROAD, folder, ["openscenario"], WORLD, "alone", poses)
+    folder, (poses, tracks) = tmp_path_factory.mktemp("others"), among_others()
+    save(ROAD, folder, ["openscenario"], WORLD, "scene", poses)
+    save(ROAD, folder, ["openscenario"], WORLD, "alone", drive(ROAD, WORLD))
     return folder / "scene.drive.xosc", tracks
 
 
@@ -125,7 +101,7 @@ def test_alone_the_file_is_that_of_a_drive_without_others(written: tuple[Path, T
     alone = written[0].with_name("alone.drive.xosc").read_text()
     assert "GlobalAction><EntityAction" not in alone
     assert alone.count("ScenarioObject name") == 1
-    poses, tracks = scene()
+    poses, tracks = among_others()
     columns = dict.fromkeys(COLUMNS, poses.x * 0) | {name: getattr(poses, name) for name in Poses.names()}
     driven = Drive("d", "mujoco", 0, Columns(columns), "goal", Box(4.7, 1.86), others=tracks)
     both = poses_of(driven)

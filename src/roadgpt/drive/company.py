@@ -5,6 +5,7 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roadgpt.compiled import compiled
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
@@ -21,10 +22,10 @@ _PLACES = [[*COLUMNS].index(name) for name in ("x", "y", "z", "heading", "speed"
 
 @compiled
 def look_around(
-    states: FloatArray, sizes: FloatArray, car: FloatArray, order: "np.typing.NDArray[np.int64]"
+    states: FloatArray, sizes: FloatArray, car: FloatArray, order: "NDArray[np.int64]", seen: FloatArray
 ) -> tuple[int, bool]:
-    """Writes into ``order`` the numbers of the actors that are seen, nearest first; returns how many they are
-    and whether the car touches one.
+    """Writes into ``order`` the numbers of the actors that are seen, nearest first, and into ``seen`` the x,
+    y, heading in (-pi, pi] and speed of each; returns how many they are and whether the car touches one.
 
     ``states`` are as in Tracks, ``sizes`` (n, 2) lengths and widths, and ``car`` has the x, y and z of the
     middle of the car's box on the ground, its heading, length and width. Two boxes touch if no line along a
@@ -57,6 +58,10 @@ def look_around(
             or 2.0 * abs(dy * other[0] - dx * other[1]) > its_width + length * s + width * c
         )
         touches = touches or not is_apart
+    for place in range(count):
+        k = order[place]
+        seen[place, 0], seen[place, 1], seen[place, 3] = states[k, 0], states[k, 1], states[k, 4]
+        seen[place, 2] = math.atan2(math.sin(states[k, 3]), math.cos(states[k, 3]))
     return count, touches
 
 
@@ -67,7 +72,7 @@ class Company:
         self._traffic, self._box, self._monitor = traffic, box, monitor
         self._samples = 0
         self._looks: list[tuple[str, float, float]] = []
-        self._sizes = np.empty((0, 2))
+        self._sizes, self._order, self._seen = np.empty((0, 2)), np.empty(0, np.int64), np.empty((0, 4))
 
     def seen(self, row: FloatArray, time: float) -> tuple[Other, ...]:
         """Moves the others on to this time, tells the monitor whether the car touches one, and returns those
@@ -82,18 +87,11 @@ class Company:
             new = self._traffic.actors[len(self._looks) :]
             self._looks += [(each.kind, *each.size[:2]) for each in new]
             self._sizes = np.array([look[1:] for look in self._looks]).reshape(-1, 2)
-        states, order = self._traffic.at(time), np.empty(len(self._looks), np.int64)
+            self._order, self._seen = np.empty(len(self._looks), np.int64), np.empty((len(self._looks), 4))
+        states, looks = self._traffic.at(time), self._looks
         car = np.array([x, y, z - box.height, heading, box.length, box.width])
-        count, touches = look_around(states, self._sizes, car, order)
+        count, touches = look_around(states, self._sizes, car, self._order, self._seen)
         if touches:
             self._monitor.touch(time)
-        return tuple(
-            [
-                Other(kind, x, y, math.remainder(angle, math.tau), v, *size)
-                for (kind, *size), (x, y, _, angle, v) in zip(
-                    [self._looks[number] for number in order[:count].tolist()],
-                    states[order[:count]].tolist(),
-                    strict=True,
-                )
-            ]
-        )
+        near = zip(self._order[:count].tolist(), self._seen[:count].tolist(), strict=True)
+        return tuple([Other._make((looks[k][0], *where, *looks[k][1:])) for k, where in near])

@@ -157,7 +157,7 @@ class Parts(Frozen):
     )
     tracks: str = Field(
         "", description="Recorded tracks of others on the road, FILE.csv or FILE.xosc.",
-        json_schema_extra=DRIVE,
+        json_schema_extra=DRIVE | RARE,
     )  # fmt: skip
 
 

@@ -53,14 +53,14 @@ class Traffic:
         """All actors so far, in the order in which they were made."""
         self._movers = [(mover, list[int]()) for mover in movers]  # with the places of their actors
         self._samples: list[FloatArray] = []
+        self._sizes = np.empty((0, 2))
 
     def advance(self, car: TestedCar) -> None:
         """Computes the next sample. Call it at 0, 0.1, 0.2 ... s, with the tested car at that time."""
         if not self._samples:
             self._add([mover.start(car) for mover, _ in self._movers])
         time, now = (len(self._samples) - 1) * STEP, self._samples[-1]
-        sizes = np.array([each.size[:2] for each in self.actors]).reshape(-1, 2)
-        bodies = np.column_stack([now, sizes])
+        bodies = np.column_stack([now, self._sizes])
         is_there = ~np.isnan(now[:, 0])
         states = []
         for mover, own in self._movers:
@@ -74,6 +74,7 @@ class Traffic:
             for actor in mover.actors[len(own) :]:
                 own.append(len(self.actors))
                 self.actors.append(replace(actor, name=self._free(actor.name)))
+                self._sizes = np.vstack([self._sizes, actor.size[:2]])
         sample = np.full((len(self.actors), 5), np.nan)
         for (_, own), moved in zip(self._movers, states, strict=True):
             sample[own] = moved
