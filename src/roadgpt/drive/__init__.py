@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from roadgpt import plugins
-from roadgpt.brief.scene import Scene
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended, Handover, check_motion
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, Other, View
@@ -143,7 +142,7 @@ def simulate(
     road = world.lay(road)
     refuse_ignored(engine, world, road, replay is not None)
     traffic = None
-    if replay is not None or _has_scene(world):
+    if replay is not None or _has_others(world):
         from roadgpt.traffic import begin  # a drive without others does not need it
 
         traffic = begin(road, world, seed, replay)
@@ -153,8 +152,10 @@ def simulate(
     return drive
 
 
-def _has_scene(world: "World") -> bool:
-    return getattr(world, "scene", Scene()) != Scene()
+def _has_others(world: "World") -> bool:
+    scene = getattr(world, "scene", None)
+    named = (getattr(scene, name, None) for name in ("actors", "flow", "oncoming", "parked"))
+    return any(value not in (None, "none", ()) for value in named)
 
 
 def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, replays: bool = False) -> None:
@@ -163,7 +164,7 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, r
     or are replayed. ``road`` is None if it is not known yet."""
     from roadgpt.road import World
 
-    if (replays or _has_scene(world)) and not getattr(simulator, "moves_others", False):
+    if (replays or _has_others(world)) and not getattr(simulator, "moves_others", False):
         raise UsageError(
             "this simulator cannot move others on the road yet; leave them out, or drive in the simulator "
             "mujoco"

@@ -4,11 +4,12 @@ The car can be changed: ``MujocoSimulator(replace(ETK_LIKE, max_drive_accelerati
 weaker acceleration."""
 
 from operator import itemgetter
+from statistics import mean
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.brief.scene import Scene
+from roadgpt.brief.amount import Amount
 from roadgpt.drive.camera_sensor import CameraSensor, camera_of
 from roadgpt.drive.drive import COLUMNS, Columns, Drive
 from roadgpt.drive.drive_monitor import DriveMonitor
@@ -33,10 +34,12 @@ _SEEN = itemgetter(
 
 
 def first_speed(world: "World") -> float:
-    """Returns the speed in m/s at which the car starts to roll among others: that of the scene, else the
-    speed limit."""
-    scene = getattr(world, "scene", Scene())
-    return float(getattr(scene, "speed", None) or world.limits.speed_limit)
+    """Returns the speed in m/s at which the car starts to roll among others: that of the scene, or the middle
+    of its range, else the speed limit."""
+    speed: Amount | None = getattr(getattr(world, "scene", None), "speed", None)
+    if speed is None:
+        return world.limits.speed_limit
+    return mean(bound for bound in (speed.lo, speed.hi) if bound is not None) / 3.6
 
 
 class MujocoSimulator:
