@@ -51,7 +51,7 @@ BODIES = {
     "lost_load": ("MiscObject", "obstacle", 20),
 }
 """Body, category and a typical mass in kg, riders included, of each kind of actor."""
-NEAR, LASTS = 0.05, 0.5  # m and s; who stays within this distance for this time rests
+NEAR, LASTS = 0.02, 0.5  # m and s; who stays within this distance for this time rests
 REAR, FRONT = -0.3, 0.3  # usual places of axles as shares of a vehicle's length, from its middle
 
 
