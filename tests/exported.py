@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,9 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 import pytest
 
-from roadgpt.export import Poses
+from roadgpt.export import Others, Poses
 from roadgpt.road import Design, Limits, Road, Segment, Site, World, build
+from roadgpt.traffic import SIZES, Actor, Tracks
 
 TO_MAP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # glTF's y is our z
 WORLD = World(site=Site(friction=0.6), limits=Limits(speed_limit=50 / 3.6))
@@ -61,6 +63,31 @@ def drive(road: Road, world: World = WORLD) -> Poses:
     x, y, z = road.at(s, -world.section.lane_width / 2 + 0.4 * np.sin(s / 7)).T
     pitch, roll = np.arctan(road.grade(s)) + 0.01 * np.sin(s), 0.03 * np.cos(s / 5)
     return Poses(time, x, y, z + 0.56, road.heading(s) + 0.02 * np.sin(s), pitch, roll, np.full(len(s), 8.0))
+
+
+KINDS = (*SIZES, "car", "truck")
+MOVES, LATE, LEAVES = 0, len(SIZES), len(SIZES) + 1
+
+
+def among_others() -> tuple[Poses, Tracks]:
+    """One of each kind; the first waits, drives off uphill and stops, one comes late, one leaves."""
+    road = ROADS["arcs"]
+    poses = drive(road)
+    time = np.arange(0, poses.time[-1] + 0.1, 0.1)
+    states = np.zeros((len(time), len(KINDS), 5))
+    for number in range(len(KINDS)):
+        states[:, number, :4] = 5.0 * number, -30, 2, 0.3 * number
+    for number, aside in ((MOVES, -3.0), (LATE, 0.0), (LEAVES, 3.0)):
+        s = np.clip(30 + 5 * (time - 4), 30, 110) + 20 * (number == LATE)
+        place = road.at(s, aside)
+        states[:, number] = np.column_stack([place, np.unwrap(road.heading(s)), np.gradient(s, time)])
+    states[time < 7.05, LATE] = np.nan
+    states[time > 9.05, LEAVES] = np.nan
+    actors = tuple(Actor(f"{kind} {n}", kind, SIZES[kind]) for n, kind in enumerate(KINDS))
+    states[..., :3], states[..., 3] = np.round(states[..., :3], 3), np.round(states[..., 3], 4)
+    sizes = np.array([actor.size for actor in actors])
+    others = Others(tuple(actor.name for actor in actors), KINDS, sizes, time, states)
+    return replace(poses, others=others), Tracks(actors, states)
 
 
 def python_with(module: str, venv: str) -> str:

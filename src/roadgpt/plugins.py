@@ -1,4 +1,5 @@
-"""Finds plug-ins by name: providers, readers, designers, rules, exporters, simulators, drivers and so on.
+"""Finds plug-ins by name: providers, readers, designers, rules, exporters, simulators, movers and
+so on.
 
 Of the kinds ``commands``, ``checks`` (of ``roadgpt doctor``), ``reports`` (of folders of other packages) and
 ``settings`` (of simulators), there may be none.
@@ -14,7 +15,7 @@ from typing import Any
 from roadgpt.errors import PartError
 
 KINDS = (
-    "providers", "readers", "designers", "rules", "exporters", "simulators", "drivers",
+    "providers", "readers", "designers", "rules", "exporters", "simulators", "movers", "drivers",
     "generators", "executors",
 )  # fmt: skip
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from exported import ROADS, WORLD, drive, program
+from exported import ROADS, WORLD, among_others, drive, program
 from roadgpt.export import save
 
 # what it says where it has no models to draw
@@ -33,6 +33,14 @@ def test_esmini_plays_the_scenario_and_the_recorded_drive(tmp_path: Path, name: 
     seconds, complaints = played(esmini, tmp_path / "road.xosc")
     assert complaints == []
     assert road.length / WORLD.limits.speed_limit < seconds < 60  # the end is reached before patience is
+    seconds, complaints = played(esmini, tmp_path / "road.drive.xosc")
+    assert complaints == []
+    assert seconds == pytest.approx(poses.time[-1], abs=0.2)
+
+
+def test_esmini_plays_a_drive_among_others_to_the_end(tmp_path: Path) -> None:
+    esmini, (poses, _) = program("esmini"), among_others()
+    save(ROADS["arcs"], tmp_path, ["openscenario"], WORLD, poses=poses)
     seconds, complaints = played(esmini, tmp_path / "road.drive.xosc")
     assert complaints == []
     assert seconds == pytest.approx(poses.time[-1], abs=0.2)

@@ -28,6 +28,7 @@ designer = "thesis"
 driver = "pure_pursuit"
 simulator = "beamng"
 keep_driving = true
+tracks = "/others.csv"
 geometry = "spline"
 rules = "sbft"
 axes = "thesis"

@@ -112,7 +112,7 @@ def test_the_density_is_held(flow):
     for tick in range(3000):
         mover.move(tick * STEP, None, NOBODY)
         counts.append(mover.vehicles)
-    assert np.mean(counts) / metres * 1000 == pytest.approx(DENSITY[flow], rel=0.2)
+    assert np.mean(counts) / metres * 1000 == pytest.approx(DENSITY[flow] * 1000, rel=0.2)
 
 
 @pytest.mark.parametrize("plan", [PLANS[1], PLANS[2], PLANS[4]])

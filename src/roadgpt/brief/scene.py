@@ -299,6 +299,11 @@ class Scene(Frozen):
         return self
 
     @property
+    def has_flow(self) -> bool:
+        """Whether vehicles drive in the lanes of the map."""
+        return self.flow is not None or self.oncoming not in (None, "none")
+
+    @property
     def surfaces(self) -> tuple[Surface, ...]:
         """What sets the friction: the surface that is named, or else rain."""
         return (self.surface,) if self.surface else ("wet",) if self.rain else ()
@@ -357,7 +362,6 @@ def _parts(scene: Scene) -> Iterator[str]:
 
 
 UNBUILT = {
-    "speed": "a speed at which the tested car starts",
     "actors": "single actors",
     "parked": "rows of parked cars",
     "fog": "fog",

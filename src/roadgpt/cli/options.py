@@ -377,6 +377,19 @@ def driver(value: str) -> str:
     return found
 
 
+def recording(value: str) -> str:
+    """Returns the value of --tracks as an absolute path, and permits the file to be read."""
+    from roadgpt.drive.loading import RECORDINGS, permit
+
+    if value and not value.endswith(RECORDINGS):
+        raise click.BadParameter(
+            f"'{value}' is no recording; give a table (.csv) or an OpenSCENARIO file (.xosc)"
+        )
+    if value:
+        permit(value := str(Path(value).absolute()))
+    return value
+
+
 def drivers(value: str) -> tuple[str, ...]:
     """Returns the drivers in a value of --drivers, separated by commas, as ``driver`` does."""
     is_file = Path(f"{value.rpartition('.py')[0]}.py").is_file()  # whose path may have commas
@@ -410,8 +423,12 @@ def flat(ctx: click.Context, option: click.Parameter, given: Any) -> tuple[Any, 
 
 picture_formats = listed(_picture_format)
 _files = partial(Option, heading=Heading.FILES)
-GUARDS: dict[str, Any] = {"reader": reader_guard, "designer": designer_guard, "driver": driver_guard}
-KINDS: dict[str, Any] = {"driver": driver, "lanes": lanes, "bank": bank, "scene": scene}
+GUARDS: dict[str, Any] = {
+    "reader": reader_guard, "designer": designer_guard, "driver": driver_guard, "tracks": path_guard,
+}  # fmt: skip
+KINDS: dict[str, Any] = {
+    "driver": driver, "tracks": recording, "lanes": lanes, "bank": bank, "scene": scene,
+}  # fmt: skip
 """What refuses and what converts the values of fields, where their types do not say it all."""
 ORACLE = Option(
     "--oracle",
@@ -492,9 +509,9 @@ def _of_models() -> dict[str, tuple[Option, ...]]:
         "lane_width", "lane_width_end", "bank", "shoulder", "friction",
     )  # fmt: skip
     world = tuple(named([ORACLE, *of_world], *order))
-    names = ("reader", "designer", "driver", "simulator", "keep_driving", "geometry", "rules")
+    names = ("reader", "designer", "driver", "simulator", "keep_driving", "tracks", "geometry", "rules")
     setup = tuple(named([*of_model(Parts, Heading.DESIGN, "run")], *names))
-    making = (*setup[:5], *world, *setup[5:], NO_DRIVE, NO_PLOT, AXES, FORMAT, EXPORT)
+    making = (*setup[:6], *world, *setup[6:], NO_DRIVE, NO_PLOT, AXES, FORMAT, EXPORT)
     chat = tuple(of_model(ChatSettings, Heading.MODEL))
     return {"WORLD": world, "SETUP": setup, "CHAT": chat, "MAKING": making}
 

@@ -208,7 +208,7 @@ def _run_of(named: NamedRoad) -> Iterator[str]:
     run = named.run()
     if isinstance(named.key, Path):
         return _run_lines(run, replay_lines(run, named.key))
-    again = command_line("drive", "--again", named.said, *permissions([run.request.setup]))
+    again = command_line("drive", "--again", named.said, *permissions([run.request.setup], replays=True))
     return _run_lines(run, [again, command_line("view", named.said)])
 
 

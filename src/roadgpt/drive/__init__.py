@@ -6,24 +6,26 @@ This package has two kinds of plug-ins. A simulator (``simulators/``) is a car a
 (``drivers/``) controls the car:
 
     class Simulator:
-        def simulate(self, road, world, driver, seed, keep_driving=False) -> Drive
+        def simulate(self, road, world, driver, seed, keep_driving=False, traffic=None) -> Drive
 
     class Driver:
         def start(self, road, world, seed) -> None     # optional: called once, before time 0
         def steer(self, view: View) -> Command         # called every 20 ms"""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from roadgpt import plugins
 from roadgpt.brief.scene import scene_text, unbuilt
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended, Handover, check_motion
 from roadgpt.drive.isolation import driver_of
-from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, View
+from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, Other, View
 from roadgpt.errors import UsageError
 from roadgpt.network import only_road, refuse_without_route
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
+    from roadgpt.traffic import Tracks, Traffic
 
 # The former name of CameraSpec; users' drivers may import it.
 Camera = CameraSpec
@@ -40,6 +42,7 @@ __all__ = [
     "Ended",
     "Handover",
     "JunctionAhead",
+    "Other",
     "Simulator",
     "View",
     "simulate",
@@ -67,10 +70,17 @@ class Simulator(Protocol):
 
     A simulator that cannot apply some field of the World, such as "friction", lists the field's name in an
     attribute ``ignores``. If a user sets one of these fields, an error is raised. A simulator that cannot
-    drive routes through junctions has an attribute ``single_roads_only`` that is True."""
+    drive routes through junctions has an attribute ``single_roads_only`` that is True. A simulator that moves
+    others on the road has an attribute ``moves_others`` that is True; only then it gets ``traffic``."""
 
     def simulate(
-        self, road: "Road", world: "World", driver: Driver, seed: int, keep_driving: bool = False
+        self,
+        road: "Road",
+        world: "World",
+        driver: Driver,
+        seed: int,
+        keep_driving: bool = False,
+        traffic: "Traffic | None" = None,
     ) -> Drive:
         """Drives from the start of the road until the drive ends.
 
@@ -79,6 +89,11 @@ class Simulator(Protocol):
         condition that holds ends the drive. The car is out of its lane if the share of its box outside the
         lane exceeds ``world.limits.oob_tolerance``. If ``world.limits.lane_departure`` is set, one front tyre
         beyond a marking is enough. With ``keep_driving``, the drive goes on when the car leaves its lane.
+
+        With ``traffic`` others are on the road. The car then starts at the speed of the scene, or else at the
+        speed limit, and leaving its lane does not end the drive. From the first contact of its box with
+        another on it brakes fully, and 3 s later the drive ends. It is stuck if it moves less than 1 m in
+        30 s, not in 10 s, and the time is up after twice the time that it may take alone for the way.
 
         Raises:
             DriverError: the driver raised an exception, returned something that is not a command, or hung.
@@ -95,6 +110,7 @@ def simulate(
     seed: int = 0,
     simulator: str | Simulator = "mujoco",
     keep_driving: bool = False,
+    replay: "Tracks | Path | str | None" = None,
 ) -> Drive:
     """Drives a road with one driver, and returns the Drive.
 
@@ -110,6 +126,8 @@ def simulate(
             uses the seed for small shifts of the road's mesh.
         simulator: a simulator, or the name of a simulator plug-in.
         keep_driving: whether to continue after the car has left the lane.
+        replay: recorded tracks of others who are on the road as well, or the file that holds them: a table
+            or OpenSCENARIO, see ``roadgpt.traffic.recording``.
 
     Raises:
         DriverError: the driver raised an exception, returned something that is not a command, or hung.
@@ -123,16 +141,33 @@ def simulate(
         engine = engine()
     refuse_without_route(road, "driven")
     road = world.lay(road)
-    refuse_ignored(engine, world, road)
-    drive: Drive = engine.simulate(road, world, made, seed, keep_driving)
+    refuse_ignored(engine, world, road, replay is not None)
+    traffic = None
+    if replay is not None or _has_others(world):
+        from roadgpt.traffic import begin  # a drive without others does not need it
+
+        traffic = begin(road, world, seed, replay)
+    more = () if traffic is None else (traffic,)  # a simulator without others takes no such argument
+    drive: Drive = engine.simulate(road, world, made, seed, keep_driving, *more)
     check_motion(drive)
     return drive
 
 
-def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -> None:
+def _has_others(world: "World") -> bool:
+    return bool(world.scene.has_flow or world.scene.actors or world.scene.parked)
+
+
+def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, replays: bool = False) -> None:
     """Raises UsageError if the simulator cannot apply a setting of the world, the superelevation of the road,
-    or cannot drive through the junctions of a route. ``road`` is None if it is not known yet."""
+    cannot drive through the junctions of a route, or cannot move others on the road, who come from the scene
+    or are replayed. ``road`` is None if it is not known yet."""
     from roadgpt.road import World
+
+    if (replays or _has_others(world)) and not getattr(simulator, "moves_others", False):
+        raise UsageError(
+            "this simulator cannot move others on the road yet; leave them out, or drive in the simulator "
+            "mujoco"
+        )
 
     # such a simulator builds what a plain road has: no traffic on the left, no lanes that a Route has merged
     is_simple = getattr(simulator, "single_roads_only", False)

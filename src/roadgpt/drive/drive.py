@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from roadgpt.traffic import Tracks
 
 FloatArray = NDArray[np.float64]
-Ended = Literal["goal", "out_of_lane", "fell", "stuck", "timeout"]
+Ended = Literal["goal", "out_of_lane", "fell", "stuck", "timeout", "collision"]
 COLUMNS = {
     "time": "s, since the start",
     "x": "m, centre of gravity",
@@ -42,6 +42,11 @@ COLUMNS = {
     "outside": "0..1, share of the car's box outside its lane",
 }
 """Names of the columns in their order, each with its unit and meaning."""
+OTHERS = "others"
+"""Name of the array of the others' states: whole numbers of shape (samples, actors, 5); GONE while an actor
+is not there."""
+PER_UNIT = np.array([1e3, 1e3, 1e3, 1e4, 1e3])  # of these numbers in a m, m, m, rad, m/s
+GONE = -(2**62)
 LARGEST, UNPACKED = 50_000_000, 200_000_000  # bytes of the file, and of its content: seven hours of driving
 # Version of the file format; increased when code for the old version would misread the new one.
 FORMAT = 2
@@ -128,7 +133,8 @@ class Drive:
     handovers: tuple[Handover, ...] = ()
     """When the driver had handed over, in order; empty if it drove all the way itself."""
     others: "Tracks | None" = None
-    """How the others on the road moved; None if nobody else was there."""
+    """How the others on the road moved, from the start of the drive to its end; None if nobody else was
+    there."""
 
     def __repr__(self) -> str:
         way = f"{self['s'][-1]:.1f} m in {self.duration:.2f} s, {len(self)} steps"
@@ -199,12 +205,16 @@ class Drive:
             "ended": self.ended,
             "car": self.car._asdict(),
             **({"handovers": self.handovers} if self.handovers else {}),
+            **({OTHERS: _plain(self.others)} if self.others is not None else {}),
         }
         buffer = io.BytesIO()
         with zipfile.ZipFile(buffer, "w") as archive:
             _write(archive, "header", np.array(json.dumps(header, sort_keys=True)))
             for name, column in self.columns.items():
                 _write(archive, name, column)
+            if self.others is not None:
+                states = np.nan_to_num(np.rint(self.others.states * PER_UNIT), nan=GONE)
+                _write(archive, OTHERS, states.astype(np.int64))
         return buffer.getvalue()
 
     @classmethod
@@ -234,6 +244,10 @@ def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
         raise ValueError(f"its format is {header['format']}, not {FORMAT}")
     if header["ended"] not in get_args(Ended):
         raise ValueError(f"no drive ends with '{header['ended']}'")
+    others = None
+    if OTHERS in header:
+        arrays = dict(arrays)
+        others = _tracks(header[OTHERS], arrays.pop(OTHERS), float(arrays["time"][-1]))
     if set(arrays) != set(COLUMNS):
         raise ValueError(f"columns missing or unknown: {', '.join(sorted(set(arrays) ^ set(COLUMNS)))}")
     if any(array.ndim != 1 for array in arrays.values()):
@@ -248,7 +262,33 @@ def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
         ended=header["ended"],
         car=Box(**{name: float(value) for name, value in header["car"].items()}),
         handovers=strictly(tuple[Handover, ...], header.get("handovers", ())),
+        others=others,
     )
+
+
+def _plain(others: "Tracks") -> list[Any]:
+    return [[each.name, each.kind, each.size, each.is_parked] for each in others.actors]
+
+
+def _tracks(actors: Any, states: NDArray[Any], duration: float) -> "Tracks":
+    from roadgpt.brief.scene import ActorKind
+    from roadgpt.traffic import STEP, Actor, Size, Tracks
+
+    rows = strictly(tuple[tuple[str, ActorKind, tuple[float, float, float], bool], ...], actors)
+    if states.dtype != np.int64 or states.ndim != 3 or states.shape[1:] != (len(rows), len(PER_UNIT)):
+        raise ValueError("others have five whole numbers for each sample and actor")
+    if len(states) * STEP < duration:
+        raise ValueError("others have a sample every 0.1 s until the end")
+    if (
+        len({name for name, *_ in rows}) < len(rows)
+        or min([1.0, *(min(size) for _, _, size, _ in rows)]) <= 0
+    ):
+        raise ValueError("others have different names, and sizes above 0")
+    is_gone = states == GONE
+    if (is_gone.any(axis=2) != is_gone.all(axis=2)).any():
+        raise ValueError("an actor is there as a whole, or not")
+    found = tuple(Actor(name, kind, Size(*size), is_parked) for name, kind, size, is_parked in rows)
+    return Tracks(found, np.where(is_gone, np.nan, states / PER_UNIT))
 
 
 def _write(archive: zipfile.ZipFile, name: str, values: NDArray[Any]) -> None:

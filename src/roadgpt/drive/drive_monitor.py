@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 STUCK_TIME = 10.0  # s within which a car must move STUCK_WAY (SBFT)
 STUCK_WAY = 1.0  # m
 SLOWEST = 2.0  # m/s, mean speed from which the time limit follows
+STUCK_AMONG_OTHERS = 30.0  # s; who gives way or queues stands longer
+SLOWEST_AMONG_OTHERS = 1.0  # m/s
+AFTER_CONTACT = 3.0  # s that a drive goes on after the car touched somebody
 SPARE = 30.0  # s, added to the time limit
 ROUNDING = 1e-9  # s, rounding error of times that are multiples of a step
 
@@ -29,14 +32,20 @@ _POSE = list(map(_NAMES.index, POSE))
 class DriveMonitor:
     """Watches one drive along a road, from its first step to its end."""
 
-    def __init__(self, road: "Road", world: "World", box: Box, keep_driving: bool = False) -> None:
+    def __init__(
+        self, road: "Road", world: "World", box: Box, keep_driving: bool = False, among_others: bool = False
+    ) -> None:
         """Prepares the checks with the tolerances of the world. If the world sets ``lane_departure``, the
-        front tyres are checked, too. With ``keep_driving``, the car may leave its lane."""
+        front tyres are checked, too. With ``keep_driving``, the car may leave its lane; so may a car among
+        others, which may also stand longer and take more time."""
         self.start = min(START, road.length / 2)
         """Station in metres where the car is placed."""
-        self.limit = road.length / SLOWEST + SPARE
+        self.limit = road.length / (SLOWEST_AMONG_OTHERS if among_others else SLOWEST) + SPARE
         """Time in seconds after which the drive ends."""
-        self._length = road.length
+        self.touched: float | None = None
+        """Time in seconds at which the car first touched somebody; None if it did not."""
+        self._length, self._patience = road.length, STUCK_AMONG_OTHERS if among_others else STUCK_TIME
+        keep_driving = keep_driving or among_others
         self._tolerance = math.inf if keep_driving else world.limits.oob_tolerance
         is_watched = world.limits.lane_departure and not keep_driving
         self._tyres = MarkingMonitor.for_tyres(road, world, box) if is_watched else None
@@ -58,6 +67,8 @@ class DriveMonitor:
                 f"the physics became unstable at {time:.2f} s: check the road and the car for "
                 "numbers that make no sense"
             )
+        if self.touched is not None:
+            return "collision" if time >= self.touched + AFTER_CONTACT - ROUNDING else None
         # Within one step the competition checks for the goal, then for motion, then for the lane.
         if self.is_at_goal(x, y, s):
             return "goal"
@@ -68,6 +79,10 @@ class DriveMonitor:
         if has_fallen:
             return "fell"
         return "timeout" if time >= self.limit - ROUNDING else None
+
+    def touch(self, time: float) -> None:
+        """Records that the car touches somebody; only the first time counts."""
+        self.touched = time if self.touched is None else self.touched
 
     def is_at_goal(self, x: float, y: float, s: float) -> bool:
         """Returns whether the car has reached the goal at the end of the road.
@@ -80,12 +95,12 @@ class DriveMonitor:
         return s > self._length / 2 and math.hypot(x - self._end[0], y - self._end[1]) < GOAL
 
     def is_stuck(self, x: float, y: float, time: float) -> bool:
-        """Returns whether the car has moved less than 1 m in the last 10 s.
+        """Returns whether the car has moved less than 1 m in the last 10 s, or among others 30 s.
 
         Call this method once for every control step. ``x`` and ``y`` are in metres, ``time`` in seconds."""
         if not math.hypot(x - self._from[0], y - self._from[1]) < STUCK_WAY:
             self._since, self._from = time, (x, y)
-        return time - self._since >= STUCK_TIME - ROUNDING
+        return time - self._since >= self._patience - ROUNDING
 
     def is_out(self, outside: float, pose: ArrayLike | None) -> bool:
         """Returns whether the car is out of its lane; ``outside`` is the share (0 to 1) of its box outside.

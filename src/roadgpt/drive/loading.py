@@ -1,6 +1,7 @@
 """Loads a driver, a plug-in by its name or a class in a user's own file such as ``my_driver.py:MyDriver``,
 and decides which may be run. If only a stored file, such as a run's ``run.json``, names a driver's file, the
-driver's code is not run until the user names the driver or agrees.
+driver's code is not run until the user names the driver or agrees. The same holds for the file of recorded
+tracks of others: it is not read.
 
 Plug-ins need no permission, because the user has installed them."""
 
@@ -19,10 +20,13 @@ from roadgpt import plugins
 from roadgpt.errors import UsageError
 from roadgpt.provenance import CODE, USER
 
+RECORDINGS = (".csv", ".xosc")  # suffixes of files with recorded tracks
+
 
 def split_spec(spec: str) -> tuple[str, str]:
-    """Splits PATH.py:CLASS into path and class; returns two empty strings for the name of a plug-in."""
-    if spec.endswith(".py"):
+    """Splits PATH.py:CLASS into path and class; returns two empty strings for the name of a plug-in. Recorded
+    tracks have a path and no class."""
+    if spec.endswith((".py", *RECORDINGS)):
         return spec, ""
     path, _, wanted = spec.rpartition(":")
     return (path, wanted) if path.endswith(".py") else ("", "")
@@ -51,12 +55,18 @@ def driver_from_file(spec: str, file: object) -> str:
 
 
 def require_permission(spec: str) -> None:
-    """Permits a driver's file to be run. If the driver is named only in a stored file, the user is first
-    asked for permission."""
+    """Permits a driver's file to be run, or recorded tracks to be read. If it is named only in a stored file,
+    the user is first asked for permission."""
     if not split_spec(spec)[0]:
         return
     file = CODE.untrusted_file(_whole(spec))
-    if file is not None and not USER.ask(f"{file} names the driver {spec}. Run the code in that file?"):
+    if file is not None and spec.endswith(RECORDINGS):
+        if not USER.ask(f"{file} names the recorded tracks {spec}. Read that file?"):
+            raise UsageError(
+                f"{file} names the recorded tracks {spec}, which are not read because a file says so; agree "
+                f"in a terminal, or drive the road with {shlex.join(['--tracks', spec])}"
+            )
+    elif file is not None and not USER.ask(f"{file} names the driver {spec}. Run the code in that file?"):
         raise UsageError(
             f"{file} names the driver {spec}, and code is not run because a file says so; if you trust it, "
             f"name it yourself: {shlex.join(['--driver', spec])}"

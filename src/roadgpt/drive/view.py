@@ -26,6 +26,24 @@ class JunctionAhead(NamedTuple):
     """Length in metres of that part of the way through the junction which is still ahead of the car."""
 
 
+class Other(NamedTuple):
+    """Somebody or something else on the road, as a driver sees it."""
+
+    kind: str
+    """"car", "van", "truck", "bus", "motorcycle", "bicycle", "adult", "child", "animal", "cones", "barrier"
+    or "lost_load"."""
+    x: float
+    """Position of the middle of its box along x in metres, and along ``y``."""
+    y: float
+    heading: float
+    """Heading in radians, in (-pi, pi]; 0 along +x, positive to the left."""
+    speed: float
+    """Speed along its heading in metres per second; negative when it reverses."""
+    length: float
+    """Length of its box in metres, and ``width``."""
+    width: float
+
+
 class View(NamedTuple):
     """The current state of the car, with its road and world.
 
@@ -74,6 +92,8 @@ class View(NamedTuple):
     """Number of driving lanes to the left of the lane that the car is to follow, oncoming lanes included."""
     lanes_right: int = 0
     """Number of driving lanes to the right of the lane that the car is to follow, oncoming lanes included."""
+    others: tuple[Other, ...] = ()
+    """The others on the road whose middles are within 200 m of the middle of the car, nearest first."""
 
 
 class CameraSpec(NamedTuple):

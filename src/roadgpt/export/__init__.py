@@ -23,12 +23,12 @@ import numpy as np
 from roadgpt import plugins
 from roadgpt.errors import ExportError, UsageError
 from roadgpt.export.edges import fold
-from roadgpt.export.ego import Poses
+from roadgpt.export.ego import Others, Poses
 from roadgpt.geometry import CubicProfile
 from roadgpt.network import network_of, only_road
 from roadgpt.road import Road, World
 
-__all__ = ["Exporter", "Poses", "doubts", "exporter_of", "save"]
+__all__ = ["Exporter", "Others", "Poses", "doubts", "exporter_of", "save"]
 
 EDGELESS = ("csv", "sbft", "crg")  # formats that draw no edges of lanes
 

@@ -22,6 +22,23 @@ STEP = 0.5  # m between the places for which a speed is planned
 
 
 @dataclass(frozen=True, eq=False)
+class Others:
+    """How the others on the road moved during a drive."""
+
+    names: tuple[str, ...]
+    kinds: tuple[str, ...]
+    """"car", "van", "truck", "bus", "motorcycle", "bicycle", "adult", "child", "animal", "cones", "barrier"
+    or "lost_load"."""
+    sizes: Array
+    """Lengths, widths and heights of their boxes in metres, shape (n, 3)."""
+    time: Array
+    """Times of the samples in s, shape (k,), increasing."""
+    states: Array
+    """Shape (k, n, 5): x, y and z of the middle of the box on the ground, heading (unwrapped) and speed; NaN
+    while somebody is not there. Between two samples everybody moves evenly along a straight line."""
+
+
+@dataclass(frozen=True, eq=False)
 class Poses:
     """Poses of a car over time. Every array has shape ``(n,)`` with n >= 2, and the times increase.
 
@@ -40,9 +57,11 @@ class Poses:
     pitch: Array
     roll: Array
     speed: Array
+    others: Others | None = None
+    """The others on the road, from the first of these times on; None if there was nobody."""
 
     def __post_init__(self) -> None:
-        columns = [getattr(self, each.name) for each in fields(self)]
+        columns = [getattr(self, name) for name in self.names()]
         same = self.time.ndim == 1 and len(self.time) > 1 and {c.shape for c in columns} == {self.time.shape}
         if not (same and np.isfinite(columns).all() and (np.diff(self.time) > 0).all()):
             raise UsageError(
@@ -51,7 +70,12 @@ class Poses:
             )
 
     @classmethod
-    def of(cls, columns: Mapping[str, ArrayLike]) -> Self:
+    def names(cls) -> list[str]:
+        """Returns the names of the arrays."""
+        return [each.name for each in fields(cls) if each.name != "others"]
+
+    @classmethod
+    def of(cls, columns: Mapping[str, ArrayLike], others: Others | None = None) -> Self:
         """Returns the poses from a mapping with one column per field of this class, such as the columns of a
         Drive.
 
@@ -59,10 +83,10 @@ class Poses:
 
         Raises:
             UsageError: A column is missing, or the columns are not valid poses."""
-        missing = [each.name for each in fields(cls) if each.name not in columns]
+        missing = [name for name in cls.names() if name not in columns]
         if missing:
             raise UsageError(f"the poses have no {', '.join(missing)}; give those columns as well")
-        return cls(**{each.name: np.asarray(columns[each.name], float) for each in fields(cls)})
+        return cls(**{name: np.asarray(columns[name], float) for name in cls.names()}, others=others)
 
     def __len__(self) -> int:
         return len(self.time)

@@ -167,6 +167,10 @@ class Parts(Frozen):
     keep_driving: bool = Field(
         False, description="Continue to the end after the car leaves its lane.", json_schema_extra=DRIVE
     )
+    tracks: str = Field(
+        "", description="Recorded tracks of others on the road, FILE.csv or FILE.xosc.",
+        json_schema_extra=DRIVE | RARE,
+    )  # fmt: skip
 
 
 class Site(BaseModel):

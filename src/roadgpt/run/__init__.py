@@ -12,6 +12,8 @@ import traceback
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from roadgpt import plugins
 from roadgpt.brief import NoRoomError, read
@@ -23,6 +25,7 @@ from roadgpt.design.road_search import failed_trial
 from roadgpt.design.room import world_for
 from roadgpt.drive import Drive, refuse_ignored, simulate
 from roadgpt.drive.isolation import driver_of
+from roadgpt.drive.loading import require_permission
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
 from roadgpt.network import made_from, refuse_without_route
 from roadgpt.road import Design, Geometry, Road, World, in_short_segments
@@ -31,6 +34,9 @@ from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup, seed_of
 from roadgpt.run.versions import versions_of
 from roadgpt.stopping import look
 from roadgpt.verdict import Verdict, judge
+
+if TYPE_CHECKING:
+    from roadgpt.traffic.recording import Recording
 
 __all__ = [
     "Draw",
@@ -44,6 +50,7 @@ __all__ = [
     "perform",
     "prove",
     "read_run",
+    "recording_of",
     "seed_in",
     "seed_of",
     "write_run",
@@ -163,8 +170,19 @@ def check_parts(setup: Setup, world: World = USUAL) -> None:
     """Checks that the rules, the simulator and the driver can be loaded, before the first road is made."""
     rules_of(setup.rules)
     if setup.drives:
-        refuse_ignored(plugins.find("simulators", setup.simulator), world)
+        refuse_ignored(plugins.find("simulators", setup.simulator), world, replays=bool(setup.tracks))
         driver_of(setup.driver)
+        recording_of(setup)
+
+
+def recording_of(setup: Setup) -> "Recording | None":
+    """Returns the recorded tracks of others that a Setup names; None if there are none."""
+    if not (setup.drives and setup.tracks):
+        return None
+    from roadgpt.traffic.recording import read_recording  # drives without others do not need it
+
+    require_permission(setup.tracks)
+    return read_recording(Path(setup.tracks))
 
 
 def _designed(run: Run, brief: Brief, earlier: Sequence[Design]) -> Run:
@@ -213,7 +231,10 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
     begun, driver = time.perf_counter(), None
     try:
         driver = driver_of(setup.driver)  # a new driver for each road, so that nothing carries over
-        drive = simulate(run.road, run.world, driver, run.seed, setup.simulator, setup.keep_driving)
+        recording = recording_of(setup)
+        tracks = None if recording is None else recording.on(run.road, run.world)
+        how = setup.simulator, setup.keep_driving, tracks
+        drive = simulate(run.road, run.world, driver, run.seed, *how)
         verdict = judge(run.road, drive, run.world)
         run = replace(run, outcome=verdict.outcome, description=_sentence(verdict, drive))
         run = replace(run, drive=drive, verdict=verdict)

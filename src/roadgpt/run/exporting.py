@@ -5,8 +5,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
+from roadgpt.drive import Drive
 from roadgpt.errors import ExportError
-from roadgpt.export import Poses, doubts, save
+from roadgpt.export import Others, Poses, doubts, save
 from roadgpt.run.folder import Draw
 from roadgpt.run.model import Run
 
@@ -20,12 +23,24 @@ def export(
     doubts."""
     if run.road is None:
         raise ExportError(f"run {run.index} has no road to export: {run.description}")
-    is_driven = run.drive is not None and len(run.drive) > 1
-    poses = Poses.of(run.drive.columns) if run.drive is not None and is_driven else None
+    poses = None if run.drive is None else poses_of(run.drive)
     written = save(run.road, folder, formats, run.world, name, poses)
     for said in doubts(run.road, formats, run.world):
         tell(said)
     return written
+
+
+def poses_of(drive: Drive) -> Poses | None:
+    """Returns how the car and the others moved in a drive; None if it has one step only."""
+    if len(drive) < 2:
+        return None
+    others = None
+    if drive.others is not None:
+        actors, states = drive.others.actors, drive.others.states
+        sizes = np.array([each.size for each in actors]).reshape(-1, 3)
+        names, kinds = tuple(each.name for each in actors), tuple(each.kind for each in actors)
+        others = Others(names, kinds, sizes, drive.others.time, states)
+    return Poses.of(drive.columns, others)
 
 
 @dataclass(frozen=True)

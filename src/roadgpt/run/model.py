@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, Literal, Self, TypeVar
 
 import numpy as np
+from pydantic import SerializerFunctionWrapHandler, model_serializer
 
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.chat import ChatSettings, Spent
@@ -36,24 +37,31 @@ class Setup(Parts):
     settings.
     """
 
+    @model_serializer(mode="wrap")
+    def _to_file(self, fields: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        values: dict[str, Any] = fields(self)
+        return {name: value for name, value in values.items() if name != "tracks" or value}
+
     def essence(self) -> Self:
         """Returns the Setup without the fields that may change when interrupted work is continued."""
         return self.model_copy(update={"chat": self.chat and self.chat.essence()})
 
     def came_with(self, file: object) -> Self:
         """Returns a copy that is marked as coming from a file of unknown origin, see ``roadgpt.provenance``:
-        a driver in a Python file and the language model's server are used only if the user names or permits
-        them."""
-        driver = driver_from_file(self.driver, file)
+        a driver in a Python file, recorded tracks and the language model's server are used only if the user
+        names or permits them."""
+        driver, tracks = (driver_from_file(each, file) for each in (self.driver, self.tracks))
         chat = self.chat and self.chat.came_with(file)
-        return self.model_copy(update={"driver": driver, "chat": chat})
+        return self.model_copy(update={"driver": driver, "tracks": tracks, "chat": chat})
 
 
-def permissions(setups: Sequence[Setup], asks: bool = False) -> list[str]:
-    """Returns the options that permit drivers' files and, if a command ``asks`` language models, servers."""
+def permissions(setups: Sequence[Setup], asks: bool = False, replays: bool = False) -> list[str]:
+    """Returns the options that permit drivers' files, servers if a command ``asks`` language models, and
+    recorded tracks if it ``replays`` them."""
     pairs = [("--driver", setup.driver) for setup in setups if split_spec(setup.driver)[0]]
     chats = [setup.chat for setup in setups if setup.chat and asks]
     pairs += [("--base-url", chat.base_url) for chat in chats if chat.base_url]
+    pairs += [("--tracks", setup.tracks) for setup in setups if setup.tracks and replays]
     return [word for pair in dict.fromkeys(pairs) for word in pair]
 
 

@@ -4,6 +4,7 @@
     python, numpy, ...    versions of Python and of libraries, and the platform
     weights               a digest of the weights of the reader
     plug-ins              those of other packages: distribution, version, and a digest of their source
+    tracks FILE           the digest of the recorded tracks of others
     driver:FILE           the digest of a file that the driver uses, see ``drive.driver_files``
     reading               a digest of the requirements that were read from the description
 
@@ -53,6 +54,7 @@ def versions_of(setups: Sequence[Setup], driver: Any = None, generators: Iterabl
         found |= {each: _version(each) for each in settings.libraries} | {name: settings.of().summary()}
     used = {("generators", name) for name in generators}
     used |= {("rules", name) for name in plugins.names("rules")}
+    found |= {f"tracks {Path(its.tracks).name}": digest(Path(its.tracks)) for its in driven if its.tracks}
     for its in setups:
         reader, _, place = its.reader.partition(":")
         weights = Path(place or Path(brief.__file__).parent / "readers" / "model" / "weights")

@@ -1,33 +1,26 @@
-"""Moves the others on the road: everybody besides the tested car. Main function: ``begin``."""
+"""Moves the others on the road: everybody besides the tested car. Main function: ``begin``.
 
-from typing import TYPE_CHECKING, NamedTuple
+Movers are plug-ins (``movers/``), each of which moves some of the others:
 
-from roadgpt.traffic.actor import STEP, Actor, Size, Tracks
+class Mover:
+    def __init__(self, stage: Stage)
+    actors: list[Actor]                       # its own; may grow
+    def start(self, car) -> states            # at time 0
+    def move(self, time, car, bodies) -> states    # at ``time + STEP``"""
 
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
+from roadgpt.traffic.actor import SIZES, STEP, STILL, Actor, Size, TestedCar, Tracks
+from roadgpt.traffic.traffic import Mover, Stage, Traffic, begin
 
-__all__ = ["STEP", "Actor", "Size", "Stage", "TestedCar", "Tracks"]
-
-
-class Stage(NamedTuple):
-    """What a mover is made with."""
-
-    road: "Road"
-    world: "World"
-    seed: int
-
-
-class TestedCar(NamedTuple):
-    """What the others see of the tested car."""
-
-    x: float
-    """Position in metres of the middle of its box, as ``y``."""
-    y: float
-    heading: float
-    speed: float
-    s: float
-    """Station in metres along the road that it drives, as ``t`` its offset to the left."""
-    t: float
-    length: float
-    width: float
+__all__ = [
+    "SIZES",
+    "STEP",
+    "STILL",
+    "Actor",
+    "Mover",
+    "Size",
+    "Stage",
+    "TestedCar",
+    "Tracks",
+    "Traffic",
+    "begin",
+]

@@ -1,4 +1,5 @@
-"""Defines the Actor, somebody or something else on the road, and Tracks, how actors moved."""
+"""Defines the Actor, somebody or something else on the road, Tracks, how actors moved, and what actors see of
+the tested car."""
 
 import math
 from collections.abc import Mapping
@@ -12,6 +13,8 @@ from roadgpt.brief.scene import ActorKind
 
 FloatArray = NDArray[np.float64]
 STEP = 0.1  # s, from one sample of a track to the next; UN R157's simulations use the same step
+TESTED = "Ego"  # name of the tested car in files of scenes, which no actor may have
+STILL = 0.3  # m/s, below which an actor counts as standing
 X, Y, Z, HEADING, SPEED = range(5)
 """The columns of a state: the middle of the actor's box on the ground in metres, its heading in radians, and
 its speed along its heading in m/s, negative when it reverses."""
@@ -41,8 +44,23 @@ SIZES: Mapping[ActorKind, Size] = {
 }
 """Van, bus and motorcycle: SUMO, vehicle type parameter defaults (delivery, bus, motorcycle). Truck: the
 longest single vehicle of Directive 96/53/EC, Annex I; car: between the 4.3 and 5.0 m of the vehicles in UN
-R157's simulations. Bicycle, adult, child: Euro NCAP's targets EBT, EPTa and EPTc. The animal is a roe
-deer."""
+R157's simulations. Bicycle, adult, child: Euro NCAP's targets EBT, EPTa and EPTc. The animal is a roe deer.
+"""
+
+
+class TestedCar(NamedTuple):
+    """What the others see of the tested car."""
+
+    x: float
+    """Position in metres of the middle of its box, as ``y``."""
+    y: float
+    heading: float
+    speed: float
+    s: float
+    """Station in metres along the road that it drives, as ``t`` its offset to the left."""
+    t: float
+    length: float
+    width: float
 
 
 @dataclass(frozen=True)
@@ -67,8 +85,8 @@ class Tracks:
     """How actors moved: a state for every actor every STEP seconds since the start of the drive.
 
     Between two samples an actor moves evenly along a straight line: this is how it moved, not an
-    approximation. Positions are rounded to a millimetre, angles to 0.0001 rad and speeds to 1 mm/s, so that
-    a file holds exactly these values."""
+    approximation. Positions are rounded to a millimetre, angles to 0.0001 rad and speeds to 1 mm/s, so that a
+    file holds exactly these values."""
 
     actors: tuple[Actor, ...]
     states: FloatArray
@@ -86,6 +104,11 @@ class Tracks:
         share = (place - first).reshape(first.shape + (1,) * (before.ndim - first.ndim))
         return np.asarray(np.where(share < 1e-6, before, (1 - share) * before + share * after))
 
+    @property
+    def time(self) -> FloatArray:
+        """The times of the samples in seconds."""
+        return STEP * np.arange(len(self.states), dtype=np.float64)
+
     def __len__(self) -> int:
         return len(self.states)
 
@@ -98,8 +121,7 @@ def rounded(states: FloatArray) -> FloatArray:
 
 
 def corners(state: FloatArray, size: Size) -> FloatArray:
-    """Returns the corners of an actor's box in plan, shape (4, 2), counter-clockwise from the rear right
-    one."""
+    """Returns the corners of an actor's box in plan, shape (4, 2), counter-clockwise from the rear right."""
     ahead, aside = size.length / 2, size.width / 2
     outline = np.array([[-ahead, -aside], [ahead, -aside], [ahead, aside], [-ahead, aside]])
     c, s = math.cos(state[HEADING]), math.sin(state[HEADING])

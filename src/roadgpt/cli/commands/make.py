@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from roadgpt.report import Format, Scale
     from roadgpt.road import Design, Road, World
     from roadgpt.run.folder import Draw
-    from roadgpt.run.model import Run
+    from roadgpt.run.model import Run, Setup
 
 SEEDS = 1_000_000  # random seeds are below this number, so that they are short enough to type again
 
@@ -107,6 +107,7 @@ def carry_out(
         work = campaign(brief, roads, seed, world, setup, out, draw, meter, again)
     screen.request = work.request
     screen.say(understood(brief, work.request.world, world))
+    tell_recording(screen, setup)
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
     screen.say(f"seed {seed}, into {work.folder}")
@@ -116,6 +117,15 @@ def carry_out(
         screen.say(f"{len(work.kept)} roads were finished before; continuing")
     _watch(work, pictures, screen, junit)
     gate.close()
+
+
+def tell_recording(screen: Screen, setup: "Setup") -> None:
+    """Tells what of recorded tracks is not replayed."""
+    from roadgpt.run import recording_of
+
+    recording = recording_of(setup)
+    for remark in () if recording is None else recording.remarks:
+        screen.say(f"note: {remark}")
 
 
 UNSURE = "perhaps not understood as meant ({:.0f} % sure), so check it or say it in other words"
@@ -384,13 +394,13 @@ DRIVE_OPTIONS = (
     options.seed("Seed for the driver.", 1),
     options.out("Folder for the runs. [default: none is written, or with --again CAMPAIGN/again]"),
     *options.WORLD,
-    *named(options.SETUP, "driver", "simulator", "keep_driving", "geometry", "rules"),
+    *named(options.SETUP, "driver", "simulator", "keep_driving", "tracks", "geometry", "rules"),
     Option("--again", "Drive tests of a campaign again.", bool, heading=Heading.AGAIN),
     *(each.but(heading=Heading.AGAIN) for each in OF_AGAIN),
     *(*options.GATE, options.JUNIT, *options.SCREEN),
 )
 ONLY_AGAIN = {each.field for each in OF_AGAIN}
-BOTH = {"files", "again", "driver", "out", *(each.field for each in options.GATE)}
+BOTH = {"files", "again", "driver", "tracks", "out", *(each.field for each in options.GATE)}
 
 
 @click.command(cls=GroupedCommand, has_simulators=True, params=[options.ROADS, *DRIVE_OPTIONS])
@@ -448,6 +458,7 @@ def drive(
     screen = Screen(len(roads), as_json, quiet, verbose)
     request = Request(seed=seed, world=world, setup=setup)
     screen.request, screen.gate = request, gate
+    tell_recording(screen, setup)
     losses: LostDrives[str] = LostDrives()
 
     def driven(file: str, blueprint: "Design | Road", world: "World") -> "tuple[Row, Run]":

@@ -1,6 +1,6 @@
 """Runs users' drivers in separate processes, so that a driver cannot harm RoadGPT or other drivers.
 
-    here:   IsolatedDriver.steer(view) --> pickle: 13 numbers, and an image if the driver has a camera
+    here:   IsolatedDriver.steer(view) --> pickle: 13 numbers, the others, and an image for a camera
     child:  DriverGuard.ask(view)      --> JSON: 3 numbers and who drives, or an error message
 
 If a driver hangs (in Python or in compiled code), ends its process, or takes more memory than allowed, only

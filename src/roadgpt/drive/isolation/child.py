@@ -19,7 +19,7 @@ from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.isolation.process import serve
 from roadgpt.drive.loading import load_driver
 from roadgpt.drive.outlook import Outlook
-from roadgpt.drive.view import View
+from roadgpt.drive.view import Other, View
 from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import Road, World  # now, and not while the driver's time counts
 
@@ -85,14 +85,16 @@ class _DriverHost:
         self._guard.start(self._road, self._world, seed)
         return {"files": self._files.told()}
 
-    def steer(self, place: tuple[float, ...], motion: tuple[float, ...], image: Any) -> dict[str, Any]:
+    def steer(
+        self, place: tuple[float, ...], motion: tuple[float, ...], image: Any, others: tuple[Other, ...]
+    ) -> dict[str, Any]:
         """Asks the driver for a command; ``place`` has the fields of a View before ``road`` and ``world``,
         and ``motion`` those after them."""
         if image is not None and not isinstance(image, str):
             self._picture = image
         picture = None if image is None else self._picture
         ahead = self._outlook.at(place[STATION])
-        view = View._make((*place, self._road, self._world, *motion, picture, *ahead))
+        view = View._make((*place, self._road, self._world, *motion, picture, *ahead, others))
         return {"command": self._guard.ask(view), "handed_to": self._guard.handed_to}
 
 

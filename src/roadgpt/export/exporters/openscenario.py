@@ -5,15 +5,25 @@ Source: ASAM OpenSCENARIO 1.2.0, user guide and XML schema. An entity's origin i
 on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855)."""
 
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from statistics import mean
+from typing import NamedTuple
 
 import numpy as np
 from shapely.geometry import LineString
 
-from roadgpt.export.ego import CAR, Poses, SpeedProfile, calm_profile, goal_of, on_the_ground, start_of
+from roadgpt.export.ego import (
+    CAR,
+    Others,
+    Poses,
+    SpeedProfile,
+    calm_profile,
+    goal_of,
+    on_the_ground,
+    start_of,
+)
 from roadgpt.export.exporters.opendrive import OpenDrive
 from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry.curve import Array
@@ -26,6 +36,23 @@ KEPT = 0.02  # m/s, or s: tolerance of the simplified speeds
 PATIENCE = 60.0  # s beyond the planned duration, after which a player stops
 STANDS = 0.01  # m; a car that has moved less is taken as standing
 DECIMALS = 6
+BODIES = {
+    "car": ("Vehicle", "car", 1700),
+    "van": ("Vehicle", "van", 2500),
+    "truck": ("Vehicle", "truck", 16000),
+    "bus": ("Vehicle", "bus", 13000),
+    "motorcycle": ("Vehicle", "motorbike", 280),
+    "bicycle": ("Vehicle", "bicycle", 90),
+    "adult": ("Pedestrian", "pedestrian", 75),
+    "child": ("Pedestrian", "pedestrian", 22),
+    "animal": ("Pedestrian", "animal", 25),
+    "cones": ("MiscObject", "obstacle", 5),
+    "barrier": ("MiscObject", "barrier", 500),
+    "lost_load": ("MiscObject", "obstacle", 20),
+}
+"""Body, category and a typical mass in kg, riders included, of each kind of actor."""
+NEAR, LASTS = 0.02, 0.5  # m and s; who stays within this distance for this time rests
+REAR, FRONT = -0.3, 0.3  # usual places of axles as shares of a vehicle's length, from its middle
 
 
 class OpenScenario:
@@ -76,7 +103,7 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
     points = assigned.add("Route", {"name": "to the end", "closed": "false"})
     for waypoint in waypoints:
         points.add("Waypoint", {"routeStrategy": "shortest"}).extended(waypoint)
-    _act(story, "drive").extended(_profile(plan))
+    _event(_act(story, "drive"), "drive").add("PrivateAction").extended(_profile(plan))
     distance: dict[str, Value] = {"value": round(near, DECIMALS), "freespace": "false", "rule": "lessThan"}
     reached = XmlElement("DistanceCondition", {**distance, **measured}).extended(waypoints[-1])
     most = round(float(plan.time[-1]) + PATIENCE, DECIMALS)
@@ -104,26 +131,152 @@ def _of_ego(condition: XmlElement) -> XmlElement:
 
 
 def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
-    """Returns a scenario in which the car replays a recorded drive as a trajectory with time stamps.
-    ``map_`` is the path of the OpenDRIVE file, relative to the scenario."""
+    """Returns a scenario in which the car, and the others who were on the road, replay a recorded drive as
+    trajectories with time stamps. ``map_`` is the path of the OpenDRIVE file, relative to the scenario."""
     time = np.round(poses.time - poses.time[0], DECIMALS) + 0.0
     ground = on_the_ground(poses, CAR.rear_axle)
     exact = np.column_stack([ground, poses.heading, -poses.pitch, poses.roll])
     rows = np.asarray(np.round(exact, DECIMALS) + 0.0, float)
-    root, actions, story = _frame(world, map_, "A car repeats its recorded drive.")
+    told = "A car repeats its recorded drive."
+    others = [] if poses.others is None else [*_moved(poses.others, float(time[-1]))]
+    if others:
+        told = f"A car repeats its recorded drive among {len(others)} others."
+    root, actions, story = _frame(world, map_, told, others)
     _start(actions, _in_world(rows[0]), round(float(poses.speed[0]), DECIMALS))
     begin = _drives_off(ground)
-    follow = _act(story, "repeat", float(time[begin])).add("RoutingAction").add("FollowTrajectoryAction")
+    maneuver = _act(story, "repeat")
+    if others:
+        _follow_in_parts(maneuver, "repeat", time, rows)
+    else:
+        _follow(maneuver, "repeat", time[begin:], np.vstack([rows[:1], rows[begin + 1 :]]))
+    for other in others:
+        _repeat(root, story, other)
+    _stop(root, {"the drive is over": _after(float(time[-1]))})
+    return root
+
+
+def _follow(maneuver: XmlElement, name: str, time: Array, rows: Array, priority: str = "override") -> None:
+    """Adds the event in which an entity follows a trajectory through poses at these times, from the first of
+    them on."""
+    action = _event(maneuver, name, float(time[0]), priority).add("PrivateAction")
+    follow = action.add("RoutingAction").add("FollowTrajectoryAction")
     trajectory = follow.add("TrajectoryRef").add("Trajectory", {"name": "drive", "closed": "false"})
     line = trajectory.add("Shape").add("Polyline")
-    vertices = np.vstack([rows[:1], rows[begin + 1 :]])
-    for moment, row in zip(time[begin:].tolist(), vertices, strict=True):
+    for moment, row in zip(time.tolist(), rows, strict=True):
         line.add("Vertex", {"time": moment}).extended(_in_world(row))
     timing: dict[str, Value] = {"domainAbsoluteRelative": "absolute", "scale": 1, "offset": 0}
     follow.add("TimeReference").add("Timing", timing)
     follow.add("TrajectoryFollowingMode", {"followingMode": "position"})
-    _stop(root, {"the drive is over": _after(float(time[-1]))})
-    return root
+
+
+class Moved(NamedTuple):
+    """How one of the others moved while it was there."""
+
+    name: str
+    kind: str
+    size: Array
+    """Length, width and height in metres."""
+    time: Array
+    rows: Array
+    """Pose of the reference point at each time, shape (n, 6): x, y, z, heading, pitch and roll."""
+    speed: float
+    """The first speed in m/s."""
+    stays: bool
+    """Whether it is there until the drive is over."""
+
+    @property
+    def ahead(self) -> float:
+        """Distance in metres from the reference point, a vehicle's rear axle, to the middle of the box."""
+        return -REAR * float(self.size[0]) if BODIES[self.kind][0] == "Vehicle" else 0.0
+
+
+def _moved(others: Others, end: float) -> Iterator[Moved]:
+    """Yields how each of the others moved until ``end``; who comes, goes and comes again is several, and who
+    comes for less than a sample's time is left out."""
+    for number, (name, kind) in enumerate(zip(others.names, others.kinds, strict=True)):
+        states = others.states[:, number]
+        is_there = ~np.isnan(states[:, 0]) & (others.time < end + others.time[1] - 1e-6)
+        edges = np.flatnonzero(np.diff(np.r_[False, is_there, False]))
+        for again, (first, last) in enumerate(edges.reshape(-1, 2)):
+            said = name if again == 0 else f"{name}, {again + 1}"
+            if last - first < 2 and first > 0:
+                continue
+            time, own = others.time[first:last], states[first:last]
+            stays = bool(time[-1] >= end - 1e-6)
+            moved = Moved(said, kind, others.sizes[number], time, own, _first_speed(time, own), stays)
+            yield moved._replace(rows=_reference(own, moved.ahead))
+
+
+def _first_speed(time: Array, states: Array) -> float:
+    if len(time) < 2:
+        return 0.0
+    dx, dy = (states[1, :2] - states[0, :2]) / (time[1] - time[0])
+    return float(dx * np.cos(states[0, 3]) + dy * np.sin(states[0, 3]))
+
+
+def _reference(states: Array, ahead: float) -> Array:
+    """Returns the poses of a reference point from states of the middle of the box, which is ``ahead`` of it.
+    The pitch is that of the way: heights over places, and of who stands the pitch before or after."""
+    x, y, z, heading, _ = states.T
+    c, s = np.cos(heading), np.sin(heading)
+    pitch = np.zeros(len(states))
+    if len(states) > 1:
+        along = np.gradient(x) * c + np.gradient(y) * s
+        moves = np.flatnonzero(np.abs(along) > STANDS)
+        if len(moves):
+            following = np.searchsorted(moves, np.arange(len(states))).clip(max=len(moves) - 1)
+            pitch = -np.arctan2(np.gradient(z) * np.sign(along), np.abs(along))[moves[following]]
+    back = ahead * np.cos(pitch)
+    columns = x - back * c, y - back * s, z + ahead * np.sin(pitch), heading, pitch, np.zeros(len(states))
+    return np.asarray(np.round(np.column_stack(columns), DECIMALS) + 0.0, float)
+
+
+def _follow_in_parts(maneuver: XmlElement, name: str, time: Array, rows: Array) -> None:
+    """Adds events in which an entity follows a trajectory through poses, and others in which it stands: a
+    player may move poses of standing that are in the middle of a trajectory, as esmini does."""
+    resting = _rests(time, rows[:, :3])
+    places = sorted({0, *(place for each in resting for place in each), len(time) - 1})
+    for number, (first, last) in enumerate(pairwise(places)):
+        kept = [first, last] if (first, last) in resting else range(first, last + 1)
+        _follow(
+            maneuver, name if number == 0 else f"{name}, {number + 1}", time[kept], rows[kept], "parallel"
+        )
+
+
+def _rests(time: Array, places: Array) -> list[tuple[int, int]]:
+    """Returns the first and the last number of the poses of each time of at least LASTS in which an entity
+    stays within NEAR."""
+    found, first = [], 0
+    while first < len(time) - 1:
+        is_far = np.linalg.norm(places[first:] - places[first], axis=1) > NEAR
+        last = first + int(np.argmax(is_far) if is_far.any() else len(is_far)) - 1
+        if time[last] - time[first] >= LASTS:
+            found.append((first, last))
+        first = last if found and found[-1] == (first, last) else first + 1
+    return found
+
+
+def _repeat(root: XmlElement, story: XmlElement, other: Moved) -> None:
+    """Adds what one of the others does: it is there from the start or comes later, stands or follows its
+    trajectory, and may leave."""
+    (board,) = (child for child in root.children if child.name == "Storyboard")
+    time, rows = np.round(other.time, DECIMALS), other.rows
+    is_first, moves = time[0] == 0.0, bool(np.linalg.norm(rows[:, :3] - rows[0, :3], axis=1).max() > STANDS)
+    if is_first:
+        actions = board.children[0].children[0].add("Private", {"entityRef": other.name})
+        _start(actions, _in_world(rows[0]), round(other.speed, DECIMALS))
+    if is_first and other.stays and not moves:
+        return
+    maneuver = _act(story, other.name, other.name)
+    if not is_first:
+        added = _event(maneuver, f"{other.name} comes", float(time[0]), "parallel").add("GlobalAction")
+        entity = added.add("EntityAction", {"entityRef": other.name})
+        entity.add("AddEntityAction").extended(_in_world(rows[0]))
+    if len(time) > 1:
+        _follow_in_parts(maneuver, other.name, time, rows)
+    if not other.stays:
+        gone = _event(maneuver, f"{other.name} goes", float(time[-1]), "parallel").add("GlobalAction")
+        gone.add("EntityAction", {"entityRef": other.name}).add("DeleteEntityAction")
 
 
 def _drives_off(ground: Array) -> int:
@@ -135,13 +288,18 @@ def _drives_off(ground: Array) -> int:
     return max(int(np.argmax(away)) - 1, 0)
 
 
-def _frame(world: World, map_: str, description: str) -> tuple[XmlElement, XmlElement, XmlElement]:
+def _frame(
+    world: World, map_: str, description: str, others: Sequence[Moved] = ()
+) -> tuple[XmlElement, XmlElement, XmlElement]:
     root = XmlElement("OpenSCENARIO")
     told: dict[str, Value] = {"date": DATE, "description": description, "author": "RoadGPT"}
     root.add("FileHeader", {"revMajor": 1, "revMinor": 2, **told})
     root.add("CatalogLocations")
     root.add("RoadNetwork").add("LogicFile", {"filepath": map_})
-    root.add("Entities").add("ScenarioObject", {"name": EGO}).extended(_vehicle())
+    entities = root.add("Entities")
+    entities.add("ScenarioObject", {"name": EGO}).extended(_vehicle())
+    for other in others:
+        entities.add("ScenarioObject", {"name": other.name}).extended(_body(other))
     board = root.add("Storyboard")
     actions = board.add("Init").add("Actions")
     environment = actions.add("GlobalAction").add("EnvironmentAction").add("Environment", {"name": "road"})
@@ -164,16 +322,45 @@ def _vehicle() -> XmlElement:
     return out
 
 
-def _act(story: XmlElement, name: str, begin: float = 0.0) -> XmlElement:
+def _body(other: Moved) -> XmlElement:
+    """Returns the body of somebody else on the road; its origin is the middle of a vehicle's rear axle, or of
+    the box, on the ground."""
+    body, category, mass = BODIES[other.kind]
+    length, width, height = (round(float(value), 3) for value in other.size)
+    key = f"{body[0].lower()}{body[1:]}Category"
+    out = XmlElement(body, {"name": other.kind, key: category, "mass": mass})
+    box = out.add("BoundingBox")
+    box.add("Center", {"x": round(other.ahead, 6), "y": 0, "z": round(height / 2, 6)})
+    box.add("Dimensions", {"width": width, "length": length, "height": height})
+    if body == "Vehicle":
+        out.add("Performance", {"maxSpeed": 70, "maxAcceleration": 10, "maxDeceleration": 10})
+        axles = out.add("Axles")
+        each = {"wheelDiameter": CAR.wheel, "trackWidth": round(0.85 * width, 6), "positionZ": CAR.wheel / 2}
+        ahead = round((FRONT - REAR) * length, 6)
+        axles.add("FrontAxle", {"maxSteering": CAR.lock, **each, "positionX": ahead})
+        axles.add("RearAxle", {"maxSteering": 0, **each, "positionX": 0})
+    # in esmini, angles else change only near the vertices
+    out.add("Properties").add("Property", {"name": "plineInterpolation", "value": "segment"})
+    return out
+
+
+def _act(story: XmlElement, name: str, who: str = EGO) -> XmlElement:
+    """Adds an act, and returns its maneuver."""
     act = story.add("Act", {"name": f"{name} act"})
     group = act.add("ManeuverGroup", {"name": f"{name} group", "maximumExecutionCount": 1})
-    group.add("Actors", {"selectTriggeringEntities": "false"}).add("EntityRef", {"entityRef": EGO})
-    event = group.add("Maneuver", {"name": f"{name} maneuver"}).add(
-        "Event", {"name": f"{name} event", "priority": "override", "maximumExecutionCount": 1}
-    )
-    action = event.add("Action", {"name": name}).add("PrivateAction")
-    event.extended(_trigger("StartTrigger", {f"{name} now": _after(begin)}))
+    group.add("Actors", {"selectTriggeringEntities": "false"}).add("EntityRef", {"entityRef": who})
+    maneuver = group.add("Maneuver", {"name": f"{name} maneuver"})
     act.extended(_trigger("StartTrigger", {f"{name} begin": _after(0.0)}))
+    return maneuver
+
+
+def _event(maneuver: XmlElement, name: str, begin: float = 0.0, priority: str = "override") -> XmlElement:
+    """Adds an event that begins at a time in seconds, and returns its action."""
+    told: dict[str, Value] = {"name": f"{name} event", "priority": priority, "maximumExecutionCount": 1}
+    event = maneuver.add("Event", told)
+    action = event.add("Action", {"name": name})
+    rule = "greaterThan" if priority == "override" else "greaterOrEqual"
+    event.extended(_trigger("StartTrigger", {f"{name} now": _after(begin, rule)}))
     return action
 
 
@@ -193,8 +380,8 @@ def _trigger(name: str, *groups: Mapping[str, XmlElement]) -> XmlElement:
     return out
 
 
-def _after(seconds: float) -> XmlElement:
-    value: dict[str, Value] = {"value": seconds, "rule": "greaterThan"}
+def _after(seconds: float, rule: str = "greaterThan") -> XmlElement:
+    value: dict[str, Value] = {"value": seconds, "rule": rule}
     return XmlElement("ByValueCondition").extended(XmlElement("SimulationTimeCondition", value))
 
 

@@ -4,10 +4,12 @@ The car can be changed: ``MujocoSimulator(replace(ETK_LIKE, max_drive_accelerati
 weaker acceleration."""
 
 from operator import itemgetter
+from statistics import mean
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.brief.amount import Amount
 from roadgpt.drive.camera_sensor import CameraSensor, camera_of
 from roadgpt.drive.drive import COLUMNS, Columns, Drive
 from roadgpt.drive.drive_monitor import DriveMonitor
@@ -15,12 +17,13 @@ from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Axle, Car, Tyre
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle, plane
-from roadgpt.drive.view import View
+from roadgpt.drive.view import Other, View
 from roadgpt.stopping import look
 
 if TYPE_CHECKING:
     from roadgpt.drive import Driver
     from roadgpt.road import Road, World
+    from roadgpt.traffic import Traffic
 
 __all__ = ["ETK_LIKE", "Axle", "Car", "MujocoSimulator", "Tyre", "Vehicle", "plane"]
 
@@ -30,15 +33,32 @@ _SEEN = itemgetter(
 )
 
 
+def first_speed(world: "World") -> float:
+    """Returns the speed in m/s at which the car starts to roll among others: that of the scene, or the middle
+    of its range, else the speed limit."""
+    speed = world.scene.speed
+    if speed is None:
+        return world.limits.speed_limit
+    return mean(bound for bound in (speed.lo, speed.hi) if bound is not None) / 3.6
+
+
 class MujocoSimulator:
     """Simulates a saloon car in steps of 2 ms; the driver returns a command every 20 ms."""
+
+    moves_others = True
 
     def __init__(self, car: Car = ETK_LIKE, start_offset: float = 0.0) -> None:
         """Uses this car, which starts ``start_offset`` metres to the left of the middle of its lane."""
         self.car, self.start_offset = car, start_offset
 
     def simulate(
-        self, road: "Road", world: "World", driver: "Driver", seed: int, keep_driving: bool = False
+        self,
+        road: "Road",
+        world: "World",
+        driver: "Driver",
+        seed: int,
+        keep_driving: bool = False,
+        traffic: "Traffic | None" = None,
     ) -> Drive:
         """Implements `roadgpt.drive.Simulator.simulate`; the seed is only passed to the driver, because the
         physics uses no random numbers."""
@@ -46,22 +66,38 @@ class MujocoSimulator:
         vehicle = Vehicle.on(road, world, self.car)
         sensor = None if camera is None else CameraSensor(camera, road, world)
         outlook, station = Outlook(road, world), _NAMES.index("s")
-        monitor = DriveMonitor(road, world, self.car.box, keep_driving)
+        monitor = DriveMonitor(road, world, self.car.box, keep_driving, traffic is not None)
+        company, seen = None, tuple[Other, ...]()
+        if traffic is not None:
+            from roadgpt.drive.company import Company  # only drives among others load it
+
+            company = Company(traffic, self.car.box, monitor)
         guard.start(road, world, seed)
         middle = float(world.profile_of(road).middle(monitor.start))
-        vehicle.put(monitor.start, middle + self.start_offset)
+        rolls = traffic is not None or world.scene.speed is not None
+        speed = first_speed(world) if rolls else 0.0
+        vehicle.put(monitor.start, middle + self.start_offset, speed)
         rows, step = [vehicle.row.tobytes()], 0
-        while (ended := monitor.ended(vehicle.row, step * CONTROL, vehicle.has_fallen)) is None:
+        while True:
+            if company is not None:
+                seen = company.seen(vehicle.row, step * CONTROL)
+            ended = monitor.ended(vehicle.row, step * CONTROL, vehicle.has_fallen)
+            if ended is not None:
+                break
             now = vehicle.row.tolist()
             *place, steer, vx, vy = _SEEN(now)
             image = None if sensor is None else sensor.see(vehicle.see())
             ahead = outlook.at(now[station])
             here = (step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image)
-            view = View._make((*here, *ahead))
-            vehicle.move(*guard.ask(view))
+            view = View._make((*here, *ahead, seen))
+            steer, throttle, brake = guard.ask(view)
+            if monitor.touched is not None:
+                throttle, brake = 0.0, 1.0  # whatever the driver says
+            vehicle.move(steer, throttle, brake)
             look()
             rows.append(vehicle.row.tobytes())
             step += 1
         table = np.frombuffer(b"".join(rows)).reshape(len(rows), -1)
         columns = Columns({name: table[:, place] for place, name in enumerate(_NAMES)})
-        return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box, tuple(guard.handovers))
+        others = None if traffic is None else traffic.tracks()
+        return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box, tuple(guard.handovers), others)

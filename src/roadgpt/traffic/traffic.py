@@ -1,0 +1,131 @@
+"""Moves all the others on the road together, whichever movers they belong to."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+
+from roadgpt import plugins
+from roadgpt.traffic.actor import STEP, TESTED, Actor, FloatArray, TestedCar, Tracks, rounded
+from roadgpt.traffic.recording import read_recording
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+
+class Stage(NamedTuple):
+    """What a mover is made with."""
+
+    road: "Road"
+    world: "World"
+    seed: int
+    tracks: Tracks | None = None
+    """Recorded tracks to replay."""
+
+
+class Mover(Protocol):
+    """Moves some of the others. States are arrays ``(actors, 5)`` as in Tracks, in the order of ``actors``,
+    and NaN while an actor is not there."""
+
+    actors: list[Actor]
+    """Its own actors; the list may grow at its end."""
+
+    def start(self, car: TestedCar) -> FloatArray:
+        """Returns the states at time 0."""
+        ...
+
+    def move(self, time: float, car: TestedCar, bodies: FloatArray) -> FloatArray:
+        """Returns the states at ``time + STEP``, from everybody's places at ``time``.
+
+        ``bodies`` are the actors of the other movers that are there, shape (m, 7): their states, lengths and
+        widths."""
+        ...
+
+
+class Traffic:
+    """Everybody besides the tested car, during one drive."""
+
+    def __init__(self, movers: Sequence[Mover]) -> None:
+        self.actors: list[Actor] = []
+        """All actors so far, in the order in which they were made."""
+        self._movers = [(mover, list[int]()) for mover in movers]  # with the places of their actors
+        self._samples: list[FloatArray] = []
+        self._sizes = np.empty((0, 2))
+
+    def advance(self, car: TestedCar) -> None:
+        """Computes the next sample. Call it at 0, 0.1, 0.2 ... s, with the tested car at that time."""
+        if not self._samples:
+            self._add([mover.start(car) for mover, _ in self._movers])
+        time, now = (len(self._samples) - 1) * STEP, self._samples[-1]
+        bodies = np.column_stack([now, self._sizes])
+        is_there = ~np.isnan(now[:, 0])
+        states = []
+        for mover, own in self._movers:
+            is_other = is_there.copy()
+            is_other[own] = False
+            states.append(mover.move(time, car, bodies[is_other]))
+        self._add(states)
+
+    def _add(self, states: Sequence[FloatArray]) -> None:
+        for mover, own in self._movers:
+            for actor in mover.actors[len(own) :]:
+                own.append(len(self.actors))
+                self.actors.append(replace(actor, name=self._free(actor.name)))
+                self._sizes = np.vstack([self._sizes, actor.size[:2]])
+        sample = np.full((len(self.actors), 5), np.nan)
+        for (_, own), moved in zip(self._movers, states, strict=True):
+            sample[own] = moved
+        self._samples.append(rounded(sample))
+
+    def _free(self, name: str) -> str:
+        """Returns a name that nobody has: the given one, or with a number behind it."""
+        taken, number, free = {TESTED, *(each.name for each in self.actors)}, 1, name
+        while free in taken:
+            number += 1
+            free = f"{name} ({number})"
+        return free
+
+    def at(self, time: float) -> FloatArray:
+        """Returns the states at a time between 0 and that of the last sample, shape (actors, 5)."""
+        place = time / STEP
+        first = min(int(place + 1e-9), len(self._samples) - 1)
+        share, now = place - first, self._whole(first)
+        if share < 1e-6:
+            return now
+        return np.asarray((1 - share) * now + share * self._whole(first + 1))
+
+    def _whole(self, number: int) -> FloatArray:
+        """Returns a sample with rows for those who came later, too."""
+        sample = self._samples[number]
+        missing = len(self.actors) - len(sample)
+        return np.pad(sample, ((0, missing), (0, 0)), constant_values=np.nan) if missing else sample
+
+    def tracks(self) -> Tracks:
+        """Returns how everybody moved who was there at some time."""
+        states = np.array([self._whole(number) for number in range(len(self._samples))])
+        was_there = np.flatnonzero(~np.isnan(states[:, :, 0]).all(axis=0))
+        return Tracks(tuple(self.actors[number] for number in was_there), states[:, was_there])
+
+
+def begin(
+    road: "Road", world: "World", seed: int, replay: Tracks | Path | str | None = None
+) -> Traffic | None:
+    """Returns the others who are on a road during a drive; None if nobody else is.
+
+    Args:
+        road: the road that the tested car drives.
+        world: the World, whose scene says who else is there.
+        seed: seed of the movers that draw numbers.
+        replay: recorded tracks, or the file that holds them (see ``recording``).
+
+    Raises:
+        PartError: no mover that the scene needs is installed.
+        UsageError: the file cannot be used."""
+    if isinstance(replay, str | Path):
+        replay = read_recording(Path(replay)).on(road, world)
+    is_needed = {"replay": replay is not None, "idm": world.scene.has_flow}
+    stage = Stage(road, world, seed, replay)
+    movers = [plugins.find("movers", name)(stage) for name, needed in is_needed.items() if needed]
+    return Traffic(movers) if movers else None

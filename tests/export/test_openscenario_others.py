@@ -1,0 +1,111 @@
+"""OpenSCENARIO with others: ASAM's checker finds nothing, and everybody is where and when they were."""
+
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from exported import LATE, LEAVES, ROADS, WORLD, among_others, asam_says, drive
+from roadgpt.drive import COLUMNS, Box, Columns, Drive
+from roadgpt.export import Poses, save
+from roadgpt.run.exporting import poses_of
+from roadgpt.traffic import Tracks
+from roadgpt.traffic.recording import read_recording
+
+ROAD = ROADS["arcs"]
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Tracks]:
+    folder, (poses, tracks) = tmp_path_factory.mktemp("others"), among_others()
+    save(ROAD, folder, ["openscenario"], WORLD, "scene", poses)
+    save(ROAD, folder, ["openscenario"], WORLD, "alone", drive(ROAD, WORLD))
+    return folder / "scene.drive.xosc", tracks
+
+
+def test_asams_checker_objects_to_nothing(written: tuple[Path, Tracks]) -> None:
+    issues, ends = asam_says(written[0])
+    assert issues == []
+    assert ends == {"completed": 17}
+
+
+def motions(root: ET.Element, name: str) -> list[tuple[float, np.ndarray]]:
+    """Times and poses x, y, z, h, p, r of an entity: where it is put at first, and all its vertices."""
+    found = []
+    for private in root.iterfind(f"Storyboard/Init/Actions/Private[@entityRef='{name}']"):
+        found += [(0.0, place) for place in private.iter("WorldPosition")]
+    for group in root.iter("ManeuverGroup"):
+        if group.find(f"Actors/EntityRef[@entityRef='{name}']") is not None:
+            for vertex in group.iter("Vertex"):
+                found.append((float(vertex.attrib["time"]), vertex.find("Position/WorldPosition")))
+    return [(time, np.array([float(place.attrib[key]) for key in "xyzhpr"])) for time, place in found]
+
+
+def test_everybody_is_where_the_drive_recorded_them(written: tuple[Path, Tracks]) -> None:
+    path, tracks = written
+    root = ET.parse(path).getroot()
+    for number, actor in enumerate(tracks.actors):
+        entity = root.find(f"Entities/ScenarioObject[@name='{actor.name}']")
+        centre = entity.find(".//Center").attrib
+        middle = np.array([float(centre[key]) for key in "xyz"])
+        size = entity.find(".//Dimensions").attrib
+        assert tuple(float(size[key]) for key in ("length", "width", "height")) == actor.size
+        states, moments = tracks.states[:, number], motions(root, actor.name)
+        there = np.flatnonzero(~np.isnan(states[:, 0])) * 0.1
+        assert moments[0][0] == pytest.approx(there[0])
+        if len(moments) > 1:
+            assert moments[-1][0] == pytest.approx(there[-1])
+        for time, (x, y, z, h, p, r) in moments:
+            at = [x, y, z] + Rotation.from_euler("ZYX", [h, p, r]).apply(middle)
+            state = states[round(time / 0.1)]
+            up = Rotation.from_euler("ZYX", [h, p, r]).apply([0, 0, actor.size.height / 2])
+            np.testing.assert_allclose(at - up, state[:3], atol=2e-3)
+            assert np.cos(h - state[3]) > 1 - 1e-6
+        if number == LATE:  # it climbs and falls with the road
+            grade = [float(ROAD.grade(ROAD.locate(*pose[:2])[0])) for _, pose in moments[3:-3]]
+            np.testing.assert_allclose([-np.tan(pose[4]) for _, pose in moments[3:-3]], grade, atol=0.03)
+
+
+def test_who_comes_late_and_who_leaves_is_added_and_deleted(written: tuple[Path, Tracks]) -> None:
+    root = ET.parse(written[0]).getroot()
+    names = [actor.name for actor in written[1].actors]
+    changes = {}
+    for event in root.iter("Event"):
+        for action in event.iter("EntityAction"):
+            time = float(event.find(".//SimulationTimeCondition").attrib["value"])
+            changes[action.attrib["entityRef"], action[0].tag] = time
+    assert changes == {
+        (names[LATE], "AddEntityAction"): pytest.approx(7.1),
+        (names[LEAVES], "DeleteEntityAction"): pytest.approx(9.0),
+    }
+    at_first = {each.attrib["entityRef"] for each in root.iterfind("Storyboard/Init/Actions/Private")}
+    assert at_first == {"Ego", *names} - {names[LATE]}
+
+
+def test_what_was_written_is_replayed_as_it_was(written: tuple[Path, Tracks]) -> None:
+    path, tracks = written
+    found = read_recording(path)
+    assert "Ego is not replayed" in found.remarks[0]
+    again = found.on(ROAD, WORLD)
+    assert [(a.name, a.kind, a.size) for a in again.actors] == [
+        (a.name, a.kind, pytest.approx(a.size)) for a in tracks.actors
+    ]
+    count = min(len(again), len(tracks))
+    np.testing.assert_allclose(again.states[:count, :, :3], tracks.states[:count, :, :3], atol=0.03)
+    np.testing.assert_allclose(again.states[:count, :, 3], tracks.states[:count, :, 3], atol=2e-3)
+
+
+def test_alone_the_file_is_that_of_a_drive_without_others(written: tuple[Path, Tracks]) -> None:
+    alone = written[0].with_name("alone.drive.xosc").read_text()
+    assert "GlobalAction><EntityAction" not in alone
+    assert alone.count("ScenarioObject name") == 1
+    poses, tracks = among_others()
+    columns = dict.fromkeys(COLUMNS, poses.x * 0) | {name: getattr(poses, name) for name in Poses.names()}
+    driven = Drive("d", "mujoco", 0, Columns(columns), "goal", Box(4.7, 1.86), others=tracks)
+    both = poses_of(driven)
+    assert both is not None
+    assert both.others is not None
+    np.testing.assert_array_equal(both.others.states, tracks.states)
+    assert both.others.time[-1] == pytest.approx(0.1 * (len(tracks) - 1))
