@@ -5,15 +5,15 @@ The density is 5, 12 or 25 vehicles for each km and lane (light, medium, dense).
 and held by vehicles that come in where the map's lanes begin; who finds no room waits outside."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.brief.scene import ActorKind, Flow
+from roadgpt.brief.scene import FLOWS, ActorKind, Flow
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.lanes import Lanes, lanes_of
-from roadgpt.network.network import Leg, RoadEnd
+from roadgpt.network.network import Leg, Network, RoadEnd
 from roadgpt.traffic import following as f
 from roadgpt.traffic.actor import SIZES, STEP, Actor, FloatArray
 from roadgpt.traffic.lane_map import PV, PX, PY, LaneMap, lane_map, place_on
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from roadgpt.road import Road
     from roadgpt.traffic import Stage, TestedCar
 
-DENSITY: Mapping[Flow, float] = {"light": 5.0, "medium": 12.0, "dense": 25.0}
-"""Vehicles for each km and lane; the bounds between the levels are 7 and 20."""
+DENSITY: Mapping[str, float] = {name: per_km / 1000.0 for name, per_km in FLOWS.items()}
+"""Vehicles for each metre of a lane by the name of the flow."""
 SHARES: Mapping[ActorKind, float] = {"car": 0.87, "van": 0.06, "truck": 0.04, "bus": 0.01, "motorcycle": 0.02}
 """Close to the vehicle kilometres of German federal roads, of which heavy goods vehicles drive 5 to 9 %
 (BASt, automatic counts)."""
@@ -58,11 +58,7 @@ class IdmMover:
         self.actors: list[Actor] = []
         self.waiting = 0
         """How many vehicles wait outside for room."""
-        self.flow, self._seed, self._is_filled = (
-            flow or stage.world.scene.flow or "light",
-            stage.seed,
-            is_filled,
-        )
+        self._seed, self._is_filled = stage.seed, is_filled
         self.comes_in = True
         road, network = stage.road, network_of(stage.road, stage.world)
         lanes = lanes_of(network)
@@ -85,19 +81,24 @@ class IdmMover:
         self._entries = np.zeros((size * 12, 5))
         self._room = np.full(len(self.ids), math.inf)
         self._waits = dict.fromkeys(np.flatnonzero(self.lanes.begins).tolist(), 0)
-        self._metres = float(self.lanes.length.sum())
+        scene = stage.world.scene
+        usual = DENSITY.get(flow or scene.flow or "none", 0.0)
+        self._density = np.full(len(self.ids), usual)  # vehicles for each metre of each lane
+        if flow is None and scene.oncoming is not None:
+            for n in _against(network, self.ids, self._path[1]):
+                self._density[n] = DENSITY.get(scene.oncoming, 0.0)
+        self._wanted = float((self._density * self.lanes.length).sum())
         self._tick = 0
         self._goes_on = np.diff(self.lanes.onward_of) > 0
 
     def start(self, car: "TestedCar | None") -> FloatArray:
         """Places the vehicles that are there at the start, and returns their states."""
         self._see(car)
-        per_metre = DENSITY[self.flow] / 1000.0
         for n in range(len(self.ids)) if self._is_filled else ():
             begin, end = self.lanes.usable[n]
             if self.lanes.junction[n] >= 0 or end - begin < 20.0 or self.lanes.ends[n]:
                 continue
-            count = int(self._rng.poisson((end - begin) * per_metre))
+            count = int(self._rng.poisson((end - begin) * self._density[n]))
             count = min(count, int((end - begin) / 15.0))
             if not count:
                 continue
@@ -213,11 +214,10 @@ class IdmMover:
         if not self._waits:
             return
         speeds = self._numbers[self._rows, f.V]
-        wanted = DENSITY[self.flow] / 1000.0 * self._metres
         pace = float(speeds.mean()) if len(speeds) else float(self.lanes.limit.mean())
-        rate = DENSITY[self.flow] / 1000.0 * pace * min(max(2.0 - len(speeds) / max(wanted, 1.0), 0.0), 2.0)
+        rate = pace * min(max(2.0 - len(speeds) / max(self._wanted, 1.0), 0.0), 2.0)
         for lane in self._waits:
-            self._waits[lane] += int(self._rng.random() < rate * STEP)
+            self._waits[lane] += int(self._rng.random() < rate * self._density[lane] * STEP)
             if not self._waits[lane]:
                 continue
             gap = self._room[lane] - 5.0 - f.JAM
@@ -288,6 +288,14 @@ def _path(road: "Road", legs: tuple[Leg, ...], number: Mapping[Leg, int]) -> tup
         lanes.append(number[leg])
         starts.append(end)
     return starts, lanes
+
+
+def _against(network: Network, ids: Sequence[Leg], path: Sequence[int]) -> Iterator[int]:
+    """Yields the lanes of the roads that the tested car follows that lead against it."""
+    own = {ids[n].road: network.road(ids[n].road).profile.leads_along(ids[n].lane) for n in path}
+    for n, key in enumerate(ids):
+        if key.road in own and network.road(key.road).profile.leads_along(key.lane) != own[key.road]:
+            yield n
 
 
 def _steps_to_exit(lanes: LaneMap) -> FloatArray:
