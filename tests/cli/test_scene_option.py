@@ -114,3 +114,8 @@ def test_settings_and_plans_of_campaigns_have_scenes() -> None:
     assert again.exit_code == 0, again.output
     Path("plan.toml").write_text(table.format(PLAN, "light"), encoding="utf-8")
     assert roadgpt("campaign", "plan.toml", "--out", "out").exit_code == 2
+
+
+def test_a_scene_beside_words_is_told() -> None:
+    result = roadgpt("run", "--plan", PLAN, "--scene", "light", "--no-drive", "--no-plot", "--out", "out")
+    assert "note: on the road: light traffic (5 vehicles for each km of a lane)" in result.output

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import scene_plan
-from roadgpt.brief.scene import Scene
+from roadgpt.brief.scene import Scene, scene_text
 from roadgpt.brief.scene_fit import check_scene
 from roadgpt.design.road_search import sufficient_map
 from roadgpt.road import World
@@ -60,9 +60,11 @@ def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
 
 
 def scene_remark(brief: Brief, found: World) -> str:
-    """Returns a sentence that says that the scene of the words gives way to another; empty if it does not."""
-    if brief.scene in (Scene(), found.scene):
+    """Returns a sentence on a scene that is not that of the words; empty if there is none."""
+    if brief.scene == found.scene:
         return ""
+    if brief.scene == Scene():
+        return f"on the road: {scene_text(found.scene)}"
     return f"the words have a scene, but --scene '{scene_plan(found.scene)}' is set and used"
 
 

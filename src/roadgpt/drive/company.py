@@ -12,6 +12,7 @@ from roadgpt.drive.drive import COLUMNS, Box, FloatArray
 from roadgpt.drive.view import Other
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic import STEP, TestedCar, Traffic
+from roadgpt.traffic.boxes import touch
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive_monitor import DriveMonitor
@@ -28,8 +29,8 @@ def look_around(
     y, heading in (-pi, pi] and speed of each; returns how many they are and whether the car touches one.
 
     ``states`` are as in Tracks, ``sizes`` (n, 2) lengths and widths, and ``car`` has the x, y and z of the
-    middle of the car's box on the ground, its heading, length and width. Two boxes touch if no line along a
-    side of one of them separates them; roads that cross above each other do not count."""
+    middle of the car's box on the ground, its heading, length and width. Roads that cross above each other do
+    not count."""
     x, y, z, heading, length, width = car
     far = np.empty(len(states))
     count, touches = 0, False
@@ -44,20 +45,8 @@ def look_around(
             place -= 1
         order[place] = k
         count += 1
-        its_length, its_width = sizes[k]
-        most = math.hypot(length, width) + math.hypot(its_length, its_width)
-        if 2.0 * far[k] > most or abs(states[k, 2] - z) > HEADROOM:
-            continue
-        turn = states[k, 3] - heading
-        c, s = abs(math.cos(turn)), abs(math.sin(turn))
-        own, other = (math.cos(heading), math.sin(heading)), (math.cos(states[k, 3]), math.sin(states[k, 3]))
-        is_apart = (
-            2.0 * abs(dx * own[0] + dy * own[1]) > length + its_length * c + its_width * s
-            or 2.0 * abs(dy * own[0] - dx * own[1]) > width + its_length * s + its_width * c
-            or 2.0 * abs(dx * other[0] + dy * other[1]) > its_length + length * c + width * s
-            or 2.0 * abs(dy * other[0] - dx * other[1]) > its_width + length * s + width * c
-        )
-        touches = touches or not is_apart
+        if abs(states[k, 2] - z) <= HEADROOM:
+            touches = touches or touch(dx, dy, heading, length, width, states[k, 3], sizes[k, 0], sizes[k, 1])
     for place in range(count):
         k = order[place]
         seen[place, 0], seen[place, 1], seen[place, 3] = states[k, 0], states[k, 1], states[k, 4]

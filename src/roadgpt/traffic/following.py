@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from roadgpt.compiled import compiled, inlined
 from roadgpt.traffic.actor import STEP, FloatArray
+from roadgpt.traffic.boxes import touch
 from roadgpt.traffic.lane_map import PV, IntArray, LaneMap, place_on, touched
 
 S, V, LENGTH, WIDTH, FACTOR, TOP, HEADWAY, PULL, BRAKE, ASIDE, BEGAN, PROGRESS, WAIT, A_NEXT = range(14)
@@ -442,26 +443,6 @@ def positions(
         out[i, 4] = row[V]
 
 
-@compiled
-def _touch(one: FloatArray, size: FloatArray, other: FloatArray, others: FloatArray) -> bool:
-    """Returns whether the boxes of two vehicles overlap, by the theorem of separating axes; ``size`` and
-    ``others`` are their rows of numbers."""
-    dx, dy = other[0] - one[0], other[1] - one[1]
-    if dx * dx + dy * dy > (size[LENGTH] + others[LENGTH]) ** 2:
-        return False
-    c, s = math.cos(other[3] - one[3]), math.sin(other[3] - one[3])
-    for side in range(2):
-        heading = one[3] if side == 0 else other[3]
-        own, its = (size, others) if side == 0 else (others, size)
-        along = abs(dx * math.cos(heading) + dy * math.sin(heading))
-        aside = abs(dy * math.cos(heading) - dx * math.sin(heading))
-        if along > own[LENGTH] / 2 + (abs(c) * its[LENGTH] + abs(s) * its[WIDTH]) / 2:
-            return False
-        if aside > own[WIDTH] / 2 + (abs(s) * its[LENGTH] + abs(c) * its[WIDTH]) / 2:
-            return False
-    return True
-
-
 @inlined
 def _add(entries: FloatArray, count: int, lane: int, s: float, length: float, speed: float, body: int) -> int:
     """Adds a row for a box whose middle is at a station of a lane; returns the number of rows then."""
@@ -626,8 +607,11 @@ def step(
         i = order[at]
         if i == TESTED or whole[i, STATE] == ABSENT or whole[i, STATE] == GONE:
             continue
-        if whole[TESTED, STATE] == DRIVES and _touch(states[i], numbers[i], states[TESTED], numbers[TESTED]):
-            whole[i, STATE] = STANDS_HIT
+        if whole[TESTED, STATE] == DRIVES:
+            one, other, size, its = states[i], states[TESTED], numbers[i], numbers[TESTED]
+            dx, dy = other[0] - one[0], other[1] - one[1]
+            if touch(dx, dy, one[3], size[LENGTH], size[WIDTH], other[3], its[LENGTH], its[WIDTH]):
+                whole[i, STATE] = STANDS_HIT
         if whole[i, STATE] == STANDS_HIT:
             numbers[i, A_NEXT] = max(-AFTER_CONTACT, -numbers[i, V] / STEP)
         else:
