@@ -15,6 +15,7 @@ from roadgpt.report import view
 from roadgpt.report.canvas import SEVERE
 from roadgpt.road import CrossSection, Design, Site, World
 from roadgpt.run import Run, Setup, prove
+from roadgpt.traffic import SIZES, Actor, Tracks
 
 pytestmark = pytest.mark.skipif(FOUND is None, reason="no chromium is installed")
 
@@ -388,3 +389,29 @@ def test_without_webgl_the_strips_still_work(tab: BrowserTab, pages: dict[str, P
     tab.click(*middle_of(tab, ".height canvas", 0.6))
     tab.wait_for("roadgpt.poses[0].s > 50")
     assert_quiet(tab, pages["alone"])
+
+
+def test_the_others_stand_and_move_where_the_drive_has_them(tab: BrowserTab, tmp_path: Path) -> None:
+    run = prove(design(), 7, setup=Setup(driver="beamng_like"))
+    assert run.road is not None
+    assert run.drive is not None
+    actors, states = [], np.full((40, len(SIZES), 5), np.nan)
+    for n, (kind, size) in enumerate(SIZES.items()):
+        actors.append(Actor(f"{kind} 1", kind, size))
+        x, y, z = run.road.at(12.0 + 9.0 * n, 2.0)
+        states[n:, n] = [x, y, z, float(run.road.heading(12.0 + 9.0 * n)) + math.pi, 0.0]
+    states[:, 0, 0] += 2.0 * 0.1 * np.arange(40)  # the first one moves by 2 m/s
+    states[:, 0, 4] = 2.0
+    others = Tracks(tuple(actors), states)
+    path = view.write([replace(run, drive=replace(run.drive, others=others))], tmp_path / "others.html")
+    tab.size(1200, 800)
+    tab.open(path)
+    tab.run("roadgpt.player.moveTo(1.25)")
+    tab.wait_for("!roadgpt.player.isPlaying && roadgpt.others[0].length > 0")
+    seen = tab.run("roadgpt.others[0].map(({number, x, y, heading}) => [number, x, y, heading])")
+    expected = others.at(1.25)
+    assert {int(row[0]) for row in seen} == {n for n in range(len(actors)) if n <= 12}
+    for number, x, y, heading in seen:
+        assert (x, y) == pytest.approx(expected[int(number), :2], abs=0.01)
+        assert math.cos(heading - expected[int(number), 3]) > 0.9999
+    assert not tab.told

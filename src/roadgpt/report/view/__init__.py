@@ -31,6 +31,7 @@ from roadgpt.network.route import ground_of
 from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
 from roadgpt.report.birds_eye import minor_places_of, places_of
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
+from roadgpt.report.others import COLOURS as OF_KINDS
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.land import Land
 from roadgpt.road.profile import DASH, GAP, LINE
@@ -45,6 +46,7 @@ from roadgpt.scene.patterns import noise
 from roadgpt.scene.scene import landscape
 from roadgpt.scene.shade import AIR, ASPHALT, DRIER, LUSH, PAINTED, STONES, panorama, to_screen
 from roadgpt.scene.trees import SIDE, Trees, pictures
+from roadgpt.traffic.actor import STEP
 from roadgpt.verdict.verdict import MOSTLY, PARTLY
 
 __all__ = ["page", "page_of", "scene", "write"]
@@ -60,6 +62,7 @@ SCRIPTS = (
     "land.js",
     "signs.js",
     "car.js",
+    "others.js",
     "stage.js",
     "cameras.js",
     "plan.js",
@@ -120,6 +123,7 @@ def _part(name: str) -> str:
 FINEST = 400  # heights of the land are told to this part of the distance between two of its columns
 MOST_STEPS = 6000  # of a drive; drives of up to 2 minutes are complete, longer drives are thinned
 MILLIMETRES, FINE = 3, 5  # digits
+CENTIMETRES = 2  # digits, of outlines that are only drawn on the plan
 DRIVE = {
     "time": 3,
     "x": MILLIMETRES,
@@ -137,13 +141,14 @@ DRIVE = {
     "outside": 4,
 }
 """Columns of a drive that the page uses, and their decimals."""
+OF_OTHERS = {"x": CENTIMETRES, "y": CENTIMETRES, "z": CENTIMETRES, "heading": 3, "speed": 1}
+"""Columns of the states of others, and their decimals."""
 WORLD = ("map_size", "friction", "speed_limit", "oob_tolerance", "z_floor")
 SCALE = {"partly": PARTLY, "mostly": MOSTLY, "colours": [*SEVERE.values()][1:], "failed": VERMILLION}
 """The colours that show how far the car is outside its lane, and the shares of the car outside from which the
 page says "partly" and "mostly"."""
 OF_FIRST_ROAD = "; height and curvature are those of the first road of the map"
 """Text that the page adds for a map without a route."""
-CENTIMETRES = 2  # digits, of outlines that are only drawn on the plan
 NEAR, ROUGH = 0.01, 0.05  # m, by which outlines may be simplified: in 3-D, and on the plan
 CHORD = 0.01  # m, largest distance between the road and the drawn lines
 
@@ -168,6 +173,7 @@ def scene(run: Run) -> dict[str, Any]:
         "marking": {"width": LINE, "dash": DASH, "gap": GAP},
         "severe": SCALE,
         "drive": _drive(run),
+        **_others(run),
         "places": _places(run),
         **more,
     }
@@ -225,6 +231,26 @@ def _drive(run: Run) -> dict[str, Any] | None:
         "car": {**drive.car._asdict(), "height": round(float(height), MILLIMETRES)},
         "columns": {name: rounded(column, DRIVE[name]) for name, column in columns.items()},
     }
+
+
+def _others(run: Run) -> dict[str, Any]:
+    """Returns how the others on the road moved, each from the first sample in which it is there."""
+    tracks = None if run.drive is None else run.drive.others
+    if tracks is None:
+        return {}
+    actors = []
+    for number, actor in enumerate(tracks.actors):
+        there = np.flatnonzero(~np.isnan(tracks.states[:, number, 0]))
+        states = tracks.states[there[0] : there[-1] + 1, number]
+        columns = zip(OF_OTHERS.items(), states.T, strict=True)
+        actors.append({
+            **actor.size._asdict(),
+            "kind": actor.kind,
+            "colour": OF_KINDS[actor.kind][1],
+            "first": int(there[0]),
+            **{name: rounded(column, digits) for (name, digits), column in columns},
+        })  # fmt: skip
+    return {"others": {"step": STEP, "actors": actors}}
 
 
 def _places(run: Run) -> list[dict[str, Any]]:

@@ -19,7 +19,7 @@ function partOf(isWheel, [x, y, z], materials) {
   return new THREE.Mesh(shape, materials);
 }
 
-function makeCar(size) {
+function makeCar(size, colour = null) {
   const { car } = SCENERY;
   const group = new THREE.Group();
   const materials = SCENERY.plain.map((rgb, kind) => {
@@ -42,6 +42,7 @@ function makeCar(size) {
   group.add(body, shadow(size));
   group.rotation.order = "ZYX";
   const paint = materials[car.glossy[0]];
+  if (colour !== null) paint.color.set(colour);
   const own = paint.color.clone();
   return {
     group,

@@ -109,6 +109,7 @@ window.roadgpt = {
   player,
   get frames() { return frames; },
   get poses() { return panels.map(({ pose }) => pose); },
+  get others() { return scenes.map((scene) => (scene.others ? othersAt(scene, player.time) : [])); },
   get plates() { return panels.map(({ stage }) => stage && stage.plates); },
   get eyes() { return panels.map(({ stage }) => stage && stage.camera.position.toArray()); },
 };

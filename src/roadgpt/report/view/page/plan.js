@@ -178,6 +178,7 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
   }
 
   function over(pen, size, pose) {
+    if (scene.others) paintOthers(pen, scene, pose.time, px, py, view.scale);
     pen.save();
     pen.translate(px(pose.x), py(pose.y));
     pen.rotate(-pose.heading);

@@ -38,6 +38,8 @@ function makeStage(canvas, scene, trip, fastest) {
   const car = trip.isDriven ? makeCar(trip.car) : makePointer();
   const dot = beacon();
   world.add(car.group, dot);
+  const others = scene.others && makeOthers(scene);
+  if (others) world.add(others.group);
 
   const camera = new THREE.PerspectiveCamera(ORDINARY_VIEW, 1, 0.5, Math.max(20000, 8 * radius));
   camera.up.set(0, 0, 1);
@@ -59,6 +61,7 @@ function makeStage(canvas, scene, trip, fastest) {
     place(pose) {
       car.show(pose, origin, severeColour(scene, pose.outside || 0));
       dot.position.copy(car.group.position);
+      if (others) others.show(pose.time, origin);
     },
     // `away` is how far the free camera is from what it looks at: the road has no haze for it; 0 for the others.
     draw(away, hasLine) {
