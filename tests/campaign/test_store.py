@@ -22,6 +22,8 @@ from roadgpt.campaign.traces import STEPS, drive_of, read_traces, trace_of, writ
 from roadgpt.chat import Spent, Usage
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.traffic import SIZES, Actor, Tracks
+from roadgpt.traffic.actor import rounded
 
 BRIEFS = {"hairpin x2": Brief(words="hairpin x2")}
 numbers = st.floats(allow_nan=False, allow_infinity=True, width=64)
@@ -230,3 +232,22 @@ def test_what_is_no_number_and_what_is_far_away_stay_so(tmp_path: Path) -> None:
     assert all(np.array_equal(kept[name], found[name], equal_nan=True) for name in COLUMNS)
     assert np.isnan(found["x"]).tolist() == [False, True, False, False]
     assert found["x"][2] == -found["x"][3] == pytest.approx((2**31 - 1) / 1000)
+
+
+def test_the_others_of_a_stored_drive_are_exactly_those_of_the_drive(tmp_path: Path) -> None:
+    count = 60
+    columns = {name: np.linspace(0.0, 1.18, count) for name in COLUMNS}
+    states = np.full((13, 2, 5), np.nan)
+    states[:, 0] = rounded(np.random.default_rng(1).uniform(-500, 500, (13, 5)))
+    states[4:9, 1] = rounded(np.random.default_rng(2).uniform(-500, 500, (5, 5)))
+    others = Tracks(
+        (Actor("car 1", "car", SIZES["car"]), Actor("child 1", "child", SIZES["child"], True)), states
+    )
+    drive = Drive("me", "mujoco", 1, Columns(columns), "goal", Box(4.7, 1.86), others=others)
+    alone = Drive("me", "mujoco", 1, Columns(columns), "goal", Box(4.7, 1.86))
+    name = write_traces(tmp_path, 1, [("c1", 7, trace_of(drive)), ("c1", 8, trace_of(alone))])
+    found = read_traces(tmp_path / "traces" / name, "c1", 7).others
+    assert found is not None
+    assert found.actors == others.actors
+    assert np.array_equal(found.states, states, equal_nan=True)
+    assert read_traces(tmp_path / "traces" / name, "c1", 8).others is None

@@ -5,7 +5,8 @@ entry ``header`` is a line of JSON: the ``columns`` in their order, the ``steps`
 and the tests whose ``drives`` the file holds. The drive of test 17 of cell c02 is the entry ``c02/17``,
 integers ``(columns, n)``: the second differences of each column, counted in steps. For a car's motion, these
 differences are near 0 and compress well (12 kB for a drive of 28 s). Two cumulative sums of a row, times the
-column's step, give the column of ``roadgpt.drive.COLUMNS`` in its unit.
+column's step, give the column of ``roadgpt.drive.COLUMNS`` in its unit. Others on the road, if there were
+any, are the entry ``c02/17/others``, as in ``drive.npz``.
 """
 
 import io
@@ -20,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.drive import COLUMNS, Box, Columns, Drive, Handover
+from roadgpt.drive.drive import OTHERS, packed, unpacked
 from roadgpt.errors import UsageError
 from roadgpt.reading import check_unpacked, json_of, opened, strictly
 from roadgpt.run.atomic import write_whole
@@ -45,16 +47,21 @@ class Trace(NamedTuple):
     header: dict[str, Any]
     """Driver, simulator, seed, how the drive ended, the dimensions of the car, and handovers, if any."""
     rows: Whole  # the columns in their order, ``(columns, n)``
+    others: NDArray[np.int64] | None = None
+    """The states of others on the road as ``drive.packed`` returns them; None if nobody else was there."""
 
 
 def trace_of(drive: Drive) -> Trace:
     """Returns a Drive as a Trace, in which every value is rounded to a multiple of its column's step."""
     header: dict[str, Any] = {name: getattr(drive, name) for name in ("driver", "simulator", "seed", "ended")}
     header |= {"car": drive.car._asdict()} | ({"handovers": drive.handovers} if drive.handovers else {})
+    states = None
+    if drive.others is not None:
+        header["others"], states = packed(drive.others)
     limit, values = np.iinfo(np.int32).max, np.stack([drive[name] for name in COLUMNS])
     finite = np.nan_to_num(values, posinf=np.inf, neginf=-np.inf)
     steps = np.clip(np.round(finite / [[STEPS[name]] for name in COLUMNS]), -limit, limit)
-    return Trace(header, np.where(np.isnan(values), NOT_A_NUMBER, steps).astype(np.int32))
+    return Trace(header, np.where(np.isnan(values), NOT_A_NUMBER, steps).astype(np.int32), states)
 
 
 def drive_of(trace: Trace) -> Drive:
@@ -65,6 +72,8 @@ def drive_of(trace: Trace) -> Drive:
     values = trace.rows / [[round(1 / STEPS[name])] for name in COLUMNS]
     values[trace.rows == NOT_A_NUMBER] = np.nan
     columns = Columns(dict(zip(COLUMNS, values, strict=True)))
+    if trace.others is not None:
+        header["others"] = unpacked(header["others"], trace.others, float(columns["time"][-1]))
     return Drive(columns=columns, **{**header, "car": Box(**header["car"])})
 
 
@@ -84,6 +93,8 @@ def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Tra
             start = np.zeros((len(COLUMNS), 2), np.int32)
             # these int32 may overflow; the sums then overflow back, so that even the largest values are exact
             _add(archive, f"{cell}/{test}", np.diff(trace.rows, 2, prepend=start))
+            if trace.others is not None:
+                _add(archive, f"{cell}/{test}/{OTHERS}", trace.others)
     name = f"{number:07d}{SUFFIX}"
     path = folder / TRACES / name
     path.parent.mkdir(exist_ok=True)
@@ -118,10 +129,12 @@ def read_traces(path: Path, cell: str, number: int) -> Drive:
     try:
         with opened(path, LARGEST, "drives of a campaign") as file:
             archive = np.load(file, allow_pickle=False)
-            entries = [archive.zip.getinfo(f"{name}.npy") for name in ("header", f"{cell}/{number}")]
-            check_unpacked(entries, UNPACKED)
+            names = ["header", f"{cell}/{number}", f"{cell}/{number}/{OTHERS}"]
+            names = [name for name in names if name in archive.files]
+            check_unpacked([archive.zip.getinfo(f"{name}.npy") for name in names], UNPACKED)
             contents = json_of(str(archive["header"]))
             rows = archive[f"{cell}/{number}"]
+            others = archive[names[2]] if len(names) > 2 else None
         if contents["format"] != FORMAT or contents["columns"] != [*COLUMNS]:
             raise ValueError("another version of roadgpt wrote it")
         if rows.dtype != np.int32 or rows.ndim != 2 or len(rows) != len(COLUMNS) or not rows.size:
@@ -129,7 +142,7 @@ def read_traces(path: Path, cell: str, number: int) -> Drive:
         (header,) = [each for each in contents["drives"] if which.items() <= each.items()]
         header = {name: value for name, value in header.items() if name not in which}
         steps = rows.cumsum(axis=1, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
-        return drive_of(Trace(header, steps))
+        return drive_of(Trace(header, steps, others))
     except UsageError:
         raise
     except Exception as error:  # zipfile, its decoders, numpy and json raise anything

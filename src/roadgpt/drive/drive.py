@@ -205,7 +205,7 @@ class Drive:
             "ended": self.ended,
             "car": self.car._asdict(),
             **({"handovers": self.handovers} if self.handovers else {}),
-            **({OTHERS: _plain(self.others)} if self.others is not None else {}),
+            **({OTHERS: packed(self.others)[0]} if self.others is not None else {}),
         }
         buffer = io.BytesIO()
         with zipfile.ZipFile(buffer, "w") as archive:
@@ -213,8 +213,7 @@ class Drive:
             for name, column in self.columns.items():
                 _write(archive, name, column)
             if self.others is not None:
-                states = np.nan_to_num(np.rint(self.others.states * PER_UNIT), nan=GONE)
-                _write(archive, OTHERS, states.astype(np.int64))
+                _write(archive, OTHERS, packed(self.others)[1])
         return buffer.getvalue()
 
     @classmethod
@@ -247,7 +246,7 @@ def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
     others = None
     if OTHERS in header:
         arrays = dict(arrays)
-        others = _tracks(header[OTHERS], arrays.pop(OTHERS), float(arrays["time"][-1]))
+        others = unpacked(header[OTHERS], arrays.pop(OTHERS), float(arrays["time"][-1]))
     if set(arrays) != set(COLUMNS):
         raise ValueError(f"columns missing or unknown: {', '.join(sorted(set(arrays) ^ set(COLUMNS)))}")
     if any(array.ndim != 1 for array in arrays.values()):
@@ -266,11 +265,16 @@ def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
     )
 
 
-def _plain(others: "Tracks") -> list[Any]:
-    return [[each.name, each.kind, each.size, each.is_parked] for each in others.actors]
+def packed(others: "Tracks") -> tuple[list[Any], NDArray[np.int64]]:
+    """Returns the actors as JSON data, and their states as whole numbers, from which ``unpacked`` makes equal
+    Tracks."""
+    actors = [[each.name, each.kind, each.size, each.is_parked] for each in others.actors]
+    return actors, np.nan_to_num(np.rint(others.states * PER_UNIT), nan=GONE).astype(np.int64)
 
 
-def _tracks(actors: Any, states: NDArray[Any], duration: float) -> "Tracks":
+def unpacked(actors: Any, states: NDArray[Any], duration: float) -> "Tracks":
+    """Returns the Tracks of ``packed``, of a drive of so many seconds. Raises ValueError if they are
+    broken."""
     from roadgpt.brief.scene import ActorKind
     from roadgpt.traffic import STEP, Actor, Size, Tracks
 

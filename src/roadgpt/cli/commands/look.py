@@ -217,6 +217,8 @@ def _films(
 
 
 def _make(runs: list[Any], out: Path, view: str, settings: "Settings", quiet: bool) -> None:
+    if any(run.drive is not None and run.drive.others is not None for run in runs):
+        warn("films do not show the others on the road yet; roadgpt view shows them")
     from roadgpt.network import refuse_without_route
     from roadgpt.report.film import write
 
