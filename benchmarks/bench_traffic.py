@@ -16,6 +16,7 @@ from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 import shapely
+from scipy.spatial import cKDTree
 
 from roadgpt.run import Setup, perform
 from roadgpt.traffic import Stage
@@ -81,15 +82,20 @@ SIGNALS = [
 ]
 OPEN_DENSE = [*ROADS, *SIGNALS]
 FLOWING = [*ROADS, *JUNCTIONS, *SIGNALS]
+NEAR = 12.5  # m, between the middles of boxes that may overlap: the longest diagonal
 INFLOW, EMPTYING, PATIENCE = 1800, 900, 30.0  # s
 
 
 def hits(states, sizes):
     """Pairs of boxes that overlap."""
     there = np.flatnonzero(~np.isnan(states[:, 0]))
-    boxes = shapely.polygons(np.array([corners(states[n], sizes[n]) for n in there]).reshape(-1, 4, 2))
-    one, two = shapely.STRtree(boxes).query(boxes, predicate="intersects") if len(boxes) > 1 else ((), ())
-    return {(int(there[a]), int(there[b])) for a, b in zip(one, two, strict=True) if a < b}
+    pairs = cKDTree(states[there, :2]).query_pairs(NEAR, output_type="ndarray") if len(there) > 1 else []
+    if not len(pairs):
+        return set()
+    own = np.unique(pairs)
+    boxes = dict(zip(own, shapely.polygons([corners(states[n], sizes[n]) for n in there[own]]), strict=True))
+    meet = shapely.intersects([boxes[a] for a, _ in pairs], [boxes[b] for _, b in pairs])
+    return {(int(there[a]), int(there[b])) for a, b in pairs[meet]}
 
 
 def waits_without_reason(mover):
