@@ -12,7 +12,7 @@ from roadgpt.network import network_of
 from roadgpt.network.lanes import lanes_of
 from roadgpt.run import Setup, perform
 from roadgpt.traffic import Size, Stage
-from roadgpt.traffic.actor import SPEED, STEP, X, Y, corners
+from roadgpt.traffic.actor import HEADING, SPEED, STEP, X, Y, corners
 from roadgpt.traffic.lane_map import lane_map, touched
 from roadgpt.traffic.lights import GREEN, RED, Lights
 from roadgpt.traffic.movers.idm import DENSITY, IdmMover
@@ -91,6 +91,23 @@ def test_nobody_touches_anybody(plan):
     for tick in range(900):
         states = mover.move(tick * STEP, None, NOBODY)
         assert not overlapping(mover, states)
+
+
+@pytest.mark.parametrize("plan", [PLANS[0], PLANS[4], PLANS[5]])
+def test_nobody_jumps(plan):
+    """From moment to moment everybody comes as far as it drives, also where it changes lanes in a bend."""
+    mover = IdmMover(stage(plan), "dense")
+    before, turned = mover.start(None), 0.0
+    for tick in range(900):
+        after = mover.move(tick * STEP, None, NOBODY)
+        own = slice(0, len(before))
+        way = np.hypot(*(after[own] - before)[:, [X, Y]].T)
+        driven = (after[own, SPEED] + before[:, SPEED]) / 2 * STEP
+        assert np.nanmax(np.abs(way - driven), initial=0.0) < 0.15
+        turned = max(turned, np.nanmax(np.abs(after[own, HEADING] - before[:, HEADING]), initial=0.0))
+        assert np.nanmax(np.abs(after[own, SPEED] - before[:, SPEED]), initial=0.0) <= 9.0 * STEP + 1e-9
+        before = after
+    assert turned < 0.2
 
 
 def test_the_same_seed_gives_the_same_tracks_and_another_seed_others():

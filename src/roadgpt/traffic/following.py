@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from roadgpt.compiled import compiled, inlined
 from roadgpt.traffic.actor import STEP, FloatArray
 from roadgpt.traffic.boxes import touch
-from roadgpt.traffic.lane_map import PV, IntArray, LaneMap, place_on, touched
+from roadgpt.traffic.lane_map import PV, IntArray, LaneMap, across, place_on, touched
 
 S, V, LENGTH, WIDTH, FACTOR, TOP, HEADWAY, PULL, BRAKE, ASIDE, BEGAN, PROGRESS, WAIT, A_NEXT = range(14)
 """Columns of numbers of a vehicle: the station of its middle in its lane, its speed, length and width; the
@@ -385,7 +385,7 @@ def _change(
     target = lanes.beside[lane, side]
     if target < 0:
         return -math.inf
-    s = row[S] / lanes.length[lane] * lanes.length[target]
+    s = across(lanes, lane, row[S], target)
     way = max(row[V] * CHANGE, LEAST_WAY)
     if s < lanes.usable[target, 0] + row[LENGTH] or s + way > lanes.usable[target, 1]:
         return -math.inf
@@ -424,6 +424,7 @@ def positions(
 ) -> None:
     """Writes the states of the vehicles that are there into ``out``, and NaN for the others."""
     for i in range(present):
+        before = out[i, 3]
         out[i] = math.nan
         if i == TESTED or whole[i, STATE] == ABSENT or whole[i, STATE] == GONE:
             continue
@@ -440,6 +441,8 @@ def positions(
         out[i, 1] = y + aside * math.cos(heading)
         out[i, 2] = z
         out[i, 3] = heading + slant
+        if not math.isnan(before):  # so that it is unwrapped from moment to moment
+            out[i, 3] += 2.0 * math.pi * round((before - out[i, 3]) / (2.0 * math.pi))
         out[i, 4] = row[V]
 
 
@@ -479,7 +482,7 @@ def _boxes(
         if row[WAIT] > LET_IN and lanes.ends[lane]:
             target = max(lanes.beside[lane, 0], lanes.beside[lane, 1])
             if target >= 0:
-                s = row[S] / lanes.length[lane] * lanes.length[target]
+                s = across(lanes, lane, row[S], target)
                 count = _add(entries, count, target, s, row[LENGTH], ASKS, i)
     for m in range(len(bodies)):
         body = bodies[m]
@@ -499,7 +502,9 @@ def _begin_change(
 ) -> None:
     """Makes a vehicle change to a lane beside its own, from where on its way has to be planned anew."""
     row, state, lane = numbers[i], states[i], ways[i, whole[i, AT]]
-    s = row[S] / lanes.length[lane] * lanes.length[target]
+    s = across(lanes, lane, row[S], target)
+    x, y, _, heading, _ = place_on(lanes, target, s)
+    s += (state[0] - x) * math.cos(heading) + (state[1] - y) * math.sin(heading)
     x, y, _, heading, _ = place_on(lanes, target, s)
     row[ASIDE] = (state[1] - y) * math.cos(heading) - (state[0] - x) * math.sin(heading)
     row[BEGAN], row[PROGRESS], row[S], row[WAIT] = row[ASIDE], 0.0, s, 0.0
@@ -524,7 +529,7 @@ def _decide(
     least = min(least, a)
     if whole[i, OLD] >= 0:
         old = whole[i, OLD]
-        offset = -row[S] / lanes.length[lane] * lanes.length[old]
+        offset = -across(lanes, lane, row[S], old)
         a, also = _leaders(lanes, numbers, whole, ways, i, wanted, entries, count, old, offset)
         least, fastest = min(least, a), min(fastest, also)
     alone = least

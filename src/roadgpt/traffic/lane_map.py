@@ -35,6 +35,8 @@ class LaneMap(NamedTuple):
     """Shape (samples, 6), lane after lane, see PX."""
     first: IntArray
     """The first sample of each lane and, as the last entry, the number of samples."""
+    station: FloatArray
+    """The station on its road of each sample, counted in the direction of its lane."""
     step: FloatArray
     """The distance in metres between the samples of each lane."""
     length: FloatArray
@@ -89,10 +91,12 @@ def lane_map(
 def _made(lanes: Lanes, limit: float, kept: frozenset[Leg] | None) -> tuple[LaneMap, tuple[Leg, ...]]:
     used = [each for each in lanes if each.kind == "driving" and (kept is None or each.id in kept)]
     number = {lane.id: n for n, lane in enumerate(used)}
-    samples, steps, usable, longest = [], [], [], []
+    samples, stations, steps, usable, longest = [], [], [], [], []
     for lane in used:
         rows, step, stretch = _sampled(lane)
         samples.append(rows)
+        station = lane.station(np.arange(len(rows)) * step)
+        stations.append(station if lane.is_along else lane.member.road.length - station)
         steps.append(step)
         usable.append(stretch)
         spare = np.maximum(rows[:, PW] - WIDEST / 2 + OVER, 0.0)
@@ -110,6 +114,7 @@ def _made(lanes: Lanes, limit: float, kept: frozenset[Leg] | None) -> tuple[Lane
     return LaneMap(
         table,
         first,
+        np.concatenate(stations),
         np.array(steps),
         np.array([lane.length for lane in used]),
         np.array(usable),
@@ -249,6 +254,19 @@ def place_on(lanes: LaneMap, lane: int, s: float) -> tuple[float, float, float, 
         one[PH] + min(max(u, 0.0), 1.0) * (two[PH] - one[PH]),
         min(one[PV], two[PV]),
     )
+
+
+@inlined
+def across(lanes: LaneMap, lane: int, s: float, other: int) -> float:
+    """Returns the station of another lane of the same road and direction beside station ``s`` of a lane."""
+    at = s / lanes.step[lane]
+    i = min(max(int(at), 0), lanes.first[lane + 1] - lanes.first[lane] - 2)
+    k = lanes.first[lane] + i
+    station = lanes.station[k] + (at - i) * (lanes.station[k + 1] - lanes.station[k])
+    begin, end = lanes.first[other], lanes.first[other + 1]
+    n = min(max(np.searchsorted(lanes.station[begin:end], station) - 1, 0), end - begin - 2)
+    one, two = lanes.station[begin + n], lanes.station[begin + n + 1]
+    return float((n + (station - one) / max(two - one, 1e-9)) * lanes.step[other])
 
 
 @compiled
