@@ -20,7 +20,7 @@ from roadgpt.brief.scene import (
     NUMBERS,
     SPOTS,
     UNBUILT,
-    USUAL,
+    WEATHER,
     Action,
     ActorKind,
     Flow,
@@ -243,7 +243,7 @@ def test_the_page_has_every_word_and_every_bound() -> None:
         for names, low, high in table
         for n, key in enumerate(re.findall(r"\w+", names))
     }
-    assert said == {each.key: each[1:3] for name, each in NUMBERS.items() if name not in USUAL}
+    assert said == {each.key: each[1:3] for name, each in NUMBERS.items() if name not in WEATHER}
     starts = {
         what: number
         for names, number in re.findall(r"^\| (`\w+`(?:, `\w+`)*) \| *`?(\w*)`? *\| ", section, re.MULTILINE)

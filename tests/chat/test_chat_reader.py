@@ -12,7 +12,7 @@ from fake_chat import FakeChat
 from roadgpt.brief import exactly, normal, read
 from roadgpt.brief.plan import TESTED_CAR, plan
 from roadgpt.brief.readers.chat import EXAMPLES, RULES, ChatReader, PlanAnswer
-from roadgpt.brief.scene import DOINGS, FLOWS, LIGHTS, NUMBERS, SPOTS, USUAL, ActorKind, Surface
+from roadgpt.brief.scene import DOINGS, FLOWS, LIGHTS, NUMBERS, SPOTS, WEATHER, ActorKind, Surface
 from roadgpt.chat import ChatSettings, Message, Reply, Spent
 from roadgpt.errors import BriefError
 from tables import rows as table_rows
@@ -132,13 +132,13 @@ def test_a_wrong_scene_goes_back_with_what_can_be_said_of_one() -> None:
 
 def test_the_model_is_told_every_word_of_scenes() -> None:
     told = {*re.findall(r"\w+", RULES)}
-    keys = {number.key for name, number in NUMBERS.items() if name not in USUAL}
+    keys = {number.key for name, number in NUMBERS.items() if name not in WEATHER}
     words = {
         *get_args(ActorKind),
         *SPOTS,
         *DOINGS,
         *FLOWS,
-        *USUAL,
+        *WEATHER,
         *LIGHTS,
         *get_args(Surface),
         *keys,
