@@ -40,8 +40,8 @@ class OnRails:
         self.s, self.has_fallen, self.row = 2.5, False, np.zeros(len(COLUMNS))
         self._tell(IN)
 
-    def put(self, s: float, t: float) -> None:
-        assert (s, t) == (2.5, IN)
+    def put(self, s: float, t: float, speed: float = 0.0) -> None:
+        assert (s, t, speed) == (2.5, IN, 0.0)
 
     def move(self, steer: float, throttle: float, brake: float) -> None:
         on, t, self.has_fallen = next(self.way, (FAST, IN, False))
