@@ -270,17 +270,16 @@ def _has_room(
 @compiled
 def _may_enter(
     lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, k: int,
-    ahead: float,
-    entries: FloatArray, count: int, lights: IntArray,
+    ahead: float, is_over: bool, entries: FloatArray, count: int, lights: IntArray,
 ) -> bool:  # fmt: skip
     """Returns whether vehicle ``i`` may enter lane ``k`` of its way, which begins ``ahead`` metres before
-    its middle."""
+    its middle. ``is_over`` is whether it stands beyond the line, and only waits for those with a grant."""
     lane, row = ways[i, k], numbers[i]
     begin, end = lanes.conflict_of[lane], lanes.conflict_of[lane + 1]
     slowest = _slowest(lanes, lane)
     for c in range(begin, end):
         other, first, last = lanes.conflict[c, 0], lanes.conflict_at[c, 2], lanes.conflict_at[c, 3]
-        for n in range(count):  # also somebody without a grant, such as a pedestrian
+        for n in range(0 if is_over else count):  # also somebody without a grant, such as a pedestrian
             if (
                 entries[n, 0] == other
                 and entries[n, 4] != i
@@ -295,9 +294,9 @@ def _may_enter(
                 continue
             if _holds(lanes, numbers, whole, ways, j, other, last):
                 return False
-            if lanes.conflict[c, 1] == 1 and _comes_before(
-                lanes, numbers, whole, ways, i, j, other, first, leaves, lights
-            ):
+            if is_over or lanes.conflict[c, 1] == 0:
+                continue
+            if _comes_before(lanes, numbers, whole, ways, i, j, other, first, leaves, lights):
                 return False
     return begin == end or _has_room(lanes, numbers, whole, ways, i, k, ahead, entries, count)
 
@@ -358,11 +357,12 @@ def _to_stop(
         whole[i, HAS_STOPPED] = 1
     is_late = row[V] > 0.5 and line < row[V] ** 2 / (2.0 * FIRM)
     closed = lights[before] == RED or (lights[before] == YELLOW and not is_late)
-    if closed or (lanes.has_stop_sign[before] and whole[i, HAS_STOPPED] == 0):
+    is_over = line < -LINE
+    if not is_over and (closed or (lanes.has_stop_sign[before] and whole[i, HAS_STOPPED] == 0)):
         return float(line)
     if not _is_first(lanes, numbers, whole, ways, present, i, k, entries, count):
         return float(line)
-    if not _may_enter(lanes, numbers, whole, ways, present, i, k, ahead, entries, count, lights):
+    if not _may_enter(lanes, numbers, whole, ways, present, i, k, ahead, is_over, entries, count, lights):
         return float(line)
     through = lanes.junction[ways[i, k]]
     while k < whole[i, LAST] and lanes.junction[ways[i, k]] == through:

@@ -43,6 +43,8 @@ REACH = 500.0  # m: lanes that come nowhere as near to the driven road are left 
 LONGEST_WAY = 64  # lanes that are planned ahead
 KEPT = 4  # lanes behind a vehicle that are remembered, and ahead of it that are always planned
 NEVER = 1e6  # s
+CLEAR = 8.0  # m, from the middle of a vehicle at the start to the place where it stops
+LEAST_SPEED = 4.0  # m/s, with which a vehicle comes onto the map at least
 AHEAD, BEHIND = (
     30.0,
     15.0,
@@ -111,11 +113,8 @@ class IdmMover:
                 ]
                 if car is not None and _is_close(car, here):
                     continue
-                left = max(self.lanes.stop[n] - s - 8.0, 0.0)
                 far = max(part * 0.4 - 8.0, 0.0)
-                most = min(
-                    float(here[PV]), far / 1.5, math.sqrt(2 * f.EASY * left) if self._goes_on[n] else math.inf
-                )
+                most = min(float(here[PV]), far / 1.5, self._stoppable(n, s))
                 self.enter(n, s, most)
         return self._shown()
 
@@ -136,6 +135,11 @@ class IdmMover:
     def vehicles(self) -> int:
         """The number of vehicles on the map now."""
         return len(self._rows)
+
+    def _stoppable(self, lane: int, s: float) -> float:
+        """Returns the speed in m/s from which one stops easily before the junction at the end of a lane."""
+        left = max(float(self.lanes.stop[lane]) - s - CLEAR, 0.0)
+        return math.sqrt(2.0 * f.EASY * left) if self._goes_on[lane] else math.inf
 
     def _see(self, car: "TestedCar | None") -> None:
         """Enters the tested car into its row."""
@@ -221,8 +225,8 @@ class IdmMover:
             if not self._waits[lane]:
                 continue
             gap = self._room[lane] - 5.0 - f.JAM
-            speed = min(float(self.lanes.limit[lane]), gap / 1.5)
-            if gap > 8.0 and speed >= min(4.0, float(self.lanes.limit[lane])):
+            speed = min(float(self.lanes.limit[lane]), gap / 1.5, self._stoppable(lane, 0.0))
+            if gap > 8.0 and speed >= min(LEAST_SPEED, float(self.lanes.limit[lane])):
                 self.enter(lane, 0.0, speed)
                 self._waits[lane] -= 1
         self.waiting = sum(self._waits.values())
