@@ -7,10 +7,14 @@ import numpy as np
 import pytest
 import shapely
 
-from roadgpt.drive import Drive, simulate
+from roadgpt import plugins
+from roadgpt.drive import Command, Drive, View, simulate
+from roadgpt.network import is_route
 from roadgpt.road import Limits, Road, World
+from roadgpt.run import Setup, perform
 from roadgpt.traffic import SIZES, Tracks
 from roadgpt.traffic.actor import corners
+from roadgpt.traffic.lights import Lights
 from staged import straight, tracks
 
 V = 20.0
@@ -87,3 +91,46 @@ def test_cruise_control_brakes_within_its_standard_and_an_emergency_harder() -> 
         late = straight(200, LANE - 1.7 - speed * (200 - ahead - FRONT) / V, np.pi / 2, speed)
         drive = simulate(ROAD, WORLD, "lane_centring", replay=tracks(60, adult=("adult", late)))
         assert -drive["ax"].min() > 5.0
+
+
+class Watched:
+    """A driver whose views are kept."""
+
+    def __init__(self, name: str) -> None:
+        self.driver = plugins.find("drivers", name)()
+        self.start, self.views = self.driver.start, list[View]()
+
+    def steer(self, view: View) -> Command:
+        self.views.append(view)
+        return Command(*self.driver.steer(view))
+
+
+@pytest.mark.parametrize("driver", DRIVERS)
+def test_the_car_stops_before_the_line_at_red_and_passes_it_at_green_or_late_yellow(driver: str) -> None:
+    world = World(limits=Limits(speed_limit=50 / 3.6))
+    plan = "straight 160 // crossroads straight lights // straight 100 && light"
+    run = perform(plan, 3, world, Setup(reader="plan", drives=False))
+    assert is_route(run.road)
+    route, world = run.road, run.world
+    (way,) = route.passages
+    line = way.start - 0.5  # the stop line is 0.5 m wide and lies next to the junction: German RMS-1
+    stopped = 0
+    for seed in range(4):
+        watched, lights = Watched(driver), Lights(route.network, seed)
+        simulate(route, world, watched, seed)
+        before = [view for view in watched.views if view.s + FRONT < line]
+        for view in before:
+            (seen,) = view.lights
+            assert seen.distance == pytest.approx(line - view.s, abs=0.01)
+            assert seen.shows == ("green", "yellow", "red")[lights.shown(way.arrival, view.time)]
+        assert all(not view.lights for view in watched.views if view.s > line)
+        assert len(before) < len(watched.views)  # it goes on
+        last = before[-1]
+        assert last.lights[0].shows != "red"
+        if last.lights[0].shows == "yellow":
+            began = max(n for n, view in enumerate(before) if view.lights[0].shows == "green") + 1
+            assert before[began].speed ** 2 / 2 / (line - before[began].s - FRONT) > 3.0
+        stands = [line - view.s - FRONT for view in before if view.speed < 0.05]
+        assert all(0.3 < left < 2.0 for left in stands)
+        stopped += bool(stands)
+    assert 0 < stopped < 4

@@ -10,7 +10,7 @@ import numpy as np
 
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import line_along, pedals_for, stations
-from roadgpt.drive.keeping_distance import HARDEST, ROLLS, VEHICLES, KeepingDistance, slowed
+from roadgpt.drive.keeping_distance import HARDEST, ROLLS, KeepingDistance, slowed
 from roadgpt.drive.view import Command, View
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class LaneCentring:
     from 10 to 60 km/h, before vehicles and persons. Limits: persons, animals and things count only for
     emergency braking, and from ``sight`` metres on; fast cars may touch what stands there, which R152 allows
     above about 40 km/h. The warning that R152 asks for has no effect, because nobody is simulated who would
-    heed it. Below 10 km/h the person at the wheel brakes for everybody.
+    heed it. Below 10 km/h the person at the wheel brakes for everybody, and always for red lights.
 
     Args:
         strength: largest lateral acceleration that the steering gives, in m/s^2.
@@ -136,17 +136,18 @@ class LaneCentring:
         command = Command(
             math.atan(self.wheelbase * bend), *pedals_for(wanted, self._line.grade[here], view.speed)
         )
-        if not view.others:
+        if not (view.others or view.lights):
             return command
         return slowed(self._line, view, command, self._allowed(view))
 
     def _allowed(self, view: View) -> float:
         """Returns the acceleration in m/s^2 that others in the path allow."""
-        v, is_vehicle = view.speed, np.array([each.kind in VEHICLES for each in view.others])
-        gap, along, follows = self._distance.ahead(view).T
+        v = view.speed
+        gap, along, follows, vehicles = self._distance.ahead(view).T
+        is_vehicle = vehicles > 0
         is_seen = is_vehicle | (gap < self.sight)
         closing = np.where(is_seen, np.maximum(v - along, 0.0), 0.0)
-        needed = float((closing**2 / 2 / np.maximum(gap - SHORT, 0.1)).max())
+        needed = float((closing**2 / 2 / np.maximum(gap - SHORT, 0.1)).max(initial=0.0))
         if v > AWAKE and needed > EMERGENCY:
             self._is_emergency = True
         elif v < ROLLS or not closing[gap < self.sight].any():
