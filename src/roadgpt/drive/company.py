@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 
 from roadgpt.compiled import compiled
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
-from roadgpt.drive.view import Other
+from roadgpt.drive.view import LightAhead, Other
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic import STEP, TestedCar, Traffic
 from roadgpt.traffic.boxes import touch
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive_monitor import DriveMonitor
+    from roadgpt.road import Road
 
 SEEN = 200.0  # m, between the middles of the car and of another
 _PLACES = [[*COLUMNS].index(name) for name in ("x", "y", "z", "heading", "speed", "s", "t")]
@@ -57,8 +58,11 @@ def look_around(
 class Company:
     """The others on the road during one drive."""
 
-    def __init__(self, traffic: Traffic, box: Box, monitor: "DriveMonitor") -> None:
+    def __init__(self, traffic: Traffic, box: Box, monitor: "DriveMonitor", road: "Road") -> None:
         self._traffic, self._box, self._monitor = traffic, box, monitor
+        passages = road.passages if traffic.lights is not None else ()
+        lines = [(each.light_line, each.arrival) for each in passages]
+        self._lines = [(line, end) for line, end in lines if line is not None]
         self._samples = 0
         self._looks: list[tuple[str, float, float]] = []
         self._sizes, self._order, self._seen = np.empty((0, 2)), np.empty(0, np.int64), np.empty((0, 4))
@@ -84,3 +88,16 @@ class Company:
             self._monitor.touch(time)
         near = zip(self._order[:count].tolist(), self._seen[:count].tolist(), strict=True)
         return tuple([Other._make((looks[k][0], *where, *looks[k][1:])) for k, where in near])
+
+    def lights(self, s: float, time: float) -> tuple[LightAhead, ...]:
+        """Returns the lights ahead of station ``s`` of the route, and what they show at this time."""
+        shown = self._traffic.lights
+        if shown is None:
+            return ()
+        return tuple(
+            [
+                LightAhead(line - s, ("green", "yellow", "red")[shown.shown(end, time)])
+                for line, end in self._lines
+                if line >= s
+            ]
+        )

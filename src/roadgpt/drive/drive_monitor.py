@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 STUCK_TIME = 10.0  # s within which a car must move STUCK_WAY (SBFT)
 STUCK_WAY = 1.0  # m
 SLOWEST = 2.0  # m/s, mean speed from which the time limit follows
-STUCK_AMONG_OTHERS = 30.0  # s; who gives way or queues stands longer
+STUCK_AMONG_OTHERS = 120.0  # s; who queues, gives way or waits at a red light stands longer
 SLOWEST_AMONG_OTHERS = 1.0  # m/s
 AFTER_CONTACT = 3.0  # s that a drive goes on after the car touched somebody
 SPARE = 30.0  # s, added to the time limit
@@ -95,7 +95,7 @@ class DriveMonitor:
         return s > self._length / 2 and math.hypot(x - self._end[0], y - self._end[1]) < GOAL
 
     def is_stuck(self, x: float, y: float, time: float) -> bool:
-        """Returns whether the car has moved less than 1 m in the last 10 s, or among others 30 s.
+        """Returns whether the car has moved less than 1 m in the last 10 s, or among others 120 s.
 
         Call this method once for every control step. ``x`` and ``y`` are in metres, ``time`` in seconds."""
         if not math.hypot(x - self._from[0], y - self._from[1]) < STUCK_WAY:

@@ -1,6 +1,6 @@
 """Defines the View that a driver gets and the Command that it returns at every control step."""
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 if TYPE_CHECKING:
     from roadgpt.network import Route
@@ -21,9 +21,17 @@ class JunctionAhead(NamedTuple):
     """Number of the road on which the route leaves, counted counter-clockwise from the road of arrival, or
     clockwise with traffic on the left. At a roundabout it is the number of the exit."""
     control: str
-    """What applies to the car: "priority", "yield", "stop", "lights" or "none". Lights are always green."""
+    """What applies to the car: "priority", "yield", "stop", "lights" or "none"."""
     length: float
     """Length in metres of that part of the way through the junction which is still ahead of the car."""
+
+
+class LightAhead(NamedTuple):
+    """Traffic lights that the route comes to, as a driver sees them."""
+
+    distance: float
+    """Distance in metres along the route from the car's centre of gravity to the stop line."""
+    shows: Literal["green", "yellow", "red"]
 
 
 class Other(NamedTuple):
@@ -94,6 +102,9 @@ class View(NamedTuple):
     """Number of driving lanes to the right of the lane that the car is to follow, oncoming lanes included."""
     others: tuple[Other, ...] = ()
     """The others on the road whose middles are within 200 m of the middle of the car, nearest first."""
+    lights: tuple[LightAhead, ...] = ()
+    """The traffic lights on the route whose stop lines are ahead of the car, nearest first; empty if no
+    traffic drives on the map: then all lights are green."""
 
 
 class CameraSpec(NamedTuple):

@@ -13,6 +13,7 @@ from roadgpt.traffic.recording import read_recording
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
+    from roadgpt.traffic.lights import Lights
 
 
 class Stage(NamedTuple):
@@ -50,6 +51,10 @@ class Traffic:
     def __init__(self, movers: Sequence[Mover]) -> None:
         self.actors: list[Actor] = []
         """All actors so far, in the order in which they were made."""
+        self.lights: Lights | None = next(
+            (mover.lights for mover in movers if hasattr(mover, "lights")), None
+        )
+        """The traffic lights, which a mover runs; None if none does, and they stay green."""
         self._movers = [(mover, list[int]()) for mover in movers]  # with the places of their actors
         self._samples: list[FloatArray] = []
         self._sizes = np.empty((0, 2))

@@ -17,6 +17,7 @@ from roadgpt.drive.driving_line import (
     smoothed,
     stations,
 )
+from roadgpt.drive.keeping_distance import KeepingDistance
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
@@ -107,7 +108,7 @@ class BeamngLike:
         # Like BeamNG's plan, this one considers slopes but not crests. Superelevation is an assumption.
         level = replace(line, crest=[0.0] * len(line.crest))
         self._line, self._speed = line, plan_speed(level, limits, highest_speeds(road, line, EASY_BRAKING))
-        self._signs = StopSigns(road)
+        self._signs, self._distance = StopSigns(road), KeepingDistance(line)
 
     def bend(self, road: "Road", world: "World") -> FloatArray:
         """Returns the curvature of the lane's middle in 1/m at ``stations(road)``, shape ``(n,)``.
@@ -159,4 +160,4 @@ class BeamngLike:
             command = Command(steer, min(self.throttle * error, 1.0), 0.0)
         else:
             command = Command(steer, 0.0, min(-self.brake * error, 1.0))
-        return self._signs.obeyed(view, command)
+        return self._distance.kept(view, self._signs.obeyed(view, command))

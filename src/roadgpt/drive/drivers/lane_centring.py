@@ -6,8 +6,11 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import line_along, pedals_for, stations
+from roadgpt.drive.keeping_distance import HARDEST, ROLLS, KeepingDistance, slowed
 from roadgpt.drive.view import Command, View
 
 if TYPE_CHECKING:
@@ -19,6 +22,11 @@ SPEED_GAIN = 2.0  # 1/s, acceleration per speed error
 LEAST_AHEAD = 1.0  # m; nearer places say nothing about a crest
 TAKEN_OVER = 50.0  # m before a junction, from which the person at the wheel drives
 GIVEN_BACK = 10.0  # m behind a junction, from which the lane centring steers again
+FAST, SLOW, MORE = 20.0, 5.0, 1.5
+"""Above FAST m/s cruise control brakes with ``hardest``, below SLOW with MORE m/s^2 more: ISO 15622."""
+EMERGENCY = 5.0  # m/s^2: who would need more brakes as hard as it can; the least that UN R152 asks for
+AWAKE = 10 / 3.6  # m/s, from which on UN R152 asks for emergency braking
+SHORT = 1.0  # m before somebody, where emergency braking wants to stand
 STRAIGHT = 1e-6  # 1/m; a smaller curvature limits no speed
 TURN = 2 * math.pi
 
@@ -40,6 +48,15 @@ class LaneCentring:
     limitations, because its steering torque is limited). So from 50 m before a junction or roundabout until
     10 m behind it, the person at the wheel drives, as the driver ``reference`` does. The person drives on if
     the car is still too fast for the bends that the camera sees.
+
+    Cruise control keeps 1.5 s to vehicles in the path up to 150 m ahead, and brakes with at most
+    ``hardest``, below 20 m/s with up to 1.5 m/s^2 more. ISO 15622 asks for at least 0.8 s, and allows
+    3.5 m/s^2 above 20 m/s and 5 m/s^2 below 5 m/s. Where not touching somebody in the path takes more than
+    5 m/s^2, emergency braking brakes as hard as it can, from 10 km/h on. UN R152 asks for at least 5 m/s^2,
+    from 10 to 60 km/h, before vehicles and persons. Limits: persons, animals and things count only for
+    emergency braking, and from ``sight`` metres on; fast cars may touch what stands there, which R152 allows
+    above about 40 km/h. The warning that R152 asks for has no effect, because nobody is simulated who would
+    heed it. Below 10 km/h the person at the wheel brakes for everybody, and always for red lights.
 
     Args:
         strength: largest lateral acceleration that the steering gives, in m/s^2.
@@ -91,6 +108,7 @@ class LaneCentring:
         self._speed_limit = world.limits.speed_limit
         self._steps, self._bend, self._lateral, self._speed = 0, 0.0, 0.0, self._speed_limit
         self._waiting: deque[float] = deque()
+        self._distance, self._is_emergency = KeepingDistance(self._line), False
 
     def steer(self, view: View) -> Command:
         """Steers by the image of ``lag`` seconds ago, and drives as fast as the bends in sight allow.
@@ -115,9 +133,30 @@ class LaneCentring:
         bend = self._waiting.popleft() if has_waited else 0.0
         wanted = min(max(SPEED_GAIN * (self._speed - view.speed), -self.hardest), self.acceleration)
         here, _ = self._line.place(view.s)
-        return Command(
+        command = Command(
             math.atan(self.wheelbase * bend), *pedals_for(wanted, self._line.grade[here], view.speed)
         )
+        if not (view.others or view.lights):
+            return command
+        return slowed(self._line, view, command, self._allowed(view))
+
+    def _allowed(self, view: View) -> float:
+        """Returns the acceleration in m/s^2 that others in the path allow."""
+        v = view.speed
+        gap, along, follows, vehicles = self._distance.ahead(view).T
+        is_vehicle = vehicles > 0
+        is_seen = is_vehicle | (gap < self.sight)
+        closing = np.where(is_seen, np.maximum(v - along, 0.0), 0.0)
+        needed = float((closing**2 / 2 / np.maximum(gap - SHORT, 0.1)).max(initial=0.0))
+        if v > AWAKE and needed > EMERGENCY:
+            self._is_emergency = True
+        elif v < ROLLS or not closing[gap < self.sight].any():
+            self._is_emergency = False
+        if self._is_emergency:
+            return -HARDEST
+        least = float(follows[is_vehicle | (v < AWAKE)].min(initial=math.inf))
+        share = min(max((FAST - v) / (FAST - SLOW), 0.0), 1.0)
+        return max(least, -self.hardest - MORE * share)
 
     def _look(self, view: View) -> None:
         seen = self._speeds_in_sight(view)

@@ -12,6 +12,7 @@ from roadgpt.drive.driving_line import (
     pursuit_curvature,
     stations,
 )
+from roadgpt.drive.keeping_distance import KeepingDistance
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
@@ -46,11 +47,11 @@ class PurePursuit:
         lateral = min(self.risk, 0.95 * world.site.friction)
         limits = DrivingLimits(lateral, lateral, lateral, world.limits.speed_limit)
         self._line, self._speed = line, plan_speed(line, limits, highest_speeds(road, line))
-        self._signs = StopSigns(road)
+        self._signs, self._distance = StopSigns(road), KeepingDistance(line)
 
     def steer(self, view: View) -> Command:
         """Steers towards a point of the lane's middle ahead of the car, and follows the planned speed."""
         line = self._line
         bend = pursuit_curvature(line, view, max(self.headway * view.speed, self.nearest))
         command = Command(math.atan(self.wheelbase * bend), *pedals(line, self._speed, view.s, view.speed))
-        return self._signs.obeyed(view, command)
+        return self._distance.kept(view, self._signs.obeyed(view, command))

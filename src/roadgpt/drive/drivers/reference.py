@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from roadgpt.drive.driving_line import StopSigns, highest_speeds, line_along, pedals, stations
+from roadgpt.drive.keeping_distance import KeepingDistance
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import GRAVITY, DrivingLimits, plan_speed
 
@@ -60,7 +61,7 @@ class Reference:
         lateral = min(self.risk, FRICTION_USED * world.site.friction)
         limits = DrivingLimits(lateral, BRAKING * lateral, TRACTION * lateral, world.limits.speed_limit)
         self._line, self._speed = line, plan_speed(line, limits, highest_speeds(road, line))
-        self._signs = StopSigns(road)
+        self._signs, self._distance = StopSigns(road), KeepingDistance(line)
 
     def steer(self, view: View) -> Command:
         """Steers for the bend ahead and against the lateral error; follows the planned speed."""
@@ -76,7 +77,8 @@ class Reference:
         drift = self.to_rear * bend - self.slip * lateral
         steer = self.wheelbase * bend + self.understeer * lateral
         steer -= self.gain * (error + (self.ahead + self.headway * v) * (turned + drift))
-        return self._signs.obeyed(view, Command(steer, *pedals(line, self._speed, view.s, v)))
+        command = Command(steer, *pedals(line, self._speed, view.s, v))
+        return self._distance.kept(view, self._signs.obeyed(view, command))
 
 
 FRICTION_USED = 0.72  # share of the friction that bends may need; the rest is for corrections

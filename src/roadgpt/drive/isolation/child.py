@@ -19,7 +19,7 @@ from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.isolation.process import serve
 from roadgpt.drive.loading import load_driver
 from roadgpt.drive.outlook import Outlook
-from roadgpt.drive.view import Other, View
+from roadgpt.drive.view import LightAhead, Other, View
 from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import Road, World  # now, and not while the driver's time counts
 
@@ -86,7 +86,12 @@ class _DriverHost:
         return {"files": self._files.told()}
 
     def steer(
-        self, place: tuple[float, ...], motion: tuple[float, ...], image: Any, others: tuple[Other, ...]
+        self,
+        place: tuple[float, ...],
+        motion: tuple[float, ...],
+        image: Any,
+        others: tuple[Other, ...],
+        lights: tuple[LightAhead, ...],
     ) -> dict[str, Any]:
         """Asks the driver for a command; ``place`` has the fields of a View before ``road`` and ``world``,
         and ``motion`` those after them."""
@@ -94,7 +99,7 @@ class _DriverHost:
             self._picture = image
         picture = None if image is None else self._picture
         ahead = self._outlook.at(place[STATION])
-        view = View._make((*place, self._road, self._world, *motion, picture, *ahead, others))
+        view = View._make((*place, self._road, self._world, *motion, picture, *ahead, others, lights))
         return {"command": self._guard.ask(view), "handed_to": self._guard.handed_to}
 
 

@@ -136,7 +136,8 @@ class IsolatedDriver:
             image = "same"
         elif image is not None:
             self._picture, image = image, np.array(image, np.uint8)
-        answer = self._asked(ONE_ANSWER, view.time, "steer", view[:9], view[11:15], image, view.others)
+        around = view.others, view.lights
+        answer = self._asked(ONE_ANSWER, view.time, "steer", view[:9], view[11:15], image, *around)
         self.handed_to = answer["handed_to"]
         return Command(*answer["command"])
 

@@ -65,7 +65,7 @@ class IdmMover:
         road, network = stage.road, network_of(stage.road, stage.world)
         lanes = lanes_of(network)
         self.lanes, self.ids = lane_map(lanes, stage.world.limits.speed_limit, _near(lanes, road))
-        self._lights = Lights(network, stage.seed)
+        self.lights = Lights(network, stage.seed)
         self._ends = {key: RoadEnd(key.road, "end" if lanes[key].is_along else "start") for key in self.ids}
         self._number = {key: n for n, key in enumerate(self.ids)}
         self._path = _path(road, legs_of(road, stage.world), self._number)
@@ -123,7 +123,7 @@ class IdmMover:
         self._see(car)
         f.step(
             self.lanes, self._numbers, self._whole, self._ways, self._present, self._states, bodies,
-            self._lights.of_lanes(self._ends, time), self._entries, self._room, self._tick,
+            self.lights.of_lanes(self._ends, time), self._entries, self._room, self._tick,
         )  # fmt: skip
         self._tick += 1
         if self.comes_in:

@@ -16,7 +16,7 @@ from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Axle, Car, Tyre
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle, plane
-from roadgpt.drive.view import Other, View
+from roadgpt.drive.view import LightAhead, Other, View
 from roadgpt.stopping import look
 
 if TYPE_CHECKING:
@@ -66,11 +66,11 @@ class MujocoSimulator:
         sensor = None if camera is None else CameraSensor(camera, road, world)
         outlook, station = Outlook(road, world), _NAMES.index("s")
         monitor = DriveMonitor(road, world, self.car.box, keep_driving, traffic is not None)
-        company, seen = None, tuple[Other, ...]()
+        company, seen, lights = None, tuple[Other, ...](), tuple[LightAhead, ...]()
         if traffic is not None:
             from roadgpt.drive.company import Company  # only drives among others load it
 
-            company = Company(traffic, self.car.box, monitor)
+            company = Company(traffic, self.car.box, monitor, road)
         guard.start(road, world, seed)
         middle = float(world.profile_of(road).middle(monitor.start))
         rolls = traffic is not None or world.scene.speed is not None
@@ -87,8 +87,10 @@ class MujocoSimulator:
             *place, steer, vx, vy = _SEEN(now)
             image = None if sensor is None else sensor.see(vehicle.see())
             ahead = outlook.at(now[station])
+            if company is not None:
+                lights = company.lights(now[station], step * CONTROL)
             here = (step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image)
-            view = View._make((*here, *ahead, seen))
+            view = View._make((*here, *ahead, seen, lights))
             steer, throttle, brake = guard.ask(view)
             if monitor.touched is not None:
                 throttle, brake = 0.0, 1.0  # whatever the driver says

@@ -1,0 +1,96 @@
+"""Makes drivers keep their distance to others on the road.
+
+A driver follows whoever is in its path by the Intelligent Driver Model, as the traffic around it does
+(``roadgpt.traffic.following``). Its path is the strip that the car covers along the planned line: others on
+it count, also who only reaches into it, who crosses it or moves into it, and who comes towards the car. Red
+lights count like somebody who stands behind their stop line."""
+
+from typing import Any
+
+import numpy as np
+
+from roadgpt.drive.driving_line import BEFORE_LINE, FRONT, LEAST_BRAKE, DrivingLine, FloatArray, pedals_for
+from roadgpt.drive.view import Command, View
+
+TIME_GAP = 1.5  # s, to the one ahead: the usual setting; ISO 15622 asks for at least 0.8 s
+PULL, BRAKE = 1.5, 2.0  # m/s^2, IDM's a and b, as the cars of the traffic have
+HARDEST = 9.0  # m/s^2
+FIRM = 3.0  # m/s^2, with which a car stops at a yellow light; else it drives on
+VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "bicycle")
+ROLLS = 0.3  # m/s, below which a car that need not go on is held by its brake
+GOES_ON = 0.1  # m/s^2, from which on a standing car goes on: 7 cm beyond the least distance
+
+
+class KeepingDistance:
+    """Keeps a driver's distance along its planned line."""
+
+    def __init__(self, line: DrivingLine) -> None:
+        self._line = line
+        self._along = self._path = np.empty(0)
+        self._stops_at: set[int] = set()
+        """The lights at which the car stops, counted from the last on the route."""
+
+    def ahead(self, view: View) -> FloatArray:
+        """Returns for each of the others the metres to it, its speed along the path, the acceleration that it
+        allows (see ``path_ahead.look_ahead``), and 1.0 if it is a vehicle, else 0.0. A red light counts as a
+        vehicle that stands behind its stop line."""
+        from roadgpt.drive.path_ahead import STEP, look_ahead  # only drives among others load it
+
+        line = self._line
+        if not len(self._path):
+            self._along = line.step * np.concatenate([[0.0], np.cumsum(line.stretch[:-1])])
+            even = np.arange(0.0, self._along[-1], STEP)
+            columns = [np.interp(even, self._along, each) for each in (line.x, line.y, line.heading)]
+            self._path = np.column_stack(columns)
+        first, share = line.place(view.s)
+        before, after = self._along[first : first + 2].tolist()
+        rows: list[tuple[Any, ...]] = [(*each[1:], each.kind in VEHICLES) for each in view.others]
+        rows += [self._barrier(view.s + distance) for distance in self._to_stop_at(view)]
+        if not rows:
+            return np.empty((0, 4))
+        car = np.array([view.x, view.y, view.heading, view.speed, FRONT])
+        follows = np.array([TIME_GAP, PULL, BRAKE])
+        start = before + share * (after - before)
+        others = np.array(rows, float)
+        return np.column_stack([look_ahead(self._path, start, others, car, follows), others[:, -1]])
+
+    def _barrier(self, s: float) -> tuple[float, ...]:
+        """Returns what stands for a red light at a stop line: something across the path, so far behind the
+        line that the car, which stops JAM before it, stops BEFORE_LINE before the line."""
+        from roadgpt.traffic.following import JAM
+
+        line = self._line
+        i = line.place(s + JAM - BEFORE_LINE)[0]
+        return line.x[i], line.y[i], line.heading[i], 0.0, 0.0, 1.0, 1.0
+
+    def _to_stop_at(self, view: View) -> list[float]:
+        """Returns the distances in metres to the stop lines at whose lights the car has to stop. Where it
+        once began to stop, it does until the lights are green."""
+        found = []
+        for number, (distance, shows) in zip(range(len(view.lights), 0, -1), view.lights, strict=True):
+            left = distance - FRONT
+            if shows == "green" or left <= 0.0:
+                self._stops_at.discard(number)
+            elif number in self._stops_at or view.speed**2 / 2 / left < (
+                FIRM if shows == "yellow" else HARDEST
+            ):
+                self._stops_at.add(number)
+                found.append(distance)
+        return found
+
+    def kept(self, view: View, command: Command) -> Command:
+        """Returns the command, with less throttle or more brake for red lights and others in the path."""
+        if not (view.others or view.lights):
+            return command
+        least = float(self.ahead(view)[:, 2].min(initial=np.inf))
+        return slowed(self._line, view, command, max(least, -HARDEST))
+
+
+def slowed(line: DrivingLine, view: View, command: Command, acceleration: float) -> Command:
+    """Returns the command with the pedals for an acceleration in m/s^2, unless it asks for less."""
+    if acceleration == np.inf:
+        return command
+    throttle, brake = pedals_for(acceleration, line.grade[line.place(view.s)[0]], view.speed)
+    if view.speed < ROLLS and acceleration < GOES_ON:
+        throttle, brake = 0.0, max(brake, LEAST_BRAKE)
+    return Command(command.steer, min(command.throttle, throttle), max(command.brake, brake))

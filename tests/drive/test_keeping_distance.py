@@ -1,0 +1,136 @@
+"""Drivers among others: the distance that they keep, and for whom they brake. Gaps are those of the published
+formula; others are functions of time."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+import shapely
+
+from roadgpt import plugins
+from roadgpt.drive import Command, Drive, View, simulate
+from roadgpt.network import is_route
+from roadgpt.road import Limits, Road, World
+from roadgpt.run import Setup, perform
+from roadgpt.traffic import SIZES, Tracks
+from roadgpt.traffic.actor import corners
+from roadgpt.traffic.lights import Lights
+from staged import straight, tracks
+
+V = 20.0
+WORLD = World(limits=Limits(speed_limit=V))
+ROAD = Road.through([[0, 0, 0], [300, 0, 0], [900, 0, 0]])
+LANE, FRONT = -2.0, 2.25
+DRIVERS = ("beamng_like", "lane_centring", "pure_pursuit", "reference")
+
+
+@cache
+def alone(driver: str) -> Drive:
+    """A drive with somebody who is far away, so that the car rolls at the start."""
+    return simulate(ROAD, WORLD, driver, replay=tracks(1.0, barrier=("barrier", straight(450, -90, 0, 0))))
+
+
+def gaps(drive: Drive, others: Tracks, kind: str) -> np.ndarray:
+    rear = others.at(drive["time"])[:, 0, 0] - SIZES[kind].length / 2
+    return np.asarray(rear - drive["x"] - FRONT)
+
+
+@pytest.mark.parametrize("driver", DRIVERS)
+@pytest.mark.parametrize("v", [6.0, 13.0])
+def test_behind_an_even_leader_the_gap_is_that_of_the_published_formula(driver: str, v: float) -> None:
+    others = tracks(60.0, van=("van", straight(60, LANE, 0, v)))
+    drive = simulate(ROAD, WORLD, driver, replay=others)
+    followed = (drive["time"] > 30.0) & (drive["time"] < 45.0)
+    # Treiber, Hennecke, Helbing (2000), equation 4, where the acceleration and the change of the gap are 0
+    assert gaps(drive, others, "van")[followed] == pytest.approx(2.0 + 1.5 * v, abs=0.3)
+    assert drive.ended == "goal"
+
+
+@pytest.mark.parametrize("driver", DRIVERS)
+@pytest.mark.parametrize(("kind", "y", "heading"), [("truck", LANE, 0.0), ("car", LANE - 2.3, 0.3)])
+def test_the_car_stops_behind_who_stands_in_its_path(
+    driver: str, kind: str, y: float, heading: float
+) -> None:
+    others = tracks(1.0, other=(kind, straight(300, y, heading, 0)))
+    drive = simulate(ROAD, WORLD, driver, replay=others)
+    assert drive.ended == "stuck"
+    box = shapely.Polygon(corners(others.states[0, 0], SIZES[kind]))
+    strip = shapely.box(0, LANE - 0.93, 900, LANE + 0.93)
+    assert 1.0 < box.intersection(strip).bounds[0] - drive["x"][-1] - FRONT < 4.0
+    assert drive["speed"][-500:].max() < 0.02  # it does not creep
+
+
+@pytest.mark.parametrize("driver", DRIVERS)
+def test_nobody_brakes_for_who_is_beside_the_path(driver: str) -> None:
+    oncoming = {
+        f"{kind}_{n}": (kind, straight(300 + 90 * n, 2.0, np.pi, 18.0))
+        for n, kind in enumerate(["truck", "car", "van", "bus"] * 3)
+    }
+    parked = {f"car_{n}": ("car", straight(40 + 20 * n, LANE - 2.4, 0, 0)) for n in range(20, 40)}
+    walker = {"adult_9": ("adult", straight(100, LANE - 3, 0, 1.4))}
+    drive = simulate(ROAD, WORLD, driver, replay=tracks(60.0, **oncoming, **parked, **walker))
+    for name in ("speed", "brake", "throttle", "steer", "t"):
+        assert drive[name].tolist() == alone(driver)[name].tolist()
+
+
+@pytest.mark.parametrize("driver", DRIVERS)
+@pytest.mark.parametrize("kind", ["adult", "bicycle", "animal"])
+def test_the_car_lets_pass_who_crosses_and_goes_on(driver: str, kind: str) -> None:
+    speed = {"adult": 1.5, "bicycle": 4.0, "animal": 3.0}[kind]
+    arrival = float(np.interp(200, alone(driver)["x"], alone(driver)["time"]))
+    across = straight(200, LANE - speed * arrival, np.pi / 2, speed)
+    drive = simulate(ROAD, WORLD, driver, replay=tracks(60.0, other=(kind, across)))
+    assert drive.ended == "goal"
+    assert drive.duration > alone(driver).duration + 0.5
+
+
+def test_cruise_control_brakes_within_its_standard_and_an_emergency_harder() -> None:
+    slower = simulate(ROAD, WORLD, "lane_centring", replay=tracks(60, car=("car", straight(120, LANE, 0, 8))))
+    assert 1.0 < -slower["ax"].min() < 3.5 + 0.3
+    for ahead, speed in ((30.0, 2.0), (15.0, 0.5)):
+        late = straight(200, LANE - 1.7 - speed * (200 - ahead - FRONT) / V, np.pi / 2, speed)
+        drive = simulate(ROAD, WORLD, "lane_centring", replay=tracks(60, adult=("adult", late)))
+        assert -drive["ax"].min() > 5.0
+
+
+class Watched:
+    """A driver whose views are kept."""
+
+    def __init__(self, name: str) -> None:
+        self.driver = plugins.find("drivers", name)()
+        self.start, self.views = self.driver.start, list[View]()
+
+    def steer(self, view: View) -> Command:
+        self.views.append(view)
+        return Command(*self.driver.steer(view))
+
+
+@pytest.mark.parametrize("driver", DRIVERS)
+def test_the_car_stops_before_the_line_at_red_and_passes_it_at_green_or_late_yellow(driver: str) -> None:
+    world = World(limits=Limits(speed_limit=50 / 3.6))
+    plan = "straight 160 // crossroads straight lights // straight 100 && light"
+    run = perform(plan, 3, world, Setup(reader="plan", drives=False))
+    assert is_route(run.road)
+    route, world = run.road, run.world
+    (way,) = route.passages
+    line = way.start - 0.5  # the stop line is 0.5 m wide and lies next to the junction: German RMS-1
+    stopped = 0
+    for seed in range(4):
+        watched, lights = Watched(driver), Lights(route.network, seed)
+        simulate(route, world, watched, seed)
+        before = [view for view in watched.views if view.s + FRONT < line]
+        for view in before:
+            (seen,) = view.lights
+            assert seen.distance == pytest.approx(line - view.s, abs=0.01)
+            assert seen.shows == ("green", "yellow", "red")[lights.shown(way.arrival, view.time)]
+        assert all(not view.lights for view in watched.views if view.s > line)
+        assert len(before) < len(watched.views)  # it goes on
+        last = before[-1]
+        assert last.lights[0].shows != "red"
+        if last.lights[0].shows == "yellow":
+            began = max(n for n, view in enumerate(before) if view.lights[0].shows == "green") + 1
+            assert before[began].speed ** 2 / 2 / (line - before[began].s - FRONT) > 3.0
+        stands = [line - view.s - FRONT for view in before if view.speed < 0.05]
+        assert all(0.3 < left < 2.0 for left in stands)
+        stopped += bool(stands)
+    assert 0 < stopped < 4
