@@ -218,24 +218,33 @@ def _grid(table: FloatArray, step: FloatArray) -> tuple[IntArray, IntArray, Floa
     high = np.floor((table[:, [PX, PY]] + reach[:, None]) / CELL).astype(np.int64)
     corner = low.min(0)
     columns, rows = (int(each) for each in high.max(0) - corner + 1)
-    pairs = []
-    for n, ((x0, y0), (x1, y1)) in enumerate(
-        zip((low - corner).tolist(), (high - corner).tolist(), strict=True)
-    ):
-        c, s = math.cos(table[n, PH]), math.sin(table[n, PH])
-        for column in range(x0, x1 + 1):
-            for row in range(y0, y1 + 1):
-                dx = (column + corner[0] + 0.5) * CELL - table[n, PX]
-                dy = (row + corner[1] + 0.5) * CELL - table[n, PY]
-                if (
-                    abs(dy * c - dx * s) <= table[n, PW] + 0.71 * CELL
-                    and abs(dx * c + dy * s) <= step[n] + 0.71 * CELL
-                ):
-                    pairs.append((row * columns + column, n))
-    found = np.array(sorted(pairs), np.int64).reshape(-1, 2)
+    low, high = low - corner, high - corner + 1
+    pairs = np.empty((int(np.prod(high - low, axis=1).sum()), 2), np.int64)
+    found = pairs[: _reached(table, step, low, high, corner, columns, pairs)]
+    found = found[np.lexsort((found[:, 1], found[:, 0]))]
     starts = np.searchsorted(found[:, 0], np.arange(columns * rows + 1))
     grid = np.array([corner[0] * CELL, corner[1] * CELL, columns, rows], float)
     return np.ascontiguousarray(found[:, 1]), starts, grid
+
+
+@compiled
+def _reached(
+    table: FloatArray, step: FloatArray, low: IntArray, high: IntArray, corner: IntArray, columns: int,
+    pairs: IntArray,
+) -> int:  # fmt: skip
+    """Writes pairs of a cell and a sample whose slab may reach into it; returns their number."""
+    count = 0
+    for n in range(len(table)):
+        c, s = math.cos(table[n, PH]), math.sin(table[n, PH])
+        for column in range(low[n, 0], high[n, 0]):
+            for row in range(low[n, 1], high[n, 1]):
+                dx = (column + corner[0] + 0.5) * CELL - table[n, PX]
+                dy = (row + corner[1] + 0.5) * CELL - table[n, PY]
+                is_beside = abs(dy * c - dx * s) <= table[n, PW] + 0.71 * CELL
+                if is_beside and abs(dx * c + dy * s) <= step[n] + 0.71 * CELL:
+                    pairs[count, 0], pairs[count, 1] = row * columns + column, n
+                    count += 1
+    return count
 
 
 @inlined
