@@ -383,11 +383,11 @@ def _change(
     left, 1: right); minus infinity if it cannot or may not."""
     lane, row = ways[i, whole[i, AT]], numbers[i]
     target = lanes.beside[lane, side]
-    if target < 0:
+    if target < 0 or (lanes.ends[target] and not must):
         return -math.inf
     s = across(lanes, lane, row[S], target)
     way = max(row[V] * CHANGE, LEAST_WAY)
-    if s < lanes.usable[target, 0] + row[LENGTH] or s + way > lanes.usable[target, 1]:
+    if s < lanes.usable[target, 0] + row[LENGTH] or (not must and s + way > lanes.usable[target, 1]):
         return -math.inf
     limit, best = (
         URGENT if must else SAFE,
