@@ -267,6 +267,15 @@ def _has_room(
     return True
 
 
+@inlined
+def _is_in(entries: FloatArray, count: int, body: float, lane: int) -> bool:
+    """Returns whether somebody is in a lane."""
+    found = False
+    for n in range(count):
+        found = found or (entries[n, 0] == lane and entries[n, 4] == body)
+    return found
+
+
 @compiled
 def _may_enter(
     lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, k: int,
@@ -280,12 +289,10 @@ def _may_enter(
     for c in range(begin, end):
         other, first, last = lanes.conflict[c, 0], lanes.conflict_at[c, 2], lanes.conflict_at[c, 3]
         for n in range(0 if is_over else count):  # also somebody without a grant, such as a pedestrian
-            if (
-                entries[n, 0] == other
-                and entries[n, 4] != i
-                and entries[n, 1] < last
-                and entries[n, 2] > first
-            ):
+            is_there = entries[n, 0] == other and entries[n, 4] != i
+            is_there = is_there and entries[n, 1] < last and entries[n, 2] > first
+            leads = k + 1 < whole[i, LAST] and _is_in(entries, count, entries[n, 4], ways[i, k + 1])
+            if is_there and not leads:  # who leads, with its rear still there, is followed
                 return False
         until = max(ahead, 0.0) + lanes.conflict_at[c, 1] + row[LENGTH] / 2.0
         leaves = _time_over(row[V], until, slowest, row[PULL])
@@ -298,7 +305,9 @@ def _may_enter(
                 continue
             if _comes_before(lanes, numbers, whole, ways, i, j, other, first, leaves, lights):
                 return False
-    return begin == end or _has_room(lanes, numbers, whole, ways, i, k, ahead, entries, count)
+    if begin == end or lanes.leaves_ring[lane]:  # in a ring everybody moves up, or it would stand for ever
+        return True
+    return _has_room(lanes, numbers, whole, ways, i, k, ahead, entries, count)
 
 
 @compiled

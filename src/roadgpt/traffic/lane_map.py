@@ -64,6 +64,8 @@ class LaneMap(NamedTuple):
     """Whether vehicles come onto the map at the start of a lane."""
     longest: FloatArray
     """The length in metres of the longest vehicle that keeps within the lane in its bends."""
+    leaves_ring: NDArray[np.bool_]
+    """Whether a lane of a junction continues the ring of a roundabout, around it or out of it."""
     conflict: IntArray
     """Shape (conflicts, 2): the other lane, and 1 if the own lane gives way to it; ``conflict_of`` has where
     each lane begins."""
@@ -135,6 +137,7 @@ def _made(lanes: Lanes, limit: float, kept: frozenset[Leg] | None) -> tuple[Lane
         ),
         np.array([_begins(lanes, lane, number) for lane in used]),
         np.array(longest),
+        np.array([_leaves_ring(lanes, lane) for lane in used]),
         np.array([row[:2] for row in flat], np.int64).reshape(-1, 2),
         np.array([row[2:] for row in flat], float).reshape(-1, 4),
         conflict_of,
@@ -205,6 +208,12 @@ def _conflicts(lanes: Lanes, lane: Lane, number: dict[Leg, int]) -> list[tuple[f
         if is_there and place is not None and not {*other.predecessors} & {*lane.predecessors}:
             found.append((number[key], float(key in over), *place.own, *place.others))
     return found
+
+
+def _leaves_ring(lanes: Lanes, lane: Lane) -> bool:
+    rings = lanes.network.roundabout_of
+    ring = None if lane.member.junction is None else rings.get(lane.member.junction)
+    return ring is not None and any(each.road in ring.ring for each in lane.predecessors)
 
 
 def _rows(rows: Sequence[Sequence[int]]) -> tuple[IntArray, IntArray]:
