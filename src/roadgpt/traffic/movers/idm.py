@@ -74,7 +74,7 @@ class IdmMover:
         size = 64
         self._numbers = np.zeros((size, 14))
         self._whole = np.zeros((size, 6), np.int64)
-        self._ways = np.full((size, LONGEST_WAY), -1, np.int64)
+        self._ways = np.full((size, max(LONGEST_WAY, len(self._path[1]))), -1, np.int64)
         self._states = np.full((size, 5), math.nan)
         self._who, self._rows = np.zeros(0, np.int64), np.zeros(0, np.int64)
         """The actors that are there, and the row of each."""
@@ -154,10 +154,10 @@ class IdmMover:
         k = int(np.searchsorted(starts, car.s, side="right")) - 1
         k = min(max(k, 0), len(lanes) - 1)
         if whole[f.STATE] == f.ABSENT:
-            self._ways[f.TESTED, : min(len(lanes), LONGEST_WAY)] = lanes[:LONGEST_WAY]
-            whole[:] = 0, min(len(lanes), LONGEST_WAY), -1, -1, f.DRIVES, 0
+            self._ways[f.TESTED, : len(lanes)] = lanes
+            whole[:] = 0, len(lanes), -1, -1, f.DRIVES, 0
         share = (car.s - starts[k]) / max(starts[k + 1] - starts[k], 1e-6)
-        whole[f.AT] = min(k, LONGEST_WAY - 1)
+        whole[f.AT] = k
         row[f.S] = share * self.lanes.length[lanes[k]]
 
     def enter(self, lane: int, s: float, most: float) -> None:
