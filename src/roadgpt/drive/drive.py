@@ -268,7 +268,7 @@ def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
 def packed(others: "Tracks") -> tuple[list[Any], NDArray[np.int64]]:
     """Returns the actors as JSON data, and their states as whole numbers, from which ``unpacked`` makes equal
     Tracks."""
-    actors = [[each.name, each.kind, each.size, each.is_parked] for each in others.actors]
+    actors = [[each.name, each.kind, each.size] for each in others.actors]
     return actors, np.nan_to_num(np.rint(others.states * PER_UNIT), nan=GONE).astype(np.int64)
 
 
@@ -278,20 +278,17 @@ def unpacked(actors: Any, states: NDArray[Any], duration: float) -> "Tracks":
     from roadgpt.brief.scene import ActorKind
     from roadgpt.traffic import STEP, Actor, Size, Tracks
 
-    rows = strictly(tuple[tuple[str, ActorKind, tuple[float, float, float], bool], ...], actors)
+    rows = strictly(tuple[tuple[str, ActorKind, tuple[float, float, float]], ...], actors)
     if states.dtype != np.int64 or states.ndim != 3 or states.shape[1:] != (len(rows), len(PER_UNIT)):
         raise ValueError("others have five whole numbers for each sample and actor")
     if len(states) * STEP < duration:
         raise ValueError("others have a sample every 0.1 s until the end")
-    if (
-        len({name for name, *_ in rows}) < len(rows)
-        or min([1.0, *(min(size) for _, _, size, _ in rows)]) <= 0
-    ):
+    if len({name for name, *_ in rows}) < len(rows) or min([1.0, *(min(size) for _, _, size in rows)]) <= 0:
         raise ValueError("others have different names, and sizes above 0")
     is_gone = states == GONE
     if (is_gone.any(axis=2) != is_gone.all(axis=2)).any():
         raise ValueError("an actor is there as a whole, or not")
-    found = tuple(Actor(name, kind, Size(*size), is_parked) for name, kind, size, is_parked in rows)
+    found = tuple(Actor(name, kind, Size(*size)) for name, kind, size in rows)
     return Tracks(found, np.where(is_gone, np.nan, states / PER_UNIT))
 
 

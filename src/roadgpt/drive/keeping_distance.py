@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from roadgpt.brief.scene import VEHICLES
 from roadgpt.drive.driving_line import BEFORE_LINE, FRONT, LEAST_BRAKE, DrivingLine, FloatArray, pedals_for
 from roadgpt.drive.view import Command, View
 
@@ -16,7 +17,6 @@ TIME_GAP = 1.5  # s, to the one ahead: the usual setting; ISO 15622 asks for at 
 PULL, BRAKE = 1.5, 2.0  # m/s^2, IDM's a and b, as the cars of the traffic have
 HARDEST = 9.0  # m/s^2
 FIRM = 3.0  # m/s^2, with which a car stops at a yellow light; else it drives on
-VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "bicycle")
 ROLLS = 0.3  # m/s, below which a car that need not go on is held by its brake
 GOES_ON = 0.1  # m/s^2, from which on a standing car goes on: 7 cm beyond the least distance
 

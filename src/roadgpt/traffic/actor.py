@@ -71,13 +71,6 @@ class Actor:
     """Unique within a drive, such as "truck 1"."""
     kind: ActorKind
     size: Size
-    is_parked: bool = False
-    """Whether it stands beside the lanes all the time."""
-
-    @property
-    def is_vehicle(self) -> bool:
-        """Whether it is driven on the lanes; persons, animals and things are not."""
-        return self.kind in ("car", "van", "truck", "bus", "motorcycle", "bicycle")
 
 
 @dataclass(frozen=True, eq=False)
