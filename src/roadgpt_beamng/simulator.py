@@ -41,7 +41,7 @@ class BeamngSimulator:
     """
 
     # The surfaces are those of the level's materials, and mesh roads that a client builds are level across.
-    ignores = ("friction", "bank", "scene")
+    ignores = ("friction", "bank")
     single_roads_only = True
 
     def __init__(self, settings: BeamngSettings | None = None) -> None:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from roadgpt import plugins
-from roadgpt.brief.scene import scene_text, unbuilt
+from roadgpt.brief.scene import Scene, scene_text, unbuilt
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended, Handover, check_motion
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, LightAhead, Other, View
@@ -94,7 +94,7 @@ class Simulator(Protocol):
         With ``traffic`` others are on the road. The car then starts at the speed of the scene, or else at the
         speed limit, and leaving its lane does not end the drive. From the first contact of its box with
         another on it brakes fully, and 3 s later the drive ends. It is stuck if it moves less than 1 m in
-        30 s, not in 10 s, and the time is up after twice the time that it may take alone for the way.
+        120 s, not in 10 s, and the time is up after twice the time that it may take alone for the way.
 
         Raises:
             DriverError: the driver raised an exception, returned something that is not a command, or hung.
@@ -144,7 +144,7 @@ def simulate(
     road = world.lay(road)
     refuse_ignored(engine, world, road, replay is not None)
     traffic = None
-    if replay is not None or _has_others(world):
+    if replay is not None or world.scene.has_flow:
         from roadgpt.traffic import begin  # a drive without others does not need it
 
         traffic = begin(road, world, seed, replay)
@@ -154,20 +154,16 @@ def simulate(
     return drive
 
 
-def _has_others(world: "World") -> bool:
-    return bool(world.scene.has_flow or world.scene.actors or world.scene.parked)
-
-
 def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, replays: bool = False) -> None:
     """Raises UsageError if the simulator cannot apply a setting of the world, the superelevation of the road,
     cannot drive through the junctions of a route, or cannot move others on the road, who come from the scene
     or are replayed. ``road`` is None if it is not known yet."""
     from roadgpt.road import World
 
-    if (replays or _has_others(world)) and not getattr(simulator, "moves_others", False):
+    if (replays or world.scene != Scene()) and not getattr(simulator, "moves_others", False):
         raise UsageError(
-            "this simulator cannot move others on the road yet; leave them out, or drive in the simulator "
-            "mujoco"
+            "this simulator cannot move others on the road yet; leave scene and tracks out, or drive in the "
+            "simulator mujoco"
         )
 
     # such a simulator builds what a plain road has: no traffic on the left, no lanes that a Route has merged
@@ -181,11 +177,6 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, r
         )
     values, usual = world.values(), World().values()
     ignored = getattr(simulator, "ignores", ())
-    if "scene" in ignored and values["scene"]:
-        raise UsageError(
-            "this simulator has nobody else on the road yet; leave the scene out, or drive in the simulator "
-            "mujoco"
-        )
     profile = None if road is None else road.profile
     is_banked = profile is not None and profile.superelevation_angle is not None
     if "bank" in ignored and (is_banked or values["bank"] != usual["bank"]):
