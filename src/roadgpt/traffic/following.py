@@ -610,10 +610,6 @@ def step(
         room: Gets the metres at the start of each lane that are free.
         tick: The number of the step."""
     count = _boxes(lanes, numbers, whole, ways, present, states, bodies, entries)
-    room[:] = math.inf
-    for n in range(count):
-        lane = int(entries[n, 0])
-        room[lane] = min(room[lane], entries[n, 1])
     if whole[TESTED, STATE] == DRIVES:
         _reserve(lanes, numbers, whole, ways)
     order = np.argsort(-numbers[:present, WAIT], kind="mergesort")
@@ -631,6 +627,10 @@ def step(
         else:
             turn = (tick + i) % EVERY == 0
             count = _decide(lanes, numbers, whole, ways, present, i, states, entries, count, lights, turn)
+    room[:] = math.inf
+    for n in range(count):
+        lane = int(entries[n, 0])
+        room[lane] = min(room[lane], entries[n, 1])
     for i in range(present):
         if i != TESTED and (whole[i, STATE] == DRIVES or whole[i, STATE] == STANDS_HIT):
             _move(lanes, numbers[i], whole[i], ways[i])

@@ -225,7 +225,8 @@ class IdmMover:
             if not self._waits[lane]:
                 continue
             gap = self._room[lane] - 5.0 - f.JAM
-            speed = min(float(self.lanes.limit[lane]), gap / 1.5, self._stoppable(lane, 0.0))
+            fastest = gap / 1.5, math.sqrt(2.0 * f.FIRM * max(gap, 0.0)), self._stoppable(lane, 0.0)
+            speed = min(float(self.lanes.limit[lane]), *fastest)
             if gap > 8.0 and speed >= min(LEAST_SPEED, float(self.lanes.limit[lane])):
                 self.enter(lane, 0.0, speed)
                 self._waits[lane] -= 1
