@@ -58,8 +58,8 @@ JUNCTIONS = [
     "straight 150 // lane_gain // | len=200",
     "map columns=2 rows=2",
     "map columns=3 rows=2 stop",
-    "map; junction x4 dead_ends=4",
-    "map; t_junction x3 dead_ends=3",
+    "map junction x4 dead_ends=4",
+    "map t_junction x3 dead_ends=3",
     "straight 100 // crossroads left crosswalk // straight 100",
     "turn left r60 // crossroads straight // turn right r60",
 ]

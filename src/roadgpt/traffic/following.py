@@ -369,6 +369,8 @@ def _to_stop(
     is_over = line < -LINE
     if not is_over and (closed or (lanes.has_stop_sign[before] and whole[i, HAS_STOPPED] == 0)):
         return float(line)
+    if row[PROGRESS] < 1.0:  # it might wait for the lane that it leaves, and others for its grant
+        return float(line)
     if not _is_first(lanes, numbers, whole, ways, present, i, k, entries, count):
         return float(line)
     if not _may_enter(lanes, numbers, whole, ways, present, i, k, ahead, is_over, entries, count, lights):
