@@ -304,6 +304,11 @@ class Scene(Frozen):
         return self.flow is not None or self.oncoming not in (None, "none")
 
     @property
+    def has_others(self) -> bool:
+        """Whether somebody or something else is on the road."""
+        return self.has_flow or bool(self.actors or self.parked)
+
+    @property
     def surfaces(self) -> tuple[Surface, ...]:
         """What sets the friction: the surface that is named, or else rain."""
         return (self.surface,) if self.surface else ("wet",) if self.rain else ()

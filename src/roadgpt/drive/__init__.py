@@ -144,7 +144,7 @@ def simulate(
     road = world.lay(road)
     refuse_ignored(engine, world, road, replay is not None)
     traffic = None
-    if replay is not None or world.scene.has_flow:
+    if replay is not None or world.scene.has_others:
         from roadgpt.traffic import begin  # a drive without others does not need it
 
         traffic = begin(road, world, seed, replay)

@@ -130,7 +130,12 @@ def begin(
         UsageError: the file cannot be used."""
     if isinstance(replay, str | Path):
         replay = read_recording(Path(replay)).on(road, world)
-    is_needed = {"replay": replay is not None, "idm": world.scene.has_flow}
+    scene = world.scene
+    is_needed = {
+        "replay": replay is not None,
+        "script": bool(scene.actors or scene.parked),
+        "idm": scene.has_flow,
+    }
     stage = Stage(road, world, seed, replay)
     movers = [plugins.find("movers", name)(stage) for name, needed in is_needed.items() if needed]
     return Traffic(movers) if movers else None
