@@ -20,6 +20,7 @@ from roadgpt.drive.view import LightAhead, Other, View
 from roadgpt.stopping import look
 
 if TYPE_CHECKING:
+    from roadgpt.brief.amount import Amount
     from roadgpt.drive import Driver
     from roadgpt.road import Road, World
     from roadgpt.traffic import Traffic
@@ -36,9 +37,19 @@ def first_speed(world: "World") -> float:
     """Returns the speed in m/s at which the car starts to roll among others: that of the scene, or the middle
     of its range, else the speed limit."""
     speed = world.scene.speed
-    if speed is None:
-        return world.limits.speed_limit
-    return mean(bound for bound in (speed.lo, speed.hi) if bound is not None) / 3.6
+    return world.limits.speed_limit if speed is None else _middle(speed) / 3.6
+
+
+def _middle(amount: "Amount") -> float:
+    return mean(bound for bound in (amount.lo, amount.hi) if bound is not None)
+
+
+def _friction_at(s: float, world: "World") -> float:
+    """Returns the friction at a station: that of a slippery place of the scene, or the World's."""
+    there = (
+        patch for patch in world.scene.slippery if 0 <= s - _middle(patch.station) < _middle(patch.length)
+    )
+    return next((_middle(patch.friction) for patch in there), world.site.friction)
 
 
 class MujocoSimulator:
@@ -94,6 +105,8 @@ class MujocoSimulator:
             steer, throttle, brake = guard.ask(view)
             if monitor.touched is not None:
                 throttle, brake = 0.0, 1.0  # whatever the driver says
+            if world.scene.slippery:
+                vehicle.stand_on(_friction_at(now[station], world))
             vehicle.move(steer, throttle, brake)
             look()
             rows.append(vehicle.row.tobytes())
