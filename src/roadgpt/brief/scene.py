@@ -299,6 +299,8 @@ class Scene(Frozen):
 
     speed: Amount | None = None
     """The speed of the tested car at its start in km/h."""
+    turn: Literal["left", "right", "straight"] | None = None
+    """The way that the tested car takes at the first junction; None: that of the route."""
     actors: tuple[Role, ...] = ()
     flow: Flow | None = None
     """How many vehicles drive in the lanes of the map: 5, 12 or 25 for each km and lane; None: nobody."""
@@ -379,6 +381,8 @@ def scene_text(scene: Scene) -> str:
 def _parts(scene: Scene) -> Iterator[str]:
     if scene.speed:
         yield f"the tested car starts at {scene.speed} km/h"
+    if scene.turn:
+        yield f"it goes {scene.turn} at the junction"
     yield from map(str, scene.actors)
     for flow, name in ((scene.flow, "traffic"), (scene.oncoming, "oncoming traffic")):
         if flow:
