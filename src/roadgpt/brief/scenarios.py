@@ -101,7 +101,9 @@ class Scenario(NamedTuple):
         """Returns the scenario with another value of a parameter."""
         if name not in self.parameters:
             known = f"its parameters are {', '.join(self.parameters)}"
-            raise UsageError(f"the scenario {self.name} has no '{name}'; {_nearest(name, self.parameters) or known}")
+            raise UsageError(
+                f"the scenario {self.name} has no '{name}'; {_nearest(name, self.parameters) or known}"
+            )
         usual, unit = self.parameters[name]
         if isinstance(usual, str):
             known = {usual: None, **dict.fromkeys(v for block in self.grid for v in block.get(name, ()))}
@@ -130,7 +132,9 @@ def scenarios() -> Mapping[str, Scenario]:
     for name, row in TABLE.items():
         parameters = {each: (usual, said) for each, (usual, said) in row["parameters"].items()}
         values = {each: usual for each, (usual, _) in parameters.items()}
-        made[name] = Scenario(name, **{**row, "parameters": parameters, "grid": tuple(row["grid"])}, values=values)
+        made[name] = Scenario(
+            name, **{**row, "parameters": parameters, "grid": tuple(row["grid"])}, values=values
+        )
     return made
 
 
@@ -142,13 +146,17 @@ def chosen(text: str) -> list[Scenario]:
         name, *given = part.split()
         named = [each for each in scenarios().values() if fnmatchcase(each.name, name)]
         if not named:
-            near = _nearest(name, scenarios()) or _nearest(name, {each.partition(":")[2]: 0 for each in scenarios()})
+            near = _nearest(name, scenarios()) or _nearest(
+                name, {each.partition(":")[2]: 0 for each in scenarios()}
+            )
             raise UsageError(f"there is no scenario '{name[:40]}'; {near or 'roadgpt scenarios lists them'}")
         for each in named:
             for word in given:
                 key, equals, value = word.partition("=")
                 if not equals:
-                    raise UsageError(f"'{word[:40]}' is no parameter of {each.name}; write for example ego=40")
+                    raise UsageError(
+                        f"'{word[:40]}' is no parameter of {each.name}; write for example ego=40"
+                    )
                 each = each.with_value(key, value)
             each.onto(Scene())
             found[str(each)] = each

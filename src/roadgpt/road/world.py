@@ -167,6 +167,10 @@ class Parts(Frozen):
     keep_driving: bool = Field(
         False, description="Continue to the end after the car leaves its lane.", json_schema_extra=DRIVE
     )
+    scenario: str = Field(
+        "", description="A scenario of the catalogue: ncap:CCRb, 'r157:cut_in slower=30'.",
+        json_schema_extra=DRIVE,
+    )  # fmt: skip
     tracks: str = Field(
         "", description="Recorded tracks of others on the road, FILE.csv or FILE.xosc.",
         json_schema_extra=DRIVE | RARE,

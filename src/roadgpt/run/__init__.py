@@ -97,6 +97,7 @@ def perform(
             cannot apply a setting of the world.
         DriverError: the driver hung while it was created.
     """
+    world = setup.staged(world)
     check_parts(setup, world)
     begun = time.perf_counter()
     meter = meter or Meter.of(setup.chat)
@@ -151,7 +152,7 @@ def prove(
             then has both the findings and the verdict. A road that is physically impossible to drive is never
             driven.
     """
-    world = world.in_scene_of(brief).on_surface_of(brief)
+    world = setup.staged(world).in_scene_of(brief).on_surface_of(brief)
     check_parts(setup, world)
     begun = time.perf_counter()
     design = None if isinstance(blueprint, Road) else blueprint
