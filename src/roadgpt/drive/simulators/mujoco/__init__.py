@@ -33,13 +33,6 @@ _SEEN = itemgetter(
 )
 
 
-def first_speed(world: "World") -> float:
-    """Returns the speed in m/s at which the car starts to roll among others: that of the scene, or the middle
-    of its range, else the speed limit."""
-    speed = world.scene.speed
-    return world.limits.speed_limit if speed is None else _middle(speed) / 3.6
-
-
 def _middle(amount: "Amount") -> float:
     return mean(bound for bound in (amount.lo, amount.hi) if bound is not None)
 
@@ -85,7 +78,7 @@ class MujocoSimulator:
         guard.start(road, world, seed)
         middle = float(world.profile_of(road).middle(monitor.start))
         rolls = traffic is not None or world.scene.speed is not None
-        speed = first_speed(world) if rolls else 0.0
+        speed = world.first_speed if rolls else 0.0
         vehicle.put(monitor.start, middle + self.start_offset, speed)
         rows, step = [vehicle.row.tobytes()], 0
         while True:
