@@ -4,7 +4,6 @@ The car can be changed: ``MujocoSimulator(replace(ETK_LIKE, max_drive_accelerati
 weaker acceleration."""
 
 from operator import itemgetter
-from statistics import mean
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +12,7 @@ from roadgpt.drive.camera_sensor import CameraSensor, camera_of
 from roadgpt.drive.drive import COLUMNS, Columns, Drive
 from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.drive.driver_guard import DriverGuard
+from roadgpt.drive.driving_line import first_speed
 from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Axle, Car, Tyre
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle, plane
@@ -30,15 +30,6 @@ _NAMES = tuple(COLUMNS)
 _SEEN = itemgetter(
     *map(_NAMES.index, ["x", "y", "z", "heading", "speed", "yaw_rate", "s", "t", "steer", "vx", "vy"])
 )
-
-
-def first_speed(world: "World") -> float:
-    """Returns the speed in m/s at which the car starts to roll among others: that of the scene, or the middle
-    of its range, else the speed limit."""
-    speed = world.scene.speed
-    if speed is None:
-        return world.limits.speed_limit
-    return mean(bound for bound in (speed.lo, speed.hi) if bound is not None) / 3.6
 
 
 class MujocoSimulator:
