@@ -22,7 +22,7 @@ from pydantic import (
     model_validator,
 )
 
-from roadgpt.brief.amount import Frozen
+from roadgpt.brief.amount import Amount, Frozen
 from roadgpt.brief.beside import friction_of
 from roadgpt.brief.model import CentreLine
 from roadgpt.brief.plan import read_scene, scene_plan
@@ -326,6 +326,10 @@ def _scene_in(given: Any) -> Any:
         raise ValueError(str(error)) from error
 
 
+def _middle(amount: Amount) -> float:
+    return mean(bound for bound in (amount.lo, amount.hi) if bound is not None)
+
+
 class World(BaseModel):
     """Everything that the roads of a run or a campaign share: a Site, a CrossSection, Limits and a Scene.
     Files have the fields of the first three in one flat table, with the text of the scene if there is one,
@@ -402,10 +406,15 @@ class World(BaseModel):
     def first_speed(self) -> float:
         """The speed in m/s at which the tested car starts to roll among others: that of the scene, or the
         middle of its range, else the speed limit."""
-        speed = self.scene.speed
-        if speed is None:
-            return self.limits.speed_limit
-        return mean(bound for bound in (speed.lo, speed.hi) if bound is not None) / KMH
+        return self.limits.speed_limit if self.scene.speed is None else _middle(self.scene.speed) / KMH
+
+    def friction_at(self, s: float) -> float:
+        """Returns the friction at a station of the tested car's road: that of a slippery place, or the usual
+        one."""
+        for patch in self.scene.slippery:
+            if 0 <= s - _middle(patch.station) < _middle(patch.length):
+                return _middle(patch.friction)
+        return self.site.friction
 
     def profile_of(self, road: "Road") -> "Profile":
         """Returns the Profile of a road: ``road.profile`` or, if that is None, one made from ``section``.

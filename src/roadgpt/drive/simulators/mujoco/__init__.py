@@ -4,7 +4,6 @@ The car can be changed: ``MujocoSimulator(replace(ETK_LIKE, max_drive_accelerati
 weaker acceleration."""
 
 from operator import itemgetter
-from statistics import mean
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +12,7 @@ from roadgpt.drive.camera_sensor import CameraSensor, camera_of
 from roadgpt.drive.drive import COLUMNS, Columns, Drive
 from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.drive.driver_guard import DriverGuard
+from roadgpt.drive.driving_line import first_speed
 from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Axle, Car, Tyre
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle, plane
@@ -20,7 +20,6 @@ from roadgpt.drive.view import LightAhead, Other, View
 from roadgpt.stopping import look
 
 if TYPE_CHECKING:
-    from roadgpt.brief.amount import Amount
     from roadgpt.drive import Driver
     from roadgpt.road import Road, World
     from roadgpt.traffic import Traffic
@@ -31,18 +30,6 @@ _NAMES = tuple(COLUMNS)
 _SEEN = itemgetter(
     *map(_NAMES.index, ["x", "y", "z", "heading", "speed", "yaw_rate", "s", "t", "steer", "vx", "vy"])
 )
-
-
-def _middle(amount: "Amount") -> float:
-    return mean(bound for bound in (amount.lo, amount.hi) if bound is not None)
-
-
-def _friction_at(s: float, world: "World") -> float:
-    """Returns the friction at a station: that of a slippery place of the scene, or the World's."""
-    there = (
-        patch for patch in world.scene.slippery if 0 <= s - _middle(patch.station) < _middle(patch.length)
-    )
-    return next((_middle(patch.friction) for patch in there), world.site.friction)
 
 
 class MujocoSimulator:
@@ -99,7 +86,7 @@ class MujocoSimulator:
             if monitor.touched is not None:
                 throttle, brake = 0.0, 1.0  # whatever the driver says
             if world.scene.slippery:
-                vehicle.stand_on(_friction_at(now[station], world))
+                vehicle.stand_on(world.friction_at(now[station]))
             vehicle.move(steer, throttle, brake)
             look()
             rows.append(vehicle.row.tobytes())
