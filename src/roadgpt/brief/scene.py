@@ -401,9 +401,6 @@ def _parts(scene: Scene) -> Iterator[str]:
 UNBUILT = {
     "actors": "single actors",
     "parked": "rows of parked cars",
-    "fog": "fog",
-    "rain": "rain",
-    "light": "night and a low sun",
 }
 """The parts of a scene that are read and told, but that no drive has yet."""
 

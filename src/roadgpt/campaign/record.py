@@ -653,7 +653,8 @@ def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict
     step = len(drive) - 1
     if result.at_s is not None and result.cause in ("out of lane", "fell"):
         step = int(np.argmin(np.abs(drive["s"] - result.at_s)))
-    judged = judge(road, drive, cell.request.world, (step, result.cause))
+    world = cell.request.world.in_weather_of(drive.seed)
+    judged = judge(road, drive, world, (step, result.cause))
     kept = {name: getattr(result, name) for name in ("outcome", *OF_VERDICT)}
     return replace(judged, **{name: value for name, value in kept.items() if value is not None})
 

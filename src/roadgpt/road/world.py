@@ -27,6 +27,7 @@ from roadgpt.brief.beside import friction_of
 from roadgpt.brief.model import CentreLine
 from roadgpt.brief.plan import read_scene, scene_plan
 from roadgpt.brief.scene import Scene
+from roadgpt.brief.visibility import weather_drawn
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
 from roadgpt.errors import BriefError, UsageError
 
@@ -383,6 +384,11 @@ class World(BaseModel):
         if brief is None or brief.scene == Scene() or "scene" in self.model_fields_set:
             return self
         return self.changed(scene=brief.scene)
+
+    def in_weather_of(self, seed: int) -> "World":
+        """Returns the World with the fog and rain that a drive with this seed draws from their ranges."""
+        scene = weather_drawn(self.scene, seed)
+        return self if scene is self.scene else self.changed(scene=scene)
 
     def on_surface_of(self, brief: "Brief | None") -> "World":
         """Returns the World with the friction of the surface that its scene or a Brief names, such as a wet

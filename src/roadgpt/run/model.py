@@ -163,8 +163,9 @@ class Run:
 
     @property
     def world(self) -> World:
-        """The map, the friction, the default lanes, and the limits of the rules."""
-        return self.request.world
+        """The map, the friction, the default lanes, the limits of the rules, and the scene with the weather
+        that the drive has drawn."""
+        return self.request.world.in_weather_of(self.seed)
 
     @property
     def is_valid(self) -> bool:

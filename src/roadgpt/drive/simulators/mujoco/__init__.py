@@ -61,7 +61,7 @@ class MujocoSimulator:
         if traffic is not None:
             from roadgpt.drive.company import Company  # only drives among others load it
 
-            company = Company(traffic, self.car.box, monitor, road)
+            company = Company(traffic, self.car.box, monitor, road, world)
         guard.start(road, world, seed)
         middle = float(world.profile_of(road).middle(monitor.start))
         rolls = traffic is not None or world.scene.speed is not None
