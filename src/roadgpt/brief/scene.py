@@ -36,6 +36,8 @@ ANYTHING: tuple[ActorKind, ...] = get_args(ActorKind)
 SEVERAL = {"bus": "buses", "child": "children", "cones": "cones"}
 """The plurals that are not made with an s."""
 ALONG = ("ahead", "behind", "lane", "far", "oncoming")
+LEAVES = ("cut_out", "change_lane")
+LANES_AWAY = {"lane": 1, "far": 2}
 ACROSS = ("crossing", "crosswalk", "junction", "beside")
 ANYWHERE = get_args(Where)
 
@@ -338,6 +340,19 @@ class Scene(Frozen):
         return self.has_flow or bool(self.actors or self.parked)
 
     @property
+    def lanes_beside(self) -> dict[str, int]:
+        """How many lanes of its direction it needs to the left and to the right of the tested car's."""
+        found = {"left": 0, "right": 0}
+        for role in self.actors:
+            leave = [each for each in role.actions if each.what in LEAVES]
+            needs = [(LANES_AWAY.get(role.where, 0), role.side)]
+            needs += [(1, each.side) for each in leave if role.where in ("ahead", "behind")]
+            for count, side in needs:
+                side = "right" if side == "right" else "left"
+                found[side] = max(found[side], count)
+        return found
+
+    @property
     def surfaces(self) -> tuple[Surface, ...]:
         """What sets the friction: the surface that is named, or else rain."""
         return (self.surface,) if self.surface else ("wet",) if self.rain else ()
@@ -398,10 +413,7 @@ def _parts(scene: Scene) -> Iterator[str]:
     yield from map(str, scene.slippery)
 
 
-UNBUILT = {
-    "actors": "single actors",
-    "parked": "rows of parked cars",
-}
+UNBUILT: dict[str, str] = {}
 """The parts of a scene that are read and told, but that no drive has yet."""
 
 

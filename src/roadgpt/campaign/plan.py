@@ -18,6 +18,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, Validati
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief, Frozen
+from roadgpt.brief.scene_fit import fitted
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
 from roadgpt.campaign.model import (
     MOST_TESTS,
@@ -186,8 +187,8 @@ class Plan(PlanChoices):
         return [
             Cell(
                 name=f"c{number:0{wide}d}",
-                request=request.model_copy(update={"world": world_for(brief, request.world)}),
-                brief=brief,
+                request=request.model_copy(update={"world": (world := world_for(brief, request.world))}),
+                brief=brief and fitted(brief, world.scene, world.first_speed),
                 generator=generator,
                 goal=self.goal if self._searches(generator) else None,
                 settings=self.settings,

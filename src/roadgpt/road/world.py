@@ -429,7 +429,12 @@ class World(BaseModel):
             return road.profile
         if self.section.bank != "none":
             raise UsageError("the road has no superelevation yet; use the road that world.lay(road) returns")
-        return self.section.profile(road.length)
+        return self._profile(road.length)
+
+    def _profile(self, length: float) -> "Profile":
+        profile = self.section.profile(length)
+        beside = self.scene.lanes_beside["right"]
+        return replace(profile, driven=max(profile.driven - beside, 0)) if beside else profile
 
     def lay(self, road: "Road") -> "Road":
         """Returns the road with the lanes and banked bends of this World's ``section``. A road that has a
@@ -438,7 +443,7 @@ class World(BaseModel):
         section = self.section
         if road.profile is not None or all(getattr(section, name) == usual for name, usual in OWN.items()):
             return road
-        profile = section.profile(road.length)
+        profile = self._profile(road.length)
         if section.bank != "none":
             from roadgpt.road.profile import superelevation
 

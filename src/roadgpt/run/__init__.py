@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 from roadgpt import plugins
 from roadgpt.brief import NoRoomError, read
 from roadgpt.brief.model import Brief
+from roadgpt.brief.scene_fit import fitted
 from roadgpt.chat import Meter, ReplyError, counting
 from roadgpt.check import inspect, rules_of
 from roadgpt.design import check_designer, designer_of
@@ -104,6 +105,7 @@ def perform(
     before = meter.spent
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
     request = Request(words=brief.words, seed=seed, world=world_for(brief, world), setup=setup)
+    brief = fitted(brief, request.world.scene, request.world.first_speed)
     check_parts(setup, request.world)
     own = seed_of(seed, index)
     with counting(meter, f"road {index}"):
