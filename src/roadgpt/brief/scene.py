@@ -367,7 +367,6 @@ def _parts(scene: Scene) -> Iterator[str]:
 
 
 UNBUILT = {
-    "actors": "single actors",
     "parked": "rows of parked cars",
     "fog": "fog",
     "rain": "rain",
