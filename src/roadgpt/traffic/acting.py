@@ -9,7 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
-from roadgpt.brief.scene import ActorKind, Mark, Side, What, Where
+from roadgpt.brief.junctions import Side
+from roadgpt.brief.scene import ActorKind, Mark, What, Where
 from roadgpt.traffic.actor import STEP, Size
 from roadgpt.traffic.following import HARDEST, JAM, idm
 from roadgpt.traffic.way import Way
@@ -23,7 +24,7 @@ SHARPEST = 2.0  # sideways nobody moves faster than the speed ahead divided by t
 FAST = 250.0 / 3.6  # m/s, the most that a scene can ask for
 BRAKE, STOP, CHANGE = 6.0, 3.0, 2.0  # m/s^2
 LATERAL: Mapping[What, float] = {
-    "swerve": 1.0, "drift": 0.5, "cut_in": 1.5, "cut_out": 1.5, "change_lane": 1.0, "overtake": 1.5,
+    "swerve": 0.5, "drift": 0.5, "cut_in": 1.5, "cut_out": 1.5, "change_lane": 1.0, "overtake": 1.5,
     "merge": 1.0, "pull_out": 1.0, "wrong_way": 1.0,
 }  # fmt: skip
 """The greatest speed sideways in m/s."""
@@ -119,8 +120,8 @@ class Act:
     limit: float
     aside: Callable[["Act", Deed], float]
     """Returns where an action leads to, in metres to the left of the way."""
-    events: set[tuple[str, ...]]
-    """What has begun and ended so far in the scene."""
+    events: dict[tuple[str, ...], float]
+    """When what has begun and ended in the scene."""
     name: tuple[str, ...] | None
     """How events call it; None for the second of several alike and those behind it."""
     meeting: Meeting | None = None
@@ -135,7 +136,6 @@ class Act:
     pull: float = CHANGE
     slide: Slide | None = None
     slope: float = 0.0
-    is_seen: bool = False
 
     def __post_init__(self) -> None:
         self.goal, self.signs = self.v, dict[int, float]()
@@ -147,9 +147,8 @@ class Act:
 
     def state(self) -> tuple[float, ...] | None:
         """Returns its state; None while it is not there: its box is not yet, or no longer, on its way."""
-        half = self.size.length / 2
-        is_there = half - 0.01 <= self.s <= self.way.length - half + 0.01
-        if not is_there:
+        half = 0.0 if self.way.road_stations is None else self.size.length / 2 - 0.01
+        if not half <= self.s <= self.way.length - half:
             return None
         x, y, z, heading = self.way.pose(self.s, self.t)
         turned = math.atan(self.slope)
@@ -165,18 +164,18 @@ class Act:
             wait = max(self._wait(self.deeds[self.begun], time, car), 0.0)
             if wait >= left:
                 break
-            self._go(wait, car)
+            self._go(wait, time, car)
             time, car, left = time + wait, car.after(wait), left - wait
             deed = self.deeds[self.begun]
             self.begun += 1
-            self._tell("with")
+            self._tell("with", time)
             self.phases = self._phases(deed, car)
-            self._enter()
-        self._go(left, car)
+            self._enter(time)
+        self._go(left, time, car)
 
-    def _tell(self, word: str) -> None:
+    def _tell(self, word: str, time: float) -> None:
         if self.name:
-            self.events.add((word, *self.name, self.deeds[self.begun - 1].what))
+            self.events[word, *self.name, self.deeds[self.begun - 1].what] = time
 
     def _match(self, time: float, car: Car) -> None:
         """Chooses the speed before the first action, so that it meets the tested car whatever that does."""
@@ -213,7 +212,7 @@ class Act:
         if deed.event:
             mark = deed.event
             key = (mark.word, mark.of, str(mark.number), str(mark.what))
-            return 0.0 if key in self.events else math.inf
+            return self.events.get(key, math.inf) - time
         if "time" in n:
             return n["time"] - time
         if "distance" in n:
@@ -267,11 +266,12 @@ class Act:
         away = self.forward * self.v - car.v
         return -away if self.where in ("ahead", "behind", "oncoming") and self.along < car.s else away
 
-    def _phases(self, deed: Deed, car: Car) -> list[Phase]:
+    def _phases(self, deed: Deed, car: Car) -> list[Phase]:  # noqa: C901 - a table
         """Returns what an action consists of, seen from where it begins."""
         n, what, v, t = deed.n, deed.what, self.v, self.t
         lasts, accel = n.get("duration"), n.get("accel")
         to = n.get("to")
+        out: Phase
         pull = CHANGE if accel is None else abs(accel)
 
         def aside(place: float, share: float = 1.0) -> Phase:
@@ -291,8 +291,8 @@ class Act:
             case "stop":
                 halt = [Phase(0.0, n.get("decel", STOP), until="speed")]
                 speed = v or self.cruise
-                again = [Phase(lasts=lasts), Phase(speed, pull_of(self.kind, speed), until="speed")]
-                return halt if lasts is None else halt + again
+                waits = [Phase(lasts=lasts), Phase(speed, pull_of(self.kind, speed), until="speed")]
+                return halt if lasts is None else halt + waits
             case "speed":
                 if to is None and accel is not None:
                     return [Phase(FAST * (accel > 0), pull, lasts=ROLL if lasts is None else lasts)]
@@ -336,11 +336,12 @@ class Act:
                 start = pull_of(self.kind, goal) if self.waits else CHANGE
                 return [Phase(goal, start if accel is None else pull, until="met")]
 
-    def _enter(self) -> None:
+    def _enter(self, time: float) -> None:
         """Begins the phase that is next."""
         self.clock = 0.0
         if not self.phases:
-            return self._tell("after")
+            self._tell("after", time)
+            return
         phase = self.phases[0]
         if phase.goal is not None:
             self.goal, self.pull = phase.goal, phase.pull
@@ -354,7 +355,9 @@ class Act:
         if phase.until == "speed":
             left = abs(self.goal - self.v) / self.pull
         elif phase.until == "there":
-            left = 0.0 if self.slide is None else max(self.slide.lasts - self.slid, 0.0) / (self._pace() or 1e-9)
+            left = (
+                0.0 if self.slide is None else max(self.slide.lasts - self.slid, 0.0) / (self._pace() or 1e-9)
+            )
         elif phase.until == "passed":
             missing = 10.0 - (self.along - car.s - (self.size.length + car.length) / 2)
             left = missing / max(self.v - car.v, 1e-9)
@@ -363,17 +366,18 @@ class Act:
             left = (far + self.size.length) / max(self.v, 1e-9)
         return max(left if phase.lasts is None else min(left, phase.lasts - self.clock), 0.0)
 
-    def _go(self, time: float, car: Car) -> None:
-        while time > 1e-9:
-            part = min(time, self._left(car)) if self.phases else time
+    def _go(self, lasts: float, time: float, car: Car) -> None:
+        """Moves it by some seconds from a time on."""
+        while lasts > 1e-9:
+            part = min(lasts, self._left(car)) if self.phases else lasts
             self._drive(part, car)
-            time, car = time - part, car.after(part)
+            lasts, time, car = lasts - part, time + part, car.after(part)
             self.clock += part
             if self.phases and self._left(car) < 1e-9:
                 if self.phases[0].lasts is not None:
                     self.goal = self.v
                 del self.phases[0]
-                self._enter()
+                self._enter(time)
 
     def _pace(self) -> float:
         """How fast the time of a movement sideways passes: slower for who is slow, not at all at rest."""

@@ -12,14 +12,14 @@ import numpy as np
 
 from roadgpt.brief.amount import Frozen, exactly
 from roadgpt.brief.junctions import Side
-from roadgpt.brief.scene import ALONG, CUES, MOVING, NUMBERS, VEHICLES, Action, Mark, Role, What
+from roadgpt.brief.scene import ALONG, CUES, MOVING, NUMBERS, Action, ActorKind, Mark, Role, What, Where
 from roadgpt.check.measures import measure
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
 from roadgpt.road.road import START
 from roadgpt.traffic.acting import LAST, LATERAL, ROLL, Act, Car, Deed, Meeting, pull_of, reach
 from roadgpt.traffic.actor import SIZES, Actor, FloatArray, TestedCar
-from roadgpt.traffic.places import offset_of, parked_rows, way_of
+from roadgpt.traffic.places import offset_of, way_of
 from roadgpt.traffic.way import Way
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ class Script:
                 one = one.model_copy(update={"actions": tuple(_drawn(each, rng) for each in one.actions)})
                 self._cast.append((number, copy, one))
         kinds = [role.kind for _, _, role in self._cast]
-        rows = parked_rows(stage.world.scene, stage.road, stage.world, stage.seed)
+        rows: list[tuple[ActorKind, FloatArray]] = []
         kinds += [kind for kind, _ in rows]
         self.actors = [
             Actor(f"{kind} {kinds[: n + 1].count(kind)}", kind, SIZES[kind]) for n, kind in enumerate(kinds)
@@ -129,7 +129,7 @@ class Script:
     def _place(self, car: Car) -> None:
         """Makes the acts of everybody."""
         self._car, self._acts = car, list[Act]()
-        events, ways = set[tuple[str, ...]](), dict[int, Way]()
+        events, ways = dict[tuple[str, ...], float](), dict[int, Way]()
         scene = self._world.scene
         for number, copy, role in self._cast:
             same = [each for each in scene.actors[: number + 1] if each.kind == role.kind]
@@ -169,11 +169,11 @@ class _Placing:
         self.script, self.role, self.copy, self.car = script, role, copy, script._car
         self.road, self.world = script._road, script._world
         self.kind, self.where, self.side = role.kind, role.where, role.side
-        self.size, self.n = SIZES[role.kind], _numbers(role) | {
-            key: value
-            for key, value in _numbers(place).items()
-            if key in ("gap", "headway", "station")
-        }
+        self.size, self.n = (
+            SIZES[role.kind],
+            _numbers(role)
+            | {key: value for key, value in _numbers(place).items() if key in ("gap", "headway", "station")},
+        )
         self.half = (self.size.length + self.car.length) / 2
         self.limit = self.world.limits.speed_limit
         self.deeds = [self._deed(action) for action in role.actions]
@@ -189,7 +189,7 @@ class _Placing:
         )
         self.turns_off = self.is_along and "turn_off" in whats
         self.forward = 1
-        if self.is_along and ((self.where == "oncoming") != (self.first == "wrong_way" and self.where != "oncoming")):
+        if self.is_along and (self.where == "oncoming" or self.first == "wrong_way"):
             self.forward = -1
         self.ways, self.number = ways, number
         self.kerb = self.world.profile_of(self.road).side
@@ -224,7 +224,7 @@ class _Placing:
             return min(TURNING, self.limit)
         return self.limit if self.where == "oncoming" else min(self.car.v, self.limit) or self.limit
 
-    def act(self, events: set[tuple[str, ...]], name: tuple[str, ...] | None) -> Act:
+    def act(self, events: dict[tuple[str, ...], float], name: tuple[str, ...] | None) -> Act:
         """Makes the act; raises UsageError if it cannot be on this road."""
         v = 0.0 if self.stands or self.n.get("speed") == 0 else self.cruise
         way, meeting, held, shift, t = self.script._way, None, None, 0.0, 0.0
@@ -247,7 +247,7 @@ class _Placing:
             self.kind, self.where, self.size, self.deeds, way, self.forward, shift, s, t, v, self.cruise,
             self.limit, self._leads_to, events, name, meeting, v == 0 and not self.is_along, held,
         )  # fmt: skip
-        if self.copy and self.crosses:
+        if self.copy and self.crosses and meeting:
             aside = math.sin(self.script._way.pose(meeting.car)[3] - way.pose(meeting.own)[3])
             act.t = self.copy * (self.size.width + 0.5) * math.copysign(1.0, aside)
         self._check(act)
@@ -259,8 +259,8 @@ class _Placing:
     def _check(self, act: Act) -> None:
         if act.v == 0 and not act.waits and act.state() is None:
             raise UsageError(
-                f"{self._one()} would stand at {act.along:.0f} m, but the road is {self.road.length:.0f} m long; "
-                "make the road longer, or give another place"
+                f"{self._one()} would stand at {act.along:.0f} m, but the road is {self.road.length:.0f} m "
+                "long; make the road longer, or give another place"
             )
         if act.held and act.along + ROLL * act.v < act.size.length / 2:
             raise UsageError(
@@ -284,7 +284,9 @@ class _Placing:
                 goal = cue.get("to", self.cruise)
                 away = reach(cue["ttc"], 0.0, goal, abs(cue.get("accel", pull_of(self.kind, goal))))
                 role = role.model_copy(update={"away": exactly(min(away, 60.0))})
-            self.ways[self.number] = way_of(role, self.script._road_station(max(near, 0.0)), self.road, self.world)
+            self.ways[self.number] = way_of(
+                role, self.script._road_station(max(near, 0.0)), self.road, self.world
+            )
         return self.ways[self.number]
 
     def _crossing(self, met: Meeting, v: float) -> tuple[Meeting, float]:
@@ -354,7 +356,8 @@ class _Placing:
         behind = v if self.where == "behind" else car.v
         if "station" in cue and v == 0:
             return cue["station"] - car.s - self.half
-        if self.forward < 0 and self.first in ("drift", "wrong_way", "overtake") and not {*CUES, "at"} & {*cue}:
+        is_open = self.deeds and not self.deeds[0].event and not {*CUES} & {*cue}
+        if self.where == "oncoming" and is_open and self.first in ("drift", "wrong_way", "overtake"):
             aside = abs(self._leads_to(None, self.deeds[0]) - self._aside(car.s))
             peak = cue.get("lateral", LATERAL[self.deeds[0].what])
             self.deeds[0] = self.deeds[0]._replace(n={**cue, "ttc": 1.0 + math.pi / 2 * aside / peak})
@@ -393,17 +396,22 @@ class _Placing:
     def _aside(self, s: float) -> float:
         """Returns how far to the left of the middle of the tested car's lane it is at first."""
         comes_later = any(deed.what in ("cut_in", "wrong_way", "drift", "overtake") for deed in self.deeds)
-        if self.where == "oncoming" and self.first == "wrong_way" and not {*CUES} & {*self.deeds[0].n}:
-            comes_later = "ttc" in self.deeds[0].n
         given = {"impact", "overlap"} & {*self.n}
         if self.where in ("ahead", "behind") or (given and not comes_later):
             return self.n.get("offset", 0.0) + (self._across() if given else 0.0)
         return self._place(self.where, s) + self.n.get("offset", 0.0)
 
-    def _place(self, where: str, s: float, side: Side | None = None) -> float:
-        side = side or (self.side if self.side in ("left", "right") else None)
+    def _place(self, where: Where, s: float, side: Side | None = None) -> float:
+        if side is None and self.side in ("left", "right"):
+            side = self.side
         station = self.script._road_station(min(max(s, 0.0), self.script._way.length))
-        return offset_of(where, side, station, self.road, self.world, self.size.width)
+        try:
+            return offset_of(where, side, station, self.road, self.world, self.size.width)
+        except UsageError:
+            is_kerb = side == ("left" if self.kerb > 0 else "right")
+            if where != "lane" or is_kerb or self.first not in ("cut_in", "overtake"):
+                raise
+            return offset_of("oncoming", None, station, self.road, self.world, self.size.width)
 
     def _leads_to(self, act: Act | None, deed: Deed) -> float:
         """Returns where an action leads to, in metres to the left of the tested car's lane's middle."""
@@ -419,15 +427,11 @@ class _Placing:
             case "change_lane" if self.where == "oncoming":
                 return t + math.copysign(width, t if side is None else 1 if side == "left" else -1)
             case "change_lane" if side in (None, towards):
-                return 0.0 if self.where == "lane" else self._place("lane", s, self.side)
+                return 0.0 if self.where == "lane" else self._place("lane", s)
             case "change_lane":
                 return self._place("far", s, side)
             case "overtake" if self.where == "behind":
-                passing: Side = "left" if self.kerb < 0 else "right"
-                try:
-                    return self._place("lane", s, passing)
-                except UsageError:
-                    return self._place("oncoming", s)
+                return self._place("lane", s, "left" if self.kerb < 0 else "right")
             case "drift":
                 room = min(1.0, max(abs(t) - width / 2 - 0.2, 0.5))
                 left = side == "left" if side else t < 0 if abs(t) > width / 2 else self.kerb > 0
@@ -436,5 +440,7 @@ class _Placing:
                 before = sum(each.what == "swerve" for each in self.deeds[: self.deeds.index(deed)])
                 shift = deed.n.get("shift", max((width - self.size.width) / 2 - 0.1, 0.3))
                 return t + (-shift if before % 2 else shift)
+            case "wrong_way" if self.where != "oncoming":
+                return t
             case _:  # cut_in, wrong_way, pull_out, overtake of who comes towards the tested car
                 return self._across()

@@ -12,7 +12,6 @@ from roadgpt.drive.camera_sensor import CameraSensor, camera_of
 from roadgpt.drive.drive import COLUMNS, Columns, Drive
 from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.drive.driver_guard import DriverGuard
-from roadgpt.drive.driving_line import first_speed
 from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Axle, Car, Tyre
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle, plane
