@@ -367,7 +367,6 @@ def _parts(scene: Scene) -> Iterator[str]:
 
 
 UNBUILT = {
-    "parked": "rows of parked cars",
     "fog": "fog",
     "rain": "rain",
     "light": "night and a low sun",

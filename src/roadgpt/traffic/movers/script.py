@@ -12,14 +12,14 @@ import numpy as np
 
 from roadgpt.brief.amount import Frozen, exactly
 from roadgpt.brief.junctions import Side
-from roadgpt.brief.scene import ALONG, CUES, MOVING, NUMBERS, Action, ActorKind, Mark, Role, What, Where
+from roadgpt.brief.scene import ALONG, CUES, MOVING, NUMBERS, Action, Mark, Role, What, Where
 from roadgpt.check.measures import measure
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
 from roadgpt.road.road import START
 from roadgpt.traffic.acting import LAST, LATERAL, ROLL, Act, Car, Deed, Meeting, pull_of, reach
-from roadgpt.traffic.actor import SIZES, Actor, FloatArray, TestedCar
-from roadgpt.traffic.places import offset_of, way_of
+from roadgpt.traffic.actor import SIZES, Actor, FloatArray, TestedCar, corners
+from roadgpt.traffic.places import offset_of, parked_rows, way_of
 from roadgpt.traffic.way import Way
 
 if TYPE_CHECKING:
@@ -78,16 +78,18 @@ class Script:
                 one = _drawn(role, rng)
                 one = one.model_copy(update={"actions": tuple(_drawn(each, rng) for each in one.actions)})
                 self._cast.append((number, copy, one))
-        kinds = [role.kind for _, _, role in self._cast]
-        rows: list[tuple[ActorKind, FloatArray]] = []
-        kinds += [kind for kind, _ in rows]
+        first = self._station(min(START, stage.road.length / 2))
+        self._place(Car(first, stage.world.first_speed, 0.0, *SIZES["car"][:2]))
+        free = [act.way.points for act in self._acts if act.way is not self._way]
+        states = [(act.state(), act.size) for act in self._acts]
+        free += [corners(np.array(state), size) for state, size in states if state]
+        rows = parked_rows(stage.world.scene, stage.road, stage.world, stage.seed, free)
+        kinds = [role.kind for _, _, role in self._cast] + [kind for kind, _ in rows]
         self.actors = [
             Actor(f"{kind} {kinds[: n + 1].count(kind)}", kind, SIZES[kind]) for n, kind in enumerate(kinds)
         ]
         self._states = np.full((len(kinds), 5), np.nan)
         self._states[len(self._cast) :] = np.array([state for _, state in rows]).reshape(-1, 5)
-        first = self._station(min(START, stage.road.length / 2))
-        self._place(Car(first, stage.world.first_speed, 0.0, *SIZES["car"][:2]))
 
     def start(self, car: TestedCar) -> FloatArray:
         """Places everybody as seen from the tested car."""
