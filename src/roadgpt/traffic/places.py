@@ -30,6 +30,7 @@ DRIVEWAY = 6.0  # m, radius in which somebody turns from beside the road into a 
 PLACE = 7.0  # m of a row for each parked vehicle: at least 6.5 m, of a delivery van
 FREE, VANS = 0.15, 0.1  # shares of the places that are free, and of vans among the parked vehicles
 KEPT_FREE = 5.0  # m before and behind junctions and crosswalks (Germany, StVO, section 12)
+ROOM = 1.5  # m, from the middle of a way to the vehicles that are parked beside it
 SIGN = {"left": 1.0, "right": -1.0}
 
 
@@ -104,9 +105,10 @@ def way_of(role: Role, near: float, road: "Road", world: "World") -> Way:
 
 def _crosswalk(near: float, road: "Road") -> float:
     away = CROSSWALK[0] + CROSSWALK[1] / 2
-    for passage in road.passages if is_route(road) else ():
+    crossed = road.network.crossed if is_route(road) else ()
+    for passage in road.passages:
         for end, s in ((passage.arrival, passage.start - away), (passage.departure, passage.end + away)):
-            if end in road.network.crossed and s >= near:
+            if end in crossed and s >= near:
                 return float(s)
     raise UsageError(f"the route passes no crosswalk after {near:.0f} m; write crosswalk behind a junction")
 
@@ -141,11 +143,11 @@ def _across(role: Role, s: float, road: "Road", world: "World") -> Way:
 
 
 def parked_rows(
-    scene: Scene, road: "Road", world: "World", seed: int, free: Sequence[Way] = ()
+    scene: Scene, road: "Road", world: "World", seed: int, free: Sequence[FloatArray] = ()
 ) -> list[tuple[ActorKind, FloatArray]]:
     """Returns the cars and vans that are parked in rows along the road, each with its state. Nobody is parked
-    in or close to junctions and crosswalks, in driving lanes, such as in a tight bend, or on the ways in
-    ``free``."""
+    in or close to junctions and crosswalks, in driving lanes, such as in a tight bend, or close to the
+    lines in ``free``, whose first columns are x and y."""
     import shapely
 
     rng = np.random.default_rng([seed, len(scene.actors), len(scene.parked)])
@@ -159,7 +161,7 @@ def parked_rows(
         )
         for each in road.passages
     ]
-    lines = [shapely.LineString(each.points[:, :2]).buffer(SIZES["car"].width) for each in free]
+    lines = [shapely.LineString(each[:, :2]).buffer(ROOM) for each in free]
     found = list[tuple[ActorKind, FloatArray]]()
     for side in scene.parked:
         for s in np.arange(PLACE / 2, road.length - PLACE / 2, PLACE).tolist():

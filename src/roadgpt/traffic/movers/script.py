@@ -12,14 +12,14 @@ import numpy as np
 
 from roadgpt.brief.amount import Frozen, exactly
 from roadgpt.brief.junctions import Side
-from roadgpt.brief.scene import ALONG, CUES, MOVING, NUMBERS, Action, ActorKind, Mark, Role, What, Where
+from roadgpt.brief.scene import ALONG, CUES, MOVING, NUMBERS, Action, Mark, Role, What, Where
 from roadgpt.check.measures import measure
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
 from roadgpt.road.road import START
 from roadgpt.traffic.acting import LAST, LATERAL, ROLL, Act, Car, Deed, Meeting, pull_of, reach
-from roadgpt.traffic.actor import SIZES, Actor, FloatArray, TestedCar
-from roadgpt.traffic.places import offset_of, way_of
+from roadgpt.traffic.actor import SIZES, Actor, FloatArray, TestedCar, corners
+from roadgpt.traffic.places import offset_of, parked_rows, way_of
 from roadgpt.traffic.way import Way
 
 if TYPE_CHECKING:
@@ -78,16 +78,18 @@ class Script:
                 one = _drawn(role, rng)
                 one = one.model_copy(update={"actions": tuple(_drawn(each, rng) for each in one.actions)})
                 self._cast.append((number, copy, one))
-        kinds = [role.kind for _, _, role in self._cast]
-        rows: list[tuple[ActorKind, FloatArray]] = []
-        kinds += [kind for kind, _ in rows]
+        first = self._station(min(START, stage.road.length / 2))
+        self._place(Car(first, stage.world.first_speed, 0.0, *SIZES["car"][:2]))
+        free = [act.way.points for act in self._acts if act.way is not self._way]
+        states = [(act.state(), act.size) for act in self._acts]
+        free += [corners(np.array(state), size) for state, size in states if state]
+        rows = parked_rows(stage.world.scene, stage.road, stage.world, stage.seed, free)
+        kinds = [role.kind for _, _, role in self._cast] + [kind for kind, _ in rows]
         self.actors = [
             Actor(f"{kind} {kinds[: n + 1].count(kind)}", kind, SIZES[kind]) for n, kind in enumerate(kinds)
         ]
         self._states = np.full((len(kinds), 5), np.nan)
         self._states[len(self._cast) :] = np.array([state for _, state in rows]).reshape(-1, 5)
-        first = self._station(min(START, stage.road.length / 2))
-        self._place(Car(first, stage.world.first_speed, 0.0, *SIZES["car"][:2]))
 
     def start(self, car: TestedCar) -> FloatArray:
         """Places everybody as seen from the tested car."""
@@ -172,7 +174,11 @@ class _Placing:
         self.size, self.n = (
             SIZES[role.kind],
             _numbers(role)
-            | {key: value for key, value in _numbers(place).items() if key in ("gap", "headway", "station")},
+            | {
+                key: value
+                for key, value in _numbers(place).items()
+                if key in ("gap", "headway", "lead", "station")
+            },
         )
         self.half = (self.size.length + self.car.length) / 2
         self.limit = self.world.limits.speed_limit
@@ -200,6 +206,17 @@ class _Placing:
             or self.crosses
             or (self.where == "beside" and "speed" not in self.n)
         )
+        if self.stands and self.deeds:
+            self._stand(self.deeds[0])
+
+    def _stand(self, deed: Deed) -> None:
+        """Makes the place where somebody who stands begins to act the place where it is."""
+        n = dict(deed.n)
+        if "station" in n:
+            self.n |= {"station": n.pop("station")}
+        if self.is_along and not deed.event and not {*CUES} & {*n}:
+            n["ttc"] = LAST
+        self.deeds[0] = deed._replace(n=n)
 
     def _deed(self, action: Action) -> Deed:
         n, mark = _numbers(action), action.at
@@ -329,11 +346,11 @@ class _Placing:
         reach = self.size.length + (STANDS + BEHIND * v if v else STANDS)
         if self.forward < 0:
             reach = max(reach, ONCOMING + self.size.length)
-        if self.where in ("behind", "lane", "far"):
+        if self.where == "behind" or (self.first == "overtake" and self.forward > 0):
             reach = -reach
         behind = v if self.where == "behind" else car.v
-        if "station" in n:
-            s = n["station"] and self.script._station(n["station"])
+        if "station" in n or "lead" in n:
+            s = n["station"] if "station" in n else car.s + n["lead"]
         elif self.role.at:
             first, last = self.script.stretch(self.role.at)
             half = self.size.length / 2 + 5.0
@@ -354,8 +371,6 @@ class _Placing:
         away = self.forward * v - car.v
         rate = -away if self.where == "behind" else away
         behind = v if self.where == "behind" else car.v
-        if "station" in cue and v == 0:
-            return cue["station"] - car.s - self.half
         is_open = self.deeds and not self.deeds[0].event and not {*CUES} & {*cue}
         if self.where == "oncoming" and is_open and self.first in ("drift", "wrong_way", "overtake"):
             aside = abs(self._leads_to(None, self.deeds[0]) - self._aside(car.s))
