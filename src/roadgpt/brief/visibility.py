@@ -19,17 +19,28 @@ LOW_BEAM = 50.0
 """Metres up to which a passing beam shows what has no lamps: to the point 50V of the regulations, the middle
 of the lane 50 m ahead. With the least that they allow, 5,100 cd, two headlamps throw 4 lx there. Farther
 ahead a beam may be darker, and its cut-off falls by 1 %, from 0.5 to 0.8 m above the road."""
+LOW_SUN = math.radians(8.0)  # elevation of a low sun
 LAMPS = 300.0  # m from which position lamps have to be visible at night in clear weather
 
 
 def clear_range(scene: Scene) -> float:
     """Returns the distance in metres at which fog and rain leave CONTRAST, by Koschmieder's law; infinite
     without them."""
-    lost = 0.0 if scene.fog is None else 1.0 / _middle(scene.fog, "fog")
+    lost = 1.0 / fog_of(scene)
     if scene.rain is not None:
-        decibels = RAIN * _middle(scene.rain, "rain") ** GROWTH
+        decibels = RAIN * rain_of(scene) ** GROWTH
         lost += decibels / 10 * math.log(10) / -math.log(CONTRAST) / 1000
     return 1.0 / lost if lost else math.inf
+
+
+def fog_of(scene: Scene) -> float:
+    """Returns the visual range in fog in metres, of a range its middle; infinite without fog."""
+    return math.inf if scene.fog is None else _middle(scene.fog, "fog")
+
+
+def rain_of(scene: Scene) -> float:
+    """Returns how much it rains in mm/h, of a range its middle."""
+    return 0.0 if scene.rain is None else _middle(scene.rain, "rain")
 
 
 def visual_range(scene: Scene, kind: ActorKind | Literal["lane", "lights"]) -> float:
