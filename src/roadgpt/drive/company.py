@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.brief.scene import VEHICLES
 from roadgpt.brief.visibility import visual_range
 from roadgpt.compiled import compiled
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
-from roadgpt.drive.view import LightAhead, Other
+from roadgpt.drive.view import LightAhead, Other, Others
 from roadgpt.network.lanes import HEADROOM
-from roadgpt.traffic import STEP, TestedCar, Traffic
+from roadgpt.traffic import STEP, Actor, TestedCar, Traffic
 from roadgpt.traffic.boxes import touch
 
 if TYPE_CHECKING:
@@ -25,21 +26,24 @@ _PLACES = [[*COLUMNS].index(name) for name in ("x", "y", "z", "heading", "speed"
 
 @compiled
 def look_around(
-    states: FloatArray, sizes: FloatArray, car: FloatArray, order: "NDArray[np.int64]", seen: FloatArray
+    states: FloatArray, looks: FloatArray, car: FloatArray, order: "NDArray[np.int64]", seen: FloatArray
 ) -> tuple[int, bool]:
     """Writes into ``order`` the numbers of the actors that are seen, nearest first, and into ``seen`` the x,
-    y, heading in (-pi, pi] and speed of each; returns how many they are and whether the car touches one.
+    y, heading in (-pi, pi], speed, length and width of each, and 1.0 if it is a vehicle, else 0.0; returns
+    how many they are and whether the car touches one.
 
-    ``states`` are as in Tracks, ``sizes`` (n, 2) lengths and widths, and ``car`` has the x, y and z of the
-    middle of the car's box on the ground, its heading, length and width. Roads that cross above each other do
-    not count."""
+    ``states`` are as in Tracks, ``looks`` (n, 4) lengths, widths, whether they are vehicles, and from how
+    many metres they are seen, and ``car`` has the x, y and z of the middle of the car's box on the ground,
+    its heading, length and width. Roads that cross above each other do not count."""
     x, y, z, heading, length, width = car
     far = np.empty(len(states))
     count, touches = 0, False
     for k in range(len(states)):
         dx, dy = states[k, 0] - x, states[k, 1] - y
         far[k] = math.hypot(dx, dy)
-        if not far[k] <= SEEN:  # also who is not there
+        if abs(states[k, 2] - z) <= HEADROOM:
+            touches = touches or touch(dx, dy, heading, length, width, states[k, 3], looks[k, 0], looks[k, 1])
+        if not far[k] <= looks[k, 3]:  # also who is not there
             continue
         place = count
         while place > 0 and far[order[place - 1]] > far[k]:
@@ -47,12 +51,11 @@ def look_around(
             place -= 1
         order[place] = k
         count += 1
-        if abs(states[k, 2] - z) <= HEADROOM:
-            touches = touches or touch(dx, dy, heading, length, width, states[k, 3], sizes[k, 0], sizes[k, 1])
     for place in range(count):
         k = order[place]
         seen[place, 0], seen[place, 1], seen[place, 3] = states[k, 0], states[k, 1], states[k, 4]
         seen[place, 2] = math.atan2(math.sin(states[k, 3]), math.cos(states[k, 3]))
+        seen[place, 4:] = looks[k, :3]
     return count, touches
 
 
@@ -67,11 +70,10 @@ class Company:
         lines = [(each.light_line, each.arrival) for each in passages]
         self._lines = [(line, end) for line, end in lines if line is not None]
         self._scene, self._samples = world.scene, 0
-        self._reach: list[float] = []  # from the car's middle to that of each of the others
-        self._looks: list[tuple[str, float, float]] = []
-        self._sizes, self._order, self._seen = np.empty((0, 2)), np.empty(0, np.int64), np.empty((0, 4))
+        self._looks: list[tuple[float, ...]] = []
+        self._table, self._order, self._seen = np.empty((0, 4)), np.empty(0, np.int64), np.empty((0, 7))
 
-    def seen(self, row: FloatArray, time: float) -> tuple[Other, ...]:
+    def seen(self, row: FloatArray, time: float) -> Others:
         """Moves the others on to this time, tells the monitor whether the car touches one, and returns those
         that the driver sees. Call it at every control step; ``row`` is the state of the car in the order of
         COLUMNS."""
@@ -82,23 +84,25 @@ class Company:
             self._traffic.advance(TestedCar(x, y, heading, speed, s, t, box.length, box.width))
             self._samples += 1
             new = self._traffic.actors[len(self._looks) :]
-            self._looks += [(each.kind, *each.size[:2]) for each in new]
-            self._reach += [visual_range(self._scene, each.kind) + each.size.length / 2 for each in new]
-            self._sizes = np.array([look[1:] for look in self._looks]).reshape(-1, 2)
-            self._order, self._seen = np.empty(len(self._looks), np.int64), np.empty((len(self._looks), 4))
-        states, looks = self._traffic.at(time), self._looks
+            if new:
+                self._looks += [(*each.size[:2], each.kind in VEHICLES, self._reach(each)) for each in new]
+                self._table = np.array(self._looks, float)
+                count = len(self._looks)
+                self._order, self._seen = np.empty(count, np.int64), np.empty((count, 7))
+        states, actors = self._traffic.at(time), self._traffic.actors
         car = np.array([x, y, z - box.height, heading, box.length, box.width])
-        count, touches = look_around(states, self._sizes, car, self._order, self._seen)
+        count, touches = look_around(states, self._table, car, self._order, self._seen)
         if touches:
             self._monitor.touch(time)
-        near = zip(self._order[:count].tolist(), self._seen[:count].tolist(), strict=True)
-        return tuple(
-            [
-                Other._make((looks[k][0], *where, *looks[k][1:]))
-                for k, where in near
-                if math.hypot(where[0] - x, where[1] - y) <= self._reach[k]
-            ]
-        )
+        boxes = self._seen[:count].copy()
+        kinds = [actors[k].kind for k in self._order[:count].tolist()]
+        others = Others(map(Other._make, zip(kinds, *boxes.T[:6].tolist(), strict=True)))
+        others.boxes = boxes
+        return others
+
+    def _reach(self, actor: Actor) -> float:
+        """Returns from how many metres between their middles the driver sees an actor."""
+        return min(SEEN, visual_range(self._scene, actor.kind) + actor.size.length / 2)
 
     def lights(self, s: float, time: float) -> tuple[LightAhead, ...]:
         """Returns the lights ahead of station ``s`` of the route, and what they show at this time."""

@@ -5,16 +5,14 @@ A driver follows whoever is in its path by the Intelligent Driver Model, as the 
 it count, also who only reaches into it, who crosses it or moves into it, and who comes towards the car. Red
 lights count like somebody who stands behind their stop line."""
 
-from typing import Any
-
 import numpy as np
 
-from roadgpt.brief.scene import VEHICLES
 from roadgpt.drive.driving_line import BEFORE_LINE, FRONT, LEAST_BRAKE, DrivingLine, FloatArray, pedals_for
-from roadgpt.drive.view import Command, View
+from roadgpt.drive.view import Command, Others, View
 
 TIME_GAP = 1.5  # s, to the one ahead: the usual setting; ISO 15622 asks for at least 0.8 s
 PULL, BRAKE = 1.5, 2.0  # m/s^2, IDM's a and b, as the cars of the traffic have
+FOLLOWS = np.array([TIME_GAP, PULL, BRAKE])
 HARDEST = 9.0  # m/s^2
 FIRM = 3.0  # m/s^2, with which a car stops at a yellow light; else it drives on
 ROLLS = 0.3  # m/s, below which a car that need not go on is held by its brake
@@ -44,15 +42,12 @@ class KeepingDistance:
             self._path = np.column_stack(columns)
         first, share = line.place(view.s)
         before, after = self._along[first : first + 2].tolist()
-        rows: list[tuple[Any, ...]] = [(*each[1:], each.kind in VEHICLES) for each in view.others]
-        rows += [self._barrier(view.s + distance) for distance in self._to_stop_at(view)]
-        if not rows:
-            return np.empty((0, 4))
+        others = (view.others if isinstance(view.others, Others) else Others(view.others)).boxes
+        barriers = [self._barrier(view.s + distance) for distance in self._to_stop_at(view)]
+        if barriers:
+            others = np.vstack([others, barriers])
         car = np.array([view.x, view.y, view.heading, view.speed, FRONT])
-        follows = np.array([TIME_GAP, PULL, BRAKE])
-        start = before + share * (after - before)
-        others = np.array(rows, float)
-        return np.column_stack([look_ahead(self._path, start, others, car, follows), others[:, -1]])
+        return look_ahead(self._path, before + share * (after - before), others, car, FOLLOWS)
 
     def _barrier(self, s: float) -> tuple[float, ...]:
         """Returns what stands for a red light at a stop line: something across the path, so far behind the

@@ -1,6 +1,12 @@
 """Defines the View that a driver gets and the Command that it returns at every control step."""
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.brief.scene import VEHICLES
 
 if TYPE_CHECKING:
     from roadgpt.network import Route
@@ -50,6 +56,15 @@ class Other(NamedTuple):
     length: float
     """Length of its box in metres, and ``width``."""
     width: float
+
+
+class Others(tuple[Other, ...]):
+    """The others that a driver sees, nearest first."""
+
+    @cached_property
+    def boxes(self) -> NDArray[np.float64]:
+        """Each Other from ``x`` on, and 1.0 if it is a vehicle, else 0.0; shape (n, 7)."""
+        return np.array([(*each[1:], each.kind in VEHICLES) for each in self], float).reshape(-1, 7)
 
 
 class View(NamedTuple):

@@ -49,6 +49,7 @@ HORIZON = 150.0  # m
 LINE = 1.0  # m, between the front of a waiting vehicle and the line
 CHANGE = 4.0  # s
 LEAST_WAY = 15.0  # m, of way that a change takes at least
+FASTER = 2.0  # m/s, by which one may become faster during a change that has to be done before a junction
 EVERY = 10  # steps, after which a vehicle considers a change again
 SLOWEST_CHANGE = 3.0  # m/s, below which nobody changes lanes without need
 GAIN = 0.3  # m/s^2, by which a change has to pay
@@ -397,8 +398,9 @@ def _change(
     if target < 0 or (lanes.ends[target] and not must):
         return -math.inf
     s = across(lanes, lane, row[S], target)
-    way = max(row[V] * CHANGE, LEAST_WAY)
-    if s < lanes.usable[target, 0] + row[LENGTH] or (not must and s + way > lanes.usable[target, 1]):
+    way = max((row[V] + FASTER) * CHANGE, LEAST_WAY)
+    end = min(lanes.usable[target, 1], lanes.stop[target] - LINE - row[LENGTH] / 2.0)
+    if s < lanes.usable[target, 0] + row[LENGTH] or (not must and s + way > end):
         return -math.inf
     limit, best = (
         URGENT if must else SAFE,
