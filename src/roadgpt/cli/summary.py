@@ -33,6 +33,7 @@ COMPARED = 500  # largest number of failures, evenly spread, that are grouped (i
 MOST_CELLS = 40  # largest number of cells that are shown one by one
 MOST_TESTS = 40  # of a cell, one by one
 HEAD, SIDES = ("cell", "done", "pass", "fail", "other", "least margin", "what"), "<>>>>><"
+OF_SCENARIO = ("PASS", "FAIL", "refused", "INVALID", "ERROR")
 LONGEST, WIDEST_TEXT = 60, 300  # letters of a description, and of other texts, in a line of a table
 
 
@@ -102,6 +103,12 @@ def _told(status: Status) -> Iterator[str]:
     yield from cell_lines(cells[:MOST_CELLS])
     if len(cells) > MOST_CELLS:
         yield f"and {len(cells) - MOST_CELLS:,} more cells; --json tells of all"
+    if status.scenarios:
+        rows = [
+            (name, *(f"{its.get(each, 0):,}" for each in OF_SCENARIO))
+            for name, its in status.scenarios.items()
+        ]
+        yield from aligned([("scenario", *map(str.lower, OF_SCENARIO)), *rows], "<>>>>>")
     partly = sum(cell.partly_outside for cell in cells)
     mostly = sum(cell.mostly_outside for cell in cells)
     if partly + mostly:
