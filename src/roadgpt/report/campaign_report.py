@@ -98,7 +98,7 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     if status.scenarios:
         heads = ("PASS", "FAIL", "refused", "INVALID", "ERROR")
         of_each = [row(name, *(its.get(each, 0) for each in heads)) for name, its in status.scenarios.items()]
-        note = "Refused is what cannot happen on its road; results.csv has the parameters of each test as its origin."
+        note = "Refused is what cannot happen on its road; results.csv has the parameters of each test."
         table = Table(
             "scenarios", "Outcomes by scenario", ["scenario", *map(str.lower, heads)], of_each, note
         )

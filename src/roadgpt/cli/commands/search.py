@@ -466,10 +466,10 @@ def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
         cells = record.cells()
     briefs = {cell.request.words: (cell.brief, cell.request.world) for cell in cells if cell.brief}
     for words, (brief, world) in briefs.items():
-        if len(plan.prompts) == 1:
+        if len(plan.prompts) == 1 and words:
             click.echo(understood(brief, world, plan.world))
             continue
-        for said in world_remarks(brief, plan.world, world):
+        for said in world_remarks(brief, plan.world, world) if words else ():
             click.echo(f"note: {words}: {said}")
     if plan.on:
         count, tests = len(plan.settings["roads"]), plan.budget.tests or 0
@@ -478,6 +478,9 @@ def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
         told += f"; the first {tests:,} are tested" * (tests < count)
         told += f"; {tests:,} tests, so roads are driven again with other seeds" * (tests > count)
         click.echo(told)
+    if points := cells[0].points:
+        where = "on the roads of the description" if cells[0].request.words else "each on its nominal road"
+        click.echo(f"{plural(len(points), 'point')} of {plan.settings['scenario']}, {where}")
     if len(cells) > 1:
         what = "the same roads for each driver" if plan.paired else "each with tests of its own"
         click.echo(f"{len(cells):,} cells, {what}")
