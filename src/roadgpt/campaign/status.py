@@ -97,6 +97,17 @@ class Status:
         return sum(self.outcomes.values())
 
     @property
+    def scenario_heads(self) -> list[str]:
+        """The outcomes that tests of scenarios have."""
+        return [*dict.fromkeys(outcome for counts in self.scenarios.values() for outcome in counts)]
+
+    @property
+    def scenario_rows(self) -> list[tuple[Any, ...]]:
+        """The name of each scenario, and its number of tests with each of these outcomes."""
+        counted = self.scenarios.items()
+        return [(name, *(its.get(each, 0) for each in self.scenario_heads)) for name, its in counted]
+
+    @property
     def seconds_left(self) -> float | None:
         """Estimated seconds until the campaign ends; None if that cannot be estimated."""
         if self.is_finished:

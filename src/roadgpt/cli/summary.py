@@ -34,7 +34,6 @@ MOST_CELLS = 40  # largest number of cells that are shown one by one
 MOST_TESTS = 40  # of a cell, one by one
 HEAD, SIDES = ("cell", "done", "pass", "fail", "other", "least margin", "what"), "<>>>>><"
 OF_NO_WORDS = {GIVEN: "roads that were given", WITHOUT_GOAL: "nominal roads of scenarios"}
-OF_SCENARIO = ("PASS", "FAIL", "refused", "INVALID", "ERROR")
 LONGEST, WIDEST_TEXT = 60, 300  # letters of a description, and of other texts, in a line of a table
 
 
@@ -105,11 +104,9 @@ def _told(status: Status) -> Iterator[str]:
     if len(cells) > MOST_CELLS:
         yield f"and {len(cells) - MOST_CELLS:,} more cells; --json tells of all"
     if status.scenarios:
-        rows = [
-            (name, *(f"{its.get(each, 0):,}" for each in OF_SCENARIO))
-            for name, its in status.scenarios.items()
-        ]
-        yield from aligned([("scenario", *map(str.lower, OF_SCENARIO)), *rows], "<>>>>>")
+        rows = ((name, *map("{:,}".format, counts)) for name, *counts in status.scenario_rows)
+        heads = ("scenario", *(head.lower() for head in status.scenario_heads))
+        yield from aligned([heads, *rows], "<" + ">" * len(status.scenario_heads))
     partly = sum(cell.partly_outside for cell in cells)
     mostly = sum(cell.mostly_outside for cell in cells)
     if partly + mostly:

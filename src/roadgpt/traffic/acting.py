@@ -269,7 +269,7 @@ class Act:
     def _phases(self, deed: Deed, car: Car) -> list[Phase]:  # noqa: C901 - a table
         """Returns what an action consists of, seen from where it begins."""
         n, what, v, t = deed.n, deed.what, self.v, self.t
-        lasts, accel = n.get("duration"), n.get("accel")
+        lasts, accel = n.get("duration"), n.get("accel") or None
         to = n.get("to")
         out: Phase
         pull = CHANGE if accel is None else abs(accel)
