@@ -202,6 +202,17 @@ class _Placing:
             or self.crosses
             or (self.where == "beside" and "speed" not in self.n)
         )
+        if self.stands and self.deeds:
+            self._stand(self.deeds[0])
+
+    def _stand(self, deed: Deed) -> None:
+        """Makes the place where somebody who stands begins to act the place where it is."""
+        n = dict(deed.n)
+        if "station" in n:
+            self.n |= {"station": n.pop("station")}
+        if self.is_along and not deed.event and not {*CUES} & {*n}:
+            n["ttc"] = LAST
+        self.deeds[0] = deed._replace(n=n)
 
     def _deed(self, action: Action) -> Deed:
         n, mark = _numbers(action), action.at
@@ -331,11 +342,11 @@ class _Placing:
         reach = self.size.length + (STANDS + BEHIND * v if v else STANDS)
         if self.forward < 0:
             reach = max(reach, ONCOMING + self.size.length)
-        if self.where in ("behind", "lane", "far"):
+        if self.where == "behind" or (self.first == "overtake" and self.forward > 0):
             reach = -reach
         behind = v if self.where == "behind" else car.v
         if "station" in n:
-            s = n["station"] and self.script._station(n["station"])
+            s = n["station"]
         elif self.role.at:
             first, last = self.script.stretch(self.role.at)
             half = self.size.length / 2 + 5.0
@@ -356,8 +367,6 @@ class _Placing:
         away = self.forward * v - car.v
         rate = -away if self.where == "behind" else away
         behind = v if self.where == "behind" else car.v
-        if "station" in cue and v == 0:
-            return cue["station"] - car.s - self.half
         is_open = self.deeds and not self.deeds[0].event and not {*CUES} & {*cue}
         if self.where == "oncoming" and is_open and self.first in ("drift", "wrong_way", "overtake"):
             aside = abs(self._leads_to(None, self.deeds[0]) - self._aside(car.s))
