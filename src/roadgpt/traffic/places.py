@@ -29,7 +29,9 @@ BEFORE, BEHIND = 5.0, 8.0  # m, from a junction to those who cross the road befo
 DRIVEWAY = 6.0  # m, radius in which somebody turns from beside the road into a lane
 PLACE = 7.0  # m of a row for each parked vehicle: at least 6.5 m, of a delivery van
 FREE, VANS = 0.15, 0.1  # shares of the places that are free, and of vans among the parked vehicles
-KEPT_FREE = 5.0  # m before and behind junctions and crosswalks (Germany, StVO, section 12)
+KEPT_FREE = 5.0 + sum(CROSSWALK) + PLACE / 2
+"""Metres from a junction to the middle of a parked vehicle: 5 m before and behind it and its crosswalks stay
+free (Germany, StVO, section 12)."""
 ALONG = 2.5  # m before and behind a parked car where the edge of the lanes is looked at
 ROOM = 1.5  # m, from the middle of a way to the vehicles that are parked beside it
 SIGN = {"left": 1.0, "right": -1.0}
@@ -154,21 +156,12 @@ def parked_rows(
     rng = np.random.default_rng([seed, len(scene.actors), len(scene.parked)])
     lanes, middle = lanes_of(network_of(road, world)), world.profile_of(road).middle
     outer = "left" if world.profile_of(road).left_hand else "right"
-    crossed = road.network.crossed if is_route(road) else ()
-    kept = [
-        (
-            each.start - KEPT_FREE - sum(CROSSWALK) * (each.arrival in crossed),
-            each.end + KEPT_FREE + sum(CROSSWALK) * (each.departure in crossed),
-        )
-        for each in road.passages
-    ]
     lines = [shapely.LineString(each[:, :2]).buffer(ROOM) for each in free]
     found = list[tuple[ActorKind, FloatArray]]()
     for side in scene.parked:
         for s in np.arange(PLACE / 2, road.length - PLACE / 2, PLACE).tolist():
             is_free, is_van = rng.random(2) < (FREE, VANS)
-            is_kept = any(start < s + PLACE / 2 and s - PLACE / 2 < end for start, end in kept)
-            if is_free or is_kept:
+            if is_free or any(each.start - KEPT_FREE < s < each.end + KEPT_FREE for each in road.passages):
                 continue
             kind: ActorKind = "van" if is_van else "car"
             t = float(middle(s)) + offset_of("parked", side, s, road, world, SIZES[kind].width)
