@@ -175,7 +175,11 @@ class _Placing:
         self.size, self.n = (
             SIZES[role.kind],
             _numbers(role)
-            | {key: value for key, value in _numbers(place).items() if key in ("gap", "headway", "station")},
+            | {
+                key: value
+                for key, value in _numbers(place).items()
+                if key in ("gap", "headway", "lead", "station")
+            },
         )
         self.half = (self.size.length + self.car.length) / 2
         self.limit = self.world.limits.speed_limit
@@ -357,8 +361,8 @@ class _Placing:
         if self.where == "behind" or (self.first == "overtake" and self.forward > 0):
             reach = -reach
         behind = v if self.where == "behind" else car.v
-        if "station" in n:
-            s = n["station"]
+        if "station" in n or "lead" in n:
+            s = n["station"] if "station" in n else car.s + n["lead"]
         elif self.role.at:
             first, last = self.script.stretch(self.role.at)
             half = self.size.length / 2 + 5.0
