@@ -221,8 +221,6 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
         "far": "three lanes in its direction; write lanes=3" if along < 3 else "",
         "oncoming": "an oncoming lane; write for example against=1" if is_one_way else "",
     }
-    if 2 <= along < (least := 1 + sum(scene.lanes_beside.values())):
-        yield f"the scene needs {least} lanes in the direction of the tested car; write lanes={least}"
     counts: dict[str, float] = {}
     if brief.map is None:
         places = [place for place in brief.junctions if place.kind not in LANE_KINDS]
@@ -256,3 +254,5 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
         for mark in filter(None, (role.at, *(action.at for action in role.actions))):
             if mark.number > (count := counts.get(mark.of, inf)):
                 yield f"'{role}' needs {mark.of} {mark.number}, and there are {count:g}; change one of them"
+    if 2 <= along < (least := 1 + sum(scene.lanes_beside.values())):
+        yield f"the scene needs {least} lanes in the direction of the tested car; write lanes={least}"

@@ -27,7 +27,7 @@ from roadgpt.design.room import world_for
 from roadgpt.drive import Drive, refuse_ignored, simulate
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.loading import require_permission
-from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
+from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError, UsageError
 from roadgpt.network import made_from, refuse_without_route
 from roadgpt.road import Design, Geometry, Road, World, in_short_segments
 from roadgpt.run.folder import Draw, read_run, seed_in, write_run
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from roadgpt.traffic.recording import Recording
 
 __all__ = [
+    "REFUSED",
     "Draw",
     "Outcome",
     "Request",
@@ -60,6 +61,7 @@ __all__ = [
 USUAL = World()
 PLAIN = Setup()
 MOST_ROUNDS = 3  # drafts of one road; a designer whose last draft still breaks a rule will not improve
+REFUSED = "refused: "  # what the description of a test begins with whose scene cannot be on its road
 WENT_ON = {
     "goal": "then came to the goal",
     "fell": "then fell",
@@ -243,6 +245,8 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
         run = replace(run, drive=drive, verdict=verdict)
     except PartError:
         raise
+    except UsageError as error:  # the scene cannot be on this road
+        run = replace(run, outcome="INVALID", description=f"{REFUSED}{error}")
     except Exception as error:  # whatever a driver or a simulator raises costs this road, not the campaign
         said = str(error) if isinstance(error, RoadGPTError) else f"the simulation failed: {error!r}"
         is_lost = isinstance(error, SimulatorError)

@@ -3,7 +3,7 @@ roundabout, from a ramp, and off its road."""
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -44,6 +44,8 @@ class Around(NamedTuple):
     route: Route
     lanes: Lanes
     path: Way
+    s: FloatArray
+    """The stations along the route of the points of the path."""
     passages: Sequence[Passage]
 
     def turns(self, passage: Passage, start: Leg) -> Iterator[tuple[float, tuple[Leg, ...]]]:
@@ -106,7 +108,7 @@ class Around(NamedTuple):
         apart = np.interp(own, way.stations, points[:, 2]) - np.interp(
             along, path.stations, path.points[:, 2]
         )
-        s = np.interp(along, path.stations, stations_of(path))
+        s = np.interp(along, path.stations, self.s)
         is_there = (own >= begin) & (np.abs(apart) < HEADROOM)
         is_there &= (s >= passage.start - AROUND) & (s <= passage.end + AROUND)
         return (
@@ -114,12 +116,6 @@ class Around(NamedTuple):
             if is_there.any()
             else None
         )
-
-
-def stations_of(path: Way) -> FloatArray:
-    """Returns the stations along the tested car's road of the points of its path."""
-    assert path.road_stations is not None
-    return path.road_stations
 
 
 def with_headings(xyz: FloatArray) -> FloatArray:
@@ -136,11 +132,11 @@ def along_lanes(role: Role, near: float, road: "Road", world: "World") -> Way:
     passages, mark = road.passages, role.at
     if mark and mark.of == "junction":
         passages = passages[mark.number - 1 if mark.number > 0 else mark.number :][:1]
-    ways = (
-        WAYS[place](role, Around(road, lanes_of(road.network), Way.along(road, world), passages))
-        if (is_route(road))
-        else ()
-    )
+    ways: Iterable[Way | None] = ()
+    if is_route(road):
+        path = Way.along(road, world)
+        around = Around(road, lanes_of(road.network), path, np.asarray(path.road_stations), passages)
+        ways = WAYS[place](role, around)
     for way in ways:
         if way is not None and way.meets is not None and way.meets[1] >= near:
             return way
@@ -170,20 +166,15 @@ def _through_junction(role: Role, around: Around) -> Iterator[Way | None]:
     elif what == "run_light":  # opposite arms have green together
         sides = [side for side in sides if side != "opposite"]
     least, most, kinds = TURNS[what]
+    directions = {arm.end: arm.direction for each in network.junctions for arm in each.arms}
     for passage in around.passages:
         arms = list[tuple[int, float, list[Leg]]]()
-        back = 0.0
-        for end in passage.arms:  # the road of arrival is the first one
-            member = network.road(end.road)
-            out = float(member.road.heading(member.road.length)) + math.pi
-            out = out if end.contact == "end" else float(member.road.heading(0.0))
-            back = out if end == passage.arrival else back
-            turn = float(wrap_angle(out - back - math.pi))  # from straight ahead
+        for end in passage.arms[1:]:  # the first one is the road of arrival
+            turn = float(wrap_angle(directions[end] - directions[passage.arrival] - math.pi))
             side = "opposite" if abs(turn) <= OPPOSITE else "left" if turn > 0 else "right"
-            if end != passage.arrival and side in sides:
+            if side in sides:
                 lanes = [Leg(end.road, each) for each in network.lanes_into(end)]
-                off = abs(turn) if side == "opposite" else abs(abs(turn) - math.pi / 2)
-                arms.append((sides.index(side), off, lanes))
+                arms.append((sides.index(side), abs(turn), lanes))
         for _, _, lanes in sorted(arms):
             turns = [each for lane in lanes for each in around.turns(passage, lane)]
             for by, legs in sorted(turns, key=lambda each: (abs(each[0]), each[1])):
@@ -232,7 +223,7 @@ def _from_ramp(role: Role, around: Around) -> Iterator[Way | None]:
                 s = np.arange(0.0, lanes[key].length, SPACING)
                 wide = s[lanes[key].width(s) >= LEAST]
                 if len(wide):
-                    yield _into(around.path, Way(points), begin + wide[0], begin + wide[-1])
+                    yield _into(around, Way(points), begin + wide[0], begin + wide[-1])
     for passage in around.passages:
         for end in passage.arms[1:] if passage.entered.kind == "merge" else ():
             for each in around.route.network.lanes_into(end):
@@ -240,11 +231,11 @@ def _from_ramp(role: Role, around: Around) -> Iterator[Way | None]:
                     yield around.met(onward, passage) if onward[-1] in legs else None
 
 
-def _into(path: Way, way: Way, begin: float, end: float) -> Way | None:
+def _into(around: Around, way: Way, begin: float, end: float) -> Way | None:
     """Returns the way that changes to the tested car's path in the middle between two of its stations."""
     import shapely
 
-    length = min(LONGEST, SHARE * (end - begin))
+    path, length = around.path, min(LONGEST, SHARE * (end - begin))
     kept = way.stations < (begin + end - length) / 2
     if kept.sum() < 2:
         return None
@@ -257,7 +248,7 @@ def _into(path: Way, way: Way, begin: float, end: float) -> Way | None:
     rest = path.points[ahead, :3] + np.column_stack([-left * sin, left * cos, 0 * left])
     whole = Way(with_headings(np.vstack([way.points[kept, :3], rest])))
     first = int((np.abs(left) <= MERGED).argmax())
-    met = float(whole.stations[kept.sum() + first]), float(stations_of(path)[ahead][first])
+    met = float(whole.stations[kept.sum() + first]), float(around.s[ahead][first])
     return Way(whole.points, met)
 
 
@@ -271,13 +262,12 @@ def _turning_off(role: Role, around: Around) -> Iterator[Way | None]:
             is_there = not side or (abs(by) > STRAIGHT_AHEAD and (by > 0) == (side == "left"))
             if legs[-1].road == passage.departure.road or not is_there:
                 continue
-            own = stations_of(around.path)
-            kept = own < passage.start - SPACING / 2
+            kept = around.s < passage.start - SPACING / 2
             rest = around.whole(legs[1:])[0]
             way = Way(with_headings(np.vstack([around.path.points[kept, :3], rest[:, :3]])))
             begin = float(way.stations[kept.sum()])
-            own = np.r_[own[kept], passage.start + way.stations[kept.sum() :] - begin]
-            yield Way(way.points, (begin, passage.start), own)
+            beyond = passage.start + way.stations[kept.sum() :] - begin
+            yield Way(way.points, (begin, passage.start), np.r_[around.s[kept], beyond])
 
 
 WAYS: Mapping[str, Callable[[Role, Around], Iterator[Way | None]]] = {

@@ -29,7 +29,10 @@ BEFORE, BEHIND = 5.0, 8.0  # m, from a junction to those who cross the road befo
 DRIVEWAY = 6.0  # m, radius in which somebody turns from beside the road into a lane
 PLACE = 7.0  # m of a row for each parked vehicle: at least 6.5 m, of a delivery van
 FREE, VANS = 0.15, 0.1  # shares of the places that are free, and of vans among the parked vehicles
-KEPT_FREE = 5.0  # m before and behind junctions and crosswalks (Germany, StVO, section 12)
+KEPT_FREE = 5.0 + sum(CROSSWALK) + PLACE / 2
+"""Metres from a junction to the middle of a parked vehicle: 5 m before and behind it and its crosswalks stay
+free (Germany, StVO, section 12)."""
+ALONG = 2.5  # m before and behind a parked car where the edge of the lanes is looked at
 ROOM = 1.5  # m, from the middle of a way to the vehicles that are parked beside it
 SIGN = {"left": 1.0, "right": -1.0}
 
@@ -60,9 +63,10 @@ def offset_of(where: Where, side: Side | None, s: float, road: "Road", world: "W
             on = f" on the {side}" if side else ""
             raise UsageError(f"the road has no {lacks}{on} at {s:.0f} m; give it one, or another place")
     side = side or outer
-    edges, sign = profile.edges(s), SIGN[side]
-    edge = float((edges.left if side == "left" else edges.right) - profile.middle(s))
-    return edge + sign * (CLEAR + width / 2 if where == "parked" else BESIDE)
+    around = np.clip([s - ALONG, s, s + ALONG], 0.0, road.length)
+    edges = getattr(profile.edges(around), side) - profile.middle(around)
+    edge = float(edges.max() if side == "left" else edges.min())
+    return edge + SIGN[side] * (CLEAR + width / 2 if where == "parked" else BESIDE)
 
 
 def _lanes_beside(s: float, road: "Road", world: "World", width: float) -> dict[str, list[float]]:
@@ -120,25 +124,24 @@ def _across(role: Role, s: float, road: "Road", world: "World") -> Way:
     edges, rims, middle = profile.edges(s), profile.rims(s), float(profile.middle(s))
     reach = {"left": float(edges.left) - middle, "right": middle - float(edges.right)}
     side = str(role.side or ("left" if profile.left_hand else "right"))
-    begin = span(role.away).lo if role.away else reach[side] + BESIDE
-    other = "right" if side == "left" else "left"
-    across = np.linspace(
-        begin, -reach[other] - BESIDE, math.ceil((begin + reach[other] + BESIDE) / SPACING) + 1
-    )
+    beyond = max(BESIDE, SIZES[role.kind].length / 2 + 1.0)
+    begin = span(role.away).lo if role.away else reach[side] + beyond
+    end = reach["right" if side == "left" else "left"] + beyond
+    across = np.linspace(begin, -end, math.ceil((begin + end) / SPACING) + 1)
     along = np.full(len(across), s)
-    if "turn_in" in (each.what for each in role.actions):
-        turn = np.linspace(0.0, math.pi / 2, math.ceil(DRIVEWAY * math.pi / 2 / SPACING) + 1)
-        rest = np.arange(s + SPACING, road.length, SPACING)
-        across = np.r_[across[across > DRIVEWAY], DRIVEWAY * (1 - np.sin(turn)), 0 * rest]
-        along = np.r_[
-            along[: len(across) - len(turn) - len(rest)] - DRIVEWAY, s - DRIVEWAY * np.cos(turn), rest
-        ]
+    if turns_in := "turn_in" in (each.what for each in role.actions):
+        radius = min(DRIVEWAY, begin)
+        s += radius / 2  # so that it comes into the lane behind the station
+        turn = np.linspace(0.0, math.pi / 2, math.ceil(radius * math.pi / 2 / SPACING) + 1)
+        straight, rest = across[across > radius], np.arange(s + SPACING, road.length, SPACING)
+        across = np.r_[straight, radius * (1 - np.sin(turn)), 0 * rest]
+        along = np.r_[0 * straight + s - radius, s - radius * np.cos(turn), rest]
     t = profile.middle(along) + SIGN[side] * across
     xyz = road.at(along, t)
     xyz[:, 2] = road.at(along, np.clip(t, rims.right, rims.left))[:, 2]
     way = Way(with_headings(xyz))
     first = int((across <= MERGED).argmax())
-    met = (float(way.stations[first]), float(along[first])) if along[-1] > s else (begin, s)
+    met = (float(way.stations[first]), float(along[first])) if turns_in else (begin, s)
     return Way(way.points, met)
 
 
@@ -153,21 +156,12 @@ def parked_rows(
     rng = np.random.default_rng([seed, len(scene.actors), len(scene.parked)])
     lanes, middle = lanes_of(network_of(road, world)), world.profile_of(road).middle
     outer = "left" if world.profile_of(road).left_hand else "right"
-    crossed = road.network.crossed if is_route(road) else ()
-    kept = [
-        (
-            each.start - KEPT_FREE - sum(CROSSWALK) * (each.arrival in crossed),
-            each.end + KEPT_FREE + sum(CROSSWALK) * (each.departure in crossed),
-        )
-        for each in road.passages
-    ]
     lines = [shapely.LineString(each[:, :2]).buffer(ROOM) for each in free]
     found = list[tuple[ActorKind, FloatArray]]()
     for side in scene.parked:
         for s in np.arange(PLACE / 2, road.length - PLACE / 2, PLACE).tolist():
             is_free, is_van = rng.random(2) < (FREE, VANS)
-            is_kept = any(start < s + PLACE / 2 and s - PLACE / 2 < end for start, end in kept)
-            if is_free or is_kept:
+            if is_free or any(each.start - KEPT_FREE < s < each.end + KEPT_FREE for each in road.passages):
                 continue
             kind: ActorKind = "van" if is_van else "car"
             t = float(middle(s)) + offset_of("parked", side, s, road, world, SIZES[kind].width)

@@ -1,0 +1,269 @@
+"""Where others are and which ways they go; checked on the polygons of the lanes, with shapely."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+import shapely
+
+from roadgpt.brief.plan import read_scene
+from roadgpt.errors import UsageError
+from roadgpt.network import network_of
+from roadgpt.network.lanes import lanes_of
+from roadgpt.run import Setup, perform
+from roadgpt.traffic.actor import SIZES, corners
+from roadgpt.traffic.lights import GREEN, RED
+from roadgpt.traffic.places import offset_of, parked_rows, way_of
+from roadgpt.traffic.traffic import begin
+from roadgpt.traffic.way import Way
+
+CROSSROADS = "straight 150 // crossroads straight none angle=90 // straight 150"
+PLANS = [
+    "straight 300 | lanes=1 against=1",
+    "straight 400 | lanes=3 against=3 divided",
+    "turn left 90 r=50 | lanes=2 against=1",
+    CROSSROADS,
+    "straight 100 // crossroads left lights crosswalk // straight 100 | lanes=2 against=2",
+    "straight 150 // crossroads straight turn_lane=left // straight 100",
+    "straight 100 // t_junction left stop // straight 100",
+    "straight 100 // roundabout exit=3 // straight 100 | lanes=2",
+    "straight 200 // merge main // straight 300 | lanes=2",
+    "| lanes=2 len=200 // lane_drop // straight 150",
+    "map columns=3 rows=2",
+]
+PLANS += [f"{plan} || left_hand" for plan in (CROSSROADS, "straight 80 // roundabout exit=2")]
+ROLES = [
+    "car junction left", "car junction right: run_sign", "car junction opposite", "car junction: run_light",
+    "car junction: turn_in", "car oncoming: turn_across", "car roundabout", "car ramp: merge",
+    "car ahead: turn_off", "car behind: turn_off right", "car beside: turn_in", "adult crossing left",
+    "bicycle crossing right away=6", "child crosswalk",
+]  # fmt: skip
+
+
+@cache
+def made(plan):
+    run = perform(plan, 1, setup=Setup(reader="plan", drives=False))
+    assert run.is_valid, run.description
+    lanes = lanes_of(network_of(run.road, run.world))
+    return run.road, run.world, [each for each in lanes if each.kind == "driving"]
+
+
+def role(text):
+    return read_scene(text).actors[0]
+
+
+def way(plan, text, near=30.0):
+    road, world, _ = made(plan)
+    try:
+        return way_of(role(text), near, road, world)
+    except UsageError as error:
+        said = str(error)
+    assert said[0].islower()
+    assert len(said.splitlines()) == 1
+    assert len(said) < 160
+    return None
+
+
+@cache
+def tree(plan):
+    return shapely.STRtree([lane.area.buffer(0.02) for lane in made(plan)[2]])
+
+
+def directions(plan, points):
+    """The lanes that hold each point, and how far off their direction the point's heading is."""
+    lanes, found = made(plan)[2], [[] for _ in points]
+    which, within = tree(plan).query(shapely.points(points[:, :2]), predicate="intersects")
+    for n in np.unique(within):
+        own = which[within == n]
+        s, _ = lanes[n].locate(*points[own, :2].T)
+        off = np.remainder(points[own, 3] - lanes[n].heading(s) + math.pi, math.tau) - math.pi
+        for at, turned in zip(own, np.abs(off), strict=True):
+            found[at].append((lanes[n].id, turned))
+    return found
+
+
+@pytest.mark.parametrize("plan", PLANS)
+def test_places_beside_the_car_are_in_lanes_of_the_right_direction_or_in_none(plan):
+    road, world, lanes = made(plan)
+    paved = shapely.union_all([lane.area for lane in lanes])
+    path = Way.along(road, world)
+    count = 0
+    for s in np.linspace(5.0, road.length - 5.0, 15):
+        x, y, z, heading = (float(np.interp(s, path.road_stations, column)) for column in path.points.T)
+        is_inside = any(each.start - 3 < s < each.end + 3 for each in road.passages)
+        own = {each for each, _ in directions(plan, np.array([[x, y, z, heading]]))[0]}
+        for where in () if is_inside else ("lane", "far", "oncoming", "parked", "beside"):
+            for side in (None, "left", "right"):
+                try:
+                    t = offset_of(where, side, s, road, world, 1.8)
+                except UsageError:
+                    assert where in ("lane", "oncoming")
+                    continue
+                count += 1
+                spot = np.array([[x - t * math.sin(heading), y + t * math.cos(heading), z, heading]])
+                if side and where != "oncoming":
+                    assert (t > 0) == (side == "left")
+                here = directions(plan, spot)[0]
+                box = shapely.Polygon(corners(np.array([*spot[0], 0.0]), SIZES["car"]))
+                if where == "oncoming":
+                    assert here
+                    assert all(off > math.radians(170) for _, off in here)
+                elif where == "lane" or (where == "far" and here):
+                    assert here
+                    assert all(off < math.radians(10) for _, off in here)
+                    assert not own & {each for each, _ in here}
+                else:  # beside all lanes, but not farther than a parked car of the referee of traffic
+                    assert shapely.area(shapely.intersection(box, paved)) < 0.15
+                    assert paved.distance(shapely.Point(spot[0, :2])) < 3.5
+    assert count > 40
+
+
+@pytest.mark.parametrize("text", ROLES)
+@pytest.mark.parametrize("plan", PLANS)
+def test_ways_follow_lanes_and_meet_the_tested_car_where_they_say(plan, text):
+    found = way(plan, text)
+    if found is None:
+        return
+    road, world, _ = made(plan)
+    path = Way.along(road, world)
+    points = found.points
+    steps = np.diff(points[:, :2], axis=0)
+    assert np.hypot(*steps.T).max() < 0.8
+    course = np.arctan2(*steps.T[::-1])
+    assert np.abs(np.remainder(course - points[:-1, 3] + np.pi, math.tau) - np.pi).max() < math.radians(8)
+    own, station = found.meets
+    assert station >= 30.0
+    there = [float(np.interp(station, path.road_stations, column)) for column in path.points.T]
+    apart = math.hypot(*np.subtract(found.pose(own)[:2], there[:2]))
+    across = abs(math.sin(found.pose(own)[3] - there[3]))
+    one, other = (shapely.LineString(each.points[:, :2]) for each in (found, path))
+    if "turn_off" in text:
+        assert apart < 0.05
+        assert found.road_stations is not None
+        s = np.linspace(own - 20.0, own, 9)
+        beside = np.interp(
+            np.interp(s, found.stations, found.road_stations), path.road_stations, path.stations
+        )
+        gaps = [math.dist(found.pose(a)[:2], path.pose(b)[:2]) for a, b in zip(s, beside, strict=True)]
+        assert max(gaps) < 0.05
+        assert shapely.distance(shapely.points(points[found.stations > own, :2]), other).max() > 3.0
+    elif apart < 0.05:
+        assert across > 0.5
+        assert one.intersects(other)
+    else:  # they become one
+        assert apart < 0.52
+        assert across < 0.5
+        before = shapely.LineString(points[found.stations < own - 5.0][-40:, :2])
+        assert before.distance(other) > 0.5
+    if text.split()[0] != "car":
+        assert across > 0.999
+        assert not any(p.start < station < p.end for p in road.passages)
+        ends = directions(plan, points[[0, -1]])
+        assert not ends[1]
+        assert "away" in text or not ends[0]
+    elif "beside" not in text:
+        wrong = [
+            n for n, here in enumerate(directions(plan, points[::3])) if not any(off < 0.7 for _, off in here)
+        ]
+        assert not wrong
+    if "away" in text:
+        assert math.isclose(own, 6.0)
+
+
+def test_who_comes_from_a_side_comes_from_there():
+    for plan in (CROSSROADS, f"{CROSSROADS} || left_hand"):
+        road, _, _ = made(plan)
+        straight = float(road.heading(0.0))
+        for side, turn in (("left", -90), ("right", 90)):
+            for kind in ("car junction", "adult crossing", "car beside"):
+                text = f"{kind} {side}: {'turn_in' if 'beside' in kind else 'cross'}"
+                off = math.degrees(math.remainder(way(plan, text).points[0, 3] - straight, math.tau))
+                assert abs(off - turn) < 5.0
+        across = way(plan, "car oncoming: turn_across").points
+        assert abs(math.remainder(across[0, 3] - straight - math.pi, math.tau)) < 0.1
+        turned = math.degrees(across[-1, 3] - across[0, 3])
+        assert abs(turned - (-90 if "left_hand" in plan else 90)) < 5.0  # across the tested car's path
+        turn = way(plan, "car ahead: turn_off right").points
+        assert abs(math.degrees(turn[-1, 3] - turn[0, 3]) + 90) < 5.0
+
+
+def test_what_is_there_is_found():
+    everywhere = {"car beside: turn_in", "adult crossing left", "bicycle crossing right away=6"}
+    across = {
+        "car junction left",
+        "car junction: turn_in",
+        "car oncoming: turn_across",
+        "car ahead: turn_off",
+    }
+    for plan, wanted in (
+        (PLANS[0], set()),
+        (CROSSROADS, across | {"car behind: turn_off right"}),
+        (
+            PLANS[4],
+            {"car junction: run_light", "child crosswalk", "car junction left", "car junction opposite"},
+        ),
+        (PLANS[7], {"car roundabout", "car ahead: turn_off"}),
+        (PLANS[8], {"car ramp: merge"}),
+        (PLANS[9], {"car ramp: merge"}),
+        (PLANS[10], across),
+        (f"{CROSSROADS} || left_hand", across | {"car junction left", "car behind: turn_off right"}),
+        (PLANS[-1], {"car roundabout"}),
+    ):
+        assert {text for text in ROLES if way(plan, text) is not None} >= wanted | everywhere
+
+
+def test_what_is_not_there_is_refused_by_name():
+    road, world, _ = made(PLANS[0])
+    for text, named in (
+        ("car junction left", "no junction after 30 m with a road from the left"),
+        ("car roundabout", "no roundabout"),
+        ("car ramp: merge", "no ramp"),
+        ("child crosswalk", "no crosswalk"),
+    ):
+        with pytest.raises(UsageError, match=named):
+            way_of(role(text), 30.0, road, world)
+    with pytest.raises(UsageError, match="ends at"):
+        way_of(role("adult crossing"), road.length - 2.0, road, world)
+    with pytest.raises(UsageError, match="on the left at 50 m"):
+        offset_of("lane", "left", 50.0, road, world, 1.8)
+
+
+def test_rows_of_cars_stand_beside_the_lanes_and_leave_junctions_and_ways_free():
+    plan = PLANS[4]
+    road, world, lanes = made(plan)
+    scene = read_scene("parked left; parked right")
+    walker = way(plan, "adult crossing right")
+    rows = parked_rows(scene, road, world, 1, [walker.points])
+    again, others = (parked_rows(scene, road, world, seed, [walker.points]) for seed in (1, 2))
+    assert [(kind, *state) for kind, state in rows] == [(kind, *state) for kind, state in again]
+    assert len(rows) != len(others) or any((a[1] != b[1]).any() for a, b in zip(rows, others, strict=True))
+    boxes = [shapely.Polygon(corners(state, SIZES[kind])) for kind, state in rows]
+    paved = shapely.union_all([lane.area for lane in lanes])
+    inside = [lane.area for lane in lanes if lane.member.junction is not None]
+    line = shapely.LineString(walker.points[:, :2])
+    for (kind, state), box in zip(rows, boxes, strict=True):
+        assert kind in ("car", "van")
+        assert 0.05 < paved.distance(box) < 0.3
+        assert shapely.union_all(inside).distance(box) >= 4.5
+        assert line.distance(box) > 1.0
+        nearest = min(lanes, key=lambda lane: lane.area.distance(box))
+        s, _ = nearest.locate(*state[:2])
+        assert abs(math.remainder(state[3] - float(nearest.heading(s)), math.tau)) < 0.05
+    assert all(not one.intersects(other) for n, one in enumerate(boxes) for other in boxes[:n])
+    free = road.length - sum(each.end - each.start + 18.0 for each in road.passages)
+    assert 0.65 < len(rows) / (2 * free / 7.0) < 0.95
+
+
+def test_the_tested_car_has_green_where_somebody_runs_the_red_light():
+    plan = "straight 100 // crossroads straight lights // straight 100"
+    road, world, _ = made(plan)
+    for seed in range(5):
+        scene = "ego v=36; car junction left: run_light; light"
+        traffic = begin(road, world.changed(scene=scene), seed)
+        (passage,) = road.passages
+        arrives = passage.start / 10.0
+        shown = {arm.end: traffic.lights.shown(arm.end, arrives) for arm in passage.entered.arms}
+        assert shown[passage.arrival] == shown[passage.departure] == GREEN
+        assert sum(each == RED for each in shown.values()) == 2
+    assert way(plan, "car junction opposite: run_light") is None

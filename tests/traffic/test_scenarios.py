@@ -1,0 +1,183 @@
+"""The catalogue of scenarios against what was written of it before it was built, in catalogue.json and
+roads.json: names, parameters and grids, what an outside judge sees in the exported files, and on which roads
+they can happen."""
+
+import importlib
+import json
+import sys
+import tempfile
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from outside_judge import SHARED
+from roadgpt.brief.plan import read_plan
+from roadgpt.brief.scenarios import LANE_WIDTH, chosen, scenario, scenarios
+from roadgpt.brief.scene import Scene
+from roadgpt.brief.scene_fit import fitted
+from roadgpt.errors import UsageError
+from roadgpt.road import World
+from roadgpt.run import Run, Setup, perform
+from roadgpt.run.exporting import export
+
+HERE = Path(__file__).parent
+CATALOGUE: list[dict[str, Any]] = json.loads((HERE / "catalogue.json").read_text())["scenarios"]
+ROADS: list[dict[str, Any]] = json.loads((HERE / "roads.json").read_text())["roads"]
+BY_NAME = {entry["name"]: entry for entry in CATALOGUE}
+OF_THE_JUNCTION = {"turn radius"}
+"""What the nominal junction has of its own."""
+TOLD = {"parked", "places", "distance"}
+"""Places that the catalogue tells in words."""
+RENAMED = {"from": "start", "to": "end"}
+SAMPLE = (
+    "ncap:CCRb", "ncap:CCFtap", "ncap:CPNCO", "ncap:CBLA", "r157:cut_in", "r157:cut_out_fully_blocking",
+    "leaderboard:control_loss", "nhtsa:straight_crossing_paths",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def referee() -> ModuleType:
+    if not (SHARED / "referee_traffic.py").exists():
+        pytest.skip("the referee of traffic is not at hand")
+    sys.path.insert(0, str(SHARED))
+    try:
+        return importlib.import_module("referee_traffic")
+    finally:
+        sys.path.remove(str(SHARED))
+
+
+def driven(name: str, **more: Any) -> Run:
+    setup = Setup(driver="robot", reader="plan", scenario=name)
+    return perform(scenario(name).plan, 1, World().changed(lane_width=LANE_WIDTH, **more), setup)
+
+
+def points(blocks: list[dict[str, list[Any]]], dropped: set[str]) -> int:
+    """How many points a grid has, counted from its blocks alone."""
+    count = 0
+    for block in blocks:
+        size = 1
+        for name, values in block.items():
+            size *= 1 if name in dropped else len(values)
+        count += size
+    return count
+
+
+def test_all_that_was_planned_is_there_in_its_order() -> None:
+    assert [*scenarios()] == [entry["name"] for entry in CATALOGUE]
+
+
+@pytest.mark.parametrize("name", BY_NAME)
+def test_a_scenario_has_the_parameters_and_the_grid_that_were_written_before(name: str) -> None:
+    made, entry = scenarios()[name], BY_NAME[name]
+    for key, (value, _) in entry["parameters"].items():
+        if key not in OF_THE_JUNCTION | TOLD:
+            assert made.values[RENAMED.get(key, key).replace(" ", "_")] == value
+    assert made.says.startswith(entry["says"])
+    assert made.source == entry["source"]
+    if not {*entry["parameters"]} & {"places"}:
+        assert points([*made.grid], set()) == points(entry["grid"], OF_THE_JUNCTION)
+
+
+@pytest.mark.parametrize("name", BY_NAME)
+def test_each_is_a_scene_and_what_the_command_line_takes_is_what_it_tells(name: str) -> None:
+    one = scenarios()[name]
+    assert one.onto(Scene()).speed is not None
+    assert str(scenario(name)) == name
+    faster = scenario(f"{name} ego=31")
+    assert str(faster) == f"{name} ego=31"
+    assert faster.onto(Scene()).speed == read_plan("straight && ego v=31").scene.speed
+    assert [*map(str, chosen(str(faster)))] == [str(faster)]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("r157:cutin", "did you mean 'r157:cut_in'"),
+        ("cut_in", "r157:cut_in"),
+        ("r157:cut_in slow=3", "did you mean 'slower'"),
+        ("r157:cut_in gap=far", "'gap' of r157:cut_in is a number"),
+        ("r157:cut_in lane=up", "left"),
+        ("r157:cut_in slower=70", "from 0 to 250"),
+        ("ncap:CPLA target=0", "divided by 0"),
+        ("r157:cut_in gap", "write for example"),
+        ("ncap:*", "name one"),
+        ("", "no scenario is named"),
+    ],
+)
+def test_what_is_no_scenario_gets_one_sentence_with_the_nearest(text: str, said: str) -> None:
+    with pytest.raises(UsageError, match=said.replace("(", r"\(")):
+        scenario(text)
+
+
+def test_weather_and_traffic_join_a_scenario_and_contradictions_do_not() -> None:
+    one = scenario("nhtsa:animal_no_maneuver")
+    both = one.onto(read_plan("straight && light; fog 60").scene)
+    assert (both.flow, both.light, both.actors) == ("light", "night", one.onto(Scene()).actors)
+    assert one.onto(both) == both
+    for other in ("low_sun", "car ahead", "ego v=20"):
+        with pytest.raises(UsageError, match="contradict each other"):
+            one.onto(read_plan(f"straight && {other}").scene)
+
+
+@pytest.mark.parametrize("number", range(len(ROADS)))
+def test_a_scenario_asks_nothing_of_a_road_on_which_it_can_happen_that_the_words_exclude(number: int) -> None:
+    road = ROADS[number]
+    brief, unfit = read_plan(road["plan"]), road["fits"]["all but"]
+    for name, one in scenarios().items():
+        if name not in unfit:
+            needed = fitted(brief, one.onto(Scene()), 70 / 3.6)
+            assert fitted(needed, one.onto(Scene()), 70 / 3.6) == needed
+
+
+@pytest.mark.parametrize(
+    ("plan", "name", "said"),
+    [
+        ("straight 100", "ncap:CCRb", "needs 1[0-9]0 m of road"),
+        ("| lanes=1", "r157:cut_out_fully_blocking", "two lanes"),
+        ("turn x2", "ncap:CCCscp", "needs a junction"),
+        ("crossroads right", "ncap:CCFtap", "goes left at the junction"),
+        ("crossroads straight stop", "leaderboard:red_light_runner", "needs lights"),
+        ("straight 60; hairpin left", "nhtsa:animal_no_maneuver", "before bends"),
+    ],
+)
+def test_words_that_exclude_a_scenario_are_refused_in_one_sentence(plan: str, name: str, said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        fitted(read_plan(plan), scenario(name).onto(Scene()), 70 / 3.6)
+
+
+def test_silent_words_get_lanes_a_way_and_wide_bends() -> None:
+    def asked(plan: str, name: str) -> Any:
+        return fitted(read_plan(plan), scenario(name).onto(Scene()), 70 / 3.6)
+
+    assert asked("turn x3", "r157:cut_in").lanes.lo == 2
+    assert asked("crossroads", "ncap:CCFtap").junctions[0].take == "left"
+    assert asked("crossroads straight", "leaderboard:red_light_runner").junctions[0].control == "lights"
+    # 80 km/h at 6 m/s2 sideways
+    assert asked("turn x3", "nhtsa:lead_vehicle_slower").clauses[0].radius.lo == pytest.approx(82.3, abs=1)
+
+
+def test_the_tested_car_has_the_lanes_beside_it_that_the_scene_names() -> None:
+    run = driven("r157:cut_in_unavoidable_collision")
+    assert run.road is not None
+    profile, s = run.world.profile_of(run.road), 50.0
+    left, right = profile.lane(s)
+    edges = profile.edges(s)
+    assert right - edges.right == pytest.approx(LANE_WIDTH)
+    assert left - right == pytest.approx(LANE_WIDTH)
+
+
+@pytest.mark.parametrize("name", SAMPLE)
+def test_an_outside_judge_finds_the_scenario_in_the_exported_files(name: str, referee: ModuleType) -> None:
+    run = driven(name)
+    with tempfile.TemporaryDirectory() as folder:
+        export(run, folder, ["opendrive", "openscenario"], lambda said: None)
+        holds, measured = referee.check(f"{folder}/road.drive.xosc", BY_NAME[name]["truth"])
+    assert all(holds.values()), (holds, run.description, measured["outcome"])
+
+
+def test_slippery_places_let_the_tested_car_slip_there_and_nowhere_else() -> None:
+    world = World().changed(scene=scenario("leaderboard:control_loss").onto(Scene()))
+    at = [world.friction_at(s) for s in (13.9, 14.0, 23.9, 24.1, 48.0, 80.0, 90.0)]
+    assert at == [1.0, 0.3, 0.3, 1.0, 0.3, 0.3, 1.0]
