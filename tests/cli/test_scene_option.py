@@ -119,3 +119,9 @@ def test_settings_and_plans_of_campaigns_have_scenes() -> None:
 def test_a_scene_beside_words_is_told() -> None:
     result = roadgpt("run", "--plan", PLAN, "--scene", "light", "--no-drive", "--no-plot", "--out", "out")
     assert "note: on the road: light traffic (5 vehicles for each km of a lane)" in result.output
+
+
+def test_rain_beside_words_sets_the_friction_and_says_so() -> None:
+    result = roadgpt("run", "--plan", PLAN, "--scene", "rain 5", "--no-drive", "--no-plot", "--out", "out")
+    assert "note: on the road: rain of 5 mm/h; friction 0.6" in result.output
+    assert json.loads(Path("out/campaign.json").read_text(encoding="utf-8"))["world"]["friction"] == 0.6
